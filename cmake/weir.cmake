@@ -1,0 +1,41 @@
+# Options every target of weir is compiled with, and the two shapes of target
+# there are: a folder as a library, a tests/ folder as one test program.
+
+add_library(weir_options INTERFACE)
+target_include_directories(weir_options INTERFACE ${PROJECT_SOURCE_DIR})
+# A decoded value is two roundings everywhere: never let the compiler fuse them.
+target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -Wall -Wextra -Wconversion -Wshadow>)
+if(WEIR_WERROR)
+  target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
+endif()
+
+# weir_library(NAME LINKS target...): every .cpp in NAME/ and below.
+function(weir_library name)
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  if(NOT sources)
+    add_library(weir_${name} INTERFACE)
+    target_link_libraries(weir_${name} INTERFACE weir_options ${ARG_LINKS})
+    return()
+  endif()
+  add_library(weir_${name} STATIC ${sources})
+  target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
+endfunction()
+
+# weir_tests(NAME): every .cpp in tests/NAME/ as the program weir_tests_NAME.
+function(weir_tests name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(weir_tests_${name} ${sources})
+  set(library weir_${name})
+  if(name STREQUAL "tools")
+    set(library weir_compressor weir_gpu)
+    add_dependencies(weir_tests_${name} weir)
+    target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
+  endif()
+  target_link_libraries(weir_tests_${name} PRIVATE ${library} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(weir_tests_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120)
+endfunction()

@@ -1,0 +1,51 @@
+// The operating-system calls of a conversion's output, behind an interface that
+// a test can make fail. Every call throws Error(io) naming path and action.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace weir {
+
+/// An open file. Positioned calls may be made from several threads at once. Closes on destruction.
+class File {
+ public:
+  virtual ~File() = default;
+  virtual const std::string& path() const = 0;
+  virtual void write_at(std::uint64_t offset, std::span<const std::byte> bytes) = 0;
+  /// Fills `bytes` entirely; fewer bytes in the file are an error.
+  virtual void read_at(std::uint64_t offset, std::span<std::byte> bytes) = 0;
+  /// Sets the size and reserves the blocks. Returns false where the file system cannot reserve (the
+  /// size is set all the same, and a full disk shows later); a full disk throws.
+  virtual bool preallocate(std::uint64_t bytes) = 0;
+  virtual void sync() = 0;
+  virtual std::uint64_t size() = 0;
+};
+
+/// All paths are as the user wrote them. Thread-safe.
+class FileSystem {
+ public:
+  virtual ~FileSystem() = default;
+  /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it; a lock
+  /// held by another process is Error(io) "is being written by another process".
+  virtual std::unique_ptr<File> create(const std::string& path) = 0;
+  /// A file in `directory` without a name: nothing of it outlives the process.
+  virtual std::unique_ptr<File> create_unnamed(const std::string& directory) = 0;
+  virtual void rename(const std::string& from, const std::string& to) = 0;
+  virtual void link(const std::string& from, const std::string& to) = 0;
+  virtual void remove(const std::string& path) = 0;            ///< a missing file is no error
+  virtual void make_directory(const std::string& path) = 0;    ///< an existing one is no error
+  virtual void remove_directory(const std::string& path) = 0;  ///< empty or missing
+  virtual void sync_directory(const std::string& path) = 0;
+  virtual bool exists(const std::string& path) = 0;
+  virtual bool is_memory(const std::string& directory) = 0;  ///< tmpfs or ramfs
+  virtual std::uint64_t free_bytes(const std::string& directory) = 0;
+};
+
+/// The real one.
+std::unique_ptr<FileSystem> make_posix_file_system();
+
+}  // namespace weir

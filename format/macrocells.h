@@ -1,0 +1,30 @@
+// Macrocells: bounds of the decoded values over cells of kMacrocell^3 voxels and
+// an apron of one voxel around each, so that a majorant taken from a cell holds
+// for every filtered lookup in it. Stored as the grid's blind data:
+//   name  "weir_macrocells:CELL:APRON" (NUL padded), type float, 2 values (min, max) a cell
+//   order x fastest, cells of the lattice make_lattice(index bounding box, CELL)
+// Voxels outside the domain count with the background.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace weir {
+
+inline constexpr std::int64_t kMacrocell = 16;      ///< voxels along a cell's edge
+inline constexpr std::int64_t kMacrocellApron = 1;  ///< voxels
+
+struct MacrocellName {
+  std::int64_t cell = kMacrocell;
+  std::int64_t apron = kMacrocellApron;
+};
+
+/// "weir_macrocells:16:1".
+std::string macrocell_name(const MacrocellName& shape);
+/// Inverse; nullopt where the text is not such a name, cell is no multiple of 8 in [8, 4096] or
+/// apron is not in [0, 8].
+std::optional<MacrocellName> parse_macrocell_name(std::string_view text);
+
+}  // namespace weir

@@ -1,0 +1,105 @@
+// A read-only view of the first grid of a NanoVDB file held in memory (mapped
+// or not). `open` validates everything before any offset is trusted: after it
+// returned, no call reads outside the span, whatever the bytes are.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "format/index.h"
+
+namespace weir {
+
+/// NanoVDB's grid types that hold scalars a renderer can use; values as on disk.
+enum class GridType : std::uint32_t { float32 = 1, fp4 = 13, fp8 = 14, fp16 = 15, fpn = 16 };
+
+struct MinMax {
+  float min;
+  float max;
+};
+
+/// What covers a voxel: a leaf, or a value tile of 8, 128 or 4096 voxels, or nothing (background).
+struct GridBlock {
+  Index3 origin;                    ///< lowest voxel
+  std::int64_t dim = 0;             ///< voxels along an edge: 8, 128 or 4096
+  bool active = false;              ///< tile state; true for leaves
+  float value = 0;                  ///< tile value or background; unused for leaves
+  const std::byte* leaf = nullptr;  ///< leaf node, 32-byte aligned in the file, null for tiles
+};
+
+/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
+/// around it. Empty `cells` where the file has none.
+struct MacrocellView {
+  std::int64_t cell = 0;          ///< voxels along an edge
+  std::int64_t apron = 0;         ///< voxels
+  NodeLattice lattice;            ///< cells over the index bounding box
+  std::span<const MinMax> cells;  ///< lattice.size() entries, x fastest
+};
+
+class NvdbGrid {
+ public:
+  /// `file` must stay valid and unchanged while the view is used. `path` is for messages only.
+  /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
+  /// NanoVDB file of a supported type.
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path);
+
+  GridType type() const { return type_; }
+  const std::string& name() const { return name_; }
+  Box index_bbox() const { return bbox_; }  ///< of active voxels, half open; the domain in weir's files
+  float background() const { return background_; }
+  float value_min() const { return value_min_; }  ///< of the decoded active values
+  float value_max() const { return value_max_; }
+  std::array<double, 3> voxel_size() const { return voxel_size_; }
+  std::array<double, 3> world_origin() const { return world_origin_; }  ///< of index (0, 0, 0)
+  std::uint64_t grid_offset() const { return grid_offset_; }            ///< bytes from the file's start
+  std::uint64_t grid_bytes() const { return grid_bytes_; }              ///< gridSize
+  std::uint64_t data_bytes() const { return data_bytes_; }              ///< grid_bytes less the padding at the tail
+  std::uint64_t active_voxels() const { return active_voxels_; }
+  std::array<std::uint32_t, 3> node_counts() const { return node_counts_; }  ///< leaf, lower, upper
+  std::array<std::uint32_t, 3> tile_counts() const { return tile_counts_; }  ///< active: lower, upper, root
+  std::uint32_t head_checksum() const { return head_checksum_; }
+  /// CRC-32 of the head as it stands in the file; equals head_checksum() in an intact one.
+  std::uint32_t computed_head_checksum() const;
+  MacrocellView macrocells() const { return macrocells_; }
+
+  /// What covers voxel `i` (any coordinates).
+  GridBlock block_at(const Index3& i) const;
+  /// Decoded value of voxel `i`: what a stock accessor returns.
+  float value(const Index3& i) const;
+  /// Decodes leaf `block.leaf` into 512 values, index x<<6 | y<<3 | z (z fastest).
+  void decode_leaf(const std::byte* leaf, std::span<float, 512> values) const;
+  /// True where voxel (x<<6 | y<<3 | z) of a leaf is active.
+  static bool leaf_voxel_active(const std::byte* leaf, unsigned offset);
+  /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper
+  /// node its tiles and children. Tiles of background value that are inactive are visited too.
+  void for_each_block(const std::function<void(const GridBlock&)>& visit) const;
+
+  std::span<const std::byte> bytes() const { return file_; }
+
+ private:
+  NvdbGrid() = default;
+
+  std::span<const std::byte> file_;
+  GridType type_ = GridType::float32;
+  std::string name_;
+  Box bbox_;
+  float background_ = 0;
+  float value_min_ = 0;
+  float value_max_ = 0;
+  std::array<double, 3> voxel_size_{};
+  std::array<double, 3> world_origin_{};
+  std::uint64_t grid_offset_ = 0;
+  std::uint64_t grid_bytes_ = 0;
+  std::uint64_t data_bytes_ = 0;
+  std::uint64_t active_voxels_ = 0;
+  std::array<std::uint32_t, 3> node_counts_{};
+  std::array<std::uint32_t, 3> tile_counts_{};
+  std::uint32_t head_checksum_ = 0;
+  MacrocellView macrocells_;
+};
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+// Reads blocks ahead of the work on them: while one block is being worked on,
+// the next is being read by a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "format/index.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+struct Block {
+  std::size_t index = 0;          ///< position in the list given to stream_blocks
+  Box voxels;                     ///< index space
+  std::span<const float> values;  ///< x fastest over `voxels`; valid during the call only
+};
+
+struct StreamOptions {
+  const std::atomic<bool>* cancel = nullptr;  ///< set by another thread or a signal handler
+  /// Called on the calling thread after each block with the voxels done and the voxels of all boxes.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+
+/// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of
+/// the largest box's size exist at a time. An exception of either side ends both and is rethrown;
+/// a set `cancel` throws Error(interrupted). Returns the loss summed over all boxes.
+ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
+                             const std::function<void(const Block&)>& work);
+
+}  // namespace weir
