@@ -1,0 +1,32 @@
+// What every subcommand shares. One subcommand is one file with one
+// `add_NAME(CLI::App&)`, listed in main.cpp.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <optional>
+#include <string>
+
+namespace weir {
+
+/// Set by SIGINT and SIGTERM (main.cpp); long work looks at it between blocks.
+const std::atomic<bool>& interrupt_flag();
+
+/// Adds --log-level, applied when the option is parsed.
+void add_log_level(CLI::App& command);
+
+// Each adds its subcommand to `app`; the work is done in the subcommand's callback, which throws
+// Error for everything that goes wrong and weir::ExitStatus (below) to end with a code and no message.
+void add_convert(CLI::App& app);
+void add_compare(CLI::App& app);
+void add_inspect(CLI::App& app);
+void add_verify(CLI::App& app);
+void add_render(CLI::App& app);
+void add_sample(CLI::App& app);
+
+/// Thrown by a subcommand that has already said what it found (verify, compare).
+struct ExitStatus {
+  int code;
+};
+
+}  // namespace weir

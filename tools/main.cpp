@@ -1,0 +1,81 @@
+// The `weir` command: options to subcommands, errors to one line and an exit code.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "format/error.h"
+#include "tools/command.h"
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+// The first signal asks the work to end cleanly, a second one ends the process at once.
+extern "C" void on_signal(int signal) {
+  if (interrupted.exchange(true)) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
+
+int fail(const std::string& message, int code) {
+  std::fprintf(stderr, "weir: %s\n", message.c_str());
+  return code;
+}
+
+std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+namespace weir {
+
+const std::atomic<bool>& interrupt_flag() { return interrupted; }
+
+void add_log_level(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--log-level", [](const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); },
+          "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->default_str("info");
+}
+
+}  // namespace weir
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
+  spdlog::set_pattern("%H:%M:%S %l %v");
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+
+  CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", WEIR_VERSION);
+  try {
+    // COMMANDS
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForAllHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
+  } catch (const CLI::ParseError& error) {
+    return fail(first_line(error.what()) + "; see weir --help", static_cast<int>(weir::ErrorKind::usage));
+  } catch (const weir::ExitStatus& status) {
+    return status.code;
+  } catch (const weir::Error& error) {
+    return fail(error.what(), error.exit_code());
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
+  } catch (const std::exception& error) {
+    return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
+  }
+}
