@@ -1,0 +1,159 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+#include "format/error.h"
+#include "format/file_system.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+class PosixFile final : public File {
+ public:
+  PosixFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+  ~PosixFile() override { ::close(descriptor_); }
+  PosixFile(const PosixFile&) = delete;
+  PosixFile& operator=(const PosixFile&) = delete;
+
+  const std::string& path() const override { return path_; }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw io_error(path_, cat("write ", bytes.size(), " bytes at offset ", offset), errno);
+      offset += static_cast<std::uint64_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    }
+  }
+
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t done = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw io_error(path_, cat("read ", bytes.size(), " bytes at offset ", offset), errno);
+      if (done == 0)
+        throw Error(ErrorKind::io, cat(path_, ": ends at offset ", offset, ", expected ", bytes.size(), " bytes more"));
+      offset += static_cast<std::uint64_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    }
+  }
+
+  bool preallocate(std::uint64_t bytes) override {
+    // fallocate and not posix_fallocate: the latter writes zeros where the file system cannot reserve.
+    int status = 0;
+    do {
+      status = bytes == 0 ? 0 : ::fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes));
+    } while (status != 0 && errno == EINTR);
+    if (status == 0) return true;
+    if (errno != EOPNOTSUPP && errno != ENOSYS) throw io_error(path_, cat("reserve ", bytes, " bytes"), errno);
+    if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0)
+      throw io_error(path_, cat("set the size to ", bytes), errno);
+    return false;
+  }
+
+  void sync() override {
+    if (::fsync(descriptor_) != 0) throw io_error(path_, "flush to the device", errno);
+  }
+
+  std::uint64_t size() override {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) throw io_error(path_, "read the size", errno);
+    return static_cast<std::uint64_t>(status.st_size);
+  }
+
+ private:
+  int descriptor_;
+  std::string path_;
+};
+
+class PosixFileSystem final : public FileSystem {
+ public:
+  std::unique_ptr<File> create(const std::string& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) throw io_error(path, "create", errno);
+    auto file = std::make_unique<PosixFile>(descriptor, path);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      throw Error(ErrorKind::io,
+                  cat(path, ": is being written by another process; wait for it or choose another output"));
+    }
+    if (::ftruncate(descriptor, 0) != 0) throw io_error(path, "truncate", errno);
+    return file;
+  }
+
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override {
+    int descriptor = ::open(directory.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+    if (descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+      std::string name = directory + "/spillXXXXXX";
+      descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+      if (descriptor >= 0) ::unlink(name.c_str());
+    }
+    if (descriptor < 0) throw io_error(directory, "create a temporary file in it", errno);
+    return std::make_unique<PosixFile>(descriptor, directory + " (temporary file)");
+  }
+
+  void rename(const std::string& from, const std::string& to) override {
+    if (::rename(from.c_str(), to.c_str()) != 0) throw io_error(from, "rename to " + to, errno);
+  }
+
+  void link(const std::string& from, const std::string& to) override {
+    if (::link(from.c_str(), to.c_str()) != 0) throw io_error(from, "link to " + to, errno);
+  }
+
+  void remove(const std::string& path) override {
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT) throw io_error(path, "remove", errno);
+  }
+
+  void make_directory(const std::string& path) override {
+    if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) throw io_error(path, "create the directory", errno);
+  }
+
+  void remove_directory(const std::string& path) override {
+    if (::rmdir(path.c_str()) != 0 && errno != ENOENT) throw io_error(path, "remove the directory", errno);
+  }
+
+  void sync_directory(const std::string& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) throw io_error(path, "open the directory", errno);
+    const int status = ::fsync(descriptor);
+    const int reason = errno;
+    ::close(descriptor);
+    // Some network file systems cannot flush a directory and say EINVAL; their renames are durable by themselves.
+    if (status != 0 && reason != EINVAL) throw io_error(path, "flush the directory", reason);
+  }
+
+  bool exists(const std::string& path) override {
+    struct stat status {};
+    return ::lstat(path.c_str(), &status) == 0;
+  }
+
+  bool is_memory(const std::string& directory) override {
+    struct statfs status {};
+    if (::statfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the file system", errno);
+    constexpr auto kTmpfs = 0x01021994;
+    constexpr auto kRamfs = static_cast<decltype(status.f_type)>(0x858458f6);
+    return status.f_type == kTmpfs || status.f_type == kRamfs;
+  }
+
+  std::uint64_t free_bytes(const std::string& directory) override {
+    struct statvfs status {};
+    if (::statvfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the free space", errno);
+    return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<FileSystem> make_posix_file_system() { return std::make_unique<PosixFileSystem>(); }
+
+}  // namespace weir
