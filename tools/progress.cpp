@@ -1,0 +1,117 @@
+#include "tools/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr const char* kClearLine = "\r\x1b[K";
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// "0:04", "12:30", "3:00:00".
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(std::min(seconds, 359999.0) + 0.5);
+  std::array<char, 32> text{};
+  if (whole >= 3600) {
+    std::snprintf(text.data(), text.size(), "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  } else {
+    std::snprintf(text.data(), text.size(), "%ld:%02ld", whole / 60, whole % 60);
+  }
+  return text.data();
+}
+
+double share(std::uint64_t done, std::uint64_t total) {
+  return total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+}
+
+}  // namespace
+
+std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s) {
+  const double part = share(done, total);
+  std::string text = cat(pass, ' ', static_cast<int>(part * 100), " % of ", format_bytes(total));
+  if (done == 0 || elapsed_s <= 0) return text;
+  const double bytes = static_cast<double>(std::min(done, total));
+  std::array<char, 32> rate{};
+  std::snprintf(rate.data(), rate.size(), ", %.2f GB/s", bytes / elapsed_s / 1e9);
+  text += rate.data();
+  if (part < 1.0) text += cat(", ", clock_text(elapsed_s * (1.0 - part) / part), " left");
+  return text;
+}
+
+Progress::Progress(ProgressMode mode, std::FILE* out, std::function<double()> clock_s)
+    : mode_(mode),
+      out_(out),
+      clock_s_(clock_s ? std::move(clock_s) : steady_seconds),
+      terminal_(isatty(fileno(out)) == 1) {}
+
+Progress::~Progress() { end_bar(); }
+
+void Progress::start(const std::string& pass, std::uint64_t total_bytes) {
+  finish();
+  if (mode_ == ProgressMode::never) return;
+  running_ = true;
+  pass_ = pass;
+  total_ = total_bytes;
+  done_ = 0;
+  started_s_ = drawn_s_ = clock_s_();
+}
+
+void Progress::update(std::uint64_t done_bytes) {
+  if (!running_) return;
+  done_ = done_bytes;
+  if (clock_s_() - drawn_s_ >= (terminal_ ? kBarInterval_s : kLineInterval_s)) draw();
+}
+
+void Progress::finish() {
+  if (!running_) return;
+  done_ = total_;
+  if (terminal_ || mode_ == ProgressMode::always) draw();
+  end_bar();
+  running_ = false;
+}
+
+void Progress::draw() {
+  drawn_s_ = clock_s_();
+  std::string line = progress_text(pass_, done_, total_, drawn_s_ - started_s_);
+  if (terminal_) {
+    const auto filled = static_cast<std::size_t>(share(done_, total_) * kBarWidth);
+    line = cat(kClearLine, '[', std::string(filled, '#'), std::string(kBarWidth - filled, '.'), "] ", line);
+    bar_on_screen_ = true;
+  } else {
+    line = cat("weir: ", line, '\n');
+  }
+  std::fputs(line.c_str(), out_);
+  std::fflush(out_);
+}
+
+void Progress::end_bar() {
+  if (!bar_on_screen_) return;
+  std::fputc('\n', out_);
+  std::fflush(out_);
+  bar_on_screen_ = false;
+}
+
+void add_progress_option(CLI::App& command, ProgressMode& mode) {
+  const std::map<std::string, ProgressMode> modes{
+      {"auto", ProgressMode::automatic}, {"always", ProgressMode::always}, {"never", ProgressMode::never}};
+  command
+      .add_option_function<std::string>(
+          "--progress", [&mode, modes](const std::string& name) { mode = modes.at(name); },
+          "auto: a bar on a terminal, elsewhere a line every 5 s; always: a line for every pass too; never")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->default_str("auto");
+}
+
+}  // namespace weir

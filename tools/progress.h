@@ -1,0 +1,64 @@
+// Progress of a long command on stderr: a bar with pass, share, rate and time
+// left on a terminal, one line every few seconds elsewhere. One thread at a
+// time may call it. stdout is never written.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+namespace weir {
+
+enum class ProgressMode {
+  automatic,  ///< a bar on a terminal, elsewhere a line every kLineInterval_s
+  always,     ///< the same, and elsewhere a line at the end of every pass however short
+  never
+};
+
+/// Seconds between two drawings of the bar, and between two lines where there is no terminal.
+inline constexpr double kBarInterval_s = 0.1;
+inline constexpr double kLineInterval_s = 5.0;
+
+/// "survey 43 % of 8.0 GiB, 1.32 GB/s, 0:04 left"; the rate is the mean since the pass began.
+/// `done` above `total` counts as `total`; the time left is absent while nothing is done.
+std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s);
+
+class Progress {
+ public:
+  /// `clock_s` returns monotonic seconds; tests pass their own.
+  explicit Progress(ProgressMode mode, std::FILE* out = stderr, std::function<double()> clock_s = {});
+  /// Ends a bar that an exception left standing, so that the message starts on a line of its own.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Begins a pass over `total_bytes`; finishes the one before.
+  void start(const std::string& pass, std::uint64_t total_bytes);
+  /// `done_bytes` of the pass are done; cheap enough to be called for every block.
+  void update(std::uint64_t done_bytes);
+  /// The pass is complete.
+  void finish();
+
+ private:
+  void draw();
+  void end_bar();
+
+  ProgressMode mode_;
+  std::FILE* out_;
+  std::function<double()> clock_s_;
+  bool terminal_;
+  bool running_ = false;
+  bool bar_on_screen_ = false;
+  std::string pass_;
+  std::uint64_t total_ = 0;
+  std::uint64_t done_ = 0;
+  double started_s_ = 0;
+  double drawn_s_ = 0;
+};
+
+/// Adds --progress auto|always|never, stored in `mode`.
+void add_progress_option(CLI::App& command, ProgressMode& mode);
+
+}  // namespace weir
