@@ -1,0 +1,84 @@
+#include "format/leaf_codec.h"
+
+#include <cstring>
+
+#include "format/little_endian.h"
+
+namespace weir {
+namespace {
+
+// Active mask of a leaf, one byte per (x, y) row of eight z.
+std::array<std::uint8_t, 64> active_rows(const Box& node, const Box& inside) {
+  std::array<std::uint8_t, 64> rows{};
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 hi = inside.hi - node.lo;
+  const auto row = static_cast<std::uint8_t>(((1U << static_cast<unsigned>(hi.z)) - 1U) &
+                                             ~((1U << static_cast<unsigned>(lo.z)) - 1U));
+  for (std::int64_t x = lo.x; x < hi.x; ++x) {
+    for (std::int64_t y = lo.y; y < hi.y; ++y) rows[static_cast<std::size_t>(x * 8 + y)] = row;
+  }
+  return rows;
+}
+
+}  // namespace
+
+void gather_leaf(std::span<const float> values, const Box& box, const Box& node, const Box& inside, float outside,
+                 LeafValues& leaf) {
+  const Index3 extent = box.extent();
+  if (inside == node) {
+    const float* corner = values.data() + linear_index(inside.lo - box.lo, extent);
+    for (std::int64_t y = 0; y < kLeafDim; ++y) {
+      for (std::int64_t z = 0; z < kLeafDim; ++z) {
+        const float* row = corner + extent.x * (y + extent.y * z);
+        for (std::int64_t x = 0; x < kLeafDim; ++x) leaf[static_cast<std::size_t>(x << 6 | y << 3 | z)] = row[x];
+      }
+    }
+    return;
+  }
+  leaf.fill(outside);
+  for (std::int64_t z = inside.lo.z; z < inside.hi.z; ++z) {
+    for (std::int64_t y = inside.lo.y; y < inside.hi.y; ++y) {
+      const float* row = values.data() + linear_index(Index3{inside.lo.x, y, z} - box.lo, extent);
+      for (std::int64_t x = inside.lo.x; x < inside.hi.x; ++x) {
+        const Index3 i = Index3{x, y, z} - node.lo;
+        leaf[static_cast<std::size_t>(i.x << 6 | i.y << 3 | i.z)] = row[x - inside.lo.x];
+      }
+    }
+  }
+}
+
+NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const Box& inside) {
+  NodeStatistics statistics;
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 hi = inside.hi - node.lo;
+  for (std::int64_t x = lo.x; x < hi.x; ++x) {
+    for (std::int64_t y = lo.y; y < hi.y; ++y) {
+      const float* row = values.data() + (x << 6 | y << 3);
+      for (std::int64_t z = lo.z; z < hi.z; ++z) statistics.add(row[z]);
+    }
+  }
+  statistics.add_box(inside);
+  return statistics;
+}
+
+void encode_float_leaf(const LeafValues& values, const Box& node, const Box& inside, const NodeStatistics& statistics,
+                       std::span<std::byte, nvdb::kFloatLeafBytes> image) {
+  using namespace nvdb::leaf;
+  std::memset(image.data(), 0, nvdb::kLeafHeadBytes);
+  const Index3 last = inside.extent() - Index3{1, 1, 1};
+  store(image, kBBoxMin, static_cast<std::int32_t>(inside.lo.x));
+  store(image, kBBoxMin + 4, static_cast<std::int32_t>(inside.lo.y));
+  store(image, kBBoxMin + 8, static_cast<std::int32_t>(inside.lo.z));
+  store(image, kBBoxDim, static_cast<std::uint8_t>(last.x));
+  store(image, kBBoxDim + 1, static_cast<std::uint8_t>(last.y));
+  store(image, kBBoxDim + 2, static_cast<std::uint8_t>(last.z));
+  store(image, kFlags, std::uint8_t{2});  // has a bounding box
+  store(image, kValueMask, active_rows(node, inside));
+  store(image, kMin, statistics.min);
+  store(image, kMax, statistics.max);
+  store(image, kAverage, statistics.average());
+  store(image, kStdDev, statistics.deviation());
+  std::memcpy(image.data() + kValues, values.data(), sizeof(LeafValues));
+}
+
+}  // namespace weir

@@ -1,0 +1,43 @@
+#include "format/tree_layout.h"
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t align(std::uint64_t offset) {
+  return (offset + nvdb::kAlignment - 1) / nvdb::kAlignment * nvdb::kAlignment;
+}
+
+}  // namespace
+
+TreeLayout make_layout(const NodeCounts& counts) {
+  // NanoVDB counts nodes and active tiles in 32 bits.
+  constexpr std::uint64_t kMaxNodes = 0xFFFFFFFFULL;
+  if (counts.leaves > kMaxNodes || counts.lowers > kMaxNodes || counts.uppers > kMaxNodes) {
+    throw Error(ErrorKind::budget, cat("the grid would have ", counts.leaves,
+                                       " leaves, NanoVDB counts up to 4294967295; ask for a smaller size"));
+  }
+  TreeLayout layout;
+  layout.counts = counts;
+  layout.grid = nvdb::kPage;  // the name field is padded up to it
+  layout.uppers = layout.grid + nvdb::kRootTilesOffset + counts.root_tiles * nvdb::kRootTileBytes;
+  layout.lowers = layout.uppers + counts.uppers * nvdb::kUpperBytes;
+  layout.leaves = layout.lowers + counts.lowers * nvdb::kLowerBytes;
+  layout.blind_meta = layout.leaves + counts.leaf_bytes;
+  layout.blind_data = layout.blind_meta + nvdb::kBlindMetaBytes;
+  layout.content_end = align(layout.blind_data + counts.macrocells * 2 * sizeof(float));
+  layout.file_bytes = layout.content_end;
+  return layout;
+}
+
+TreeLayout padded_to(TreeLayout layout, std::uint64_t file_bytes) {
+  if (file_bytes < layout.content_end) {
+    throw Error(ErrorKind::internal, cat("layout of ", layout.content_end, " bytes does not fit ", file_bytes));
+  }
+  layout.file_bytes = file_bytes;
+  return layout;
+}
+
+}  // namespace weir
