@@ -16,9 +16,10 @@ constexpr std::uint64_t kMagicFileNew = nvdb::kMagic + (std::uint64_t{2} << 56U)
 // The file's constants count from the file's start, the meta data of a grid from its record.
 constexpr std::uint64_t in_record(std::uint64_t field) { return field - nvdb::kFileHeaderBytes; }
 
-constexpr std::array<const char*, 23> kTypeNames{
-    "unknown", "float", "double", "int16", "int32", "int64", "Vec3f", "Vec3d", "Mask",  "Half",  "uint32", "bool",
-    "RGBA8",   "Fp4",   "Fp8",    "Fp16",  "FpN",   "Vec4f", "Vec4d", "Index", "OnIndex", "IndexMask", "OnIndexMask"};
+constexpr std::array<const char*, 23> kTypeNames{"unknown", "float", "double",  "int16",     "int32",      "int64",
+                                                 "Vec3f",   "Vec3d", "Mask",    "Half",      "uint32",     "bool",
+                                                 "RGBA8",   "Fp4",   "Fp8",     "Fp16",      "FpN",        "Vec4f",
+                                                 "Vec4d",   "Index", "OnIndex", "IndexMask", "OnIndexMask"};
 
 std::string type_text(std::uint32_t type) {
   return type < kTypeNames.size() ? cat(type, " (", kTypeNames[type], ")") : cat(type);
@@ -31,8 +32,8 @@ bool supported(std::uint32_t type) {
 
 void check_version(const NvdbBytes& bytes, std::uint64_t offset, std::uint32_t version) {
   if (version >> 21U != nvdb::kMajorVersion) {
-    bytes.fail(offset, "NanoVDB version ", nvdb_version_text(version), " but only major version ",
-               nvdb::kMajorVersion, " can be read; write the file again with a current NanoVDB");
+    bytes.fail(offset, "NanoVDB version ", nvdb_version_text(version), " but only major version ", nvdb::kMajorVersion,
+               " can be read; write the file again with a current NanoVDB");
   }
 }
 
@@ -134,7 +135,8 @@ NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string&
   header.world_origin = load3(grid, nvdb::grid::kMap + 232);  // the map's vec as double
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!(header.voxel_size[axis] > 0) || !std::isfinite(header.voxel_size[axis])) {
-      grid.fail(nvdb::grid::kVoxelSize + 8 * axis, "voxel size ", header.voxel_size[axis], " is not positive and finite");
+      grid.fail(nvdb::grid::kVoxelSize + 8 * axis, "voxel size ", header.voxel_size[axis],
+                " is not positive and finite");
     }
     if (!std::isfinite(header.world_origin[axis])) {
       grid.fail(nvdb::grid::kMap + 232 + 8 * axis, "world origin ", header.world_origin[axis], " is not finite");
