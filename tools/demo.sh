@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# From nothing to a picture: installs packages, builds, makes a cloud, converts it to an eighth of its size,
+# verifies the file and renders it. Everything it makes goes to demo/.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tools/setup.sh
+tools/build.sh release
+
+weir=build/release/weir
+volume=demo/cloud_256x256x256_float32.raw
+mkdir -p demo
+
+[[ -s $volume ]] || "$weir" sample cloud --dims 256,256,256 -o "$volume"
+"$weir" convert "$volume" --rate 8 -o demo/cloud.nvdb --overwrite
+"$weir" verify demo/cloud.nvdb
+"$weir" inspect demo/cloud.nvdb
+"$weir" render demo/cloud.nvdb -o demo/cloud.png --size 800x600 --spp 64
+
+cat <<TEXT
+
+The volume                    $PWD/$volume
+an eighth of it as NanoVDB    $PWD/demo/cloud.nvdb
+what that lost, in numbers    $PWD/demo/cloud.nvdb.json
+and how it looks              $PWD/demo/cloud.png
+TEXT

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs the packages weir is built, run and checked with (Debian 12, Ubuntu 24.04); touches nothing else.
+# A no-op without apt or network where all are there already. Needs root, or sudo.
+set -euo pipefail
+
+packages=(
+  # to build
+  g++ cmake ninja-build git ca-certificates
+  libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
+  zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev
+  # to test
+  libgtest-dev libbenchmark-dev libopenvdb-dev libnanovdb-tools xz-utils
+  # to check
+  clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  # shellcheck disable=SC2016  # dpkg-query expands it, not the shell
+  status=$(dpkg-query --show --showformat '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+  [[ $status == ii* ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "tools/setup.sh: missing packages: ${missing[*]}; run it as root, or install sudo" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+  [[ -t 0 ]] || as_root+=(-n)
+fi
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@" </dev/null >"$log" 2>&1; }
+
+echo "installing ${#missing[@]} packages: ${missing[*]}"
+# Old lists may still do, so a failed update only shows up where the install fails as well.
+apt update || sed 's/^/  /' "$log" >&2
+if ! apt install --yes --no-install-recommends "${missing[@]}"; then
+  sed 's/^/  /' "$log" >&2
+  echo "tools/setup.sh: apt-get could not install: ${missing[*]}" >&2
+  exit 1
+fi
