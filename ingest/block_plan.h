@@ -10,13 +10,15 @@
 
 namespace weir {
 
-/// A regular cut of the leaf lattice of a domain: blocks of `leaves` leaves (the last ones smaller).
+/// A regular cut of the leaf lattice of a domain: blocks of `leaves` leaves. The first ones are
+/// smaller where the domain does not begin on a block boundary, the last ones where it ends between.
 struct BlockPlan {
   NodeLattice lattice;            ///< leaves (dim 8) over the domain
   Index3 leaves;                  ///< leaves per block along each axis
+  Index3 lead;                    ///< leaves of the first block that lie before the lattice, >= 0, < leaves
   Index3 count;                   ///< blocks along each axis
   std::uint64_t block_bytes = 0;  ///< float32 bytes of the largest block
-  std::int64_t run_voxels = 0;    ///< length of the contiguous runs in a row-major file, in voxels
+  std::int64_t run_voxels = 0;    ///< contiguous voxels of the largest block in a row-major file
   double amplification = 1.0;     ///< chunk decodes / chunks: 1 where none is decoded twice
 
   std::int64_t size() const { return volume(count); }
@@ -26,10 +28,17 @@ struct BlockPlan {
   Box voxel_box(const Box& leaf_box) const;
 };
 
-/// Largest blocks whose float32 values fit `block_bytes`: whole rows of lower nodes (128 deep, full
-/// rows in x, as many node rows in y as fit) where that fits; otherwise fewer leaf layers, then
-/// fewer leaf rows, and x is cut last; chunked sources get whole chunks where possible. A block is
-/// never smaller than one leaf. Throws Error(usage) when not even one leaf fits.
+/// Blocks grow no further than this once they are rows of whole lower nodes: reads are long enough
+/// then, and several blocks let reading and work overlap.
+inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{64} << 20U;
+
+/// Blocks whose float32 values fit `block_bytes`. Where rows are contiguous in the file: full rows in x,
+/// whole rows of lower nodes (128 x 128 voxels in y and z, on multiples of 128 of the index) and, up to
+/// kAmpleBlockBytes, more of them in y and then in z; otherwise fewer leaf layers in z, then fewer leaf
+/// rows in y, and x is cut last. For chunked sources: whole chunks first, as far as chunk edges lie on
+/// leaf edges, then as above. A block is never smaller than one leaf.
+/// `domain` is not empty and its float32 bytes fit 63 bits. Throws Error(usage) where not even one leaf
+/// fits.
 BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes);
 
 }  // namespace weir

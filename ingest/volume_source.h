@@ -48,6 +48,7 @@ struct ConversionLoss {
 struct AccessShape {
   std::size_t bytes_per_voxel = 4;  ///< in the file
   Index3 chunk{0, 0, 0};            ///< chunk extent in voxels, zero where rows are contiguous
+  Index3 chunk_origin{0, 0, 0};     ///< index of a corner of any chunk; chunks lie on its grid
 };
 
 /// Owned by one conversion. `read` may be called from several threads at once.

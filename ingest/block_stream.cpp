@@ -1,0 +1,132 @@
+#include "ingest/block_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "format/error.h"
+#include "ingest/page_buffer.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kBuffers = 2;
+
+/// The hand-over between the reader and the caller: block i goes through buffer i % kBuffers, is read
+/// after block i - kBuffers has been worked on, and worked on after it has been read.
+class Handover {
+ public:
+  /// Reader: waits until block `i` may be read; false where the caller has stopped.
+  bool wait_free(std::size_t i) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return stopped_ || i < worked_ + kBuffers; });
+    return !stopped_;
+  }
+  void publish_read() {
+    update([this] { ++read_; });
+  }
+  void publish_failure(std::exception_ptr failure) {
+    update([&] { failure_ = std::move(failure); });
+  }
+
+  /// Caller: waits until block `i` has been read; rethrows what ended the reader before it.
+  void wait_read(std::size_t i) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return failure_ || i < read_; });
+    if (i >= read_) std::rethrow_exception(failure_);
+  }
+  void publish_worked() {
+    update([this] { ++worked_; });
+  }
+  void stop() {
+    update([this] { stopped_ = true; });
+  }
+
+ private:
+  template <typename Change>
+  void update(const Change& change) {
+    {
+      const std::lock_guard lock(mutex_);
+      change();
+    }
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t read_ = 0;    ///< blocks
+  std::size_t worked_ = 0;  ///< blocks
+  bool stopped_ = false;
+  std::exception_ptr failure_;
+};
+
+/// The reading thread; told to stop and joined on every way out of stream_blocks.
+class Reader {
+ public:
+  template <typename Run>
+  Reader(Handover& handover, Run run) : handover_(handover), thread_(std::move(run)) {}
+  ~Reader() { handover_.stop(); }  // thread_ joins after this
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+ private:
+  Handover& handover_;
+  std::jthread thread_;
+};
+
+void throw_if_cancelled(const StreamOptions& options) {
+  if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+    throw Error(ErrorKind::interrupted, "interrupted");
+  }
+}
+
+}  // namespace
+
+ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
+                             const std::function<void(const Block&)>& work) {
+  throw_if_cancelled(options);
+  ConversionLoss loss;
+  if (boxes.empty()) return loss;
+
+  std::int64_t total = 0;
+  std::int64_t largest = 0;
+  for (const Box& box : boxes) {
+    total += box.voxels();
+    largest = std::max(largest, box.voxels());
+  }
+  // A single box has nobody to read ahead for.
+  const std::size_t bytes = static_cast<std::size_t>(largest) * sizeof(float);
+  const std::array<PageBuffer, kBuffers> buffers{PageBuffer(bytes), PageBuffer(boxes.size() > 1 ? bytes : 0)};
+  const auto values = [&](std::size_t i) {
+    return buffers[i % kBuffers].floats().first(static_cast<std::size_t>(boxes[i].voxels()));
+  };
+
+  Handover handover;
+  const Reader reader(handover, [&] {
+    try {
+      for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
+        loss.add(source.read(boxes[i], values(i)));
+        handover.publish_read();
+      }
+    } catch (...) {
+      handover.publish_failure(std::current_exception());
+    }
+  });
+
+  std::int64_t done = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    handover.wait_read(i);
+    throw_if_cancelled(options);
+    work({i, boxes[i], values(i)});
+    handover.publish_worked();
+    done += boxes[i].voxels();
+    if (options.progress) options.progress(done, total);
+    throw_if_cancelled(options);
+  }
+  return loss;
+}
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+#include "ingest/page_buffer.h"
+
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+
+PageBuffer::PageBuffer(std::size_t size) {
+  if (size == 0) return;
+  void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    throw io_error("memory", cat("get ", size, " bytes for reading; lower --memory"), errno);
+  }
+  ::madvise(memory, size, MADV_HUGEPAGE);  // Fewer faults on first touch; harmless where refused.
+  bytes_ = {static_cast<std::byte*>(memory), size};
+}
+
+PageBuffer::~PageBuffer() {
+  if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
+}
+
+PageBuffer::PageBuffer(PageBuffer&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+
+PageBuffer& PageBuffer::operator=(PageBuffer&& other) noexcept {
+  std::swap(bytes_, other.bytes_);
+  return *this;
+}
+
+}  // namespace weir
