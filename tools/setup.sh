@@ -9,7 +9,7 @@ packages=(
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev
   # to test
-  libgtest-dev libbenchmark-dev libopenvdb-dev libnanovdb-tools xz-utils
+  libgtest-dev libbenchmark-dev libopenvdb-dev libboost-dev libnanovdb-tools python3-jsonschema xz-utils
   # to check
   clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck
 )
