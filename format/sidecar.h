@@ -126,8 +126,8 @@ struct Sidecar {
 /// "OUT.nvdb.json" for "OUT.nvdb".
 std::string sidecar_path(const std::string& volume_path);
 
-/// The JSON document, two-space indent, keys in the order of the struct, final newline. Doubles read
-/// back bit-exact; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
+/// The JSON document, one line a top-level key, keys in the order of the struct, final newline. Finite
+/// doubles read back bit-exact; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
 std::string to_json_text(const Sidecar& sidecar);
 
 /// Inverse. `path` is for messages. Throws Error(input) naming the key that is missing, of the wrong

@@ -1,0 +1,31 @@
+// The encode pass: reads the blocks that hold kept leaves, and only those, and
+// writes every leaf at its place in the file.
+#pragma once
+
+#include <cstdint>
+
+#include "compressor/fill.h"
+#include "compressor/leaf_mask.h"
+#include "compressor/leaf_record.h"
+#include "compressor/tree_regions.h"
+#include "format/file_system.h"
+#include "format/tree_layout.h"
+#include "ingest/block_plan.h"
+#include "ingest/block_stream.h"
+
+namespace weir {
+
+struct EncodeTarget {
+  const TreeRegions& tree;
+  const MaskStore& masks;
+  const TreeLayout& layout;
+  Fill fill;
+  File& out;
+  RecordStore& records;
+};
+
+/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads.
+void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
+                   const StreamOptions& options);
+
+}  // namespace weir

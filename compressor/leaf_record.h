@@ -1,0 +1,61 @@
+// What the encode pass leaves of each kept leaf for the nodes above it: its
+// statistics in double, and the bounds of its outer layers, which reach into the
+// aprons of neighbouring macrocells. Spilled by leaf ordinal.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "format/file_system.h"
+#include "format/index.h"
+#include "format/leaf_codec.h"
+#include "format/nvdb_grid.h"
+
+namespace weir {
+
+/// Bounds of nothing: any value widens them.
+inline constexpr MinMax kNoBounds{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+
+inline void widen(MinMax& bounds, const MinMax& by) {
+  if (by.min < bounds.min) bounds.min = by.min;
+  if (by.max > bounds.max) bounds.max = by.max;
+}
+
+struct LeafRecord {
+  double mean = 0;
+  double m2 = 0;
+  MinMax bounds = kNoBounds;  ///< of the active values, NaN left out
+  /// Bounds of the layer that faces out of the leaf's macrocell: entry d - 1, bit 0 of d for the x side,
+  /// bit 1 for y, bit 2 for z. A leaf of an even coordinate faces down, of an odd one up.
+  std::array<MinMax, 7> outward{kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds};
+};
+static_assert(sizeof(LeafRecord) == 80, "records are spilled as they are");
+
+/// Record of a leaf as it will be decoded; `inside` are its in-domain voxels.
+LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box& inside,
+                            const NodeStatistics& statistics);
+
+/// Records by leaf ordinal. Thread-safe for different leaves.
+class RecordStore {
+ public:
+  RecordStore(std::unique_ptr<File> file, std::uint64_t leaves) : file_(std::move(file)) {
+    file_->preallocate(leaves * sizeof(LeafRecord));
+  }
+  void write(std::uint64_t first, std::span<const LeafRecord> records) {
+    file_->write_at(first * sizeof(LeafRecord), std::as_bytes(records));
+  }
+  std::vector<LeafRecord> read(std::uint64_t first, std::uint32_t count) const {
+    std::vector<LeafRecord> records(count);
+    file_->read_at(first * sizeof(LeafRecord), std::as_writable_bytes(std::span(records)));
+    return records;
+  }
+
+ private:
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace weir

@@ -1,0 +1,154 @@
+#include "compressor/leaf_summary.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "format/simd.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kLanes = 16;
+using Lanes = std::array<double, kLanes>;
+
+// Pairwise, so that the result does not depend on how the lanes were computed.
+double sum(Lanes lanes) {
+  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
+    for (std::size_t i = 0; i < width; ++i) lanes[i] += lanes[i + width];
+  }
+  return lanes[0];
+}
+
+struct Scan {
+  std::uint32_t differ;      // bits in which any value differs from the first
+  std::uint32_t non_finite;  // of all values
+};
+
+WEIR_SIMD Scan scan_bits(const float* values, std::size_t count) {
+  std::uint32_t first;
+  std::memcpy(&first, values, sizeof first);
+  std::uint32_t differ = 0;
+  std::uint32_t non_finite = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, values + i, sizeof bits);
+    differ |= bits ^ first;
+    non_finite += (bits & 0x7F800000U) == 0x7F800000U ? 1U : 0U;
+  }
+  return {differ, non_finite};
+}
+
+struct Moments {
+  float min;
+  float max;
+  double sum;
+};
+
+WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
+  std::array<float, kLanes> low;
+  std::array<float, kLanes> high;
+  Lanes total{};
+  low.fill(values[0]);
+  high.fill(values[0]);
+  const std::size_t whole = count / kLanes * kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float v = values[i + l];
+      low[l] = v < low[l] ? v : low[l];
+      high[l] = v > high[l] ? v : high[l];
+      total[l] += static_cast<double>(v);
+    }
+  }
+  for (std::size_t i = whole; i < count; ++i) {
+    const std::size_t l = i - whole;
+    const float v = values[i];
+    low[l] = v < low[l] ? v : low[l];
+    high[l] = v > high[l] ? v : high[l];
+    total[l] += static_cast<double>(v);
+  }
+  float min = low[0];
+  float max = high[0];
+  for (std::size_t l = 1; l < kLanes; ++l) {
+    min = low[l] < min ? low[l] : min;
+    max = high[l] > max ? high[l] : max;
+  }
+  return {min, max, sum(total)};
+}
+
+struct Deviation {
+  double sum;
+  double squares;
+};
+
+WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mean) {
+  Lanes total{};
+  Lanes squares{};
+  const auto centre = static_cast<double>(mean);
+  const std::size_t whole = count / kLanes * kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double d = static_cast<double>(values[i + l]) - centre;
+      total[l] += d;
+      squares[l] += d * d;
+    }
+  }
+  for (std::size_t i = whole; i < count; ++i) {
+    const double d = static_cast<double>(values[i]) - centre;
+    total[i - whole] += d;
+    squares[i - whole] += d * d;
+  }
+  return {sum(total), sum(squares)};
+}
+
+// Statistics of `count` >= 1 finite values that differ in the bits of `differ`.
+void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, LeafRow& row) {
+  if (differ == 0) {
+    row.min = row.max = row.mean = values[0];
+    row.flags = LeafRow::kUniform;
+    return;
+  }
+  const Moments moments = first_moments(values, count);
+  row.min = moments.min;
+  row.max = moments.max;
+  row.mean = static_cast<float>(moments.sum / static_cast<double>(count));
+  const Deviation deviation = deviations(values, count, row.mean);
+  row.residual = static_cast<float>(deviation.sum);
+  row.sse = deviation.squares;
+}
+
+}  // namespace
+
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at) {
+  const float* data = values.data();
+  const std::size_t count = values.size();
+  LeafRow row;
+  row.digest = leaf_digest(values);
+  const Scan scan = scan_bits(data, count);
+  row.finite = static_cast<std::uint16_t>(count - scan.non_finite);
+  row.sample = std::isfinite(data[sample_at]) ? data[sample_at] : std::numeric_limits<float>::quiet_NaN();
+  if (scan.non_finite == 0) {
+    summarize_finite(data, count, scan.differ, row);
+  } else if (row.finite > 0) {
+    std::array<float, 512> finite;
+    std::size_t kept = 0;
+    for (const float v : values) {
+      if (std::isfinite(v)) finite[kept++] = v;
+    }
+    summarize_finite(finite.data(), kept, scan_bits(finite.data(), kept).differ, row);
+  }
+  return row;
+}
+
+std::size_t sample_position(std::int64_t index, std::size_t count) {
+  // SplitMix64 (Steele et al. 2014), its high bits scaled to the range.
+  std::uint64_t h = static_cast<std::uint64_t>(index) + 0x9E3779B97F4A7C15ULL;
+  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
+  h ^= h >> 31U;
+  return static_cast<std::size_t>((h >> 32U) * count >> 32U);
+}
+
+}  // namespace weir

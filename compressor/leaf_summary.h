@@ -1,0 +1,20 @@
+// The survey's kernel: statistics of one leaf's values in cache.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "compressor/leaf_row.h"
+
+namespace weir {
+
+/// Statistics and digest of the in-domain values of a leaf, x fastest, 1 to 512 of them; `sample_at` is
+/// the position of the sampled value. Two passes, double sums in 16 lanes (Chan, Golub, LeVeque 1983).
+/// Non-finite values take part in the digest only.
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at);
+
+/// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in
+/// the data can hide from it.
+std::size_t sample_position(std::int64_t index, std::size_t count);
+
+}  // namespace weir

@@ -1,0 +1,117 @@
+#include "compressor/range_histogram.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "format/simd.h"
+
+namespace weir {
+namespace {
+
+// The smallest positive float is 2^-149: finer bins tell nothing more.
+constexpr int kFinest = -149;
+
+// Bin of each value. floor() comes before the subtraction: both operands are then integers that
+// double holds exactly, where value * scale - base could round across an edge.
+WEIR_SIMD void bins_of(const float* values, std::size_t count, double scale, double base, std::int32_t* bins) {
+  for (std::size_t i = 0; i < count; ++i) {
+    bins[i] = static_cast<std::int32_t>(std::floor(static_cast<double>(values[i]) * scale) - base);
+  }
+}
+
+}  // namespace
+
+RangeHistogram::RangeHistogram() : exponent_(kFinest), even_(kMaxBins), odd_(kMaxBins) {}
+
+RangeHistogram::Bins RangeHistogram::at(int exponent) const {
+  if (bins_ == 0) return {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const double shrink = std::ldexp(1.0, exponent_ - exponent);
+  return {std::floor(base_ * shrink), std::floor((base_ + static_cast<double>(bins_ - 1)) * shrink)};
+}
+
+void RangeHistogram::grow(int exponent, const std::function<Bins(int)>& other) {
+  for (;; ++exponent) {
+    const Bins mine = at(exponent);
+    const Bins theirs = other(exponent);
+    const Bins all{std::min(mine.first, theirs.first), std::max(mine.last, theirs.last)};
+    if (all.last - all.first >= static_cast<double>(kMaxBins)) continue;
+    const double shrink = std::ldexp(1.0, exponent_ - exponent);
+    for (auto* table : {&even_, &odd_}) {
+      std::vector<std::uint64_t> merged(kMaxBins);
+      for (std::size_t i = 0; i < bins_; ++i) {
+        // Bins that no float falls into may have an edge that double cannot hold; they are empty.
+        if ((*table)[i] == 0) continue;
+        merged[static_cast<std::size_t>(std::floor((base_ + static_cast<double>(i)) * shrink) - all.first)] +=
+            (*table)[i];
+      }
+      table->swap(merged);
+    }
+    exponent_ = exponent;
+    scale_ = std::ldexp(1.0, -exponent);
+    base_ = all.first;
+    bins_ = static_cast<std::size_t>(all.last - all.first) + 1;
+    return;
+  }
+}
+
+void RangeHistogram::cover(float low, float high) {
+  const auto range_at = [&](int exponent) {
+    const double scale = std::ldexp(1.0, -exponent);
+    return Bins{std::floor(static_cast<double>(low) * scale), std::floor(static_cast<double>(high) * scale)};
+  };
+  const Bins range = range_at(exponent_);
+  if (range.first >= base_ && range.last < base_ + static_cast<double>(bins_)) return;
+  grow(exponent_, range_at);
+}
+
+void RangeHistogram::add(std::span<const float> values, float low, float high) {
+  cover(low, high);
+  constexpr std::size_t kPiece = 512;
+  std::array<std::int32_t, kPiece> bins;
+  while (!values.empty()) {
+    const std::size_t count = std::min(values.size(), kPiece);
+    bins_of(values.data(), count, scale_, base_, bins.data());
+    std::size_t i = 0;
+    for (; i + 1 < count; i += 2) {
+      ++even_[static_cast<std::size_t>(bins[i])];
+      ++odd_[static_cast<std::size_t>(bins[i + 1])];
+    }
+    if (i < count) ++even_[static_cast<std::size_t>(bins[i])];
+    values = values.subspan(count);
+  }
+}
+
+void RangeHistogram::add(float value, std::uint64_t count) {
+  if (count == 0) return;
+  cover(value, value);
+  even_[bin_of(value)] += count;
+}
+
+void RangeHistogram::merge(const RangeHistogram& other) {
+  if (other.empty()) return;
+  RangeHistogram theirs = other;
+  grow(std::max(exponent_, theirs.exponent_), [&](int exponent) { return theirs.at(exponent); });
+  theirs.grow(exponent_, [&](int exponent) { return at(exponent); });
+  for (std::size_t i = 0; i < kMaxBins; ++i) {
+    even_[i] += theirs.even_[i];
+    odd_[i] += theirs.odd_[i];
+  }
+}
+
+double RangeHistogram::bin_width() const { return std::ldexp(1.0, exponent_); }
+
+double RangeHistogram::first_edge() const { return std::ldexp(base_, exponent_); }
+
+std::vector<std::uint64_t> RangeHistogram::counts() const {
+  std::vector<std::uint64_t> total(bins_);
+  for (std::size_t i = 0; i < bins_; ++i) total[i] = even_[i] + odd_[i];
+  return total;
+}
+
+std::size_t RangeHistogram::bin_of(float value) const {
+  return static_cast<std::size_t>(std::floor(static_cast<double>(value) * scale_) - base_);
+}
+
+}  // namespace weir

@@ -1,0 +1,52 @@
+// Walks the spilled rows region by region, in parallel, with bounded memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "compressor/row_store.h"
+#include "compressor/tree_regions.h"
+
+namespace weir {
+
+/// The rows of one 128^3 region; valid during the visit only.
+class RegionRows {
+ public:
+  RegionRows(const LeafRow* rows, const Index3& row_extent, const Box& leaf_box)
+      : rows_(rows), row_extent_(row_extent), leaf_box_(leaf_box) {}
+
+  /// Lattice positions of its leaves.
+  const Box& leaf_box() const { return leaf_box_; }
+  /// Row of the leaf at lattice position `leaf`.
+  const LeafRow& at(const Index3& leaf) const { return rows_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
+
+  /// Calls visit(position, row) with x fastest, then y, then z: the order of the leaf index.
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (std::int64_t z = leaf_box_.lo.z; z < leaf_box_.hi.z; ++z) {
+      for (std::int64_t y = leaf_box_.lo.y; y < leaf_box_.hi.y; ++y) {
+        for (std::int64_t x = leaf_box_.lo.x; x < leaf_box_.hi.x; ++x) visit(Index3{x, y, z}, at({x, y, z}));
+      }
+    }
+  }
+
+ private:
+  const LeafRow* rows_;
+  Index3 row_extent_;
+  Box leaf_box_;
+};
+
+/// Bytes of rows that one thread of for_each_region holds at a time, at most.
+inline constexpr std::uint64_t kRegionRowsBytes = 64ULL * 16 * 16 * 16 * sizeof(LeafRow);
+
+/// Calls visit(region index, rows) once for each region of a box of region-lattice positions; regions
+/// next to each other in x come one after the other on one thread, others in parallel and in any order.
+void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
+                     const std::function<void(std::int64_t, const RegionRows&)>& visit);
+
+/// The same for all regions.
+void for_each_region(const TreeRegions& tree, const RowStore& store,
+                     const std::function<void(std::int64_t, const RegionRows&)>& visit);
+
+}  // namespace weir

@@ -1,0 +1,70 @@
+// Selection under a byte budget: which leaves are kept, which 128^3 regions
+// become lower nodes, which 4096^3 blocks upper nodes.
+//
+// Everything that can be bought has a key, the error it saves per byte: a leaf
+// (2144 bytes), a lower node (33,856) and an upper node (270,400). A node's key is
+// at least that of anything below it: a region's is the best ratio over all k of
+// what opening it and keeping its k best leaves saves to what they cost (its step
+// on the convex hull), and no leaf in it has a higher one. The budget then buys in
+// the order of keys, so that any larger budget buys a superset: error never grows
+// with size. The cut is found by radix selection over the keys' bits, in passes
+// over the spilled rows; ties go by region index, then by gain, then by leaf
+// index. Memory is that of TreeRegions, for any number of leaves.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compressor/leaf_gain.h"
+#include "compressor/leaf_mask.h"
+#include "compressor/region_rows.h"
+#include "compressor/tree_regions.h"
+#include "format/tree_layout.h"
+
+namespace weir {
+
+/// The decided cut. Keys above `threshold` are bought; of those equal to it, all in regions before
+/// `tie_region`, the first `tie_leaves` leaves in it, and none after it.
+struct Cut {
+  double threshold = 0;
+  std::int64_t tie_region = 0;
+  std::uint32_t tie_leaves = 0;
+};
+
+/// What a selection comes to in the file.
+struct SelectionBytes {
+  TreeLayout minimum;   ///< the smallest file these rules allow
+  TreeLayout lossless;  ///< every leaf that no tile reproduces bit for bit
+};
+
+class Selection {
+ public:
+  /// Computes sums and keys of all regions and upper nodes: one pass over the rows.
+  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree);
+
+  SelectionBytes bytes() const { return bytes_; }
+
+  /// Buys for a file of at most `file_bytes`, which is at least bytes().minimum: sets `open` of regions
+  /// and upper nodes in the tree.
+  void choose(std::uint64_t file_bytes);
+
+  /// The kept leaves of a region, after choose().
+  LeafMask mask(std::int64_t region, const RegionRows& rows) const;
+
+  const Cut& cut() const { return cut_; }
+  const GainRule& rule() const { return rule_; }
+
+ private:
+  void summarize_region(std::int64_t region, const RegionRows& rows);
+  void summarize_uppers();
+  double find_threshold(std::uint64_t budget, std::uint64_t& bytes_above) const;
+  void resolve_ties(std::uint64_t left);
+
+  GainRule rule_;
+  const RowStore& rows_;
+  TreeRegions& tree_;
+  SelectionBytes bytes_;
+  Cut cut_;
+};
+
+}  // namespace weir

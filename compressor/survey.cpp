@@ -1,0 +1,232 @@
+#include "compressor/survey.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "compressor/leaf_summary.h"
+#include "format/digest.h"
+
+namespace weir {
+namespace {
+
+constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
+
+// Smallest value and number of values of an 8- or 16-bit type; zero values for wider ones.
+struct ValueTable {
+  int offset = 0;
+  std::size_t size = 0;
+};
+
+ValueTable value_table(ScalarType type) {
+  switch (type) {
+    case ScalarType::uint8:
+      return {0, 256};
+    case ScalarType::int8:
+      return {-128, 256};
+    case ScalarType::uint16:
+      return {0, 65536};
+    case ScalarType::int16:
+      return {-32768, 65536};
+    default:
+      return {};
+  }
+}
+
+// What one thread has seen; every member merges without regard to order.
+struct Tally {
+  float min = std::numeric_limits<float>::infinity();
+  float max = -std::numeric_limits<float>::infinity();
+  std::uint64_t finite = 0;
+  std::uint64_t non_finite = 0;
+  std::int64_t first_non_finite = kNowhere;  // linear voxel index in the domain
+  float first_non_finite_value = 0;
+  RangeHistogram histogram;
+  std::vector<std::uint64_t> value_counts;
+
+  void merge(const Tally& other) {
+    min = std::min(min, other.min);
+    max = std::max(max, other.max);
+    finite += other.finite;
+    non_finite += other.non_finite;
+    if (other.first_non_finite < first_non_finite) {
+      first_non_finite = other.first_non_finite;
+      first_non_finite_value = other.first_non_finite_value;
+    }
+    histogram.merge(other.histogram);
+    for (std::size_t i = 0; i < other.value_counts.size(); ++i) value_counts[i] += other.value_counts[i];
+  }
+};
+
+// Surveys the leaves of one block.
+class BlockSurvey {
+ public:
+  BlockSurvey(const NodeLattice& leaves, const ValueTable& table, const Block& block, const Box& leaf_box,
+              std::vector<LeafRow>& rows)
+      : leaves_(leaves), table_(table), block_(block), leaf_box_(leaf_box), rows_(rows) {}
+
+  // All leaves of one row along x; `row` is relative to the block.
+  void leaf_row(std::int64_t y, std::int64_t z, Tally& tally) const {
+    const Index3 extent = leaf_box_.extent();
+    for (std::int64_t x = 0; x < extent.x; ++x) {
+      const Index3 leaf = leaf_box_.lo + Index3{x, y, z};
+      rows_[static_cast<std::size_t>(linear_index({x, y, z}, extent))] = survey_leaf(leaf, tally);
+    }
+  }
+
+ private:
+  LeafRow survey_leaf(const Index3& leaf, Tally& tally) const {
+    const Box inside = leaves_.voxels(leaf);
+    const Index3 extent = inside.extent();
+    const Index3 block_extent = block_.voxels.extent();
+    std::array<float, kLeafVoxels> values;
+    float* out = values.data();
+    const float* corner = block_.values.data() + linear_index(inside.lo - block_.voxels.lo, block_extent);
+    for (std::int64_t z = 0; z < extent.z; ++z) {
+      for (std::int64_t y = 0; y < extent.y; ++y) {
+        const float* row = corner + block_extent.x * (y + block_extent.y * z);
+        if (extent.x == kLeafDim) {  // a length the compiler knows
+          std::copy_n(row, kLeafDim, out);
+        } else {
+          std::copy_n(row, extent.x, out);
+        }
+        out += extent.x;
+      }
+    }
+    const auto count = static_cast<std::size_t>(volume(extent));
+    const std::span<const float> seen(values.data(), count);
+    const LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count));
+    tally.finite += row.finite;
+    if (row.finite == count) {
+      count_values(seen, row, tally);
+    } else {
+      count_non_finite(seen, inside, row, tally);
+    }
+    return row;
+  }
+
+  void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
+    tally.min = std::min(tally.min, row.min);
+    tally.max = std::max(tally.max, row.max);
+    if (table_.size > 0) {
+      const auto offset = static_cast<float>(table_.offset);
+      if (row.uniform()) {
+        tally.value_counts[static_cast<std::size_t>(row.mean - offset)] += finite.size();
+      } else {
+        for (const float v : finite) ++tally.value_counts[static_cast<std::size_t>(v - offset)];
+      }
+    } else if (row.uniform()) {
+      tally.histogram.add(row.mean, finite.size());
+    } else {
+      tally.histogram.add(finite, row.min, row.max);
+    }
+  }
+
+  void count_non_finite(std::span<const float> values, const Box& inside, const LeafRow& row, Tally& tally) const {
+    std::array<float, kLeafVoxels> finite;
+    std::size_t kept = 0;
+    const Index3 extent = inside.extent();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::isfinite(values[i])) {
+        finite[kept++] = values[i];
+        continue;
+      }
+      const Index3 voxel = inside.lo + index_at(static_cast<std::int64_t>(i), extent);
+      const std::int64_t at = linear_index(voxel - leaves_.domain.lo, leaves_.domain.extent());
+      if (at < tally.first_non_finite) {
+        tally.first_non_finite = at;
+        tally.first_non_finite_value = values[i];
+      }
+    }
+    tally.non_finite += values.size() - kept;
+    if (kept > 0) count_values(std::span(finite.data(), kept), row, tally);
+  }
+
+  const NodeLattice& leaves_;
+  const ValueTable& table_;
+  const Block& block_;
+  const Box& leaf_box_;
+  std::vector<LeafRow>& rows_;
+};
+
+// Rows of a block to their places: consecutive where the block has whole rows or whole planes.
+void spill(RowStore& store, const Box& leaf_box, std::span<const LeafRow> rows) {
+  const Index3 extent = leaf_box.extent();
+  const std::int64_t run_rows = extent.x == store.leaves().count.x ? extent.y : 1;
+  const auto run = static_cast<std::size_t>(extent.x * run_rows);
+  for (std::int64_t z = 0; z < extent.z; ++z) {
+    for (std::int64_t y = 0; y < extent.y; y += run_rows) {
+      store.write(store.leaves().linear(leaf_box.lo + Index3{0, y, z}), rows.first(run));
+      rows = rows.subspan(run);
+    }
+  }
+}
+
+}  // namespace
+
+Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options) {
+  const NodeLattice& leaves = plan.lattice;
+  const ValueTable table = value_table(source.info().type);
+  Tally fresh;
+  fresh.value_counts.resize(table.size);
+  tbb::enumerable_thread_specific<Tally> tallies(fresh);
+
+  std::vector<Box> boxes(static_cast<std::size_t>(plan.size()));
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    boxes[i] = plan.voxel_box(plan.leaf_box(static_cast<std::int64_t>(i)));
+  }
+  std::vector<LeafRow> block_rows;
+  Survey survey;
+  survey.loss = stream_blocks(source, boxes, options, [&](const Block& block) {
+    const Box leaf_box = plan.leaf_box(static_cast<std::int64_t>(block.index));
+    const Index3 extent = leaf_box.extent();
+    block_rows.resize(static_cast<std::size_t>(volume(extent)));
+    const BlockSurvey work(leaves, table, block, leaf_box, block_rows);
+    tbb::parallel_for(tbb::blocked_range2d<std::int64_t>(0, extent.z, 0, extent.y), [&](const auto& range) {
+      Tally& tally = tallies.local();
+      for (std::int64_t z = range.rows().begin(); z < range.rows().end(); ++z) {
+        for (std::int64_t y = range.cols().begin(); y < range.cols().end(); ++y) work.leaf_row(y, z, tally);
+      }
+    });
+    spill(rows, leaf_box, block_rows);
+  });
+
+  Tally total = fresh;
+  for (const Tally& tally : tallies) total.merge(tally);
+  survey.finite = total.finite;
+  survey.non_finite = total.non_finite;
+  if (total.finite > 0) {
+    survey.min = total.min;
+    survey.max = total.max;
+  }
+  if (total.non_finite > 0) {
+    survey.first_non_finite = leaves.domain.lo + index_at(total.first_non_finite, leaves.domain.extent());
+    survey.first_non_finite_value = total.first_non_finite_value;
+  }
+  survey.histogram = std::move(total.histogram);
+  survey.value_counts = std::move(total.value_counts);
+  survey.value_offset = table.offset;
+  for (std::size_t i = 0; i < survey.value_counts.size(); ++i) {
+    survey.histogram.add(static_cast<float>(table.offset + static_cast<int>(i)), survey.value_counts[i]);
+  }
+  return survey;
+}
+
+std::string source_digest(const RowStore& rows) {
+  constexpr std::int64_t kPiece = 4096;
+  DigestStream digest;
+  std::vector<LeafRow> piece;
+  const std::int64_t total = rows.leaves().size();
+  for (std::int64_t first = 0; first < total; first += kPiece) {
+    piece.resize(static_cast<std::size_t>(std::min(kPiece, total - first)));
+    rows.read(first, piece);
+    for (const LeafRow& row : piece) digest.update(row.digest);
+  }
+  return digest.digest().hex();
+}
+
+}  // namespace weir

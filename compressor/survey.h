@@ -1,0 +1,41 @@
+// The survey pass: one streaming read of the volume that leaves a row per leaf
+// in the spill file, the finite range, the histogram and the source's digest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compressor/range_histogram.h"
+#include "compressor/row_store.h"
+#include "ingest/block_plan.h"
+#include "ingest/block_stream.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+struct Survey {
+  float min = 0;  ///< of the finite values; 0 where there is none
+  float max = 0;
+  std::uint64_t finite = 0;      ///< voxels
+  std::uint64_t non_finite = 0;  ///< voxels
+  Index3 first_non_finite;       ///< first in x-fastest order, index space; valid where non_finite > 0
+  float first_non_finite_value = 0;
+  RangeHistogram histogram;  ///< of the finite values
+  /// Counts of every value of an 8- or 16-bit source, from `value_offset` on; empty for other types.
+  std::vector<std::uint64_t> value_counts;
+  int value_offset = 0;
+  ConversionLoss loss;
+
+  std::uint64_t voxels() const { return finite + non_finite; }
+};
+
+/// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
+/// number of threads.
+Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options);
+
+/// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
+std::string source_digest(const RowStore& rows);
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+// After the leaves: writes the inner nodes, the macrocells and the head, so that
+// the file is a NanoVDB grid.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "compressor/fill.h"
+#include "compressor/leaf_mask.h"
+#include "compressor/leaf_record.h"
+#include "compressor/row_store.h"
+#include "compressor/tree_regions.h"
+#include "format/file_system.h"
+#include "format/grid_head.h"
+#include "format/tree_layout.h"
+
+namespace weir {
+
+struct TreeParts {
+  const TreeRegions& tree;
+  const RowStore& rows;
+  const MaskStore& masks;
+  const RecordStore& records;
+  Fill fill;
+  TreeLayout layout;  ///< padded to the file's size
+};
+
+/// Writes everything but the leaves to `out`, which has the file's size and reads zero where nothing
+/// was written. `head` carries name, type, voxel size and origin; the rest of it is filled in.
+/// Returns the head's checksum.
+std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out);
+
+}  // namespace weir
