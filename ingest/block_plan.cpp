@@ -69,9 +69,10 @@ Axis make_axis(std::int64_t lo, std::int64_t hi, std::int64_t chunk, std::int64_
   axis.count = floor_div(hi - 1, kLeafDim) + 1 - axis.first;
   axis.chunk = chunk;
   axis.chunk_edge = chunk_edge;
-  // Where a chunk's edge is off the leaf lattice, no block of leaves ends with a chunk.
-  const std::int64_t unit = chunk > 0 ? std::lcm(chunk, kLeafDim) / kLeafDim : 1;
-  if (chunk_edge % kLeafDim == 0 && unit < axis.count) axis.unit = unit;
+  // Where chunk edges are off the leaf lattice, no block of leaves ends with a chunk.
+  if (chunk > 0 && chunk_edge % kLeafDim == 0) {
+    axis.unit = std::min(std::lcm(chunk, kLeafDim) / kLeafDim, axis.count);
+  }
   return axis;
 }
 

@@ -68,7 +68,8 @@ RawShape resolve_shape(const std::string& path, const RawOptions& options) {
 
 void check_geometry(const std::string& path, const SourceInfo& info) {
   for (const double s : info.spacing) {
-    if (!(s > 0.0) || !std::isfinite(s)) throw usage_error(path, cat("--spacing has ", s, "; each must be above 0"));
+    if (!(s > 0.0) || !std::isfinite(s))
+      throw usage_error(path, cat("--spacing has ", s, "; each must be finite and above 0"));
   }
   for (const double o : info.origin) {
     if (!std::isfinite(o)) throw usage_error(path, cat("--origin has ", o, "; each must be finite"));
