@@ -1,0 +1,302 @@
+#include "format/sidecar.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::array<const char*, 6> kBitKeys{"1", "2", "4", "8", "16", "32"};
+
+// The document's keys, once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
+template <typename Archive, typename S>
+void describe(Archive& archive, S& s) {
+  archive.object("source", [&] {
+    archive.field("path", s.source.path);
+    archive.field("format", s.source.format);
+    archive.field("dataset", s.source.dataset);
+    archive.field("extent", s.source.extent);
+    archive.field("type", s.source.type);
+    archive.field("bytes", s.source.bytes);
+    archive.field("mtime", s.source.mtime);
+    archive.field("digest", s.source.digest);
+  });
+  archive.object("grid", [&] {
+    archive.field("name", s.grid.name);
+    archive.field("type", s.grid.type);
+    archive.field("extent", s.grid.extent);
+    archive.field("voxel_size", s.grid.voxel_size);
+    archive.field("origin", s.grid.origin);
+    archive.field("index_bbox", s.grid.index_bbox);
+  });
+  archive.field("value_range", s.value_range);
+  archive.object("nonfinite", [&] {
+    archive.field("count", s.nonfinite.count);
+    archive.field("policy", s.nonfinite.policy);
+  });
+  archive.object("conversion_loss", [&] {
+    archive.field("inexact", s.conversion_loss.inexact);
+    archive.field("overflow", s.conversion_loss.overflow);
+    archive.field("max_abs_error", s.conversion_loss.max_abs_error);
+  });
+  archive.object("background", [&] {
+    archive.field("value", s.background.value);
+    archive.field("method", s.background.method);
+    archive.field("share", s.background.share);
+  });
+  archive.object("histogram", [&] {
+    archive.field("min", s.histogram.min);
+    archive.field("max", s.histogram.max);
+    archive.field("counts", s.histogram.counts);
+  });
+  archive.object("budget", [&] {
+    archive.field("kind", s.budget.kind);
+    archive.field("requested", s.budget.requested);
+    archive.field("file_bytes", s.budget.file_bytes);
+    archive.field("dense_float32_bytes", s.budget.dense_float32_bytes);
+    archive.field("rate", s.budget.rate);
+  });
+  archive.object("selection", [&] {
+    archive.field("metric", s.selection.metric);
+    archive.field("fill", s.selection.fill);
+    archive.field("brick", s.selection.brick);
+    archive.field("leaves_total", s.selection.leaves_total);
+    archive.field("leaves_kept", s.selection.leaves_kept);
+    archive.object("bits", [&] {
+      for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], s.selection.bits[i]);
+    });
+  });
+  archive.object("error", [&] {
+    archive.field("mse", s.error.mse);
+    archive.field("rmse", s.error.rmse);
+    archive.field("nmse", s.error.nmse);
+    archive.field("psnr_db", s.error.psnr_db);
+    archive.field("max_abs", s.error.max_abs);
+    archive.field("lossless", s.error.lossless);
+  });
+  archive.object("macrocells", [&] {
+    archive.field("cell", s.macrocells.cell);
+    archive.field("dims", s.macrocells.dims);
+    archive.field("apron", s.macrocells.apron);
+  });
+  archive.object("timing", [&] {
+    archive.field("survey_s", s.timing.survey_s);
+    archive.field("encode_s", s.timing.encode_s);
+    archive.field("total_s", s.timing.total_s);
+    archive.field("bytes_read", s.timing.bytes_read);
+    archive.field("bytes_written", s.timing.bytes_written);
+    archive.field("peak_rss_bytes", s.timing.peak_rss_bytes);
+  });
+  archive.object("file", [&] {
+    archive.field("bytes", s.file.bytes);
+    archive.field("grid_offset", s.file.grid_offset);
+    archive.hex_field("head_checksum", s.file.head_checksum);
+    archive.field("digest", s.file.digest);
+  });
+  archive.object("weir", [&] {
+    archive.field("version", s.weir.version);
+    archive.field("commit", s.weir.commit);
+    archive.field("options", s.weir.options);
+  });
+}
+
+class JsonWriter {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  template <typename Fields>
+  void object(const char* key, const Fields& fields) {
+    Json* const outer = at_;
+    at_ = &((*outer)[key] = Json::object());
+    fields();
+    at_ = outer;
+  }
+
+  template <typename T>
+  void field(const char* key, const T& value) {
+    (*at_)[key] = value;
+  }
+  void field(const char* key, const std::optional<double>& value) { (*at_)[key] = value ? Json(*value) : Json(); }
+  void field(const char* key, const Index3& i) { (*at_)[key] = array(i); }
+  void field(const char* key, const Box& box) { (*at_)[key] = {array(box.lo), array(box.hi)}; }
+  void hex_field(const char* key, std::uint32_t value) {
+    std::array<char, 9> text{};
+    std::snprintf(text.data(), text.size(), "%08x", value);
+    (*at_)[key] = text.data();
+  }
+
+  const Json& document() const { return document_; }
+
+ private:
+  static std::array<std::int64_t, 3> array(const Index3& i) { return {i.x, i.y, i.z}; }
+
+  Json document_ = Json::object();
+  Json* at_ = &document_;
+};
+
+class JsonReader {
+ public:
+  using Json = nlohmann::json;
+
+  JsonReader(const Json& document, const std::string& path) : path_(path), at_(&document) {}
+
+  template <typename Fields>
+  void object(const char* key, const Fields& fields) {
+    const Json* const outer = at_;
+    const std::string outer_prefix = prefix_;
+    at_ = &find(key);
+    if (!at_->is_object()) fail(key, "an object", *at_);
+    prefix_ += cat(key, '.');
+    fields();
+    at_ = outer;
+    prefix_ = outer_prefix;
+  }
+
+  template <typename T>
+  void field(const char* key, T& value) {
+    read(key, find(key), value);
+  }
+
+  void hex_field(const char* key, std::uint32_t& value) {
+    std::string text;
+    field(key, text);
+    const bool digits =
+        std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+    if (text.size() != 8 || !digits) fail(key, "8 lower-case hex digits", find(key));
+    value = static_cast<std::uint32_t>(std::stoul(text, nullptr, 16));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& key, const char* expected, const Json& found) const {
+    throw Error(ErrorKind::input, cat(path_, ": key ", prefix_, key, ": expected ", expected, ", found ",
+                                      found.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60),
+                                      "; write the sidecar again with weir convert"));
+  }
+
+  const Json& find(const char* key) const {
+    const auto found = at_->find(key);
+    if (found == at_->end()) {
+      throw Error(ErrorKind::input,
+                  cat(path_, ": key ", prefix_, key, " is missing; write the sidecar again with weir convert"));
+    }
+    return *found;
+  }
+
+  void read(const std::string& key, const Json& from, std::string& to) const {
+    if (!from.is_string()) fail(key, "a string", from);
+    to = from.get<std::string>();
+  }
+  void read(const std::string& key, const Json& from, bool& to) const {
+    if (!from.is_boolean()) fail(key, "true or false", from);
+    to = from.get<bool>();
+  }
+  void read(const std::string& key, const Json& from, std::uint64_t& to) const {
+    if (!from.is_number_unsigned()) fail(key, "a whole number, not negative", from);
+    to = from.get<std::uint64_t>();
+  }
+  void read(const std::string& key, const Json& from, std::int64_t& to) const {
+    const bool fits = from.is_number_unsigned()
+                          ? from.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<std::int64_t>::max()}
+                          : from.is_number_integer();
+    if (!fits) fail(key, "a whole number", from);
+    to = from.get<std::int64_t>();
+  }
+  void read(const std::string& key, const Json& from, double& to) const {
+    if (!from.is_number() && !from.is_null()) fail(key, "a number or null", from);
+    to = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
+  }
+  void read(const std::string& key, const Json& from, std::optional<double>& to) const {
+    to.reset();
+    if (!from.is_null()) read(key, from, to.emplace());
+  }
+  template <typename T, std::size_t N>
+  void read(const std::string& key, const Json& from, std::array<T, N>& to) const {
+    if (!from.is_array() || from.size() != N) fail(key, N == 2 ? "an array of 2" : "an array of 3", from);
+    for (std::size_t i = 0; i < N; ++i) read(cat(key, '[', i, ']'), from[i], to[i]);
+  }
+  void read(const std::string& key, const Json& from, Index3& to) const {
+    std::array<std::int64_t, 3> values{};
+    read(key, from, values);
+    to = {values[0], values[1], values[2]};
+  }
+  void read(const std::string& key, const Json& from, Box& to) const {
+    std::array<Index3, 2> corners;
+    read(key, from, corners);
+    to = {corners[0], corners[1]};
+  }
+  void read(const std::string& key, const Json& from, std::vector<std::uint64_t>& to) const {
+    if (!from.is_array()) fail(key, "an array", from);
+    to.resize(from.size());
+    for (std::size_t i = 0; i < to.size(); ++i) read(cat(key, '[', i, ']'), from[i], to[i]);
+  }
+  void read(const std::string& key, const Json& from, std::map<std::string, std::string>& to) const {
+    if (!from.is_object()) fail(key, "an object of strings", from);
+    to.clear();
+    for (const auto& [name, value] : from.items()) read(cat(key, '.', name), value, to[name]);
+  }
+
+  const std::string& path_;
+  const Json* at_;
+  std::string prefix_;
+};
+
+}  // namespace
+
+std::string sidecar_path(const std::string& volume_path) { return volume_path + ".json"; }
+
+std::string to_json_text(const Sidecar& sidecar) {
+  JsonWriter writer;
+  writer.field("weir_sidecar", kSidecarVersion);
+  describe(writer, sidecar);
+  std::string text = "{";
+  const char* separator = "\n";
+  for (const auto& [key, value] : writer.document().items()) {
+    text += cat(separator, "  \"", key, "\": ", value.dump(-1, ' ', false, JsonWriter::Json::error_handler_t::replace));
+    separator = ",\n";
+  }
+  return text + "\n}\n";
+}
+
+Sidecar parse_sidecar(std::string_view text, const std::string& path) {
+  nlohmann::json document;
+  try {
+    document = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw Error(ErrorKind::input,
+                cat(path, ": at byte ", error.byte - 1, ": not valid JSON; write the sidecar again with weir convert"));
+  }
+  if (!document.is_object()) throw Error(ErrorKind::input, path + ": not a JSON object; give the sidecar of a volume");
+  JsonReader reader(document, path);
+  std::int64_t version = 0;
+  reader.field("weir_sidecar", version);
+  if (version != kSidecarVersion) {
+    throw Error(ErrorKind::input, cat(path, ": key weir_sidecar: version ", version, ", but this weir reads version ",
+                                      kSidecarVersion, "; use the weir that wrote it"));
+  }
+  Sidecar sidecar;
+  describe(reader, sidecar);
+  return sidecar;
+}
+
+std::string utc_text(std::int64_t nanoseconds) {
+  using namespace std::chrono;
+  const sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(nanoseconds)};
+  const auto day = floor<days>(time);
+  const year_month_day date(day);
+  const hh_mm_ss clock(time - day);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09dZ", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
+  return text.data();
+}
+
+}  // namespace weir
