@@ -32,7 +32,7 @@ class Descriptor {
 }
 
 std::span<const std::byte> map_file(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe must not block
   if (file.get() < 0) fail_input(path, "open", errno);
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail_input(path, "stat", errno);
