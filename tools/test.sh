@@ -29,7 +29,7 @@ skipped=()
 
 # check NAME COMMAND...: one check, its output kept and shown only where it fails; returns whether it passed.
 check() {
-  local name=$1 log=$logs/${1//\//_}.log
+  local name=$1 log=$logs/${1//[\/ ]/_}.log
   shift
   if "$@" >"$log" 2>&1; then
     passed=$((passed + 1))
