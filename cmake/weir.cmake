@@ -18,6 +18,10 @@ endif()
 if(WEIR_TIDY)
   find_program(WEIR_CLANG_TIDY NAMES clang-tidy-14 clang-tidy REQUIRED)
   set(CMAKE_CXX_CLANG_TIDY ${WEIR_CLANG_TIDY} --quiet --warnings-as-errors=*)
+  # A changed configuration changes the command line, so that every file is looked at again.
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS .clang-tidy)
+  file(SHA256 ${PROJECT_SOURCE_DIR}/.clang-tidy tidy_digest)
+  target_compile_definitions(weir_options INTERFACE WEIR_TIDY_CONFIGURATION="${tidy_digest}")
 endif()
 
 # weir_library(NAME LINKS target...): every .cpp in NAME/ and below but main.cpp.
