@@ -1,0 +1,100 @@
+#include "tools/input_options.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "format/error.h"
+
+namespace weir {
+namespace {
+
+SourceOptions parse(const std::string& command_line) {
+  CLI::App app;
+  InputArguments arguments;
+  add_input_options(app, arguments);
+  app.parse(command_line);
+  return parse_input(arguments);
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(InputOptions, NothingGivenIsNothingSaid) {
+  const SourceOptions options = parse("");
+  EXPECT_FALSE(options.raw.extent || options.raw.type || options.raw.big_endian || options.raw.spacing ||
+               options.raw.origin || options.roi);
+  EXPECT_EQ(options.raw.offset, 0U);
+  EXPECT_EQ(options.raw.direct_io, DirectIo::automatic);
+}
+
+TEST(InputOptions, AllGiven) {
+  const SourceOptions options = parse(
+      "--dims 3,4,5 --type uint16 --endian big --offset 1KiB --spacing 0.5,1,2e-3 --origin -1.5,0,7"
+      " --roi -1:2,0:4,3:5 --direct-io off");
+  EXPECT_EQ(options.raw.extent, (Index3{3, 4, 5}));
+  EXPECT_EQ(options.raw.type, ScalarType::uint16);
+  EXPECT_EQ(options.raw.big_endian, true);
+  EXPECT_EQ(options.raw.offset, 1024U);
+  EXPECT_EQ(options.raw.spacing, (std::array<double, 3>{0.5, 1, 2e-3}));
+  EXPECT_EQ(options.raw.origin, (std::array<double, 3>{-1.5, 0, 7}));
+  EXPECT_EQ(options.roi, (Box{{-1, 0, 3}, {2, 4, 5}}));
+  EXPECT_EQ(options.raw.direct_io, DirectIo::off);
+}
+
+TEST(InputOptions, ExtentsThatNoVolumeHasAreForTheSourceToRefuse) {
+  EXPECT_EQ(parse("--dims -1,0,5").raw.extent, (Index3{-1, 0, 5}));
+}
+
+TEST(InputOptions, Dims) {
+  const std::string form = ", it must be X,Y,Z, three whole numbers of voxels";
+  for (const std::string text : {"3,4", "3,4,5,6", "3x4x5", "3,4,", "3,4,5.5", "3,4,99999999999999999999"}) {
+    EXPECT_EQ(message_of([&] { parse("--dims " + text); }), "--dims is \"" + text + "\"" + form);
+  }
+}
+
+TEST(InputOptions, Type) {
+  EXPECT_EQ(message_of([] { parse("--type half"); }),
+            "--type is \"half\", it must be one of uint8, int8, uint16, int16, uint32, int32, float32, float64");
+}
+
+TEST(InputOptions, Endian) {
+  EXPECT_EQ(message_of([] { parse("--endian middle"); }), "--endian is \"middle\", it must be little or big");
+}
+
+TEST(InputOptions, Offset) {
+  EXPECT_EQ(message_of([] { parse("--offset 0.3"); }),
+            "--offset is \"0.3\", it must be a number of bytes, like 352 or 4KiB");
+}
+
+TEST(InputOptions, SpacingAndOrigin) {
+  EXPECT_EQ(message_of([] { parse("--spacing 1,2"); }),
+            "--spacing is \"1,2\", it must be x,y,z, three numbers in world units");
+  EXPECT_EQ(message_of([] { parse("--origin 1,2,3,4"); }),
+            "--origin is \"1,2,3,4\", it must be x,y,z, three numbers in world units");
+  EXPECT_EQ(message_of([] { parse("--origin 1,two,3"); }),
+            "--origin is \"1,two,3\", it must be x,y,z, three numbers in world units");
+}
+
+TEST(InputOptions, Roi) {
+  const std::string form = ", it must be x0:x1,y0:y1,z0:z1, whole numbers, half open";
+  for (const std::string text : {"1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:6:7", "a:2,3:4,5:6", "1:2,3:4,5:6,7:8"}) {
+    EXPECT_EQ(message_of([&] { parse("--roi " + text); }), "--roi is \"" + text + "\"" + form);
+  }
+  EXPECT_EQ(message_of([] { parse("--roi 1:1,3:4,5:6"); }),
+            "--roi is \"1:1,3:4,5:6\"" + form + ", with every end above its start");
+}
+
+TEST(InputOptions, DirectIo) {
+  EXPECT_EQ(message_of([] { parse("--direct-io maybe"); }), "--direct-io is \"maybe\", it must be auto, on or off");
+}
+
+}  // namespace
+}  // namespace weir

@@ -1,0 +1,54 @@
+#include "tools/run_options.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "format/error.h"
+
+namespace weir {
+namespace {
+
+RunArguments parse(const std::string& command_line) {
+  CLI::App app;
+  RunArguments arguments;
+  add_run_options(app, arguments);
+  app.parse(command_line);
+  return arguments;
+}
+
+TEST(RunOptions, Defaults) {
+  const RunArguments arguments = parse("");
+  EXPECT_EQ(parse_memory(arguments), 536870912U);
+  EXPECT_EQ(limit_threads(arguments), nullptr);
+  EXPECT_EQ(arguments.progress, ProgressMode::automatic);
+}
+
+TEST(RunOptions, MemoryIsASize) {
+  EXPECT_EQ(parse_memory(parse("--memory 3GiB")), std::uint64_t{3} << 30U);
+  EXPECT_EQ(parse_memory(parse("--memory 64MiB")), std::uint64_t{64} << 20U);
+  for (const std::string text : {"63MiB", "much", "-1GiB"}) {
+    try {
+      parse_memory(parse("--memory=" + text));
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      EXPECT_EQ(error.what(), "--memory is \"" + text + "\", it must be a size of at least 64.0 MiB, like 512MiB");
+    }
+  }
+}
+
+TEST(RunOptions, ThreadsLimitTheWorkers) {
+  const auto limit = limit_threads(parse("--threads 1"));
+  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), 1U);
+  EXPECT_THROW(parse("--threads -1"), CLI::ValidationError);
+}
+
+TEST(RunOptions, PeakRssGrowsWithWhatIsTouched) {
+  const std::uint64_t before = peak_rss_bytes();
+  const std::vector<char> touched(64 << 20, 'x');
+  EXPECT_GE(peak_rss_bytes(), before + (32 << 20)) << touched[17];
+}
+
+}  // namespace
+}  // namespace weir

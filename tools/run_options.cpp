@@ -1,0 +1,44 @@
+#include "tools/run_options.h"
+
+#include <sys/resource.h>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+
+void add_run_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("--memory", arguments.memory, "ceiling of the whole process; default 512MiB")
+      ->type_name("SIZE")
+      ->group("Run");
+  command.add_option("--threads", arguments.threads, "0: all of the machine's")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N")
+      ->group("Run")
+      ->capture_default_str();
+  add_progress_option(command, arguments.progress);
+}
+
+std::uint64_t parse_memory(const RunArguments& arguments) {
+  if (arguments.memory.empty()) return kDefaultMemory;
+  const auto bytes = parse_bytes(arguments.memory);
+  if (!bytes || *bytes < kLeastMemory) {
+    throw Error(ErrorKind::usage, cat("--memory is \"", arguments.memory, "\", it must be a size of at least ",
+                                      format_bytes(kLeastMemory), ", like 512MiB"));
+  }
+  return *bytes;
+}
+
+std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments) {
+  if (arguments.threads == 0) return nullptr;
+  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                               static_cast<std::size_t>(arguments.threads));
+}
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace weir

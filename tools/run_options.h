@@ -1,0 +1,38 @@
+// How a command may use the machine: the same options for every command that
+// streams a volume.
+#pragma once
+
+#include <oneapi/tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "tools/progress.h"
+
+namespace weir {
+
+inline constexpr std::uint64_t kDefaultMemory = std::uint64_t{512} << 20U;
+/// Program, libraries and threads' stacks take most of this; less leaves nothing to work in.
+inline constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20U;
+
+struct RunArguments {
+  std::string memory;  ///< a size, of the whole process; empty: kDefaultMemory
+  int threads = 0;     ///< 0: all of the machine's
+  ProgressMode progress = ProgressMode::automatic;
+};
+
+/// Adds --memory, --threads and --progress, stored in `arguments`, which must live as long as the command.
+void add_run_options(CLI::App& command, RunArguments& arguments);
+
+/// Bytes. Throws Error(usage) where the text is no size or below kLeastMemory.
+std::uint64_t parse_memory(const RunArguments& arguments);
+
+/// Keeps TBB to the asked number of threads while it lives; null where that is all of them.
+std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments);
+
+/// The kernel's figure of the process's largest resident set so far, bytes.
+std::uint64_t peak_rss_bytes();
+
+}  // namespace weir
