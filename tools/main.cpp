@@ -59,6 +59,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", WEIR_VERSION);
   try {
     // COMMANDS
+    weir::add_convert(app);
+    weir::add_render(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::CallForHelp& help) {

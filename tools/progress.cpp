@@ -38,14 +38,18 @@ double share(std::uint64_t done, std::uint64_t total) {
 
 }  // namespace
 
-std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s) {
+std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s,
+                          ProgressUnit unit) {
+  const bool bytes = unit == ProgressUnit::bytes;
   const double part = share(done, total);
-  std::string text = cat(pass, ' ', static_cast<int>(part * 100), " % of ", format_bytes(total));
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%.1f M samples", static_cast<double>(total) / 1e6);
+  std::string text =
+      cat(pass, ' ', static_cast<int>(part * 100), " % of ", bytes ? format_bytes(total) : std::string(number.data()));
   if (done == 0 || elapsed_s <= 0) return text;
-  const double bytes = static_cast<double>(std::min(done, total));
-  std::array<char, 32> rate{};
-  std::snprintf(rate.data(), rate.size(), ", %.2f GB/s", bytes / elapsed_s / 1e9);
-  text += rate.data();
+  const double rate = static_cast<double>(std::min(done, total)) / elapsed_s;
+  std::snprintf(number.data(), number.size(), bytes ? ", %.2f GB/s" : ", %.2f M/s", rate / (bytes ? 1e9 : 1e6));
+  text += number.data();
   if (part < 1.0) text += cat(", ", clock_text(elapsed_s * (1.0 - part) / part), " left");
   return text;
 }
@@ -58,19 +62,20 @@ Progress::Progress(ProgressMode mode, std::FILE* out, std::function<double()> cl
 
 Progress::~Progress() { end_bar(); }
 
-void Progress::start(const std::string& pass, std::uint64_t total_bytes) {
+void Progress::start(const std::string& pass, std::uint64_t total, ProgressUnit unit) {
   finish();
   if (mode_ == ProgressMode::never) return;
   running_ = true;
   pass_ = pass;
-  total_ = total_bytes;
+  unit_ = unit;
+  total_ = total;
   done_ = 0;
   started_s_ = drawn_s_ = clock_s_();
 }
 
-void Progress::update(std::uint64_t done_bytes) {
+void Progress::update(std::uint64_t done) {
   if (!running_) return;
-  done_ = done_bytes;
+  done_ = done;
   if (clock_s_() - drawn_s_ >= (terminal_ ? kBarInterval_s : kLineInterval_s)) draw();
 }
 
@@ -84,7 +89,7 @@ void Progress::finish() {
 
 void Progress::draw() {
   drawn_s_ = clock_s_();
-  std::string line = progress_text(pass_, done_, total_, drawn_s_ - started_s_);
+  std::string line = progress_text(pass_, done_, total_, drawn_s_ - started_s_, unit_);
   if (terminal_) {
     const auto filled = static_cast<std::size_t>(share(done_, total_) * kBarWidth);
     line = cat(kClearLine, '[', std::string(filled, '#'), std::string(kBarWidth - filled, '.'), "] ", line);

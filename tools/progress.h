@@ -17,13 +17,18 @@ enum class ProgressMode {
   never
 };
 
+/// What a pass counts.
+enum class ProgressUnit { bytes, samples };
+
 /// Seconds between two drawings of the bar, and between two lines where there is no terminal.
 inline constexpr double kBarInterval_s = 0.1;
 inline constexpr double kLineInterval_s = 5.0;
 
 /// "survey 43 % of 8.0 GiB, 1.32 GB/s, 0:04 left"; the rate is the mean since the pass began.
+/// Samples: "render 43 % of 44.2 M samples, 1.32 M/s, 0:19 left".
 /// `done` above `total` counts as `total`; the time left is absent while nothing is done.
-std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s);
+std::string progress_text(const std::string& pass, std::uint64_t done, std::uint64_t total, double elapsed_s,
+                          ProgressUnit unit = ProgressUnit::bytes);
 
 class Progress {
  public:
@@ -34,10 +39,10 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Begins a pass over `total_bytes`; finishes the one before.
-  void start(const std::string& pass, std::uint64_t total_bytes);
-  /// `done_bytes` of the pass are done; cheap enough to be called for every block.
-  void update(std::uint64_t done_bytes);
+  /// Begins a pass over `total` units; finishes the one before.
+  void start(const std::string& pass, std::uint64_t total, ProgressUnit unit = ProgressUnit::bytes);
+  /// `done` units of the pass are done; cheap enough to be called for every block.
+  void update(std::uint64_t done);
   /// The pass is complete.
   void finish();
 
@@ -52,6 +57,7 @@ class Progress {
   bool running_ = false;
   bool bar_on_screen_ = false;
   std::string pass_;
+  ProgressUnit unit_ = ProgressUnit::bytes;
   std::uint64_t total_ = 0;
   std::uint64_t done_ = 0;
   double started_s_ = 0;

@@ -35,6 +35,11 @@ TEST(ProgressText, ShareRateAndTimeLeft) {
   EXPECT_EQ(progress_text("encode", 1, 101, 1.0), "encode 0 % of 101 B, 0.00 GB/s, 1:40 left");
 }
 
+TEST(ProgressText, SamplesAreCountedInMillions) {
+  EXPECT_EQ(progress_text("render", 11'000'000, 44'000'000, 10.0, ProgressUnit::samples),
+            "render 25 % of 44.0 M samples, 1.10 M/s, 0:30 left");
+}
+
 TEST(ProgressText, NothingDoneHasNoRate) { EXPECT_EQ(progress_text("survey", 0, 100, 3.0), "survey 0 % of 100 B"); }
 
 TEST(ProgressText, NoTimePassedHasNoRate) { EXPECT_EQ(progress_text("survey", 5, 100, 0.0), "survey 5 % of 100 B"); }

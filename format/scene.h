@@ -1,0 +1,92 @@
+// What a picture of a volume looks like: camera, transfer function, medium,
+// light. Plain data with defaults that suit any volume; nothing here knows a
+// grid. Parsed from TOML, see docs/scene.md for every key.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weir {
+
+using Double3 = std::array<double, 3>;
+
+enum class RenderMode { path, dvr, iso, mip };
+
+/// "path", "dvr", "iso" or "mip", and back.
+std::string_view render_mode_name(RenderMode mode);
+std::optional<RenderMode> parse_render_mode(std::string_view name);
+
+/// With a position the camera stands there (world space) and looks at `look_at`; without, it orbits the
+/// centre of the volume at the distance that frames it.
+struct SceneCamera {
+  std::optional<Double3> position;
+  std::optional<Double3> look_at;  ///< world space; default: the centre of the volume
+  Double3 up{0, 0, 1};
+  double azimuth = 35;    ///< degrees around `up`
+  double elevation = 20;  ///< degrees above the horizon, in [-90, 90]
+  double zoom = 1;        ///< 1 frames the volume; 2 shows it twice as large
+  double fov = 30;        ///< vertical, degrees, in (0, 180)
+};
+
+/// Opacity at a position of the value range, both in [0, 1].
+struct OpacityPoint {
+  double position;
+  double opacity;
+};
+
+/// sRGB in [0, 1] at a position of the value range.
+struct ColorPoint {
+  double position;
+  Double3 srgb;
+};
+
+struct SceneVolume {
+  std::string colormap;                        ///< empty: the mode's default
+  std::optional<std::array<double, 2>> range;  ///< values of positions 0 and 1; default: the grid's
+  std::vector<OpacityPoint> opacity;           ///< by position; empty: rises with the distance from the background
+  std::vector<ColorPoint> color;               ///< by position; replaces the colormap
+  std::optional<double> density;               ///< optical depth of the longest edge at opacity 1
+  double albedo = 0.95;                        ///< share of light scattered, times the colour
+  double anisotropy = 0;                       ///< Henyey-Greenstein mean cosine, in (-1, 1)
+  double emission = 0;                         ///< source radiance, times the colour
+  double shading = 0.7;                        ///< dvr: 0 flat to 1 lit like a surface
+  std::optional<double> iso;                   ///< value of the surface; default: from the range
+  int max_bounces = 256;                       ///< path: collisions at most
+};
+
+/// Directional light.
+struct SceneLight {
+  Double3 direction;            ///< towards the light, in world space, any length but 0
+  Double3 irradiance{1, 1, 1};  ///< linear RGB
+};
+
+/// Linear RGB radiance of the sky by elevation, and what the camera sees behind the volume.
+struct SceneLighting {
+  std::optional<Double3> zenith;
+  std::optional<Double3> horizon;
+  std::optional<Double3> ground;
+  std::optional<Double3> background;  ///< default: the mode's
+  double exposure = 1;
+  std::optional<std::vector<SceneLight>> lights;  ///< at most 4; default: one key light
+};
+
+struct Scene {
+  RenderMode mode = RenderMode::path;
+  SceneCamera camera;
+  SceneVolume volume;
+  SceneLighting lighting;
+};
+
+/// Most directional lights a scene may have.
+inline constexpr std::size_t kMaxSceneLights = 4;
+
+/// Parses a scene. Throws Error(input) "PATH:LINE:COLUMN: ..." for broken TOML, an unknown key, a
+/// wrong type or a value out of range.
+Scene parse_scene(std::string_view text, const std::string& path);
+/// parse_scene of a file; Error(input) where it is missing or unreadable.
+Scene load_scene(const std::string& path);
+
+}  // namespace weir

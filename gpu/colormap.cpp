@@ -1,0 +1,82 @@
+#include "gpu/colormap.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+
+namespace {
+
+/// Control point: position in [0, 1] and sRGB in 0..255.
+struct Stop {
+  float position;
+  std::array<float, 3> srgb;
+};
+
+constexpr std::array kGray{Stop{0.00F, {0, 0, 0}}, Stop{1.00F, {255, 255, 255}}};
+constexpr std::array kWhite{Stop{0.00F, {250, 250, 250}}, Stop{1.00F, {250, 250, 250}}};
+constexpr std::array kHeat{Stop{0.00F, {10, 4, 20}}, Stop{0.30F, {128, 18, 40}}, Stop{0.55F, {221, 80, 20}},
+                           Stop{0.80F, {250, 180, 50}}, Stop{1.00F, {255, 250, 220}}};
+constexpr std::array kCoolWarm{Stop{0.00F, {52, 84, 190}}, Stop{0.25F, {126, 166, 240}}, Stop{0.50F, {224, 221, 218}},
+                               Stop{0.75F, {240, 150, 118}}, Stop{1.00F, {180, 14, 42}}};
+// Dark violet to yellow over blue-green, lightness rising evenly.
+constexpr std::array kDusk{Stop{0.00F, {64, 8, 86}}, Stop{0.25F, {60, 80, 140}}, Stop{0.50F, {34, 142, 140}},
+                           Stop{0.75F, {96, 202, 96}}, Stop{1.00F, {252, 230, 40}}};
+// Soft tissue red-brown, then bone.
+constexpr std::array kCt{Stop{0.00F, {60, 20, 16}}, Stop{0.25F, {170, 80, 56}}, Stop{0.50F, {216, 150, 112}},
+                         Stop{0.70F, {238, 214, 180}}, Stop{1.00F, {255, 252, 244}}};
+// Water: deep blue to foam.
+constexpr std::array kWater{Stop{0.00F, {8, 24, 58}}, Stop{0.35F, {20, 84, 140}}, Stop{0.70F, {84, 176, 204}},
+                            Stop{1.00F, {240, 252, 252}}};
+
+struct Map {
+  std::string_view name;
+  std::span<const Stop> stops;
+};
+constexpr std::array kMaps{Map{"gray", kGray}, Map{"white", kWhite}, Map{"heat", kHeat},  Map{"cool-warm", kCoolWarm},
+                           Map{"dusk", kDusk}, Map{"ct", kCt},       Map{"water", kWater}};
+
+}  // namespace
+
+float srgb_from_linear(float linear) {
+  const float v = clamped(linear, 0.0F, 1.0F);
+  return v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1.0F / 2.4F) - 0.055F;
+}
+
+float linear_from_srgb(float srgb) {
+  const float v = clamped(srgb, 0.0F, 1.0F);
+  return v <= 0.04045F ? v / 12.92F : std::pow((v + 0.055F) / 1.055F, 2.4F);
+}
+
+std::vector<std::string_view> colormap_names() {
+  std::vector<std::string_view> names;
+  for (const Map& map : kMaps) names.push_back(map.name);
+  return names;
+}
+
+std::vector<Float3> colormap(std::string_view name, std::size_t entries) {
+  const auto map = std::find_if(kMaps.begin(), kMaps.end(), [&](const Map& m) { return m.name == name; });
+  if (map == kMaps.end()) {
+    std::string known;
+    for (const Map& m : kMaps) known += cat(known.empty() ? "" : ", ", m.name);
+    throw Error(ErrorKind::usage, cat("unknown colormap \"", name, "\"; use one of ", known));
+  }
+  std::vector<Float3> colours(entries);
+  auto stop = map->stops.begin();
+  for (std::size_t i = 0; i < entries; ++i) {
+    const float u = entries == 1 ? 0.0F : static_cast<float>(i) / static_cast<float>(entries - 1);
+    while (stop + 2 != map->stops.end() && u > stop[1].position) ++stop;
+    const float f = clamped((u - stop[0].position) / (stop[1].position - stop[0].position), 0.0F, 1.0F);
+    const auto channel = [&](std::size_t c) {
+      return linear_from_srgb(mix(stop[0].srgb[c], stop[1].srgb[c], f) / 255);
+    };
+    colours[i] = {channel(0), channel(1), channel(2)};
+  }
+  return colours;
+}
+
+}  // namespace weir

@@ -1,0 +1,79 @@
+// Where the voxels are: a flat table of the 8^3 blocks over the domain, 4 bytes
+// each, built once at load. An entry below tile_count is an index into the tile
+// values; any other is a leaf, (offset from `leaves`) / 32 + tile_count. One
+// look-up and one load replace the walk from the root that a stock accessor
+// makes. LeafTable owns the table; the leaves stay where the file is mapped.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "format/leaf_decode.h"
+#include "format/nvdb_grid.h"
+#include "gpu/vector3.h"
+
+namespace weir {
+
+/// A block's entry resolved: the leaf's bytes, or null and the value of the whole block.
+struct LeafBlock {
+  const std::byte* leaf = nullptr;
+  float value = 0;
+};
+
+/// What a kernel needs of a LeafTable; pointers may be host or device memory. Voxel coordinates are
+/// local: 0 is the lowest voxel of the domain.
+struct LeafTableView {
+  const std::uint32_t* entries = nullptr;  ///< count.x * count.y * count.z, x fastest
+  const float* tile_values = nullptr;      ///< tile_count values; [0] is the background
+  const std::byte* leaves = nullptr;       ///< 32-byte aligned
+  Int3 count;                              ///< blocks along each axis
+  Int3 shift;                              ///< local + shift = voxels from the first block's corner, in [0, 8)
+  Int3 extent;                             ///< voxels of the domain
+  std::uint32_t tile_count = 0;
+  GridType type = GridType::float32;
+
+  /// The block that covers a voxel given as coordinates from the first block's corner.
+  WEIR_HOST_DEVICE LeafBlock block(const Int3& v) const {
+    const std::int64_t at = (v.x >> 3) + count.x * ((v.y >> 3) + static_cast<std::int64_t>(count.y) * (v.z >> 3));
+    const std::uint32_t entry = entries[at];
+    if (entry < tile_count) return {nullptr, tile_values[entry]};
+    return {leaves + 32 * static_cast<std::size_t>(entry - tile_count), 0.0F};
+  }
+
+  /// Value of the local voxel `i`, 0 <= i < extent.
+  WEIR_HOST_DEVICE float voxel(const Int3& i) const {
+    const Int3 v{i.x + shift.x, i.y + shift.y, i.z + shift.z};
+    const LeafBlock b = block(v);
+    return b.leaf == nullptr ? b.value : leaf_value(type, b.leaf, offset_in_leaf(v));
+  }
+
+  WEIR_HOST_DEVICE static std::uint32_t offset_in_leaf(const Int3& v) {
+    return static_cast<std::uint32_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
+  }
+};
+
+class LeafTable {
+ public:
+  /// Builds the table over grid.index_bbox(). `grid`'s bytes must outlive it. Throws Error(input)
+  /// where the domain is empty, has more than 2^31 blocks, or leaves and tiles exceed 32 bits.
+  explicit LeafTable(const NvdbGrid& grid);
+
+  LeafTableView view() const { return view_; }
+  const Box& domain() const { return lattice_.domain; }
+  std::uint64_t bytes() const;  ///< of the table and the tile values
+
+ private:
+  struct Free {
+    void operator()(std::uint32_t* p) const { std::free(p); }
+  };
+
+  void add(const GridBlock& block, std::uint32_t entry);
+
+  NodeLattice lattice_;
+  std::unique_ptr<std::uint32_t[], Free> entries_;
+  std::vector<float> tile_values_;
+  LeafTableView view_;
+};
+
+}  // namespace weir

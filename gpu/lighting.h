@@ -1,0 +1,48 @@
+// The light that reaches a volume: a sky that depends on elevation, and a few
+// directional lights. Radiance is linear RGB, in units of a white of 1.
+#pragma once
+
+#include "gpu/vector3.h"
+
+namespace weir {
+
+inline constexpr int kMaxLights = 4;
+
+/// Light from infinitely far: `irradiance` on a surface that faces it.
+struct DirectionalLight {
+  Float3 direction;  ///< unit, towards the light
+  Float3 irradiance;
+};
+
+/// Radiance by elevation: ground below, horizon, zenith above, blended smoothly. All three equal make
+/// an ambient light.
+struct Lighting {
+  Float3 up{0, 0, 1};
+  Float3 zenith{1, 1, 1};
+  Float3 horizon{1, 1, 1};
+  Float3 ground{1, 1, 1};
+  Float3 background;       ///< what the camera sees behind the volume
+  bool sky_behind = true;  ///< it sees the sky instead
+  DirectionalLight lights[kMaxLights];
+  int light_count = 0;
+
+  WEIR_HOST_DEVICE Float3 sky(const Float3& direction) const {
+    const float elevation = clamped(dot(direction, up), -1.0F, 1.0F);
+    const Float3& end = elevation < 0.0F ? ground : zenith;
+    return mix(horizon, end, std::sqrt(std::abs(elevation)));
+  }
+
+  WEIR_HOST_DEVICE Float3 behind(const Float3& direction) const { return sky_behind ? sky(direction) : background; }
+
+  /// Light that a matt white surface of unit `normal` reflects, no shadows: the sky's at the normal
+  /// for the mean over the hemisphere, and the lights' by Lambert's law.
+  WEIR_HOST_DEVICE Float3 on_surface(const Float3& normal) const {
+    Float3 sum = sky(normal);
+    for (int i = 0; i < light_count; ++i) {
+      sum += lights[i].irradiance * (greater(dot(normal, lights[i].direction), 0.0F) / kPi);
+    }
+    return sum;
+  }
+};
+
+}  // namespace weir

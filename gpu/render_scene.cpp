@@ -1,0 +1,111 @@
+#include "gpu/render_scene.h"
+
+#include <algorithm>
+
+#include "gpu/colormap.h"
+#include "gpu/scene_camera.h"
+#include "gpu/scene_transfer.h"
+
+namespace weir {
+
+namespace {
+
+// What a mode looks best with where the scene says nothing.
+struct ModeDefaults {
+  std::string_view colormap;
+  double density;  // optical depth of the longest edge at opacity 1
+  Double3 background;
+};
+
+ModeDefaults defaults_of(RenderMode mode) {
+  switch (mode) {
+    case RenderMode::path:
+      return {"ct", 400, {0.80, 0.84, 0.90}};
+    case RenderMode::dvr:
+      return {"dusk", 200, {0.03, 0.035, 0.045}};
+    case RenderMode::iso:
+      return {"ct", 1, {0.80, 0.84, 0.90}};
+    case RenderMode::mip:
+      break;
+  }
+  return {"gray", 1, {0, 0, 0}};
+}
+
+Float3 narrow(const Double3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// The grid's range where it is one; NaN policies of other writers may leave none, then the cells'.
+MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
+  MinMax range{grid.value_min(), grid.value_max()};
+  if (is_finite(range.min) && is_finite(range.max) && range.min <= range.max) return range;
+  range = {kInfinity, -kInfinity};
+  for (const MinMax& cell : cells.bounds()) {
+    if (is_finite(cell.min)) range.min = std::min(range.min, cell.min);
+    if (is_finite(cell.max)) range.max = std::max(range.max, cell.max);
+  }
+  return range.min <= range.max ? range : MinMax{0, 1};
+}
+
+Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults) {
+  Lighting light;
+  const SceneLighting& s = scene.lighting;
+  light.up = normalised(narrow(scene.camera.up), {0, 0, 1});
+  light.zenith = narrow(s.zenith.value_or(Double3{0.75, 0.85, 1.0}));
+  light.horizon = narrow(s.horizon.value_or(Double3{0.9, 0.9, 0.9}));
+  light.ground = narrow(s.ground.value_or(Double3{0.35, 0.33, 0.3}));
+  light.background = narrow(s.background.value_or(defaults.background));
+  light.sky_behind = false;
+  const std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {1.6, 1.5, 1.4}}};
+  for (const SceneLight& l : s.lights.value_or(key)) {
+    if (light.light_count == kMaxLights) break;
+    light.lights[light.light_count++] = {normalised(narrow(l.direction), {0, 0, 1}), narrow(l.irradiance)};
+  }
+  return light;
+}
+
+}  // namespace
+
+static_assert(kMaxSceneLights == kMaxLights);
+
+RenderScene::RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderOptions& options)
+    : table_(grid),
+      cells_(grid, options.cell),
+      transfer_(make_transfer_function(scene.volume, value_range(grid, cells_), grid.background(),
+                                       defaults_of(scene.mode).colormap)),
+      majorants_(cells_.majorants(transfer_)) {
+  const ModeDefaults defaults = defaults_of(scene.mode);
+  const GridFrame frame = frame_of(grid);
+  const Double3 size = frame.size();
+  const double longest = *std::max_element(size.begin(), size.end());
+
+  Medium<VolumeSampler>& medium = task_.medium;
+  medium.volume = {table_.view(), options.filter};
+  medium.transfer = transfer_.view();
+  medium.cells = cells_.lattice();
+  medium.cell_opacity = majorants_.data();
+  medium.cell_values = cells_.bounds().data();
+  medium.stretch = narrow(frame.stretch());
+  medium.density = static_cast<float>(scene.volume.density.value_or(defaults.density) / longest);
+  medium.albedo = static_cast<float>(scene.volume.albedo);
+  medium.emission = static_cast<float>(scene.volume.emission);
+  medium.g = static_cast<float>(scene.volume.anisotropy);
+
+  task_.lighting = make_lighting(scene, defaults);
+  task_.camera = make_camera(scene.camera, frame, static_cast<double>(options.width) / options.height);
+  task_.mode = scene.mode;
+  task_.width = options.width;
+  task_.height = options.height;
+  task_.seed = options.seed;
+  // Sample positions are counted in floats: at most 2^22 along the longest way through.
+  task_.step = static_cast<float>(std::max(0.5, 2 * longest / (1 << 22)));
+  task_.shading = static_cast<float>(scene.volume.shading);
+  task_.max_bounces = scene.volume.max_bounces;
+  const float low = transfer_.low();
+  const float high = transfer_.high();
+  task_.iso = static_cast<float>(scene.volume.iso.value_or(low + 0.3 * (static_cast<double>(high) - low)));
+  task_.iso_color = rgb(transfer_.at(task_.iso));
+  tone_ = {.exposure = static_cast<float>(scene.lighting.exposure), .soft_clip = scene.mode == RenderMode::path};
+}
+
+}  // namespace weir

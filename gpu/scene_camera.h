@@ -1,0 +1,31 @@
+// The camera that a scene describes, in the frame of a grid. Physical space is
+// index space with its voxels' proportions: lengths in shortest voxel edges.
+#pragma once
+
+#include <array>
+
+#include "format/nvdb_grid.h"
+#include "format/scene.h"
+#include "gpu/camera.h"
+
+namespace weir {
+
+/// Where a grid lies: world = origin + voxel_size * index.
+struct GridFrame {
+  Box domain;          ///< voxels
+  Double3 voxel_size;  ///< world units, > 0
+  Double3 origin;      ///< world position of index (0, 0, 0)
+
+  /// Edges of a voxel in units of the shortest.
+  Double3 stretch() const;
+  /// Edges of the domain in physical space.
+  Double3 size() const;
+};
+
+GridFrame frame_of(const NvdbGrid& grid);
+
+/// `aspect` is width / height. An orbiting camera stands where the box of the domain fills the picture
+/// but for a small margin. Throws Error(usage) where position and look_at coincide.
+Camera make_camera(const SceneCamera& scene, const GridFrame& frame, double aspect);
+
+}  // namespace weir

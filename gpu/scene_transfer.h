@@ -1,0 +1,22 @@
+// The transfer function that a scene describes, with defaults that suit any
+// volume: colours over the value range, and an opacity that grows with the
+// distance from the background, so that the background is transparent.
+#pragma once
+
+#include <string_view>
+
+#include "format/nvdb_grid.h"
+#include "format/scene.h"
+#include "gpu/transfer_function.h"
+
+namespace weir {
+
+/// Entries of the tables: a control point is met within half a thousandth of the range.
+inline constexpr std::size_t kTransferEntries = 1024;
+
+/// `range` is the grid's; the scene's own replaces it. `default_colormap` holds where the scene names
+/// none. Throws Error(usage) for an unknown colormap.
+TransferFunction make_transfer_function(const SceneVolume& volume, MinMax range, float background,
+                                        std::string_view default_colormap);
+
+}  // namespace weir

@@ -1,0 +1,66 @@
+#include "tests/gpu/test_grid.h"
+
+#include <gtest/gtest.h>
+#include <nanovdb/util/IO.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/openvdb.h>
+
+#include <sstream>
+#include <stdexcept>
+
+namespace weir::test {
+
+namespace {
+
+openvdb::Coord coord(const Index3& i) { return {static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z)}; }
+
+template <typename BuildT>
+std::string converted(const openvdb::FloatGrid& grid) {
+  const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, BuildT>(
+      grid, nanovdb::StatsMode::All, nanovdb::ChecksumMode::Partial);
+  std::ostringstream out(std::ios::binary);
+  nanovdb::io::writeGrid(out, handle, nanovdb::io::Codec::NONE);
+  return out.str();
+}
+
+std::string written(GridType type, const openvdb::FloatGrid& grid) {
+  switch (type) {
+    case GridType::float32:
+      return converted<float>(grid);
+    case GridType::fp4:
+      return converted<nanovdb::Fp4>(grid);
+    case GridType::fp8:
+      return converted<nanovdb::Fp8>(grid);
+    case GridType::fp16:
+      return converted<nanovdb::Fp16>(grid);
+    case GridType::fpn:
+      return converted<nanovdb::FpN>(grid);
+  }
+  throw std::logic_error("no such grid type");
+}
+
+}  // namespace
+
+TestGrid::TestGrid(const Box& box, const Value& value, const TestGridOptions& options) {
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create(options.background);
+  grid->setName("test");
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
+  grid->transform().postScale({options.voxel_size[0], options.voxel_size[1], options.voxel_size[2]});
+  auto accessor = grid->getAccessor();
+  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) accessor.setValue(coord({x, y, z}), value({x, y, z}));
+    }
+  }
+  for (const TestTile& tile : options.tiles) {
+    const openvdb::Index level = tile.dim == 8 ? 1 : (tile.dim == 128 ? 2 : 3);
+    grid->tree().addTile(level, coord(tile.origin), tile.value, tile.active);
+  }
+  const std::string file = written(options.type, *grid);
+  const auto* first = reinterpret_cast<const std::byte*>(file.data());
+  file_.assign(first, first + file.size());
+  grid_ = std::make_unique<NvdbGrid>(NvdbGrid::open(file_, "test.nvdb"));
+}
+
+}  // namespace weir::test
