@@ -93,6 +93,8 @@ void MacrocellBuilder::finish(std::int64_t layer, std::vector<MinMax>& cells) co
           window_[static_cast<std::size_t>(linear_index(in_window, {lattice_.count.x, lattice_.count.y, 0}))];
       const Box box = lattice_.node_box({x, y, layer});
       if (!lattice_.domain.contains(Box{box.lo - apron, box.hi + apron})) widen(bounds, {background_, background_});
+      // Nothing but NaN in reach: no majorant is asked for, but readers expect min <= max.
+      if (bounds.min > bounds.max) bounds = {background_, background_};
       cells.push_back(bounds);
     }
   }

@@ -9,15 +9,15 @@ namespace weir {
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit) {
-  // One task: up to `kSegment` regions along x, whose rows are read in long runs.
-  constexpr std::int64_t kSegment = 64;
+  // One task: a segment of regions along x, whose rows are read in long runs.
+  const std::int64_t segment = store.segment_regions();
   const Index3 extent = regions.extent();
-  const Index3 tasks{(extent.x + kSegment - 1) / kSegment, extent.y, extent.z};
+  const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
   tbb::enumerable_thread_specific<std::vector<LeafRow>> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
     const Index3 at = index_at(task, tasks);
-    const Index3 first = regions.lo + Index3{at.x * kSegment, at.y, at.z};
-    const std::int64_t end_x = std::min(first.x + kSegment, regions.hi.x);
+    const Index3 first = regions.lo + Index3{at.x * segment, at.y, at.z};
+    const std::int64_t end_x = std::min(first.x + segment, regions.hi.x);
     const std::int64_t begin = tree.region_lattice.linear(first);
     const std::int64_t last = tree.region_lattice.linear({end_x - 1, first.y, first.z});
     const Box box{tree.leaf_box(begin).lo, tree.leaf_box(last).hi};

@@ -37,8 +37,8 @@ class RegionRows {
   Box leaf_box_;
 };
 
-/// Bytes of rows that one thread of for_each_region holds at a time, at most.
-inline constexpr std::uint64_t kRegionRowsBytes = 64ULL * 16 * 16 * 16 * sizeof(LeafRow);
+/// Bytes of the rows of one region.
+inline constexpr std::uint64_t kRegionRowsBytes = 16ULL * 16 * 16 * sizeof(LeafRow);
 
 /// Calls visit(region index, rows) once for each region of a box of region-lattice positions; regions
 /// next to each other in x come one after the other on one thread, others in parallel and in any order.

@@ -2,7 +2,8 @@
 
 namespace weir {
 
-RowStore::RowStore(std::unique_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
+RowStore::RowStore(std::unique_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions)
+    : file_(std::move(file)), leaves_(leaves), segment_regions_(segment_regions) {
   file_->preallocate(static_cast<std::uint64_t>(leaves.size()) * sizeof(LeafRow));
 }
 

@@ -16,10 +16,12 @@ namespace weir {
 /// Thread-safe: positioned reads and writes only.
 class RowStore {
  public:
-  /// Reserves the rows of `leaves` (a lattice of dim 8) in `file`; a full disk is known here.
-  RowStore(std::unique_ptr<File> file, const NodeLattice& leaves);
+  /// Reserves the rows of `leaves` (a lattice of dim 8) in `file`; a full disk is known here. A walk over
+  /// regions holds the rows of up to `segment_regions` of them per thread.
+  RowStore(std::unique_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions);
 
   const NodeLattice& leaves() const { return leaves_; }
+  std::int64_t segment_regions() const { return segment_regions_; }
 
   /// `rows` of consecutive leaves, from linear index `first` on.
   void write(std::int64_t first, std::span<const LeafRow> rows);
@@ -30,6 +32,7 @@ class RowStore {
  private:
   std::unique_ptr<File> file_;
   NodeLattice leaves_;
+  std::int64_t segment_regions_;
 };
 
 }  // namespace weir

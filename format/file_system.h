@@ -35,6 +35,8 @@ class FileSystem {
   /// A file in `directory` without a name: nothing of it outlives the process.
   virtual std::unique_ptr<File> create_unnamed(const std::string& directory) = 0;
   virtual void rename(const std::string& from, const std::string& to) = 0;
+  /// Like rename, but an existing `to` is an error.
+  virtual void rename_new(const std::string& from, const std::string& to) = 0;
   virtual void link(const std::string& from, const std::string& to) = 0;
   virtual void remove(const std::string& path) = 0;            ///< a missing file is no error
   virtual void make_directory(const std::string& path) = 0;    ///< an existing one is no error

@@ -80,15 +80,23 @@ class PosixFile final : public File {
 class PosixFileSystem final : public FileSystem {
  public:
   std::unique_ptr<File> create(const std::string& path) override {
-    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor < 0) throw io_error(path, "create", errno);
-    auto file = std::make_unique<PosixFile>(descriptor, path);
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      throw Error(ErrorKind::io,
-                  cat(path, ": is being written by another process; wait for it or choose another output"));
+    for (;;) {
+      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      if (descriptor < 0) throw io_error(path, "create", errno);
+      auto file = std::make_unique<PosixFile>(descriptor, path);
+      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        throw Error(ErrorKind::io,
+                    cat(path, ": is being written by another process; wait for it or choose another output"));
+      }
+      // Between open and lock the writer before us may have renamed this very file to its result:
+      // truncating it then would destroy that.
+      struct stat mine {};
+      struct stat named {};
+      if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
+      if (::stat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
+      if (::ftruncate(descriptor, 0) != 0) throw io_error(path, "truncate", errno);
+      return file;
     }
-    if (::ftruncate(descriptor, 0) != 0) throw io_error(path, "truncate", errno);
-    return file;
   }
 
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
@@ -104,6 +112,14 @@ class PosixFileSystem final : public FileSystem {
 
   void rename(const std::string& from, const std::string& to) override {
     if (::rename(from.c_str(), to.c_str()) != 0) throw io_error(from, "rename to " + to, errno);
+  }
+
+  void rename_new(const std::string& from, const std::string& to) override {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+    if (errno != EINVAL && errno != ENOSYS) throw io_error(from, "rename to " + to, errno);
+    // This file system cannot refuse to replace: look first.
+    if (exists(to)) throw io_error(from, "rename to " + to, EEXIST);
+    rename(from, to);
   }
 
   void link(const std::string& from, const std::string& to) override {

@@ -1,0 +1,34 @@
+// The size that was asked for, and the size the file will have.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "compressor/selection.h"
+
+namespace weir {
+
+struct Budget {
+  enum class Kind {
+    automatic,  ///< --rate 8, or the minimum tree where that is larger
+    size,       ///< `value` bytes
+    rate,       ///< ceil(float32 bytes of the volume / `value`)
+    lossless    ///< as many bytes as every bit needs
+  };
+  Kind kind = Kind::automatic;
+  double rate = 8;          ///< > 0
+  std::uint64_t bytes = 0;  ///< for Kind::size
+};
+
+/// "rate", "size", "lossless" or "minimum": the sidecar's budget.kind.
+struct FileSize {
+  std::uint64_t bytes = 0;
+  std::string kind;
+  std::string notice;  ///< one line for the user where the size is not what was asked, or pads a lot; may be empty
+};
+
+/// Exact file size for a budget. Throws Error(budget) naming the minimum where it is below that.
+FileSize file_size_for(const Budget& budget, std::uint64_t dense_float32_bytes, const SelectionBytes& bytes,
+                       const std::string& path);
+
+}  // namespace weir

@@ -1,0 +1,238 @@
+#include "compressor/conversion.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "compressor/background.h"
+#include "compressor/encode.h"
+#include "compressor/memory_plan.h"
+#include "compressor/process_memory.h"
+#include "compressor/selection.h"
+#include "compressor/survey.h"
+#include "compressor/tree_plan.h"
+#include "compressor/tree_writer.h"
+#include "compressor/work_directory.h"
+#include "format/digest.h"
+#include "format/error.h"
+#include "format/macrocells.h"
+#include "format/nvdb_type.h"
+#include "format/output_files.h"
+#include "format/text.h"
+#include "ingest/block_plan.h"
+
+namespace weir {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+StreamOptions stream_options(const ConversionControl& control) {
+  StreamOptions options;
+  options.cancel = control.cancel;
+  options.progress = [&control](std::int64_t done, std::int64_t) {
+    if (control.pass_advanced) control.pass_advanced(static_cast<std::uint64_t>(done) * sizeof(float));
+  };
+  return options;
+}
+
+void check_cancel(const ConversionControl& control) {
+  if (control.cancel != nullptr && *control.cancel)
+    throw Error(ErrorKind::interrupted, "interrupted; nothing was written");
+}
+
+void start_pass(const ConversionControl& control, const std::string& name, std::uint64_t voxels) {
+  check_cancel(control);
+  if (control.pass_started) control.pass_started(name, voxels * sizeof(float));
+}
+
+void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
+  if (survey.non_finite == 0) return;
+  const Index3& at = survey.first_non_finite;
+  throw Error(ErrorKind::input, cat(info.path, ": ", survey.non_finite, " voxels are NaN or infinite, the first (",
+                                    survey.first_non_finite_value, ") at ", at.x, ",", at.y, ",", at.z,
+                                    "; choose --nonfinite background or --nonfinite keep"));
+}
+
+Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
+                             VolumeSource& source, const BlockPlan& plan, const StreamOptions& stream) {
+  if (options.background) return {*options.background, "user", 0};
+  if (options.paper_background) return paper_background(survey, source, plan, stream);
+  return find_background(survey, rows, source, plan, stream);
+}
+
+// Reads the finished bytes back: what is hashed is what the file system holds.
+Digest digest_of_file(File& file, std::uint64_t bytes, std::size_t at_a_time) {
+  std::vector<Digest> pieces(piece_count(bytes));
+  tbb::task_arena arena(static_cast<int>(at_a_time));
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+      const std::uint64_t offset = i * kDigestPieceBytes;
+      std::vector<std::byte> piece(std::min(kDigestPieceBytes, bytes - offset));
+      file.read_at(offset, piece);
+      pieces[i] = piece_digest(piece);
+    });
+  });
+  return combine(pieces);
+}
+
+std::array<double, 2> range_of(const Survey& survey) {
+  return {static_cast<double>(survey.min), static_cast<double>(survey.max)};
+}
+
+Sidecar::Histogram histogram_of(const Survey& survey) {
+  const RangeHistogram& h = survey.histogram;
+  if (h.empty()) return {};
+  auto counts = h.counts();
+  const double max = h.first_edge() + static_cast<double>(counts.size()) * h.bin_width();
+  return {h.first_edge(), max, std::move(counts)};
+}
+
+Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
+  Sidecar sidecar;
+  sidecar.source.path = info.path;
+  sidecar.source.format = info.format;
+  sidecar.source.dataset = info.dataset;
+  sidecar.source.extent = info.extent;
+  sidecar.source.type = std::string(scalar_name(info.type));
+  sidecar.source.bytes = info.file_bytes;
+  sidecar.source.mtime = utc_text(info.mtime_ns);
+  sidecar.value_range = range_of(survey);
+  sidecar.nonfinite = {survey.non_finite, policy_name(options.non_finite)};
+  sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
+  sidecar.histogram = histogram_of(survey);
+  sidecar.weir = options.provenance;
+  return sidecar;
+}
+
+Sidecar::CertifiedError describe_error(const TreePlan& plan, const Survey& survey) {
+  const Certificate c =
+      make_certificate(plan.squared_error, plan.max_abs, plan.lossless, survey.finite, survey.min, survey.max);
+  return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
+}
+
+}  // namespace
+
+std::string metric_name(Metric metric) {
+  switch (metric) {
+    case Metric::sse:
+      return "sse";
+    case Metric::farthest:
+      return "farthest";
+    case Metric::closest:
+      return "closest";
+    case Metric::median:
+      return "median";
+  }
+  throw Error(ErrorKind::internal, "unknown metric");
+}
+
+std::string fill_name(FillMode fill) { return fill == FillMode::mean ? "mean" : "background"; }
+
+std::string policy_name(NonFinitePolicy policy) {
+  switch (policy) {
+    case NonFinitePolicy::error:
+      return "error";
+    case NonFinitePolicy::background:
+      return "background";
+    case NonFinitePolicy::keep:
+      return "keep";
+  }
+  throw Error(ErrorKind::internal, "unknown policy for non-finite values");
+}
+
+Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+                       FileSystem& files) {
+  const Clock::time_point started = Clock::now();
+  const SourceInfo& info = source.info();
+  const Box domain = info.domain();
+  const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
+
+  OutputFiles output(files, options.output, options.overwrite);
+  WorkDirectory work(files, options.output, options.work_dir);
+  const MemoryPlan memory = plan_memory(options.memory, resident_bytes(), threads, domain);
+  const BlockPlan plan = plan_blocks(domain, source.access(), memory.block_bytes);
+  const StreamOptions stream = stream_options(control);
+
+  // Survey.
+  const auto voxels = static_cast<std::uint64_t>(domain.voxels());
+  start_pass(control, "survey", voxels);
+  RowStore rows(work.spill(), plan.lattice, memory.segment_regions);
+  const Survey survey = survey_volume(source, plan, rows, stream);
+  if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
+  const Background background = choose_background(options, survey, rows, source, plan, stream);
+  Sidecar sidecar = describe_source(info, survey, options);
+  sidecar.source.digest = source_digest(rows);
+  sidecar.timing.survey_s = seconds_since(started);
+
+  // Selection.
+  check_cancel(control);
+  GainRule rule;
+  rule.metric = options.metric;
+  rule.brick_leaves = options.brick / kLeafDim;
+  rule.fill = {options.fill, background.value, options.non_finite};
+  TreeRegions tree(domain);
+  Selection selection(rule, rows, tree);
+  const std::uint64_t dense_bytes = voxels * sizeof(float);
+  const FileSize size = file_size_for(options.budget, dense_bytes, selection.bytes(), options.output);
+  if (!size.notice.empty() && control.notice) control.notice(size.notice);
+  selection.choose(size.bytes);
+  MaskStore masks(work.spill(), tree.region_lattice.size());
+  TreePlan tree_plan = plan_tree(selection, rows, tree, masks);
+  tree_plan.layout = padded_to(tree_plan.layout, size.bytes);
+  const TreeLayout& layout = tree_plan.layout;
+
+  // Encode.
+  const Clock::time_point encoding = Clock::now();
+  if (!output.reserve(size.bytes) && control.notice) {
+    control.notice(
+        cat(output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+  }
+  RecordStore records(work.spill(), layout.counts.leaves);
+  start_pass(control, "encode", voxels);
+  encode_leaves(source, plan, {tree, masks, layout, rule.fill, output.volume(), records}, stream);
+  check_cancel(control);
+  GridHead head;
+  head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
+  head.voxel_size = info.spacing;
+  head.origin = info.origin;
+  const std::uint32_t checksum = write_tree({tree, rows, masks, records, rule.fill, layout}, head, output.volume());
+  check_cancel(control);
+
+  // Finish.
+  sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, domain};
+  sidecar.background = {static_cast<double>(background.value), background.method, background.share};
+  sidecar.budget.kind = size.kind;
+  if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
+  if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
+  sidecar.budget.file_bytes = size.bytes;
+  sidecar.budget.dense_float32_bytes = dense_bytes;
+  sidecar.budget.rate = static_cast<double>(dense_bytes) / static_cast<double>(size.bytes);
+  sidecar.selection = {metric_name(options.metric),
+                       fill_name(options.fill),
+                       options.brick,
+                       static_cast<std::uint64_t>(plan.lattice.size()),
+                       layout.counts.leaves,
+                       {}};
+  sidecar.selection.bits[5] = layout.counts.leaves;
+  sidecar.error = describe_error(tree_plan, survey);
+  sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
+  sidecar.file = {size.bytes, layout.grid, checksum,
+                  digest_of_file(output.volume(), size.bytes, memory.digest_threads).hex()};
+  sidecar.timing.encode_s = seconds_since(encoding);
+  sidecar.timing.total_s = seconds_since(started);
+  sidecar.timing.bytes_read = source.bytes_read();
+  sidecar.timing.bytes_written = layout.content_end;
+  sidecar.timing.peak_rss_bytes = peak_resident_bytes();
+  output.commit(to_json_text(sidecar));
+  return sidecar;
+}
+
+}  // namespace weir

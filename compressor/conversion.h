@@ -1,0 +1,55 @@
+// One conversion: a volume in, a NanoVDB file of exactly the asked size and its
+// sidecar out, under a memory ceiling, all or nothing.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "compressor/budget.h"
+#include "compressor/fill.h"
+#include "compressor/leaf_gain.h"
+#include "format/file_system.h"
+#include "format/sidecar.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+struct ConversionOptions {
+  std::string output;      ///< path of the .nvdb
+  bool overwrite = false;  ///< replace an existing output
+  Budget budget;
+  Metric metric = Metric::sse;  ///< what the budget is spent on
+  FillMode fill = FillMode::mean;
+  std::int64_t brick = 8;           ///< voxels; granularity of the paper's metrics: 8, 16 or 32
+  std::optional<float> background;  ///< found in the data where absent
+  bool paper_background = false;    ///< the paper's histogram; one more pass over most types
+  NonFinitePolicy non_finite = NonFinitePolicy::error;
+  std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process
+  std::size_t threads = 0;                           ///< workers, 0: one per core
+  std::string work_dir;                              ///< for spill files; empty: a hidden directory beside the output
+  Sidecar::Weir provenance;                          ///< recorded as it is
+};
+
+/// What a caller can watch and stop.
+struct ConversionControl {
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
+  std::function<void(std::uint64_t done_bytes)> pass_advanced;
+  std::function<void(const std::string& line)> notice;
+};
+
+/// Converts and returns the sidecar that was written. Throws Error; then nothing is left of the output
+/// and what was there before is untouched.
+Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+                       FileSystem& files);
+
+/// Names as on the command line and in the sidecar.
+std::string metric_name(Metric metric);
+std::string fill_name(FillMode fill);
+std::string policy_name(NonFinitePolicy policy);
+
+}  // namespace weir

@@ -1,0 +1,51 @@
+#include "compressor/memory_plan.h"
+
+#include <algorithm>
+
+#include "compressor/region_rows.h"
+#include "compressor/tree_regions.h"
+#include "format/digest.h"
+#include "format/error.h"
+#include "format/macrocells.h"
+#include "format/node_statistics.h"
+#include "format/nvdb_grid.h"
+#include "format/text.h"
+#include "ingest/staging.h"
+
+namespace weir {
+namespace {
+
+// Per worker: stack, allocator arena, histogram or value table (512 KiB), radix buckets (512 KiB),
+// leaves being encoded (600 KiB).
+constexpr std::uint64_t kWorkerBytes = 3ULL << 20U;
+// Code pages touched later, libraries' heaps, the head, one upper node's image.
+constexpr std::uint64_t kSlackBytes = 16ULL << 20U;
+constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
+
+}  // namespace
+
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
+  const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
+  const NodeLattice cells = make_lattice(domain, kMacrocell);
+  // Macrocell layers: the window, its successor while it moves, and those being written.
+  const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
+  const std::uint64_t tree = regions * (sizeof(Region) + sizeof(NodeStatistics)) + 28 * cell_layer;
+  const std::uint64_t fixed = resident + kSlackBytes + kStagingBytes + threads * kWorkerBytes + tree;
+  const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
+  if (ceiling < least) {
+    throw Error(ErrorKind::usage,
+                cat("--memory ", format_bytes(ceiling), " is too small for this volume with ", threads,
+                    " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
+  }
+  const std::uint64_t free = ceiling - fixed;
+  MemoryPlan plan;
+  // A block comes with its rows, one 43rd of its size; a quarter of what is left stays free for both
+  // passes' small buffers and the allocator's waste.
+  plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * 3);
+  plan.segment_regions =
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
+  plan.digest_threads = std::clamp<std::size_t>(free / 2 / kDigestPieceBytes, 1, threads);
+  return plan;
+}
+
+}  // namespace weir

@@ -1,0 +1,22 @@
+// How the process's memory ceiling is divided. Every large buffer of a
+// conversion has its share here; the test of the ceiling is the kernel's figure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "format/index.h"
+
+namespace weir {
+
+struct MemoryPlan {
+  std::uint64_t block_bytes = 0;     ///< float32 bytes of one block; two are held at a time
+  std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
+  std::size_t digest_threads = 1;    ///< file pieces hashed at a time
+};
+
+/// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
+/// Throws Error(usage) naming a sufficient --memory where it is too small.
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
+
+}  // namespace weir

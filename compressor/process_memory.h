@@ -1,0 +1,14 @@
+// The process's resident memory, as the kernel counts it.
+#pragma once
+
+#include <cstdint>
+
+namespace weir {
+
+/// Bytes resident now (VmRSS of /proc/self/status).
+std::uint64_t resident_bytes();
+/// The most that were ever resident (VmHWM): of this program only, where getrusage also counts the
+/// process that started it.
+std::uint64_t peak_resident_bytes();
+
+}  // namespace weir

@@ -1,0 +1,47 @@
+#include "compressor/work_directory.h"
+
+#include "format/error.h"
+#include "format/output_files.h"
+#include "format/text.h"
+
+namespace weir {
+
+WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
+  if (!chosen.empty()) {
+    if (!files_.exists(chosen))
+      throw Error(ErrorKind::usage, cat("--work-dir ", chosen, ": does not exist; make it or choose another"));
+    if (files_.is_memory(chosen)) {
+      throw Error(ErrorKind::usage,
+                  cat("--work-dir ", chosen, ": is a memory file system; choose a directory on a disk"));
+    }
+    path_ = chosen;
+    return;
+  }
+  const std::string directory = directory_of(output);
+  if (files_.is_memory(directory)) {
+    // Spill files beside the output would be memory that no ceiling counts.
+    path_ = "/var/tmp";
+    if (!files_.exists(path_) || files_.is_memory(path_)) {
+      throw Error(
+          ErrorKind::usage,
+          cat(output,
+              ": lies on a memory file system, and so does /var/tmp; name a directory on a disk with --work-dir"));
+    }
+    return;
+  }
+  const std::size_t slash = output.rfind('/');
+  path_ = directory + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
+  files_.make_directory(path_);
+  made_ = true;
+}
+
+WorkDirectory::~WorkDirectory() {
+  if (!made_) return;
+  try {
+    files_.remove_directory(path_);
+  } catch (const Error&) {
+    // Not empty: somebody else's files, which are not ours to remove.
+  }
+}
+
+}  // namespace weir

@@ -1,0 +1,31 @@
+// Where spill files go: a hidden directory beside the output, made for one
+// conversion, or the directory the user names. Spill files have no names, so
+// that nothing of them outlives the process.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "format/file_system.h"
+
+namespace weir {
+
+class WorkDirectory {
+ public:
+  /// `chosen` is --work-dir or empty. Throws Error(usage) where `chosen` is missing or in memory, and
+  /// where the output lies in memory and so does /var/tmp.
+  WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen);
+  ~WorkDirectory();
+  WorkDirectory(const WorkDirectory&) = delete;
+  WorkDirectory& operator=(const WorkDirectory&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::unique_ptr<File> spill() { return files_.create_unnamed(path_); }
+
+ private:
+  FileSystem& files_;
+  std::string path_;
+  bool made_ = false;
+};
+
+}  // namespace weir

@@ -1,0 +1,99 @@
+#include "format/output_files.h"
+
+#include <span>
+
+#include "format/error.h"
+#include "format/sidecar.h"
+#include "format/text.h"
+
+namespace weir {
+
+std::string directory_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwrite)
+    : files_(files), path_(path), sidecar_(sidecar_path(path)), directory_(directory_of(path)), overwrite_(overwrite) {
+  if (!files_.exists(directory_)) {
+    throw Error(ErrorKind::io,
+                cat(path, ": the directory ", directory_, " does not exist; make it or choose another output"));
+  }
+  for (const std::string& existing : {path_, sidecar_}) {
+    if (!overwrite_ && files_.exists(existing)) {
+      throw Error(ErrorKind::usage, cat(existing, ": exists; choose another output with -o or pass --overwrite"));
+    }
+  }
+  volume_ = files_.create(path_ + ".partial");
+}
+
+OutputFiles::~OutputFiles() {
+  if (committed_) return;
+  remove_quietly(path_ + ".partial");
+  remove_quietly(sidecar_ + ".partial");
+}
+
+void OutputFiles::remove_quietly(const std::string& path) noexcept {
+  try {
+    files_.remove(path);
+  } catch (const Error&) {
+    // The failure that led here is the one to report.
+  }
+}
+
+// What each step leaves if the machine stops after it:
+//   1. volume.partial flushed           both names as before (nothing, or the old pair)
+//   2. sidecar.partial written, flushed the same
+//   3. old sidecar linked to .previous  the same, and a second name of the old sidecar
+//   4. sidecar renamed into place       new sidecar beside no volume or the old one: its size and head
+//                                       checksum do not agree, so `verify` and the daemon see "not done"
+//   5. volume renamed into place        the new pair
+//   6. directory flushed                the new pair, durable
+//   7. .previous removed                the new pair alone
+// A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
+void OutputFiles::commit(const std::string& sidecar_text) {
+  const std::string volume_partial = path_ + ".partial";
+  const std::string sidecar_partial = sidecar_ + ".partial";
+  const std::string previous = sidecar_ + ".previous";
+  volume_->sync();  // 1
+  {
+    const std::unique_ptr<File> file = files_.create(sidecar_partial);  // 2
+    file->write_at(0, std::as_bytes(std::span(sidecar_text)));
+    file->sync();
+  }
+  const bool replaces = overwrite_ && files_.exists(sidecar_);
+  if (replaces) {
+    files_.remove(previous);          // of an earlier crash
+    files_.link(sidecar_, previous);  // 3
+  }
+  bool sidecar_placed = false;
+  try {
+    if (overwrite_) {
+      files_.rename(sidecar_partial, sidecar_);  // 4
+      sidecar_placed = true;
+      files_.rename(volume_partial, path_);  // 5
+    } else {
+      files_.rename_new(sidecar_partial, sidecar_);
+      sidecar_placed = true;
+      files_.rename_new(volume_partial, path_);
+    }
+  } catch (const Error&) {
+    if (replaces) {
+      try {
+        files_.rename(previous, sidecar_);
+        files_.remove(previous);  // still there where both were names of one file
+      } catch (const Error&) {
+        // The old sidecar stays under .previous; the volume's name was not touched.
+      }
+    } else if (sidecar_placed) {
+      remove_quietly(sidecar_);
+    }
+    throw;
+  }
+  committed_ = true;
+  files_.sync_directory(directory_);      // 6
+  if (replaces) files_.remove(previous);  // 7
+}
+
+}  // namespace weir

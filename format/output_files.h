@@ -1,0 +1,50 @@
+// The two files of a conversion, OUT.nvdb and OUT.nvdb.json, from their first
+// byte to their names: a reader never sees half of one, a crash loses nothing
+// that was there before, and a failure leaves the directory as it was.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "format/file_system.h"
+
+namespace weir {
+
+class OutputFiles {
+ public:
+  /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
+  /// missing or not writable, the output exists and `overwrite` is false, or another process writes it.
+  OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
+  /// Removes what was not committed.
+  ~OutputFiles();
+  OutputFiles(const OutputFiles&) = delete;
+  OutputFiles& operator=(const OutputFiles&) = delete;
+
+  /// Directory of the output, "." where the path has none.
+  const std::string& directory() const { return directory_; }
+
+  /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
+  bool reserve(std::uint64_t bytes) { return volume_->preallocate(bytes); }
+  File& volume() { return *volume_; }
+
+  /// The protocol's end, see the numbered steps in the source. After it returned, both files are
+  /// durable under their names.
+  void commit(const std::string& sidecar_text);
+
+ private:
+  void remove_quietly(const std::string& path) noexcept;
+
+  FileSystem& files_;
+  std::string path_;
+  std::string sidecar_;
+  std::string directory_;
+  bool overwrite_;
+  bool committed_ = false;
+  std::unique_ptr<File> volume_;
+};
+
+/// Directory part of a path, "." where there is none.
+std::string directory_of(const std::string& path);
+
+}  // namespace weir
