@@ -59,8 +59,11 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", WEIR_VERSION);
   try {
     // COMMANDS
+    weir::add_verify(app);
+    weir::add_inspect(app);
     weir::add_convert(app);
     weir::add_render(app);
+    weir::add_sample(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::CallForHelp& help) {

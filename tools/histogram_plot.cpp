@@ -1,0 +1,145 @@
+#include "tools/histogram_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "format/text.h"
+#include "tools/plot_canvas.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kTextColumns = 64;
+constexpr int kTextRows = 10;
+constexpr std::size_t kLabelWidth = 9;
+
+constexpr std::int32_t kWidth = 720;  // pixels
+constexpr std::int32_t kHeight = 360;
+constexpr std::int32_t kLeft = 48;
+constexpr std::int32_t kRight = 24;
+constexpr std::int32_t kTop = 24;
+constexpr std::int32_t kBottom = 40;
+constexpr Float3 kPaper{1, 1, 1};
+constexpr Float3 kInk{0.05F, 0.05F, 0.05F};
+constexpr Float3 kGridLine{0.78F, 0.78F, 0.78F};
+constexpr Float3 kBar{0.06F, 0.19F, 0.46F};
+constexpr Float3 kMark{0.75F, 0.16F, 0.02F};
+
+bool nothing_to_show(const Sidecar::Histogram& h) {
+  return !std::isfinite(h.min) || !std::isfinite(h.max) ||
+         std::none_of(h.counts.begin(), h.counts.end(), [](std::uint64_t count) { return count != 0; });
+}
+
+// Counts merged into at most `columns` bins.
+std::vector<std::uint64_t> merged(const std::vector<std::uint64_t>& counts, std::size_t columns) {
+  std::vector<std::uint64_t> bins(std::min(columns, counts.size()));
+  for (std::size_t i = 0; i < counts.size(); ++i) bins[i * bins.size() / counts.size()] += counts[i];
+  return bins;
+}
+
+// 0 for no voxel, above 0 for one, 1 for `most`.
+double log_height(std::uint64_t count, std::uint64_t most) {
+  return std::log10(1.0 + static_cast<double>(count)) / std::log10(1.0 + static_cast<double>(most));
+}
+
+// 1, 2 or 5 times a power of ten, so that at most six ticks fit the range.
+double tick_step(double range) {
+  const double power = std::pow(10.0, std::floor(std::log10(range / 6)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (range / (factor * power) <= 6) return factor * power;
+  }
+  return 10 * power;
+}
+
+std::string padded(const std::string& label) {
+  return std::string(kLabelWidth - std::min(label.size(), kLabelWidth), ' ') + label;
+}
+
+}  // namespace
+
+std::string histogram_text(const Sidecar::Histogram& histogram) {
+  if (nothing_to_show(histogram)) return "histogram: no finite values\n";
+  const auto bins = merged(histogram.counts, kTextColumns);
+  const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
+  std::string plot;
+  for (int row = kTextRows; row > 0; --row) {
+    plot += padded(row == kTextRows ? cat(most) : row == 1 ? "1" : "") + " |";
+    for (const std::uint64_t count : bins) {
+      // One voxel shows: heights round up.
+      plot += std::ceil(log_height(count, most) * kTextRows) >= row ? '#' : ' ';
+    }
+    plot.erase(plot.find_last_not_of(' ') + 1);
+    plot += '\n';
+  }
+  plot += std::string(kLabelWidth, ' ') + " +" + std::string(bins.size(), '-') + '\n';
+  const std::string low = cat(histogram.min);
+  const std::string high = cat(histogram.max);
+  const std::size_t gap = bins.size() > low.size() + high.size() ? bins.size() - low.size() - high.size() : 1;
+  return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
+}
+
+Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background) {
+  PlotCanvas canvas(kWidth, kHeight, kPaper);
+  constexpr std::int32_t kFloor = kHeight - kBottom;
+  constexpr std::int32_t kBarsWidth = kWidth - kLeft - kRight;
+  constexpr std::int32_t kBarsHeight = kFloor - kTop;
+  if (nothing_to_show(histogram)) {
+    canvas.text(kLeft, kHeight / 2, "no finite values", kInk);
+    return canvas.image();
+  }
+  const auto bins = merged(histogram.counts, static_cast<std::size_t>(kBarsWidth));
+  const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
+  const auto height = [&](std::uint64_t count) {
+    return static_cast<std::int32_t>(std::lround(log_height(count, most) * kBarsHeight));
+  };
+  std::uint64_t decade = 1;
+  for (int exponent = 0; decade <= most; ++exponent, decade *= 10) {
+    const std::int32_t y = kFloor - height(decade);
+    canvas.fill(kLeft, y, kWidth - kRight, y + 1, kGridLine);
+    const std::string label = exponent < 4 ? cat(decade) : cat("1e", exponent);
+    canvas.text(kLeft - 6 - PlotCanvas::text_width(label), y - 3, label, kInk);
+    if (decade > most / 10) break;  // the next one might not fit 64 bits
+  }
+  const auto columns = static_cast<std::int32_t>(bins.size());
+  for (std::int32_t i = 0; i < columns; ++i) {
+    const std::uint64_t count = bins[static_cast<std::size_t>(i)];
+    if (count == 0) continue;
+    canvas.fill(kLeft + i * kBarsWidth / columns, kFloor - std::max(height(count), 1),
+                kLeft + (i + 1) * kBarsWidth / columns, kFloor, kBar);
+  }
+  canvas.fill(kLeft - 1, kTop, kLeft, kFloor, kInk);
+  canvas.fill(kLeft - 1, kFloor, kWidth - kRight, kFloor + 1, kInk);
+  canvas.text(kLeft, kTop - 14, "voxels", kInk);
+  const double range = histogram.max - histogram.min;
+  const auto x_of = [&](double value) {
+    const double part = range > 0 ? (value - histogram.min) / range : 0.5;
+    return kLeft + static_cast<std::int32_t>(std::lround(part * (kBarsWidth - 1)));
+  };
+  const auto tick = [&](double value, const std::string& label) {
+    const std::int32_t x = x_of(value);
+    canvas.fill(x, kFloor, x + 1, kFloor + 5, kInk);
+    const std::int32_t width = PlotCanvas::text_width(label);
+    canvas.text(std::clamp(x - width / 2, 0, kWidth - width), kFloor + 8, label, kInk);
+  };
+  if (range > 0 && std::isfinite(range)) {
+    const double step = tick_step(range);
+    const double first = std::ceil(histogram.min / step);
+    for (int i = 0; i < 8 && (first + i) * step <= histogram.max; ++i)
+      tick((first + i) * step, cat((first + i) * step));
+  } else {
+    tick(histogram.min, cat(histogram.min));
+  }
+  canvas.text(kWidth - kRight - PlotCanvas::text_width("value"), kHeight - 12, "value", kInk);
+  if (background && *background >= histogram.min && *background <= histogram.max) {
+    const std::int32_t x = x_of(*background);
+    canvas.fill(x, kTop - 4, x + 1, kFloor, kMark);
+    const std::string label = cat("background ", *background);
+    canvas.text(std::min(x + 4, kWidth - kRight - PlotCanvas::text_width(label)), kTop - 14, label, kMark);
+  }
+  return canvas.image();
+}
+
+}  // namespace weir

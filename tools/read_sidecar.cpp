@@ -1,0 +1,36 @@
+#include "tools/read_sidecar.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uintmax_t kMaxBytes = 64U << 20U;
+
+}  // namespace
+
+Sidecar read_sidecar(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) {
+    throw Error(ErrorKind::input, cat(path, ": cannot read the sidecar: ", error.message(),
+                                      "; write it with weir convert, or look at the volume alone with weir inspect"));
+  }
+  if (bytes > kMaxBytes) {
+    throw Error(ErrorKind::input, cat(path, ": ", bytes, " bytes are no sidecar; write it again with weir convert"));
+  }
+  std::string text(bytes, '\0');
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(text.data(), static_cast<std::streamsize>(bytes))) {
+    throw Error(ErrorKind::input, path + ": cannot read the sidecar; check the permissions");
+  }
+  return parse_sidecar(text, path);
+}
+
+}  // namespace weir
