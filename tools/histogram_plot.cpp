@@ -33,11 +33,27 @@ bool nothing_to_show(const Sidecar::Histogram& h) {
          std::none_of(h.counts.begin(), h.counts.end(), [](std::uint64_t count) { return count != 0; });
 }
 
-// Counts merged into at most `columns` bins.
-std::vector<std::uint64_t> merged(const std::vector<std::uint64_t>& counts, std::size_t columns) {
-  std::vector<std::uint64_t> bins(std::min(columns, counts.size()));
-  for (std::size_t i = 0; i < counts.size(); ++i) bins[i * bins.size() / counts.size()] += counts[i];
-  return bins;
+// Whole numbers of neighbouring bins merged, so that all columns are equally wide: as many as lie
+// between the values of discrete data, then as many as make at most `columns`.
+Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
+  std::size_t first = h.counts.size();
+  std::size_t stride = 0;
+  for (std::size_t i = 0; i < h.counts.size(); ++i) {
+    if (h.counts[i] == 0) continue;
+    first = std::min(first, i);
+    stride = std::gcd(stride, i - first);
+  }
+  stride = std::max<std::size_t>(stride, 1);
+  const std::size_t skipped = first % stride;  // empty bins below the first value
+  const std::size_t groups = (h.counts.size() - skipped + stride - 1) / stride;
+  const std::size_t per_column = stride * ((groups + columns - 1) / columns);
+  const double width = (h.max - h.min) / static_cast<double>(h.counts.size());
+  Sidecar::Histogram result;
+  result.counts.resize((h.counts.size() - skipped + per_column - 1) / per_column);
+  result.min = h.min + width * static_cast<double>(skipped);
+  result.max = per_column == 1 ? h.max : result.min + width * static_cast<double>(per_column * result.counts.size());
+  for (std::size_t i = first; i < h.counts.size(); ++i) result.counts[(i - skipped) / per_column] += h.counts[i];
+  return result;
 }
 
 // 0 for no voxel, above 0 for one, 1 for `most`.
@@ -62,7 +78,8 @@ std::string padded(const std::string& label) {
 
 std::string histogram_text(const Sidecar::Histogram& histogram) {
   if (nothing_to_show(histogram)) return "histogram: no finite values\n";
-  const auto bins = merged(histogram.counts, kTextColumns);
+  const Sidecar::Histogram shown = merged(histogram, kTextColumns);
+  const auto& bins = shown.counts;
   const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
   std::string plot;
   for (int row = kTextRows; row > 0; --row) {
@@ -75,8 +92,8 @@ std::string histogram_text(const Sidecar::Histogram& histogram) {
     plot += '\n';
   }
   plot += std::string(kLabelWidth, ' ') + " +" + std::string(bins.size(), '-') + '\n';
-  const std::string low = cat(histogram.min);
-  const std::string high = cat(histogram.max);
+  const std::string low = cat(shown.min);
+  const std::string high = cat(shown.max);
   const std::size_t gap = bins.size() > low.size() + high.size() ? bins.size() - low.size() - high.size() : 1;
   return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
 }
@@ -90,7 +107,8 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
     canvas.text(kLeft, kHeight / 2, "no finite values", kInk);
     return canvas.image();
   }
-  const auto bins = merged(histogram.counts, static_cast<std::size_t>(kBarsWidth));
+  const Sidecar::Histogram shown = merged(histogram, static_cast<std::size_t>(kBarsWidth));
+  const auto& bins = shown.counts;
   const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
   const auto height = [&](std::uint64_t count) {
     return static_cast<std::int32_t>(std::lround(log_height(count, most) * kBarsHeight));
@@ -112,10 +130,10 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
   }
   canvas.fill(kLeft - 1, kTop, kLeft, kFloor, kInk);
   canvas.fill(kLeft - 1, kFloor, kWidth - kRight, kFloor + 1, kInk);
-  canvas.text(kLeft, kTop - 14, "voxels", kInk);
-  const double range = histogram.max - histogram.min;
+  canvas.text(kLeft - 6 - PlotCanvas::text_width("voxels"), kTop - 14, "voxels", kInk);
+  const double range = shown.max - shown.min;
   const auto x_of = [&](double value) {
-    const double part = range > 0 ? (value - histogram.min) / range : 0.5;
+    const double part = range > 0 ? (value - shown.min) / range : 0.5;
     return kLeft + static_cast<std::int32_t>(std::lround(part * (kBarsWidth - 1)));
   };
   const auto tick = [&](double value, const std::string& label) {
@@ -126,14 +144,13 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
   };
   if (range > 0 && std::isfinite(range)) {
     const double step = tick_step(range);
-    const double first = std::ceil(histogram.min / step);
-    for (int i = 0; i < 8 && (first + i) * step <= histogram.max; ++i)
-      tick((first + i) * step, cat((first + i) * step));
+    const double first = std::ceil(shown.min / step);
+    for (int i = 0; i < 8 && (first + i) * step <= shown.max; ++i) tick((first + i) * step, cat((first + i) * step));
   } else {
-    tick(histogram.min, cat(histogram.min));
+    tick(shown.min, cat(shown.min));
   }
   canvas.text(kWidth - kRight - PlotCanvas::text_width("value"), kHeight - 12, "value", kInk);
-  if (background && *background >= histogram.min && *background <= histogram.max) {
+  if (background && *background >= shown.min && *background <= shown.max) {
     const std::int32_t x = x_of(*background);
     canvas.fill(x, kTop - 4, x + 1, kFloor, kMark);
     const std::string label = cat("background ", *background);

@@ -11,7 +11,8 @@
 
 namespace weir {
 
-/// One thing that must hold; `found` and `expected` in words.
+/// One thing that must hold; `found` and `expected` in words. Where reading failed, `found` is the
+/// whole message and `expected` is empty.
 struct VolumeCheck {
   std::string name;
   std::string found;
