@@ -64,7 +64,7 @@ class LayerEncoder {
         const std::size_t position = tree.mask_position(leaf);
         if (!mask.test(position)) continue;
         const std::uint64_t ordinal = region.first_leaf + mask.count_before(position);
-        if (ordinal != first_ + records_.size()) {
+        if (ordinal != first_ + records_.size() + waiting_) {
           flush(target);
           first_ = ordinal;
         }
@@ -75,22 +75,36 @@ class LayerEncoder {
   }
 
  private:
+  // Gathers one leaf; statistics and bytes come when the batch is full.
   void encode(const EncodeTarget& target, const Block& block, const Index3& leaf) {
     const Box node = target.tree.leaves.node_box(leaf);
     const Box inside = target.tree.leaves.voxels(leaf);
-    gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values_);
+    LeafValues& values = values_[waiting_];
+    gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values);
     if (target.fill.non_finite != NonFinitePolicy::keep) {
-      for (float& v : values_) v = std::isfinite(v) ? v : target.fill.background;
+      for (float& v : values) v = std::isfinite(v) ? v : target.fill.background;
     }
-    const NodeStatistics statistics = leaf_statistics(values_, node, inside);
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + nvdb::kFloatLeafBytes);
-    encode_float_leaf(values_, node, inside, statistics,
-                      std::span<std::byte, nvdb::kFloatLeafBytes>(bytes_.data() + at, nvdb::kFloatLeafBytes));
-    records_.push_back(make_leaf_record(values_, node, inside, statistics));
+    nodes_[waiting_] = node;
+    insides_[waiting_] = inside;
+    if (++waiting_ == kLeafBatch) encode_waiting();
+  }
+
+  void encode_waiting() {
+    const std::span<NodeStatistics> statistics(statistics_.data(), waiting_);
+    full_leaf_statistics({values_.data(), waiting_}, {nodes_.data(), waiting_}, statistics);
+    for (std::size_t i = 0; i < waiting_; ++i) {
+      if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
+      const std::size_t at = bytes_.size();
+      bytes_.resize(at + nvdb::kFloatLeafBytes);
+      encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i],
+                        std::span<std::byte, nvdb::kFloatLeafBytes>(bytes_.data() + at, nvdb::kFloatLeafBytes));
+      records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
+    }
+    waiting_ = 0;
   }
 
   void flush(const EncodeTarget& target) {
+    encode_waiting();
     if (records_.empty()) return;
     target.out.write_at(target.layout.leaves + first_ * nvdb::kFloatLeafBytes, bytes_);
     target.records.write(first_, records_);
@@ -99,7 +113,11 @@ class LayerEncoder {
   }
 
   std::uint64_t first_ = 0;  // ordinal of the first leaf not yet written
-  LeafValues values_{};
+  std::size_t waiting_ = 0;  // leaves gathered and not yet encoded
+  std::array<LeafValues, kLeafBatch> values_{};
+  std::array<Box, kLeafBatch> nodes_{};
+  std::array<Box, kLeafBatch> insides_{};
+  std::array<NodeStatistics, kLeafBatch> statistics_{};
   std::vector<std::byte> bytes_;
   std::vector<LeafRecord> records_;
 };

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "compressor/leaf_summary.h"
@@ -90,7 +91,7 @@ class BlockSurvey {
       for (std::int64_t y = 0; y < extent.y; ++y) {
         const float* row = corner + block_extent.x * (y + block_extent.y * z);
         if (extent.x == kLeafDim) {  // a length the compiler knows
-          std::copy_n(row, kLeafDim, out);
+          std::memcpy(out, row, kLeafDim * sizeof(float));
         } else {
           std::copy_n(row, extent.x, out);
         }

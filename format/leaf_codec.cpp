@@ -1,8 +1,10 @@
 #include "format/leaf_codec.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "format/little_endian.h"
+#include "format/simd.h"
 
 namespace weir {
 namespace {
@@ -18,6 +20,30 @@ std::array<std::uint8_t, 64> active_rows(const Box& node, const Box& inside) {
     for (std::int64_t y = lo.y; y < hi.y; ++y) rows[static_cast<std::size_t>(x * 8 + y)] = row;
   }
   return rows;
+}
+
+// NodeStatistics::add for kLeafBatch leaves side by side.
+struct BatchStatistics {
+  std::array<float, kLeafBatch> min;
+  std::array<float, kLeafBatch> max;
+  std::array<double, kLeafBatch> mean;
+  std::array<double, kLeafBatch> m2;
+};
+
+WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
+  BatchStatistics s = batch;
+  for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+    const auto count = static_cast<double>(i + 1);
+    for (std::size_t l = 0; l < kLeafBatch; ++l) {
+      const float value = values[l * kLeafVoxels + i];
+      s.min[l] = value < s.min[l] ? value : s.min[l];
+      s.max[l] = value > s.max[l] ? value : s.max[l];
+      const double delta = static_cast<double>(value) - s.mean[l];
+      s.mean[l] += delta / count;
+      s.m2[l] += delta * (static_cast<double>(value) - s.mean[l]);
+    }
+  }
+  batch = s;
 }
 
 }  // namespace
@@ -59,6 +85,24 @@ NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const 
   }
   statistics.add_box(inside);
   return statistics;
+}
+
+void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Box> nodes,
+                          std::span<NodeStatistics> statistics) {
+  const NodeStatistics fresh;
+  BatchStatistics batch{};
+  batch.min.fill(fresh.min);
+  batch.max.fill(fresh.max);
+  if (leaves.size() == kLeafBatch) {
+    add_side_by_side(leaves.front().data(), batch);
+  } else {
+    std::array<LeafValues, kLeafBatch> padded{};
+    std::copy(leaves.begin(), leaves.end(), padded.begin());
+    add_side_by_side(padded.front().data(), batch);
+  }
+  for (std::size_t l = 0; l < leaves.size(); ++l) {
+    statistics[l] = NodeStatistics{batch.min[l], batch.max[l], batch.mean[l], batch.m2[l], kLeafVoxels, nodes[l]};
+  }
 }
 
 void encode_float_leaf(const LeafValues& values, const Box& node, const Box& inside, const NodeStatistics& statistics,
