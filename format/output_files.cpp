@@ -49,8 +49,8 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
 //   4. sidecar renamed into place       new sidecar beside no volume or the old one: its size and head
 //                                       checksum do not agree, so `verify` and the daemon see "not done"
 //   5. volume renamed into place        the new pair
-//   6. directory flushed                the new pair, durable
-//   7. .previous removed                the new pair alone
+//   6. .previous removed                the new pair alone
+//   7. directory flushed                the new pair, durable
 // A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
 void OutputFiles::commit(const std::string& sidecar_text) {
   const std::string volume_partial = path_ + ".partial";
@@ -92,8 +92,8 @@ void OutputFiles::commit(const std::string& sidecar_text) {
     throw;
   }
   committed_ = true;
-  files_.sync_directory(directory_);      // 6
-  if (replaces) files_.remove(previous);  // 7
+  if (replaces) remove_quietly(previous);  // 6
+  files_.sync_directory(directory_);       // 7
 }
 
 }  // namespace weir

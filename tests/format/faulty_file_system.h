@@ -1,0 +1,50 @@
+// A file system over the real one that fails one chosen call, so that a test can
+// try every call of a protocol in turn.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "format/file_system.h"
+
+namespace weir {
+
+/// Counts the calls that change something or ask for room, files' included, from several threads.
+class FaultyFileSystem final : public FileSystem {
+ public:
+  /// Call number `fail_at` (0 is the first) fails with `errno_value`; none where it is negative.
+  FaultyFileSystem(FileSystem& real, int fail_at, int errno_value);
+
+  /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
+  std::vector<std::string> calls() const;
+  bool failed() const { return failed_; }
+
+  std::unique_ptr<File> create(const std::string& path) override;
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override;
+  void rename(const std::string& from, const std::string& to) override;
+  void rename_new(const std::string& from, const std::string& to) override;
+  void link(const std::string& from, const std::string& to) override;
+  void remove(const std::string& path) override;
+  void make_directory(const std::string& path) override;
+  void remove_directory(const std::string& path) override;
+  void sync_directory(const std::string& path) override;
+  bool exists(const std::string& path) override;
+  bool is_memory(const std::string& directory) override;
+  std::uint64_t free_bytes(const std::string& directory) override;
+
+  /// Counts a call, and throws if it is the one to fail.
+  void count(const std::string& call, const std::string& path);
+
+ private:
+  FileSystem& real_;
+  int fail_at_;
+  int errno_value_;
+  mutable std::mutex mutex_;
+  std::vector<std::string> calls_;
+  std::atomic<bool> failed_{false};
+};
+
+}  // namespace weir
