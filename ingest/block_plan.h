@@ -30,7 +30,7 @@ struct BlockPlan {
 
 /// Blocks grow no further than this once they are rows of whole lower nodes: reads are long enough
 /// then, and several blocks let reading and work overlap.
-inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{64} << 20U;
+inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 
 /// Blocks whose float32 values fit `block_bytes`. Where rows are contiguous in the file: full rows in x,
 /// whole rows of lower nodes (128 x 128 voxels in y and z, on multiples of 128 of the index) and, up to

@@ -4,11 +4,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
+
+#include "format/simd.h"
 
 namespace weir {
 namespace {
@@ -33,10 +34,6 @@ T load(const std::byte* bytes, std::size_t i) {
   return std::bit_cast<T>(word);
 }
 
-/// Maxima and counts kept in lanes, so that the compiler can vectorise without reordering anything
-/// that matters: maxima and integer sums do not depend on order.
-constexpr std::size_t kLanes = 16;
-
 template <typename T, bool Swap>
 ConversionLoss convert_exact(const std::byte* bytes, std::span<float> values) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(load<T, Swap>(bytes, i));
@@ -53,41 +50,67 @@ ConversionLoss copy_float32(const std::byte* bytes, std::span<float> values) {
       std::memcpy(out + i * sizeof word, &word, sizeof word);
     }
   } else {
-    std::memcpy(out, bytes, values.size_bytes());
+    std::copy_n(bytes, values.size_bytes(), out);
   }
   return {};
 }
 
+/// Values converted at a time: the temporaries stay in the first-level cache.
+constexpr std::size_t kChunk = 512;
+/// Maxima and counts are kept in lanes; neither depends on the order, so the loops may be vectorised.
+constexpr std::size_t kLanes = 16;
+
+/// The difference between float32 and original is exact in double: it spans at most the 53 bits of a
+/// float64 or the 32 bits of an integer. It is NaN where both are the same infinity or NaN, and
+/// infinite where a finite value overflowed.
+template <typename T>
+inline __attribute__((always_inline)) void round_values(const T* original, float* values, double* error) {
+  for (std::size_t i = 0; i < kChunk; ++i) values[i] = static_cast<float>(original[i]);
+  for (std::size_t i = 0; i < kChunk; ++i) {
+    error[i] = std::fabs(static_cast<double>(values[i]) - static_cast<double>(original[i]));
+  }
+}
+WEIR_SIMD void round_chunk(const double* original, float* values, double* error) {
+  round_values<double>(original, values, error);
+}
+WEIR_SIMD void round_chunk(const std::int32_t* original, float* values, double* error) {
+  round_values<std::int32_t>(original, values, error);
+}
+WEIR_SIMD void round_chunk(const std::uint32_t* original, float* values, double* error) {
+  round_values<std::uint32_t>(original, values, error);
+}
+
+WEIR_SIMD void count_chunk(const double* error, std::uint64_t* inexact, std::uint64_t* overflow, double* worst) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kChunk; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const double e = error[i + lane];
+      inexact[lane] += (e > 0.0 ? 1U : 0U) & (e < kInfinity ? 1U : 0U);
+      overflow[lane] += e == kInfinity ? 1U : 0U;
+      const double counted = e < kInfinity ? e : 0.0;
+      worst[lane] = counted > worst[lane] ? counted : worst[lane];
+    }
+  }
+}
+
 template <typename T, bool Swap>
 ConversionLoss convert_rounding(const std::byte* bytes, std::span<float> values) {
-  // Inside double every difference below is exact: |double(f) - double(v)| spans at most the 53 bits
-  // of v (float64) or 32 bits (integers).
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<T, kChunk> original;
+  std::array<float, kChunk> rounded;
+  std::array<double, kChunk> error;
   std::array<std::uint64_t, kLanes> inexact{};
   std::array<std::uint64_t, kLanes> overflow{};
   std::array<double, kLanes> worst{};
-  const auto step = [&](std::size_t i, std::size_t lane) {
-    const T original = load<T, Swap>(bytes, i);
-    const auto value = static_cast<float>(original);
-    values[i] = value;
-    // NaN where both are the same infinity or NaN; infinite where the value overflowed.
-    const double error = std::fabs(static_cast<double>(value) - static_cast<double>(original));
-    const bool rounded = error > 0.0 && error < kInfinity;
-    inexact[lane] += rounded ? 1U : 0U;
-    if constexpr (std::floating_point<T>) overflow[lane] += error == kInfinity ? 1U : 0U;
-    const double counted = rounded ? error : 0.0;
-    worst[lane] = counted > worst[lane] ? counted : worst[lane];
-  };
-  std::size_t i = 0;
-  for (; i + kLanes <= values.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) step(i + lane, lane);
+  for (std::size_t start = 0; start < values.size(); start += kChunk) {
+    const std::size_t n = std::min(kChunk, values.size() - start);
+    if (n < kChunk) original.fill(T{0});  // exact, so the rest of the chunk counts nothing
+    for (std::size_t i = 0; i < n; ++i) original[i] = load<T, Swap>(bytes, start + i);
+    round_chunk(original.data(), rounded.data(), error.data());
+    std::copy_n(rounded.begin(), n, values.begin() + static_cast<std::ptrdiff_t>(start));
+    count_chunk(error.data(), inexact.data(), overflow.data(), worst.data());
   }
-  for (; i < values.size(); ++i) step(i, 0);
-
   ConversionLoss loss;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    loss.add({inexact[lane], overflow[lane], worst[lane]});
-  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) loss.add({inexact[lane], overflow[lane], worst[lane]});
   return loss;
 }
 

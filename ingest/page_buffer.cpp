@@ -16,7 +16,6 @@ PageBuffer::PageBuffer(std::size_t size) {
   if (memory == MAP_FAILED) {
     throw io_error("memory", cat("get ", size, " bytes for reading; lower --memory"), errno);
   }
-  ::madvise(memory, size, MADV_HUGEPAGE);  // Fewer faults on first touch; harmless where refused.
   bytes_ = {static_cast<std::byte*>(memory), size};
 }
 

@@ -71,10 +71,10 @@ TEST(BlockPlan, OneVoxel) {
 }
 
 TEST(BlockPlan, SmallVolumesAreOneBlock) {
-  const BlockPlan plan = checked_plan(at_origin({256, 256, 256}), {}, 512 * kMiB);
+  const BlockPlan plan = checked_plan(at_origin({128, 128, 128}), {}, 512 * kMiB);
   EXPECT_EQ(plan.size(), 1);
-  EXPECT_EQ(plan.block_bytes, 64 * kMiB);
-  EXPECT_EQ(plan.run_voxels, 1 << 24);
+  EXPECT_EQ(plan.block_bytes, 8 * kMiB);
+  EXPECT_EQ(plan.run_voxels, 1 << 21);
 }
 
 TEST(BlockPlan, CloudWidthAt256MiB) {
@@ -100,24 +100,28 @@ TEST(BlockPlan, Cube3000) {
 }
 
 TEST(BlockPlan, GrowsBeyondNodesToAmpleBlocksOnly) {
-  const Box domain = at_origin({1024, 1024, 1024});
-  EXPECT_EQ(checked_plan(domain, {}, 1024 * kMiB).leaves, (Index3{128, 16, 16}));  // 64 MiB: ample
-  EXPECT_EQ(checked_plan(at_origin({512, 512, 512}), {}, 1024 * kMiB).leaves, (Index3{64, 32, 16}));
-  EXPECT_EQ(checked_plan(at_origin({256, 256, 1024}), {}, 1024 * kMiB).leaves, (Index3{32, 32, 32}));
-  EXPECT_EQ(checked_plan(at_origin({256, 256, 1024}), {}, 40 * kMiB).leaves, (Index3{32, 32, 16}));
+  const auto leaves = [](const Index3& extent, std::uint64_t budget) {
+    return checked_plan(at_origin(extent), {}, budget).leaves;
+  };
+  EXPECT_EQ(leaves({1024, 1024, 1024}, 1024 * kMiB), (Index3{128, 16, 16}));  // a row of nodes: 64 MiB
+  EXPECT_EQ(leaves({512, 512, 512}, 1024 * kMiB), (Index3{64, 16, 16}));      // 32 MiB
+  EXPECT_EQ(leaves({256, 512, 512}, 1024 * kMiB), (Index3{32, 32, 16}));      // 2 rows
+  EXPECT_EQ(leaves({256, 256, 1024}, 1024 * kMiB), (Index3{32, 32, 16}));     // all rows
+  EXPECT_EQ(leaves({128, 128, 1024}, 1024 * kMiB), (Index3{16, 16, 64}));     // 4 layers of nodes
+  EXPECT_EQ(leaves({128, 128, 1024}, 20 * kMiB), (Index3{16, 16, 32}));
 }
 
 TEST(BlockPlan, LinesAlongEachAxis) {
   constexpr std::int64_t kBillion = 1'000'000'000;
   const BlockPlan along_z = checked_plan(at_origin({1, 1, kBillion}), {}, 128 * kMiB);
-  EXPECT_EQ(along_z.leaves, (Index3{1, 1, 131072 * 16}));
-  EXPECT_EQ(along_z.block_bytes, 64 * kMiB);
-  EXPECT_EQ(along_z.run_voxels, 16 * 1024 * 1024);
+  EXPECT_EQ(along_z.leaves, (Index3{1, 1, 131072 * 8}));
+  EXPECT_EQ(along_z.block_bytes, 32 * kMiB);
+  EXPECT_EQ(along_z.run_voxels, 8 * 1024 * 1024);
   const BlockPlan along_x = checked_plan(at_origin({kBillion, 1, 1}), {}, 128 * kMiB);
   EXPECT_EQ(along_x.leaves, (Index3{32 * 131072, 1, 1}));
   EXPECT_EQ(along_x.run_voxels, 32 * 1024 * 1024);
   const BlockPlan along_y = checked_plan(at_origin({1, kBillion, 1}), {}, 128 * kMiB);
-  EXPECT_EQ(along_y.leaves.y, 131072 * 16);
+  EXPECT_EQ(along_y.leaves.y, 131072 * 8);
   EXPECT_EQ(checked_plan(at_origin({1, 1, kBillion}), {}, 32).leaves, (Index3{1, 1, 1}));
 }
 
@@ -174,7 +178,7 @@ TEST(BlockPlan, BlocksLieOnGlobalNodeEdges) {
 TEST(BlockPlan, WholeChunks) {
   // The openPMD example's chunks; node rows hold whole ones.
   const BlockPlan fine = checked_plan(at_origin({512, 512, 512}), {4, {32, 16, 16}, {}}, 64 * kMiB);
-  EXPECT_EQ(fine.leaves, (Index3{64, 32, 16}));
+  EXPECT_EQ(fine.leaves, (Index3{64, 16, 16}));
   EXPECT_EQ(fine.amplification, 1.0);
   // 100^3: blocks of 200 voxels end with chunks, nodes would not.
   const BlockPlan hundred = checked_plan(at_origin({1000, 1000, 1000}), {4, {100, 100, 100}, {}}, 256 * kMiB);

@@ -18,7 +18,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 template <typename T>
 std::vector<std::byte> bytes_of(const std::vector<T>& values, bool swapped) {
   std::vector<std::byte> bytes(values.size() * sizeof(T));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
+  std::copy_n(reinterpret_cast<const std::byte*>(values.data()), bytes.size(), bytes.data());
   if (swapped) {
     for (std::size_t i = 0; i < bytes.size(); i += sizeof(T)) {
       std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
