@@ -38,13 +38,14 @@ function(weir_library name)
   target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
 endfunction()
 
-# weir_tests(NAME): every .cpp in tests/NAME/ as the program weir_tests_NAME.
+# weir_tests(NAME): every .cpp in tests/NAME/, and what tests share in tests/support/, as the program weir_tests_NAME.
 function(weir_tests name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)
   if(NOT sources)
     return()
   endif()
-  add_executable(weir_tests_${name} ${sources})
+  file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
+  add_executable(weir_tests_${name} ${sources} ${support})
   set(library weir_${name})
   if(name STREQUAL "tools")
     set(library weir_tools)

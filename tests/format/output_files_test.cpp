@@ -11,7 +11,7 @@
 #include <map>
 
 #include "format/error.h"
-#include "tests/format/faulty_file_system.h"
+#include "tests/support/faulty_file_system.h"
 
 namespace weir {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/format/faulty_file_system.h"
+#include "tests/support/faulty_file_system.h"
 
 #include <utility>
 

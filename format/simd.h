@@ -1,0 +1,11 @@
+// Run-time choice of instruction set for a few hot functions. Results are the
+// same on every one: sums use a fixed number of lanes and nothing is fused.
+#pragma once
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define WEIR_SIMD __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+// Sanitizers start too late for the resolvers, and clang 14 clones no functions in namespaces.
+#define WEIR_SIMD
+#endif

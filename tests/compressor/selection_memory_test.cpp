@@ -1,0 +1,99 @@
+// Selection over a row file sixteen times as large as the memory ceiling: an 8 GiB
+// volume's rows would fit in memory and prove nothing.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "compressor/memory_plan.h"
+#include "compressor/process_memory.h"
+#include "compressor/selection.h"
+#include "compressor/tree_plan.h"
+#include "format/file_system.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t kMemory = std::uint64_t{64} << 20U;
+constexpr std::size_t kThreads = 2;
+
+// Rows of a volume whose leaves are worth different amounts, cheap to make.
+void fill_rows(RowStore& store) {
+  std::vector<LeafRow> rows(8192);
+  const std::int64_t total = store.leaves().size();
+  for (std::int64_t first = 0; first < total; first += static_cast<std::int64_t>(rows.size())) {
+    const auto count =
+        static_cast<std::size_t>(std::min<std::int64_t>(static_cast<std::int64_t>(rows.size()), total - first));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto hash = static_cast<std::uint32_t>((static_cast<std::uint64_t>(first) + i) * 2654435761U);
+      LeafRow& row = rows[i];
+      row.finite = 512;
+      row.mean = static_cast<float>(hash % 1000);
+      row.min = row.mean - 1;
+      row.max = row.mean + 1;
+      row.sse = static_cast<double>(hash >> 8U);
+    }
+    store.write(first, std::span(rows).first(count));
+  }
+}
+
+// Runs in a child process, whose peak is its own; returns what it prints on the pipe.
+std::string measure() {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, kThreads);
+  const Box domain{{0, 0, 0}, {2304, 2304, 2176}};
+  const auto files = make_posix_file_system();
+  const MemoryPlan memory = plan_memory(kMemory, resident_bytes(), kThreads, domain);
+  TreeRegions tree(domain);
+  RowStore rows(files->create_unnamed(::testing::TempDir()), tree.leaves, memory.segment_regions);
+  const auto row_bytes = static_cast<std::uint64_t>(tree.leaves.size()) * sizeof(LeafRow);
+  if (row_bytes < 16 * kMemory) return "the row file is too small";
+  fill_rows(rows);
+  Selection selection(GainRule{}, rows, tree);
+  const std::uint64_t asked = selection.bytes().lossless.file_bytes / 8;
+  selection.choose(asked);
+  MaskStore masks(files->create_unnamed(::testing::TempDir()), tree.region_lattice.size());
+  const TreePlan plan = plan_tree(selection, rows, tree, masks);
+  if (plan.layout.file_bytes > asked || asked - plan.layout.file_bytes >= 33856 + 2144)
+    return "the budget is not used up";
+  const std::uint64_t peak = peak_resident_bytes();
+  if (peak >= kMemory) return "peak RSS is " + std::to_string(peak) + " bytes";
+  return "ok";
+}
+
+TEST(SelectionMemory, StaysUnderTheCeilingWithRowsSixteenTimesAsLarge) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers' own memory counts as the process's";
+#else
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  std::fflush(nullptr);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::string answer;
+    try {
+      answer = measure();
+    } catch (const std::exception& error) {
+      answer = error.what();
+    }
+    const ssize_t written = ::write(ends[1], answer.data(), answer.size());
+    ::_exit(written == static_cast<ssize_t>(answer.size()) ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string answer(200, '\0');
+  const ssize_t length = ::read(ends[0], answer.data(), answer.size());
+  answer.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
+  ::close(ends[0]);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(answer, "ok");
+#endif
+}
+
+}  // namespace
+}  // namespace weir
