@@ -58,6 +58,17 @@ function(weir_tests name)
   gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120)
 endfunction()
 
+# weir_benchmarks(): every bench/NAME.cpp as the Google Benchmark program NAME in the build folder's bench/.
+function(weir_benchmarks)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.cpp)
+  foreach(source IN LISTS sources)
+    get_filename_component(name ${source} NAME_WE)
+    add_executable(${name} ${source})
+    target_link_libraries(${name} PRIVATE weir_compressor weir_gpu benchmark::benchmark)
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
+  endforeach()
+endfunction()
+
 # weir_fuzzers(): every tests/fuzz/NAME.cpp as the libFuzzer program NAME in the build folder's fuzz/.
 function(weir_fuzzers)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

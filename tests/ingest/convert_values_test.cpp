@@ -151,7 +151,12 @@ TEST(ConvertValues, CountsInEveryPlaceOfEveryLength) {
   }
 }
 
-TEST(ConvertValues, NothingFromNothing) { expect_lossless(convert(std::vector<double>{}, ScalarType::float64).loss); }
+TEST(ConvertValues, NothingFromNothing) {
+  for (const bool big : {false, true}) {
+    expect_lossless(convert_values({}, ScalarType::float32, big, {}));
+    expect_lossless(convert_values({}, ScalarType::float64, big, {}));
+  }
+}
 
 }  // namespace
 }  // namespace weir
