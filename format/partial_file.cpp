@@ -1,0 +1,51 @@
+#include "format/partial_file.h"
+
+#include <cerrno>
+
+#include "format/error.h"
+#include "format/output_files.h"
+#include "format/text.h"
+
+namespace weir {
+
+PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
+    : files_(files), path_(path), overwrite_(overwrite) {
+  const std::string directory = directory_of(path);
+  if (!files_.exists(directory)) {
+    throw Error(ErrorKind::io,
+                cat(path, ": the directory ", directory, " does not exist; make it or choose another output"));
+  }
+  if (!overwrite && files_.exists(path)) {
+    throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
+  }
+  file_ = files_.create(path + ".partial");
+}
+
+PartialFile::~PartialFile() {
+  if (committed_) return;
+  try {
+    files_.remove(path_ + ".partial");
+  } catch (const Error&) {
+    // The failure that led here is the one to report.
+  }
+}
+
+void PartialFile::reserve(std::uint64_t bytes) {
+  if (file_->preallocate(bytes)) return;
+  const std::uint64_t free = files_.free_bytes(directory_of(path_));
+  if (free < bytes) throw io_error(path_, cat("reserve ", bytes, " bytes where ", free, " are free"), ENOSPC);
+}
+
+void PartialFile::commit() {
+  const std::string partial = path_ + ".partial";
+  file_->sync();  // 1
+  if (overwrite_) {
+    files_.rename(partial, path_);  // 2
+  } else {
+    files_.rename_new(partial, path_);
+  }
+  committed_ = true;
+  files_.sync_directory(directory_of(path_));  // 3
+}
+
+}  // namespace weir
