@@ -76,39 +76,44 @@ void InputFile::look(std::uint64_t first, std::span<unsigned char> resident) con
   std::fill(resident.begin(), resident.end(), std::uint8_t{1});  // unknown: treat as someone else's
 }
 
-bool InputFile::prefers_direct(std::uint64_t offset, std::uint64_t count) const {
-  if (!direct_works_ || mode_ == DirectIo::off) return false;
-  if (mode_ == DirectIo::on || mapping_ == nullptr) return true;
+bool InputFile::is_cached(std::uint64_t offset, std::uint64_t count) const {
   std::array<unsigned char, kPagesPerLook> resident;
   const std::uint64_t last = (offset + count - 1) / page_bytes();
   for (std::uint64_t page = offset / page_bytes(); page <= last; page += kPagesPerLook) {
     const std::span pages(resident.data(), std::min<std::uint64_t>(kPagesPerLook, last - page + 1));
     look(page, pages);
-    if (!std::all_of(pages.begin(), pages.end(), [](unsigned char flags) { return (flags & 1U) != 0; })) return true;
+    if (!std::all_of(pages.begin(), pages.end(), [](unsigned char flags) { return (flags & 1U) != 0; })) return false;
   }
-  return false;
+  return true;
 }
 
-void InputFile::read_buffered(std::uint64_t offset, std::span<std::byte> into) {
+ReadPath InputFile::path_for(std::uint64_t offset, std::uint64_t count) const {
+  if (mode_ != DirectIo::on && mapping_ != nullptr && is_cached(offset, count)) return ReadPath::cache;
+  return direct_works_ ? ReadPath::direct : ReadPath::through;
+}
+
+void InputFile::read_buffered(std::uint64_t offset, std::span<std::byte> into, ReadPath path) {
+  if (path == ReadPath::cache || mapping_ == nullptr) return fill(offset, into);
   const std::uint64_t chunk = kPagesPerLook * page_bytes();
   while (!into.empty()) {
     const std::uint64_t next = std::min(round_down(offset, chunk) + chunk, offset + into.size());
-    read_chunk(offset, into.first(next - offset));
+    read_through(offset, into.first(next - offset));
     into = into.subspan(next - offset);
     offset = next;
   }
 }
 
-void InputFile::read_chunk(std::uint64_t offset, std::span<std::byte> into) {
+void InputFile::fill(std::uint64_t offset, std::span<std::byte> into) {
+  const std::size_t got = read_some(buffered_.get(), offset, into);
+  if (got < into.size()) throw_short(offset, into.size(), offset + got);
+}
+
+void InputFile::read_through(std::uint64_t offset, std::span<std::byte> into) {
   std::array<unsigned char, kPagesPerLook> resident;
   const std::uint64_t first = offset / page_bytes();
   const std::uint64_t pages = (offset + into.size() - 1) / page_bytes() - first + 1;
-  if (mapping_ != nullptr) look(first, {resident.data(), pages});
-
-  const std::size_t got = read_some(buffered_.get(), offset, into);
-  if (got < into.size()) throw_short(offset, into.size(), offset + got);
-  if (mapping_ == nullptr) return;
-
+  look(first, {resident.data(), pages});
+  fill(offset, into);
   for (std::uint64_t page = 0; page < pages;) {
     std::uint64_t end = page;
     while (end < pages && (resident[end] & 1U) == 0) ++end;
@@ -134,7 +139,7 @@ std::span<const std::byte> InputFile::read_direct(std::uint64_t offset, std::uin
     if (mode_ == DirectIo::on) throw_refused();
     direct_works_ = false;
   }
-  read_buffered(offset, staging.first(count));
+  read_buffered(offset, staging.first(count), ReadPath::through);
   return staging.first(count);
 }
 

@@ -19,6 +19,13 @@ enum class DirectIo {
   off         ///< always through the page cache
 };
 
+/// Where a read gets its bytes from.
+enum class ReadPath {
+  cache,   ///< all of them are in the page cache
+  direct,  ///< past the page cache: read_direct
+  through  ///< through the page cache and out of it again
+};
+
 /// Alignment of offset, size and memory of direct reads: enough for every common device.
 inline constexpr std::uint64_t kDirectAlignment = 4096;
 
@@ -38,13 +45,14 @@ class InputFile {
   /// Bytes the file system was asked for so far, alignment included.
   std::uint64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
 
-  /// Whether bytes [offset, offset + count) should be read by read_direct. Looks only, reads nothing.
-  bool prefers_direct(std::uint64_t offset, std::uint64_t count) const;
+  /// How bytes [offset, offset + count) should be read. Looks only, reads nothing.
+  ReadPath path_for(std::uint64_t offset, std::uint64_t count) const;
 
-  /// Fills `into` from `offset` through the page cache; pages this read brought in are dropped
-  /// again, pages that were there stay. Throws Error(input) where the file ends early (it was cut
-  /// since it was opened), Error(io) where the device fails.
-  void read_buffered(std::uint64_t offset, std::span<std::byte> into);
+  /// Fills `into` from `offset` through the page cache. On the path `through`, pages this read brought
+  /// in are dropped again and pages that were there stay; on `cache` none is looked at. Throws
+  /// Error(input) where the file ends early (it was cut since it was opened), Error(io) where the
+  /// device fails.
+  void read_buffered(std::uint64_t offset, std::span<std::byte> into, ReadPath path);
 
   /// Reads [offset, offset + count) past the page cache into `staging`, which is aligned to
   /// kDirectAlignment and holds at least count + 2 * kDirectAlignment bytes, and returns where
@@ -58,7 +66,9 @@ class InputFile {
 
   /// mincore's answer for the pages from `first` on; what cannot be known counts as resident.
   void look(std::uint64_t first, std::span<unsigned char> resident) const;
-  void read_chunk(std::uint64_t offset, std::span<std::byte> into);
+  bool is_cached(std::uint64_t offset, std::uint64_t count) const;
+  void read_through(std::uint64_t offset, std::span<std::byte> into);
+  void fill(std::uint64_t offset, std::span<std::byte> into);
   /// Reads until `into` is full or the file ends and returns the bytes read. `refused` is given for
   /// direct reads only and set where the file system answers EINVAL.
   std::size_t read_some(int descriptor, std::uint64_t offset, std::span<std::byte> into, bool* refused = nullptr);

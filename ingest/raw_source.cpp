@@ -132,18 +132,18 @@ class RawSource final : public VolumeSource {
   ConversionLoss read_piece(const BoxPiece& piece, std::span<float> values) {
     const auto run = static_cast<std::size_t>(piece.run_voxels);
     values = values.subspan(static_cast<std::size_t>(piece.first_value), run * static_cast<std::size_t>(piece.runs));
-    const bool direct = file_.prefers_direct(piece.offset, piece.bytes);
-    if (!direct && piece.runs == 1 && is_native_float32(shape_.type, shape_.big_endian)) {
-      file_.read_buffered(piece.offset, std::as_writable_bytes(values));
+    const ReadPath path = file_.path_for(piece.offset, piece.bytes);
+    if (path != ReadPath::direct && piece.runs == 1 && is_native_float32(shape_.type, shape_.big_endian)) {
+      file_.read_buffered(piece.offset, std::as_writable_bytes(values), path);
       return {};
     }
 
     const StagingPool::Lease staging(staging_);
     std::span<const std::byte> bytes;
-    if (direct) {
+    if (path == ReadPath::direct) {
       bytes = file_.read_direct(piece.offset, piece.bytes, staging.bytes());
     } else {
-      file_.read_buffered(piece.offset, staging.bytes().first(piece.bytes));
+      file_.read_buffered(piece.offset, staging.bytes().first(piece.bytes), path);
       bytes = staging.bytes().first(piece.bytes);
     }
     ConversionLoss loss;

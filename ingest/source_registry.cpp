@@ -23,7 +23,7 @@ std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceO
   std::array<std::byte, kMagicBytes> bytes{};
   InputFile file(path, DirectIo::off);
   const auto head = std::span(bytes).first(std::min<std::uint64_t>(kMagicBytes, file.size()));
-  file.read_buffered(0, head);
+  file.read_buffered(0, head, ReadPath::through);
 
   const auto format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const SourceFormat& f) { return f.recognises(path, head); });

@@ -91,7 +91,9 @@ TEST_P(InputFileModes, ReadsAnyRange) {
       ASSERT_EQ(direct.size(), count);
       EXPECT_EQ(std::memcmp(direct.data(), bytes.data() + offset, count), 0) << offset << ' ' << count;
       std::vector<std::byte> buffered(count);
-      file.read_buffered(offset, buffered);
+      file.read_buffered(offset, buffered, ReadPath::through);
+      EXPECT_EQ(std::memcmp(buffered.data(), bytes.data() + offset, count), 0) << offset << ' ' << count;
+      file.read_buffered(offset, buffered, ReadPath::cache);
       EXPECT_EQ(std::memcmp(buffered.data(), bytes.data() + offset, count), 0) << offset << ' ' << count;
     }
   }
@@ -108,7 +110,7 @@ TEST_P(InputFileModes, AFileCutWhileOpenIsNamedWithItsEnd) {
                               "12288 bytes when it was opened: it was cut while being read";
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { file.read_direct(100, 8000, staging.bytes()); }), message);
   std::vector<std::byte> into(8000);
-  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { file.read_buffered(100, into); }), message);
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { file.read_buffered(100, into, ReadPath::through); }), message);
   EXPECT_EQ(file.read_direct(100, 4006, staging.bytes()).size(), 4006U);  // what is left is read
 }
 
@@ -137,17 +139,18 @@ class InputFileCache : public ::testing::Test {
 
 TEST_F(InputFileCache, AutomaticLooksWhatIsCached) {
   const InputFile file(path_, DirectIo::automatic);
-  if (!file.prefers_direct(0, kBytes)) GTEST_SKIP() << "skipped: no direct I/O at " << path_;
+  if (file.path_for(0, kBytes) != ReadPath::direct) GTEST_SKIP() << "skipped: no direct I/O at " << path_;
   touch(100, 50);
   ASSERT_EQ(count_cached(path_, kBytes), 50U);
-  EXPECT_FALSE(file.prefers_direct(100 * kPage, 50 * kPage));
-  EXPECT_FALSE(file.prefers_direct(120 * kPage + 5, 100));
-  EXPECT_TRUE(file.prefers_direct(100 * kPage - 1, 10));
-  EXPECT_TRUE(file.prefers_direct(149 * kPage, kPage + 1));
-  EXPECT_TRUE(file.prefers_direct(0, kBytes));
+  EXPECT_EQ(file.path_for(100 * kPage, 50 * kPage), ReadPath::cache);
+  EXPECT_EQ(file.path_for(120 * kPage + 5, 100), ReadPath::cache);
+  EXPECT_EQ(file.path_for(100 * kPage - 1, 10), ReadPath::direct);
+  EXPECT_EQ(file.path_for(149 * kPage, kPage + 1), ReadPath::direct);
+  EXPECT_EQ(file.path_for(0, kBytes), ReadPath::direct);
   EXPECT_EQ(count_cached(path_, kBytes), 50U);  // looking brought nothing in
-  EXPECT_TRUE(InputFile(path_, DirectIo::on).prefers_direct(100 * kPage, kPage));
-  EXPECT_FALSE(InputFile(path_, DirectIo::off).prefers_direct(0, kBytes));
+  EXPECT_EQ(InputFile(path_, DirectIo::on).path_for(100 * kPage, kPage), ReadPath::direct);
+  EXPECT_EQ(InputFile(path_, DirectIo::off).path_for(0, kBytes), ReadPath::through);
+  EXPECT_EQ(InputFile(path_, DirectIo::off).path_for(100 * kPage, kPage), ReadPath::cache);
 }
 
 TEST_F(InputFileCache, BufferedReadsLeaveTheCacheAsItWas) {
@@ -157,12 +160,12 @@ TEST_F(InputFileCache, BufferedReadsLeaveTheCacheAsItWas) {
   touch(699, 2);
   const auto before = cached_pages(path_, kBytes);
   std::vector<std::byte> bytes(kBytes);
-  file.read_buffered(0, bytes);
+  file.read_buffered(0, bytes, ReadPath::through);
   EXPECT_EQ(bytes, pattern(kBytes));
   EXPECT_EQ(cached_pages(path_, kBytes), before);
   // In small unaligned pieces, too.
   for (std::size_t at = 0; at + 5000 < kBytes; at += 5000) {
-    file.read_buffered(at, std::span(bytes).first(5000));
+    file.read_buffered(at, std::span(bytes).first(5000), ReadPath::through);
   }
   EXPECT_EQ(cached_pages(path_, kBytes), before);
 }
@@ -185,7 +188,7 @@ TEST(InputFileRefused, FileSystemsWithoutDirectIo) {
   EXPECT_EQ(open_refusal(path, ErrorKind::usage, DirectIo::on),
             path + ": its file system refuses direct I/O; use --direct-io auto");
   InputFile file(path, DirectIo::automatic);
-  EXPECT_FALSE(file.prefers_direct(0, file.size()));
+  EXPECT_NE(file.path_for(0, file.size()), ReadPath::direct);
   std::vector<std::byte> expected(file.size());
   ASSERT_EQ(::pread(probe.get(), expected.data(), expected.size(), 0), static_cast<ssize_t>(expected.size()));
   const PageBuffer staging(file.size() + 2 * kDirectAlignment);
