@@ -1,0 +1,108 @@
+#include "tests/compressor/memory_file_system.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir::test {
+namespace {
+
+class MemoryFile final : public File {
+ public:
+  MemoryFile(std::shared_ptr<MemoryFileSystem::Bytes> bytes, std::string path)
+      : bytes_(std::move(bytes)), path_(std::move(path)) {}
+
+  const std::string& path() const override { return path_; }
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    const std::scoped_lock lock(mutex_);
+    if (bytes.empty()) return;
+    if (bytes_->size() < offset + bytes.size()) bytes_->resize(offset + bytes.size());
+    std::memcpy(bytes_->data() + offset, bytes.data(), bytes.size());
+  }
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
+    const std::scoped_lock lock(mutex_);
+    if (bytes.empty()) return;
+    if (bytes_->size() < offset + bytes.size()) throw Error(ErrorKind::io, cat(path_, ": too short"));
+    std::memcpy(bytes.data(), bytes_->data() + offset, bytes.size());
+  }
+  bool preallocate(std::uint64_t bytes) override {
+    const std::scoped_lock lock(mutex_);
+    if (bytes_->size() < bytes) bytes_->resize(bytes);
+    return true;
+  }
+  void sync() override {}
+  std::uint64_t size() override {
+    const std::scoped_lock lock(mutex_);
+    return bytes_->size();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<MemoryFileSystem::Bytes> bytes_;
+  std::string path_;
+};
+
+}  // namespace
+
+MemoryFileSystem::Bytes MemoryFileSystem::content(const std::string& path) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = files_.find(path);
+  return found == files_.end() ? Bytes{} : *found->second;
+}
+
+std::vector<std::string> MemoryFileSystem::names() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [name, bytes] : files_) names.push_back(name);
+  return names;
+}
+
+std::unique_ptr<File> MemoryFileSystem::create(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  auto bytes = std::make_shared<Bytes>();
+  files_[path] = bytes;
+  return std::make_unique<MemoryFile>(bytes, path);
+}
+
+std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& directory) {
+  return std::make_unique<MemoryFile>(std::make_shared<Bytes>(), directory + " (temporary file)");
+}
+
+void MemoryFileSystem::rename(const std::string& from, const std::string& to) {
+  link(from, to);
+  remove(from);
+}
+
+void MemoryFileSystem::rename_new(const std::string& from, const std::string& to) {
+  if (exists(to)) throw Error(ErrorKind::io, cat(to, ": exists"));
+  rename(from, to);
+}
+
+void MemoryFileSystem::link(const std::string& from, const std::string& to) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = files_.find(from);
+  if (found == files_.end()) throw Error(ErrorKind::io, cat(from, ": missing"));
+  files_[to] = found->second;
+}
+
+void MemoryFileSystem::remove(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  files_.erase(path);
+}
+
+void MemoryFileSystem::make_directory(const std::string&) {}
+void MemoryFileSystem::remove_directory(const std::string&) {}
+void MemoryFileSystem::sync_directory(const std::string&) {}
+
+bool MemoryFileSystem::exists(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  return path == "." || files_.count(path) > 0;
+}
+
+bool MemoryFileSystem::is_memory(const std::string&) { return false; }
+std::uint64_t MemoryFileSystem::free_bytes(const std::string&) { return std::uint64_t{1} << 40U; }
+
+}  // namespace weir::test

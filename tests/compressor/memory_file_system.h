@@ -1,0 +1,43 @@
+// A file system in memory, so that a test can run hundreds of conversions
+// without a disk.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "format/file_system.h"
+
+namespace weir::test {
+
+/// Thread-safe. The only directory that exists is "."; others can be made, and are not kept.
+class MemoryFileSystem final : public FileSystem {
+ public:
+  using Bytes = std::vector<std::byte>;
+
+  /// Content of a file; empty where there is none.
+  Bytes content(const std::string& path) const;
+  std::vector<std::string> names() const;
+
+  std::unique_ptr<File> create(const std::string& path) override;
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override;
+  void rename(const std::string& from, const std::string& to) override;
+  void rename_new(const std::string& from, const std::string& to) override;
+  void link(const std::string& from, const std::string& to) override;
+  void remove(const std::string& path) override;
+  void make_directory(const std::string& path) override;
+  void remove_directory(const std::string& path) override;
+  void sync_directory(const std::string& path) override;
+  bool exists(const std::string& path) override;
+  bool is_memory(const std::string& directory) override;
+  std::uint64_t free_bytes(const std::string& directory) override;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Bytes>> files_;
+};
+
+}  // namespace weir::test
