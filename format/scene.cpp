@@ -33,6 +33,13 @@ void read_camera(TomlReader reader, SceneCamera& camera) {
   reader.read("elevation", camera.elevation, {-90, 90});
   reader.read("zoom", camera.zoom, {0.01, 100});
   reader.read("fov", camera.fov, {0.1, 170});
+  std::string framing;
+  if (reader.read("frame", framing)) {
+    if (framing != "content" && framing != "volume") {
+      reader.fail(*reader.find("frame"), cat("frame is \"", framing, "\", it must be content or volume"));
+    }
+    camera.framing = framing == "content" ? Framing::content : Framing::volume;
+  }
   reader.finish();
 }
 

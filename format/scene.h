@@ -19,16 +19,21 @@ enum class RenderMode { path, dvr, iso, mip };
 std::string_view render_mode_name(RenderMode mode);
 std::optional<RenderMode> parse_render_mode(std::string_view name);
 
+/// What an orbiting camera frames: the part of the volume that the transfer function or the iso value
+/// shows, or all of it, which is the same for every step of a series and every rate.
+enum class Framing { content, volume };
+
 /// With a position the camera stands there (world space) and looks at `look_at`; without, it orbits the
-/// centre of the volume at the distance that frames it.
+/// centre of what it frames.
 struct SceneCamera {
   std::optional<Double3> position;
-  std::optional<Double3> look_at;  ///< world space; default: the centre of the volume
+  std::optional<Double3> look_at;  ///< world space; default: the centre of what it frames
   Double3 up{0, 0, 1};
   double azimuth = 35;    ///< degrees around `up`
   double elevation = 20;  ///< degrees above the horizon, in [-90, 90]
-  double zoom = 1;        ///< 1 frames the volume; 2 shows it twice as large
-  double fov = 30;        ///< vertical, degrees, in (0, 180)
+  double zoom = 1;        ///< 1 fills the picture; 2 shows all twice as large
+  Framing framing = Framing::content;
+  double fov = 30;  ///< vertical, degrees, in (0, 180)
 };
 
 /// Opacity at a position of the value range, both in [0, 1].
@@ -49,7 +54,7 @@ struct SceneVolume {
   std::vector<OpacityPoint> opacity;           ///< by position; empty: rises with the distance from the background
   std::vector<ColorPoint> color;               ///< by position; replaces the colormap
   std::optional<double> density;               ///< optical depth of the longest edge at opacity 1
-  double albedo = 0.95;                        ///< share of light scattered, times the colour
+  double albedo = 0.98;                        ///< share of light scattered, times the colour
   double anisotropy = 0;                       ///< Henyey-Greenstein mean cosine, in (-1, 1)
   double emission = 0;                         ///< source radiance, times the colour
   double shading = 0.7;                        ///< dvr: 0 flat to 1 lit like a surface
@@ -68,8 +73,8 @@ struct SceneLighting {
   std::optional<Double3> zenith;
   std::optional<Double3> horizon;
   std::optional<Double3> ground;
-  std::optional<Double3> background;  ///< default: the mode's
-  double exposure = 1;
+  std::optional<Double3> background;              ///< default: the mode's
+  std::optional<double> exposure;                 ///< factor on the radiance; default: the mode's
   std::optional<std::vector<SceneLight>> lights;  ///< at most 4; default: one key light
 };
 

@@ -26,9 +26,9 @@ constexpr std::array kCoolWarm{Stop{0.00F, {52, 84, 190}}, Stop{0.25F, {126, 166
 // Dark violet to yellow over blue-green, lightness rising evenly.
 constexpr std::array kDusk{Stop{0.00F, {64, 8, 86}}, Stop{0.25F, {60, 80, 140}}, Stop{0.50F, {34, 142, 140}},
                            Stop{0.75F, {96, 202, 96}}, Stop{1.00F, {252, 230, 40}}};
-// Soft tissue red-brown, then bone.
-constexpr std::array kCt{Stop{0.00F, {60, 20, 16}}, Stop{0.25F, {170, 80, 56}}, Stop{0.50F, {216, 150, 112}},
-                         Stop{0.70F, {238, 214, 180}}, Stop{1.00F, {255, 252, 244}}};
+// Soft tissue, then bone. Light, because a path tracer takes it for the share of light scattered.
+constexpr std::array kCt{Stop{0.00F, {176, 92, 76}}, Stop{0.25F, {222, 154, 124}}, Stop{0.50F, {238, 204, 172}},
+                         Stop{0.75F, {248, 232, 210}}, Stop{1.00F, {255, 252, 246}}};
 // Water: deep blue to foam.
 constexpr std::array kWater{Stop{0.00F, {8, 24, 58}}, Stop{0.35F, {20, 84, 140}}, Stop{0.70F, {84, 176, 204}},
                             Stop{1.00F, {240, 252, 252}}};

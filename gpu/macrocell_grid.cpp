@@ -62,6 +62,20 @@ std::vector<float> MacrocellGrid::majorants(const TransferFunction& transfer) co
   return result;
 }
 
+std::vector<Box> MacrocellGrid::content(const std::function<bool(std::size_t)>& shows) const {
+  std::vector<Box> boxes;
+  for (std::int64_t row = 0; row < lattice_.size(); row += lattice_.count.x) {
+    std::int64_t first = row;
+    std::int64_t last = row + lattice_.count.x - 1;
+    while (first <= last && !shows(static_cast<std::size_t>(first))) ++first;
+    while (last > first && !shows(static_cast<std::size_t>(last))) --last;
+    if (first > last) continue;
+    boxes.push_back({lattice_.voxels(lattice_.position(first)).lo, lattice_.voxels(lattice_.position(last)).hi});
+  }
+  if (boxes.empty()) boxes.push_back(lattice_.domain);
+  return boxes;
+}
+
 void MacrocellGrid::include(const Index3& cell, float low, float high) {
   MinMax& bounds = cells_[static_cast<std::size_t>(lattice_.linear(cell - lattice_.first))];
   // Bounds that are not a number, in the file or here, stay so: unknown.

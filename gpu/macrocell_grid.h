@@ -3,6 +3,7 @@
 // transfer function. A cell's bounds hold for every filtered lookup in it.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "format/nvdb_grid.h"
@@ -21,6 +22,9 @@ class MacrocellGrid {
 
   CellLattice lattice() const;
   const std::vector<MinMax>& bounds() const { return cells_; }
+  /// Boxes (voxels, inside the domain) that hold all cells `shows` is true for, called with a position in
+  /// `bounds`: one from the first to the last of each row in x. The domain where there is no such cell.
+  std::vector<Box> content(const std::function<bool(std::size_t)>& shows) const;
   /// Largest opacity of each cell, in [0, 1].
   std::vector<float> majorants(const TransferFunction& transfer) const;
 

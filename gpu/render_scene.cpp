@@ -15,20 +15,21 @@ struct ModeDefaults {
   std::string_view colormap;
   double density;  // optical depth of the longest edge at opacity 1
   Double3 background;
+  double exposure;
 };
 
 ModeDefaults defaults_of(RenderMode mode) {
   switch (mode) {
     case RenderMode::path:
-      return {"ct", 400, {0.80, 0.84, 0.90}};
+      return {"ct", 250, {0.03, 0.035, 0.045}, 1.4};
     case RenderMode::dvr:
-      return {"dusk", 200, {0.03, 0.035, 0.045}};
+      return {"dusk", 200, {0.03, 0.035, 0.045}, 1};
     case RenderMode::iso:
-      return {"ct", 1, {0.80, 0.84, 0.90}};
+      return {"ct", 1, {0.03, 0.035, 0.045}, 1};
     case RenderMode::mip:
       break;
   }
-  return {"gray", 1, {0, 0, 0}};
+  return {"gray", 1, {0, 0, 0}, 1};
 }
 
 Float3 narrow(const Double3& v) {
@@ -51,17 +52,26 @@ Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults) {
   Lighting light;
   const SceneLighting& s = scene.lighting;
   light.up = normalised(narrow(scene.camera.up), {0, 0, 1});
-  light.zenith = narrow(s.zenith.value_or(Double3{0.75, 0.85, 1.0}));
-  light.horizon = narrow(s.horizon.value_or(Double3{0.9, 0.9, 0.9}));
-  light.ground = narrow(s.ground.value_or(Double3{0.35, 0.33, 0.3}));
+  light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
+  light.horizon = narrow(s.horizon.value_or(Double3{0.6, 0.6, 0.6}));
+  light.ground = narrow(s.ground.value_or(Double3{0.22, 0.2, 0.18}));
   light.background = narrow(s.background.value_or(defaults.background));
   light.sky_behind = false;
-  const std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {1.6, 1.5, 1.4}}};
+  const std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
   for (const SceneLight& l : s.lights.value_or(key)) {
     if (light.light_count == kMaxLights) break;
     light.lights[light.light_count++] = {normalised(narrow(l.direction), {0, 0, 1}), narrow(l.irradiance)};
   }
   return light;
+}
+
+// Between the background and the value farthest from it: a surface of the background's noise shows nothing.
+float default_iso(const TransferFunction& transfer, float background) {
+  const double low = transfer.low();
+  const double high = transfer.high();
+  const double from = is_finite(background) ? std::clamp<double>(background, low, high) : low;
+  const double farthest = high - from >= from - low ? high : low;
+  return static_cast<float>(from + 0.35 * (farthest - from));
 }
 
 }  // namespace
@@ -91,8 +101,10 @@ RenderScene::RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderO
   medium.emission = static_cast<float>(scene.volume.emission);
   medium.g = static_cast<float>(scene.volume.anisotropy);
 
+  task_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso) : default_iso(transfer_, grid.background());
+  task_.iso_color = rgb(transfer_.at(task_.iso));
   task_.lighting = make_lighting(scene, defaults);
-  task_.camera = make_camera(scene.camera, frame, static_cast<double>(options.width) / options.height);
+  task_.camera = make_camera(scene.camera, frame, framed(scene), static_cast<double>(options.width) / options.height);
   task_.mode = scene.mode;
   task_.width = options.width;
   task_.height = options.height;
@@ -101,11 +113,17 @@ RenderScene::RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderO
   task_.step = static_cast<float>(std::max(0.5, 2 * longest / (1 << 22)));
   task_.shading = static_cast<float>(scene.volume.shading);
   task_.max_bounces = scene.volume.max_bounces;
-  const float low = transfer_.low();
-  const float high = transfer_.high();
-  task_.iso = static_cast<float>(scene.volume.iso.value_or(low + 0.3 * (static_cast<double>(high) - low)));
-  task_.iso_color = rgb(transfer_.at(task_.iso));
-  tone_ = {.exposure = static_cast<float>(scene.lighting.exposure), .soft_clip = scene.mode == RenderMode::path};
+  tone_ = {.exposure = static_cast<float>(scene.lighting.exposure.value_or(defaults.exposure)),
+           .soft_clip = scene.mode == RenderMode::path};
+}
+
+// What the camera frames: an opacity below a hundredth is a haze that nobody looks at.
+std::vector<Box> RenderScene::framed(const Scene& scene) const {
+  if (scene.camera.framing == Framing::volume) return {table_.domain()};
+  return cells_.content([&](std::size_t i) {
+    const MinMax& bounds = cells_.bounds()[i];
+    return scene.mode == RenderMode::iso ? bounds.min <= task_.iso && task_.iso <= bounds.max : majorants_[i] > 0.01F;
+  });
 }
 
 }  // namespace weir

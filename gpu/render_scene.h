@@ -40,6 +40,8 @@ class RenderScene {
   ToneMapping tone() const { return tone_; }
 
  private:
+  std::vector<Box> framed(const Scene& scene) const;
+
   LeafTable table_;
   MacrocellGrid cells_;
   TransferFunction transfer_;

@@ -38,17 +38,26 @@ Double3 across(const Double3& up) {
   return unit(axis - up * dot(axis, up));
 }
 
-// Distance from the centre of a box of edges `size` at which it fits the picture.
-double framing_distance(const Double3& size, const Double3& forward, const Double3& right, const Double3& down,
-                        double tan_x, double tan_y) {
+// Distance from `target` at which all boxes fit the picture.
+double framing_distance(const GridFrame& frame, std::span<const Box> boxes, const Double3& target,
+                        const Double3& forward, const Double3& right, const Double3& down, double tan_x, double tan_y) {
   double distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Double3 c{size[0] * ((corner & 1) != 0 ? 0.5 : -0.5), size[1] * ((corner & 2) != 0 ? 0.5 : -0.5),
-                    size[2] * ((corner & 4) != 0 ? 0.5 : -0.5)};
-    const double reach = std::max(std::abs(dot(c, right)) / tan_x, std::abs(dot(c, down)) / tan_y);
-    distance = std::max(distance, reach / kMargin - dot(c, forward));
+  for (const Box& box : boxes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Index3 at{(corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                      (corner & 4) != 0 ? box.hi.z : box.lo.z};
+      const Double3 c = frame.physical(as_double(at)) - target;
+      const double reach = std::max(std::abs(dot(c, right)) / tan_x, std::abs(dot(c, down)) / tan_y);
+      distance = std::max(distance, reach / kMargin - dot(c, forward));
+    }
   }
   return distance;
+}
+
+Double3 centre(const GridFrame& frame, std::span<const Box> boxes) {
+  Box all = boxes.front();
+  for (const Box& box : boxes) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
+  return (frame.physical(as_double(all.lo)) + frame.physical(as_double(all.hi))) * 0.5;
 }
 
 }  // namespace
@@ -58,35 +67,32 @@ Double3 GridFrame::stretch() const {
   return voxel_size * (1 / shortest);
 }
 
-Double3 GridFrame::size() const {
-  const Double3 e = as_double(domain.extent());
+Double3 GridFrame::physical(const Double3& index) const {
+  const Double3 local = index - as_double(domain.lo);
   const Double3 s = stretch();
-  return {e[0] * s[0], e[1] * s[1], e[2] * s[2]};
+  return {local[0] * s[0], local[1] * s[1], local[2] * s[2]};
 }
+
+Double3 GridFrame::size() const { return physical(as_double(domain.hi)); }
 
 GridFrame frame_of(const NvdbGrid& grid) { return {grid.index_bbox(), grid.voxel_size(), grid.world_origin()}; }
 
-Camera make_camera(const SceneCamera& scene, const GridFrame& frame, double aspect) {
-  const Double3 stretch = frame.stretch();
-  const Double3 size = frame.size();
-  const auto physical = [&](const Double3& world) {
-    const Double3 lo = as_double(frame.domain.lo);
-    Double3 p{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      p[a] = ((world[a] - frame.origin[a]) / frame.voxel_size[a] - lo[a]) * stretch[a];
-    }
-    return p;
+Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect) {
+  const auto from_world = [&](const Double3& world) {
+    Double3 index{};
+    for (std::size_t a = 0; a < 3; ++a) index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a];
+    return frame.physical(index);
   };
   const double tan_y = std::tan(scene.fov * std::numbers::pi / 360);
   const double tan_x = tan_y * aspect;
   const Double3 up = unit(scene.up);
-  const Double3 target = scene.look_at ? physical(*scene.look_at) : size * 0.5;
+  const Double3 target = scene.look_at ? from_world(*scene.look_at) : centre(frame, content);
 
   Double3 position;
   Double3 forward;
   Double3 right;
   if (scene.position) {
-    position = physical(*scene.position);
+    position = from_world(*scene.position);
     const Double3 view = target - position;
     if (!(length(view) > 0)) {
       throw Error(ErrorKind::usage, cat("the camera stands at the point it looks at, (", (*scene.position)[0], ", ",
@@ -103,11 +109,12 @@ Camera make_camera(const SceneCamera& scene, const GridFrame& frame, double aspe
     const Double3 horizontal = e1 * std::cos(azimuth) + e2 * std::sin(azimuth);
     forward = (horizontal * std::cos(elevation) + up * std::sin(elevation)) * -1.0;
     right = e2 * std::cos(azimuth) - e1 * std::sin(azimuth);
-    const double distance = framing_distance(size, forward, right, cross(forward, right), tan_x, tan_y);
+    const double distance =
+        framing_distance(frame, content, target, forward, right, cross(forward, right), tan_x, tan_y);
     position = target - forward * distance;
   }
   const Double3 down = cross(forward, right);
-  for (std::size_t a = 0; a < 3; ++a) position[a] /= stretch[a];
+  for (std::size_t a = 0; a < 3; ++a) position[a] /= frame.stretch()[a];
   return {narrow(position), narrow(forward), narrow(right * (tan_x / scene.zoom)), narrow(down * (tan_y / scene.zoom))};
 }
 

@@ -2,7 +2,7 @@
 // index space with its voxels' proportions: lengths in shortest voxel edges.
 #pragma once
 
-#include <array>
+#include <span>
 
 #include "format/nvdb_grid.h"
 #include "format/scene.h"
@@ -18,14 +18,16 @@ struct GridFrame {
 
   /// Edges of a voxel in units of the shortest.
   Double3 stretch() const;
+  /// A point of index space in physical space, whose origin is the domain's lowest corner.
+  Double3 physical(const Double3& index) const;
   /// Edges of the domain in physical space.
   Double3 size() const;
 };
 
 GridFrame frame_of(const NvdbGrid& grid);
 
-/// `aspect` is width / height. An orbiting camera stands where the box of the domain fills the picture
-/// but for a small margin. Throws Error(usage) where position and look_at coincide.
-Camera make_camera(const SceneCamera& scene, const GridFrame& frame, double aspect);
+/// `aspect` is width / height. An orbiting camera stands where the boxes `content` (voxels, not
+/// empty) fill the picture but for a small margin. Throws Error(usage) where position and look_at coincide.
+Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect);
 
 }  // namespace weir

@@ -199,7 +199,7 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"trilinear", "stochastic", "nearest"}))
       ->capture_default_str();
   command->add_option("--colormap", arguments->colormap, "by name; a wrong one lists them");
-  command->add_option("--iso", arguments->iso, "value of the surface; default: 30 % of the value range");
+  command->add_option("--iso", arguments->iso, "value of the surface; default: 35 % of the way from the background");
   command->add_option("--camera", arguments->camera, "AZIMUTH,ELEVATION[,ZOOM] in degrees; default 35,20,1");
   command->add_option("--threads", arguments->threads, "0: all of the machine's")->capture_default_str();
   add_progress_option(*command, arguments->progress);
