@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kTextColumns = 64;
 constexpr int kTextRows = 10;
 constexpr std::size_t kLabelWidth = 9;
+constexpr std::size_t kDiscreteBins = 16;  // fewer filled ones say nothing about what lies between
 
 constexpr std::int32_t kWidth = 720;  // pixels
 constexpr std::int32_t kHeight = 360;
@@ -38,12 +39,14 @@ bool nothing_to_show(const Sidecar::Histogram& h) {
 Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
   std::size_t first = h.counts.size();
   std::size_t stride = 0;
+  std::size_t filled = 0;
   for (std::size_t i = 0; i < h.counts.size(); ++i) {
     if (h.counts[i] == 0) continue;
     first = std::min(first, i);
     stride = std::gcd(stride, i - first);
+    ++filled;
   }
-  stride = std::max<std::size_t>(stride, 1);
+  if (filled < kDiscreteBins) stride = 1;
   const std::size_t skipped = first % stride;  // empty bins below the first value
   const std::size_t groups = (h.counts.size() - skipped + stride - 1) / stride;
   const std::size_t per_column = stride * ((groups + columns - 1) / columns);

@@ -98,7 +98,8 @@ void print_grid(const NvdbFile& file) {
   line("grid        ", cat('"', g.name(), "\" ", grid_type_name(g.type()), ", ", text_of(box.extent()),
                            " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", text_of(g.voxel_size()), ", origin ", text_of(g.world_origin())));
-  line("values      ", cat(g.value_min(), " .. ", g.value_max(), ", background ", g.background()));
+  const std::string range = g.value_min() <= g.value_max() ? cat(g.value_min(), " .. ", g.value_max()) : "none finite";
+  line("values      ", cat(range, ", background ", g.background()));
   const auto nodes = g.node_counts();
   const auto tiles = g.tile_counts();
   line("tree        ", cat(g.root_tiles(), " root entries, ", nodes[2], " upper, ", nodes[1], " lower, ", nodes[0],
