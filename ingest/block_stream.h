@@ -26,7 +26,8 @@ struct StreamOptions {
 
 /// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of
 /// the largest box's size exist at a time. An exception of either side ends both and is rethrown;
-/// a set `cancel` throws Error(interrupted). Returns the loss summed over all boxes.
+/// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the read
+/// in progress has ended. Returns the loss summed over all boxes.
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
                              const std::function<void(const Block&)>& work);
 

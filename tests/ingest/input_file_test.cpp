@@ -37,6 +37,7 @@ std::vector<bool> cached_pages(const std::string& path, std::size_t bytes) {
   EXPECT_EQ(::mincore(map, bytes, flags.data()), 0);
   ::munmap(map, bytes);
   std::vector<bool> result;
+  result.reserve(flags.size());
   for (const unsigned char f : flags) result.push_back((f & 1U) != 0);
   return result;
 }
@@ -177,6 +178,22 @@ TEST_F(InputFileCache, DirectReadsLeaveTheCacheAsItWas) {
   const auto bytes = file.read_direct(0, kBytes, staging.bytes());
   EXPECT_EQ(std::memcmp(bytes.data(), pattern(kBytes).data(), kBytes), 0);
   EXPECT_EQ(count_cached(path_, kBytes), 50U);
+}
+
+TEST_F(InputFileCache, ADeviceThatRefusesWhenReadIsReadThroughTheCache) {
+  // Memory off the device's alignment is refused as a device of wider alignment would.
+  const PageBuffer memory(kBytes + 3 * kDirectAlignment);
+  const auto staging = memory.bytes().subspan(1, kBytes + 2 * kDirectAlignment);
+  InputFile strict(path_, DirectIo::on);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { strict.read_direct(5, 100, staging); }),
+            path_ + ": its file system refuses direct I/O; use --direct-io auto");
+
+  InputFile file(path_, DirectIo::automatic);
+  ASSERT_EQ(file.path_for(0, kBytes), ReadPath::direct);
+  const auto bytes = file.read_direct(5, 10'000, staging);
+  EXPECT_EQ(std::memcmp(bytes.data(), pattern(kBytes).data() + 5, 10'000), 0);
+  EXPECT_EQ(file.path_for(0, kBytes), ReadPath::through);  // from now on
+  EXPECT_EQ(count_cached(path_, kBytes), 0U);
 }
 
 TEST(InputFileRefused, FileSystemsWithoutDirectIo) {
