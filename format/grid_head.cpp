@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "format/error.h"
@@ -40,12 +41,12 @@ void store_index_box(Image image, std::size_t offset, const Box& box) {
   for (std::size_t i = 0; i < 6; ++i) store(image, offset + 4 * i, static_cast<std::int32_t>(corners[i]));
 }
 
-// The image of [lo, hi) under index * voxel_size + origin.
+// The image of [lo, hi) under index * voxel_size + origin, rounded once as in NanoVDB's Map::applyMap.
 void store_world_box(Image image, std::size_t offset, const GridHead& head) {
   const Box& box = head.statistics.bbox;
   const std::array<std::int64_t, 6> corners{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
   for (std::size_t i = 0; i < 6; ++i) {
-    store(image, offset + 8 * i, static_cast<double>(corners[i]) * head.voxel_size[i % 3] + head.origin[i % 3]);
+    store(image, offset + 8 * i, std::fma(static_cast<double>(corners[i]), head.voxel_size[i % 3], head.origin[i % 3]));
   }
 }
 
