@@ -144,7 +144,7 @@ class CensusTally {
 
 class HistogramTally {
  public:
-  HistogramTally(float lo, float hi, std::size_t bins) : lo_(lo), hi_(hi), counts(bins) {}
+  HistogramTally(float lo, float hi, std::size_t bins) : counts(bins), lo_(lo), hi_(hi) {}
 
   void add(const GridBlock& leaf, std::span<const float, 512> values) {
     for (unsigned n = 0; n < values.size(); ++n) {
@@ -161,12 +161,11 @@ class HistogramTally {
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += other.counts[i];
   }
 
+  std::vector<std::uint64_t> counts;
+
  private:
   float lo_;
   float hi_;
-
- public:
-  std::vector<std::uint64_t> counts;
 };
 
 }  // namespace

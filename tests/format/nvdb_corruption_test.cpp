@@ -138,7 +138,7 @@ TEST(NvdbCorruption, GridHead) {
             "a.nvdb: at byte 231: the grid says 5 bytes, the file's meta data " + bytes);
   for (const auto& [type, text] : {std::pair{0U, "0 (unknown)"}, std::pair{2U, "2 (double)"},
                                    std::pair{12U, "12 (RGBA8)"}, std::pair{17U, "17 (Vec4f)"}, std::pair{99U, "99"}}) {
-    EXPECT_EQ(message([&](Bytes& f) { put<std::uint32_t>(f, kGrid + nvdb::grid::kGridType, type); }),
+    EXPECT_EQ(message([t = type](Bytes& f) { put<std::uint32_t>(f, kGrid + nvdb::grid::kGridType, t); }),
               std::string("a.nvdb: at byte 835: grid type ") + text +
                   " is not supported; use a float, Fp4, Fp8, Fp16 or FpN grid");
   }

@@ -177,7 +177,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
   const auto document = nlohmann::json::parse(to_json_text(sample()));
   for (const auto& [key, value] : document.items()) {
     if (key == "conversion_loss") continue;  // weir's own, not in the contract
-    documents.push_back(edited([&](auto& d) { d.erase(key); }));
+    documents.push_back(edited([k = key](auto& d) { d.erase(k); }));
   }
   EXPECT_EQ(validate_against_schema(documents), "yy" + std::string(documents.size() - 2, 'n'));
 }
