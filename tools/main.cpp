@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
     weir::add_convert(app);
     weir::add_render(app);
     weir::add_sample(app);
+    weir::add_compare(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::CallForHelp& help) {

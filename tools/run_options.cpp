@@ -1,7 +1,5 @@
 #include "tools/run_options.h"
 
-#include <sys/resource.h>
-
 #include "format/error.h"
 #include "format/text.h"
 
@@ -33,12 +31,6 @@ std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments
   if (arguments.threads == 0) return nullptr;
   return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                static_cast<std::size_t>(arguments.threads));
-}
-
-std::uint64_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
 }
 
 }  // namespace weir

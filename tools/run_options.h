@@ -32,7 +32,4 @@ std::uint64_t parse_memory(const RunArguments& arguments);
 /// Keeps TBB to the asked number of threads while it lives; null where that is all of them.
 std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments);
 
-/// The kernel's figure of the process's largest resident set so far, bytes.
-std::uint64_t peak_rss_bytes();
-
 }  // namespace weir

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "compressor/process_memory.h"
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/partial_file.h"
@@ -186,7 +187,7 @@ void sample(const SampleArguments& arguments) {
                                 {"seed", arguments.seed},
                                 {"bytes", bytes},
                                 {"total_s", total_s},
-                                {"peak_rss_bytes", peak_rss_bytes()}};
+                                {"peak_rss_bytes", peak_resident_bytes()}};
     std::cout << report.dump(2) << '\n';
   } else {
     spdlog::info("{}: {} {} {}, {}, {:.2f} s", arguments.output, kind.name, extent_text(shape.extent),

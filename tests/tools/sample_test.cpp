@@ -116,10 +116,8 @@ TEST(Sample, ProgressAlwaysSaysThePass) {
 TEST(Sample, BoundedMemory) {
   const TemporaryDirectory directory;
   for (const std::string dims : {"256,256,256", "640,640,512"}) {  // 64 MiB, 800 MiB
-    // By way of a shell, whose children do not begin with this program's peak.
-    const CommandResult result =
-        run_command({"sh", "-c", "\"$@\"; exit $?", "sh", WEIR_COMMAND, "sample", "cloud", "--dims", dims, "--memory",
-                     "100MiB", "--json", "--overwrite", "-o", directory / "a.raw"});
+    const CommandResult result = run_weir(
+        {"sample", "cloud", "--dims", dims, "--memory", "100MiB", "--json", "--overwrite", "-o", directory / "a.raw"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_LT(nlohmann::json::parse(result.out)["peak_rss_bytes"], std::uint64_t{100} << 20U) << dims;
   }

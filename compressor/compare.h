@@ -1,0 +1,46 @@
+// The exact error of a NanoVDB file against its source, streaming both. It shares
+// nothing with the encoder but the decoder of leaves, so that it can judge the
+// certificate that a conversion wrote.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "compressor/certificate.h"
+#include "format/index.h"
+#include "format/nvdb_grid.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+struct CompareOptions {
+  std::uint64_t block_bytes = std::uint64_t{64} << 20U;  ///< float32 bytes of a block; two are held at a time
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(std::uint64_t done_bytes)> progress;  ///< float32 bytes of the source, of volume * 4
+  /// Called when some tens of MiB of the grid may have become resident; a mapped file lets them go.
+  std::function<void()> release_pages;
+};
+
+struct Comparison {
+  std::uint64_t voxels = 0;
+  std::uint64_t finite = 0;               ///< source voxels that are finite: the error is over these
+  std::uint64_t nonfinite = 0;            ///< source voxels that are NaN or infinite
+  std::uint64_t nonfinite_decoded = 0;    ///< finite source voxels that read NaN or infinite; not in the error's sums
+  std::uint64_t different = 0;            ///< finite source voxels that do not read bit for bit
+  std::uint64_t nonfinite_different = 0;  ///< the same of those that are not finite: replaced, or dropped
+  std::optional<MinMax> range;            ///< of the finite source voxels
+  std::optional<Index3> max_abs_at;       ///< of those with the largest error the first in x-fastest order; none for 0
+  Certificate error;                      ///< lossless: different = 0, whatever became of what is not finite
+  ConversionLoss loss;                    ///< of the source's values to float32
+};
+
+/// Compares every voxel of the source. Results depend on neither block size nor threads: squared
+/// errors are summed in double in 16 lanes within a leaf and exactly between leaves.
+/// Throws Error(input) where the grid's index bounding box is not the source's domain, and what
+/// reading the source throws; Error(interrupted) when cancelled.
+Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std::string& grid_path,
+                           const CompareOptions& options);
+
+}  // namespace weir

@@ -1,0 +1,147 @@
+// weir compare from outside, on files that the command itself made.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+/// A directory with a source and its conversion.
+struct Converted {
+  TemporaryDirectory directory;
+  std::string raw;
+  std::string nvdb = directory / "a.nvdb";
+
+  Converted(const std::string& kind, const std::string& dims_and_type, const std::vector<std::string>& options)
+      : raw(directory / ("a_" + dims_and_type + ".raw")) {
+    EXPECT_EQ(run_weir({"sample", kind, "-o", raw}).exit_code, 0);
+    std::vector<std::string> convert{"convert", raw, "-o", nvdb};
+    convert.insert(convert.end(), options.begin(), options.end());
+    const CommandResult result = run_weir(convert);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+
+  nlohmann::json compare(std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"compare", raw, nvdb, "--json", "--progress", "never"});
+    const CommandResult result = run_weir(options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  }
+};
+
+TEST(Compare, LosslessFile) {
+  const Converted volume("cloud", "70x45x37_float32", {"--lossless"});
+  nlohmann::json report = volume.compare();
+  EXPECT_EQ(report["source"], volume.raw);
+  EXPECT_EQ(report["volume"], volume.nvdb);
+  EXPECT_GT(report["total_s"], 0.0);
+  EXPECT_GT(report["peak_rss_bytes"], 1000000);
+  for (const char* varies : {"source", "volume", "total_s", "peak_rss_bytes", "value_range"}) report.erase(varies);
+  EXPECT_EQ(report, nlohmann::json::parse(R"({"mse": 0.0, "rmse": 0.0, "nmse": 0.0, "psnr_db": null, "max_abs": 0.0,
+      "lossless": true, "max_abs_at": null, "voxels": 116550, "finite": 116550, "nonfinite": 0,
+      "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0})"));
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
+            "lossless: all 116550 finite voxels read bit for bit\n");
+}
+
+TEST(Compare, OneVoxelChangedSinceTheConversion) {
+  const Converted volume("zero", "20x10x9_float32", {"--lossless"});
+  std::string bytes = read_file(volume.raw);
+  const float value = 1.5F;
+  std::memcpy(bytes.data() + 4 * (7 + 20 * (3 + 10 * 8)), &value, 4);
+  write_file(volume.raw, bytes);
+  const nlohmann::json report = volume.compare();
+  EXPECT_EQ(report["mse"], 2.25 / 1800);
+  EXPECT_EQ(report["max_abs"], 1.5);
+  EXPECT_EQ(report["max_abs_at"], (nlohmann::json{7, 3, 8}));
+  EXPECT_EQ(report["different"], 1);
+  EXPECT_EQ(report["lossless"], false);
+  EXPECT_EQ(report["value_range"], (nlohmann::json{0.0, 1.5}));
+  const CommandResult text = run_weir({"compare", volume.raw, volume.nvdb});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_EQ(text.out,
+            "mse        0.00125\nrmse       0.0353553391\nnmse       0.000555555556\npsnr       32.5527251 dB\n"
+            "max abs    1.5 at 7,3,8\ndifferent  1 of 1800 finite voxels\n");
+}
+
+TEST(Compare, EqualsTheCertificate) {
+  for (const std::string kind : {"cloud", "turbulence", "huge", "tiny", "offset", "background", "plateau"}) {
+    const Converted volume(kind, "100x90x80_float32", {"--rate", "4"});
+    const nlohmann::json report = volume.compare();
+    const nlohmann::json certificate = nlohmann::json::parse(read_file(volume.nvdb + ".json"))["error"];
+    for (const char* key : {"mse", "rmse", "nmse", "max_abs"}) {
+      const auto expected = certificate[key].get<double>();
+      EXPECT_NEAR(report[key].get<double>(), expected, 1e-9 * expected) << kind << ' ' << key;
+    }
+    EXPECT_EQ(report["lossless"], certificate["lossless"]) << kind;
+    EXPECT_EQ(report["psnr_db"].is_null(), certificate["psnr_db"].is_null()) << kind;
+  }
+}
+
+TEST(Compare, SameResultWhateverMemoryAndThreads) {
+  const Converted volume("turbulence", "200x150x130_float32", {"--rate", "8"});
+  nlohmann::json first = volume.compare({"--threads", "1", "--memory", "100MiB"});
+  nlohmann::json second = volume.compare({"--threads", "5", "--memory", "2GiB", "--direct-io", "off"});
+  for (const char* varies : {"total_s", "peak_rss_bytes"}) {
+    first.erase(varies);
+    second.erase(varies);
+  }
+  EXPECT_EQ(first, second);
+}
+
+TEST(Compare, TypesByteOrderAndRegion) {
+  const Converted integers("turbulence", "60x50x40_int16be", {"--lossless"});
+  EXPECT_EQ(integers.compare()["lossless"], true);
+  const Converted region("noise", "60x50x40_float32", {"--lossless", "--roi", "3:50,0:50,9:31"});
+  const nlohmann::json report = region.compare({"--roi", "3:50,0:50,9:31"});
+  EXPECT_EQ(report["lossless"], true);
+  EXPECT_EQ(report["voxels"], 47 * 50 * 22);
+}
+
+TEST(Compare, NonFiniteVoxelsAreCounted) {
+  const Converted volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
+  const nlohmann::json report = volume.compare();
+  EXPECT_EQ(report["nonfinite"], 300);
+  EXPECT_EQ(report["nonfinite_different"], 300);
+  EXPECT_EQ(report["finite"], 9400);
+  EXPECT_EQ(report["lossless"], true);
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
+            "lossless: all 9400 finite voxels read bit for bit\n"
+            "not finite 300 voxels of the source, left out of the error; 300 of them read differently\n");
+}
+
+TEST(Compare, BoundedMemory) {
+  const Converted volume("turbulence", "400x400x400_float32", {"--rate", "2"});  // 244 MiB, half of it leaves
+  EXPECT_LT(volume.compare({"--memory", "128MiB"})["peak_rss_bytes"], std::uint64_t{128} << 20U);
+}
+
+TEST(Compare, Refusals) {
+  const Converted volume("cloud", "20x10x9_float32", {"--lossless"});
+  const auto refusal = [&](const std::vector<std::string>& arguments, int exit_code) {
+    const CommandResult result = run_weir(arguments);
+    EXPECT_EQ(result.exit_code, exit_code);
+    EXPECT_EQ(result.out, "");
+    return result.err;
+  };
+  EXPECT_EQ(refusal({"compare", volume.raw, volume.nvdb, "--roi", "0:20,0:10,0:8"}, 3),
+            "weir: " + volume.nvdb + ": holds the voxels 0:20,0:10,0:9, " + volume.raw +
+                " holds 0:20,0:10,0:8; give the source it was converted from, with the same --dims and --roi\n");
+  EXPECT_EQ(refusal({"compare", volume.directory / "none.raw", volume.nvdb}, 3)
+                .find("weir: " + (volume.directory / "none.raw")),
+            0U);
+  EXPECT_EQ(refusal({"compare", volume.raw, volume.directory / "none.nvdb"}, 3),
+            "weir: " + (volume.directory / "none.nvdb") + ": cannot open: No such file or directory\n");
+  EXPECT_EQ(refusal({"compare", volume.raw, volume.raw}, 3).find("weir: " + volume.raw + ": "), 0U);
+  EXPECT_EQ(refusal({"compare", volume.raw, volume.nvdb, "--dims", "20,10,8"}, 2),
+            "weir: " + volume.raw +
+                ": --dims 20,10,8 contradicts the file's name, which says 20x10x9; drop it or rename the file\n");
+  EXPECT_EQ(refusal({"compare", volume.raw}, 2), "weir: volume is required; see weir --help\n");
+}
+
+}  // namespace
+}  // namespace weir
