@@ -1,8 +1,8 @@
 #include "compressor/conversion.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +30,10 @@ namespace weir {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// The survey writes nothing that asks for whole lower nodes: blocks that stay in the cache between the
+// read and the work are faster (8 MiB against 32 MiB saved a fifth of the CPU time on a 2-core Xeon).
+constexpr std::uint64_t kSurveyBlockBytes = std::uint64_t{8} << 20U;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -68,16 +72,12 @@ Background choose_background(const ConversionOptions& options, const Survey& sur
 }
 
 // Reads the finished bytes back: what is hashed is what the file system holds.
-Digest digest_of_file(File& file, std::uint64_t bytes, std::size_t at_a_time) {
+Digest digest_of_file(File& file, std::uint64_t bytes) {
   std::vector<Digest> pieces(piece_count(bytes));
-  tbb::task_arena arena(static_cast<int>(at_a_time));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-      const std::uint64_t offset = i * kDigestPieceBytes;
-      std::vector<std::byte> piece(std::min(kDigestPieceBytes, bytes - offset));
-      file.read_at(offset, piece);
-      pieces[i] = piece_digest(piece);
-    });
+  tbb::enumerable_thread_specific<std::vector<std::byte>> scratch{std::vector<std::byte>(kDigestScratchBytes)};
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+    const std::uint64_t offset = i * kDigestPieceBytes;
+    pieces[i] = piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
   });
   return combine(pieces);
 }
@@ -159,15 +159,16 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   WorkDirectory work(files, options.output, options.work_dir);
   const MemoryPlan memory = plan_memory(options.memory, resident_bytes(), threads, domain);
   const BlockPlan plan = plan_blocks(domain, source.access(), memory.block_bytes);
+  const BlockPlan survey_plan = plan_blocks(domain, source.access(), std::min(memory.block_bytes, kSurveyBlockBytes));
   const StreamOptions stream = stream_options(control);
 
   // Survey.
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());
   start_pass(control, "survey", voxels);
   RowStore rows(work.spill(), plan.lattice, memory.segment_regions);
-  const Survey survey = survey_volume(source, plan, rows, stream);
+  const Survey survey = survey_volume(source, survey_plan, rows, stream);
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
-  const Background background = choose_background(options, survey, rows, source, plan, stream);
+  const Background background = choose_background(options, survey, rows, source, survey_plan, stream);
   Sidecar sidecar = describe_source(info, survey, options);
   sidecar.source.digest = source_digest(rows);
   sidecar.timing.survey_s = seconds_since(started);
@@ -224,8 +225,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   sidecar.selection.bits[5] = layout.counts.leaves;
   sidecar.error = describe_error(tree_plan, survey);
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, checksum,
-                  digest_of_file(output.volume(), size.bytes, memory.digest_threads).hex()};
+  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
   sidecar.timing.encode_s = seconds_since(encoding);
   sidecar.timing.total_s = seconds_since(started);
   sidecar.timing.bytes_read = source.bytes_read();

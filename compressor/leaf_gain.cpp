@@ -1,7 +1,6 @@
 #include "compressor/leaf_gain.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace weir {
@@ -38,28 +37,34 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
   const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
   const std::int64_t bricks = kLowerLeaves / brick_leaves;
   out.clear();
-  std::array<BrickRange, kLowerLeaves * kLowerLeaves * kLowerLeaves> ranges{};
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const Index3 node = leaves.first + leaf;
-    const Index3 entry = node - floor_div(node, kLowerLeaves) * kLowerLeaves;
+    const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
     const std::int64_t voxels = leaves.voxels(leaf).voxels();
     LeafGain gain;
     gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
     gain.brick = static_cast<std::uint32_t>(linear_index(floor_div(entry, brick_leaves), {bricks, bricks, bricks}));
     gain.required = leaf == Index3{0, 0, 0} || leaf == last_leaf ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
-    gain.exact = fill.exact(row, voxels, fill.leaf_value(row));
-    if (metric == Metric::sse && !gain.exact) gain.gain = row.sse_about(fill.leaf_value(row));
-    if (metric != Metric::sse && row.finite > 0) {
-      BrickRange& range = ranges[gain.brick];
-      range.low = range.any ? std::min(range.low, row.min) : row.min;
-      range.high = range.any ? std::max(range.high, row.max) : row.max;
-      range.any = true;
-    }
+    const float tile = fill.leaf_value(row);
+    gain.exact = fill.exact(row, voxels, tile);
+    if (metric == Metric::sse && !gain.exact) gain.gain = row.sse_about(tile);
     out.push_back(gain);
   });
-  if (metric == Metric::sse) return;
-  for (LeafGain& gain : out) {
+  if (metric != Metric::sse) rank_bricks(rows, out);
+}
+
+void GainRule::rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const {
+  std::vector<BrickRange> ranges(kLowerLeaves * kLowerLeaves * kLowerLeaves);
+  auto leaf = leaves.begin();
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    BrickRange& range = ranges[(leaf++)->brick];
+    if (row.finite == 0) return;
+    range.low = range.any ? std::min(range.low, row.min) : row.min;
+    range.high = range.any ? std::max(range.high, row.max) : row.max;
+    range.any = true;
+  });
+  for (LeafGain& gain : leaves) {
     if (!gain.exact) gain.gain = distance(metric, ranges[gain.brick], fill.background);
   }
 }

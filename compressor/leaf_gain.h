@@ -31,6 +31,10 @@ struct GainRule {
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
   /// hold non-finite values to keep, are required.
   void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
+
+ private:
+  // The paper's metrics: gain of each leaf from its brick's range.
+  void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
 };
 
 }  // namespace weir

@@ -103,6 +103,12 @@ WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mea
   return {sum(total), sum(squares)};
 }
 
+Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
+  const auto bits = std::bit_cast<std::uint32_t>(values.front());
+  if (last.bits != bits || last.count != values.size()) last = {bits, values.size(), leaf_digest(values)};
+  return last.digest;
+}
+
 // Statistics of `count` >= 1 finite values that differ in the bits of `differ`.
 void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, LeafRow& row) {
   if (differ == 0) {
@@ -121,12 +127,12 @@ void summarize_finite(const float* values, std::size_t count, std::uint32_t diff
 
 }  // namespace
 
-LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at) {
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, UniformDigest& last) {
   const float* data = values.data();
   const std::size_t count = values.size();
   LeafRow row;
-  row.digest = leaf_digest(values);
   const Scan scan = scan_bits(data, count);
+  row.digest = scan.differ == 0 ? uniform_digest(values, last) : leaf_digest(values);
   row.finite = static_cast<std::uint16_t>(count - scan.non_finite);
   row.sample = std::isfinite(data[sample_at]) ? data[sample_at] : std::numeric_limits<float>::quiet_NaN();
   if (scan.non_finite == 0) {

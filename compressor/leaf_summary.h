@@ -8,10 +8,21 @@
 
 namespace weir {
 
+/// Digest of the last uniform leaf: empty space repeats one leaf over and over. One per thread.
+struct UniformDigest {
+  std::uint32_t bits = 0;
+  std::size_t count = 0;  ///< values; 0: nothing yet
+  Digest digest;
+};
+
 /// Statistics and digest of the in-domain values of a leaf, x fastest, 1 to 512 of them; `sample_at` is
 /// the position of the sampled value. Two passes, double sums in 16 lanes (Chan, Golub, LeVeque 1983).
 /// Non-finite values take part in the digest only.
-LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at);
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, UniformDigest& last);
+inline LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at) {
+  UniformDigest none;
+  return summarize_leaf(values, sample_at, none);
+}
 
 /// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in
 /// the data can hide from it.

@@ -4,7 +4,6 @@
 
 #include "compressor/region_rows.h"
 #include "compressor/tree_regions.h"
-#include "format/digest.h"
 #include "format/error.h"
 #include "format/macrocells.h"
 #include "format/node_statistics.h"
@@ -44,7 +43,6 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * 3);
   plan.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
-  plan.digest_threads = std::clamp<std::size_t>(free / 2 / kDigestPieceBytes, 1, threads);
   return plan;
 }
 

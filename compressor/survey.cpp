@@ -48,6 +48,7 @@ struct Tally {
   float first_non_finite_value = 0;
   RangeHistogram histogram;
   std::vector<std::uint64_t> value_counts;
+  UniformDigest uniform;
 
   void merge(const Tally& other) {
     min = std::min(min, other.min);
@@ -100,7 +101,7 @@ class BlockSurvey {
     }
     const auto count = static_cast<std::size_t>(volume(extent));
     const std::span<const float> seen(values.data(), count);
-    const LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count));
+    const LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
     tally.finite += row.finite;
     if (row.finite == count) {
       count_values(seen, row, tally);

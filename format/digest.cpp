@@ -1,6 +1,10 @@
 #include "format/digest.h"
 
+#define XXH_STATIC_LINKING_ONLY  // a state on the stack
 #include <xxhash.h>
+#if defined(__x86_64__) && __has_include(<xxh_x86dispatch.h>)
+#include <xxh_x86dispatch.h>  // the widest vectors the machine has
+#endif
 
 #include <algorithm>
 #include <bit>
@@ -32,6 +36,19 @@ std::string Digest::hex() const {
 }
 
 Digest piece_digest(std::span<const std::byte> piece) { return canonical(XXH3_128bits(piece.data(), piece.size())); }
+
+Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::span<std::byte> scratch) {
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  while (bytes > 0) {
+    const auto part = scratch.first(std::min<std::uint64_t>(scratch.size(), bytes));
+    file.read_at(offset, part);
+    XXH3_128bits_update(&state, part.data(), part.size());
+    offset += part.size();
+    bytes -= part.size();
+  }
+  return canonical(XXH3_128bits_digest(&state));
+}
 
 Digest leaf_digest(std::span<const float> values) { return piece_digest(std::as_bytes(values)); }
 
@@ -69,12 +86,10 @@ Digest file_digest(std::span<const std::byte> file) {
 
 Digest file_digest(File& file) {
   const std::uint64_t bytes = file.size();
-  std::vector<std::byte> buffer(std::min(bytes, kDigestPieceBytes));
+  std::vector<std::byte> scratch(kDigestScratchBytes);
   DigestStream stream;
   for (std::uint64_t at = 0; at < bytes; at += kDigestPieceBytes) {
-    const auto piece = std::span(buffer).first(std::min(kDigestPieceBytes, bytes - at));
-    file.read_at(at, piece);
-    stream.update(piece_digest(piece));
+    stream.update(piece_digest(file, at, std::min(kDigestPieceBytes, bytes - at), scratch));
   }
   return stream.digest();
 }

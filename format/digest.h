@@ -22,6 +22,9 @@ namespace weir {
 /// Bytes of a piece of a file.
 inline constexpr std::uint64_t kDigestPieceBytes = std::uint64_t{16} << 20U;
 
+/// A good size for the scratch memory of piece_digest: it stays in the second-level cache.
+inline constexpr std::size_t kDigestScratchBytes = std::size_t{1} << 20U;
+
 /// An xxh3-128 in canonical form.
 struct Digest {
   std::array<std::byte, 16> bytes{};
@@ -33,6 +36,8 @@ struct Digest {
 
 /// xxh3-128 of one piece.
 Digest piece_digest(std::span<const std::byte> piece);
+/// xxh3-128 of `bytes` bytes of a file from `offset` on, read through `scratch`, of any size.
+Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::span<std::byte> scratch);
 /// The same of the float32 values of a leaf inside the domain (x fastest), as little-endian bytes.
 Digest leaf_digest(std::span<const float> values);
 
@@ -67,7 +72,7 @@ constexpr std::uint64_t piece_count(std::uint64_t bytes) {
 /// Piece `i` of a file in memory; i < piece_count(file.size()).
 std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint64_t i);
 
-/// Digest of a whole file, one thread; the second reads it through a buffer of one piece.
+/// Digest of a whole file, one thread.
 Digest file_digest(std::span<const std::byte> file);
 Digest file_digest(File& file);
 
