@@ -65,17 +65,12 @@ class CensusTally {
   void add(const GridBlock& leaf, std::span<const float, 512> values) {
     ++census.leaves;
     ++census.leaves_by_bits[static_cast<std::size_t>(std::bit_width(grid_->leaf_bits(leaf.leaf)) - 1)];
-    for (unsigned n = 0; n < values.size(); ++n) {
-      if (!leaf_active(leaf.leaf, n)) continue;
-      ++census.active_voxels;
-      add_value(values[n], 1);
-    }
-    include(census.active_bbox, active_box(leaf));
-    const Box inside = intersect({leaf.origin, leaf.origin + Index3{8, 8, 8}}, grid_->index_bbox());
-    if (cells_.cells.empty() || inside.empty()) return;
-    const MinMax& cell = cell_at(floor_div(leaf.origin, cells_.cell) - cells_.lattice.first);
-    for (unsigned n = 0; n < values.size(); ++n) {
-      if (inside.contains(leaf.origin + voxel_of(n))) check(leaf.origin, cell, values[n]);
+    const Box box{leaf.origin, leaf.origin + Index3{kLeafDim, kLeafDim, kLeafDim}};
+    const Box inside = intersect(box, grid_->index_bbox());
+    if (inside == box && all_active(leaf.leaf)) {
+      add_whole(leaf, box, values);
+    } else {
+      add_partial(leaf, inside, values);
     }
   }
 
@@ -110,6 +105,45 @@ class CensusTally {
   TreeCensus census;
 
  private:
+  static bool all_active(const std::byte* leaf) {
+    const std::byte* mask = leaf + nvdb::leaf::kValueMask;
+    return std::all_of(mask, mask + kLeafVoxels / 8, [](std::byte b) { return b == std::byte{255}; });
+  }
+
+  // The usual leaf, wholly inside and active: its extremes say all.
+  void add_whole(const GridBlock& leaf, const Box& box, std::span<const float, 512> values) {
+    float lo = std::numeric_limits<float>::infinity();
+    float hi = -lo;
+    float not_finite = 0;  // x * 0 is 0 for a finite x, else NaN
+    for (const float value : values) {
+      lo = value < lo ? value : lo;
+      hi = value > hi ? value : hi;
+      not_finite += value * 0.0F;
+    }
+    if (std::isnan(not_finite)) return add_partial(leaf, box, values);
+    census.active_voxels += values.size();
+    census.min = std::min(census.min, lo);
+    census.max = std::max(census.max, hi);
+    include(census.active_bbox, box);
+    if (cells_.cells.empty()) return;
+    const MinMax& cell = cell_of(leaf);
+    check(leaf.origin, cell, lo);
+    check(leaf.origin, cell, hi);
+  }
+
+  void add_partial(const GridBlock& leaf, const Box& inside, std::span<const float, 512> values) {
+    const MinMax* cell = cells_.cells.empty() || inside.empty() ? nullptr : &cell_of(leaf);
+    for (unsigned n = 0; n < values.size(); ++n) {
+      const Index3 i = leaf.origin + voxel_of(n);
+      if (leaf_active(leaf.leaf, n)) {
+        ++census.active_voxels;
+        add_value(values[n], 1);
+        include(census.active_bbox, {i, i + Index3{1, 1, 1}});
+      }
+      if (cell != nullptr && inside.contains(i)) check(leaf.origin, *cell, values[n]);
+    }
+  }
+
   void add_value(float value, std::uint64_t voxels) {
     if (!std::isfinite(value)) {
       census.nonfinite += voxels;
@@ -129,13 +163,8 @@ class CensusTally {
     if (!census.outside_macrocell) census.outside_macrocell = block;
   }
 
-  static Box active_box(const GridBlock& leaf) {
-    Box box;
-    for (unsigned n = 0; n < kLeafVoxels; ++n) {
-      const Index3 i = leaf.origin + voxel_of(n);
-      if (leaf_active(leaf.leaf, n)) include(box, {i, i + Index3{1, 1, 1}});
-    }
-    return box;
+  const MinMax& cell_of(const GridBlock& leaf) const {
+    return cell_at(floor_div(leaf.origin, cells_.cell) - cells_.lattice.first);
   }
 
   const NvdbGrid* grid_;
