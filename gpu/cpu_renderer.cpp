@@ -1,11 +1,13 @@
 #include "gpu/cpu_renderer.h"
 
 #include <oneapi/tbb/blocked_range2d.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 
 #include "format/error.h"
 
@@ -37,6 +39,11 @@ Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& 
     if (const std::unique_lock lock(reporting, std::try_to_lock); lock) options.progress(done.load());
   };
 
+  // More threads than cores are granted too: who asks for them wants to see them.
+  std::optional<oneapi::tbb::global_control> limit;
+  if (options.threads > 0) {
+    limit.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  }
   oneapi::tbb::task_arena arena(options.threads > 0 ? options.threads : oneapi::tbb::task_arena::automatic);
   for (std::uint32_t first = 0; first < options.samples && !cancelled(); first += kSamplesPerPass) {
     const std::uint32_t last = std::min(first + kSamplesPerPass, options.samples);

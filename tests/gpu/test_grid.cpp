@@ -4,9 +4,13 @@
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
+#include <unistd.h>
 
-#include <sstream>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+
+#include "format/text.h"
 
 namespace weir::test {
 
@@ -15,15 +19,19 @@ namespace {
 openvdb::Coord coord(const Index3& i) { return {static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z)}; }
 
 template <typename BuildT>
-std::string converted(const openvdb::FloatGrid& grid) {
+std::vector<std::byte> converted(const openvdb::FloatGrid& grid) {
   const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, BuildT>(
       grid, nanovdb::StatsMode::All, nanovdb::ChecksumMode::Partial);
-  std::ostringstream out(std::ios::binary);
-  nanovdb::io::writeGrid(out, handle, nanovdb::io::Codec::NONE);
-  return out.str();
+  const std::string path = cat(testing::TempDir(), "weir_test_grid_", ::getpid(), ".nvdb");
+  nanovdb::io::writeGrid(path, handle, nanovdb::io::Codec::NONE);
+  std::vector<std::byte> file(std::filesystem::file_size(path));
+  std::ifstream(path, std::ios::binary)
+      .read(reinterpret_cast<char*>(file.data()), static_cast<std::streamsize>(file.size()));
+  std::filesystem::remove(path);
+  return file;
 }
 
-std::string written(GridType type, const openvdb::FloatGrid& grid) {
+std::vector<std::byte> written(GridType type, const openvdb::FloatGrid& grid) {
   switch (type) {
     case GridType::float32:
       return converted<float>(grid);
@@ -57,9 +65,7 @@ TestGrid::TestGrid(const Box& box, const Value& value, const TestGridOptions& op
     const openvdb::Index level = tile.dim == 8 ? 1 : (tile.dim == 128 ? 2 : 3);
     grid->tree().addTile(level, coord(tile.origin), tile.value, tile.active);
   }
-  const std::string file = written(options.type, *grid);
-  const auto* first = reinterpret_cast<const std::byte*>(file.data());
-  file_.assign(first, first + file.size());
+  file_ = written(options.type, *grid);
   grid_ = std::make_unique<NvdbGrid>(NvdbGrid::open(file_, "test.nvdb"));
 }
 

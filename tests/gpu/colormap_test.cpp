@@ -1,0 +1,49 @@
+#include "gpu/colormap.h"
+
+#include <gtest/gtest.h>
+
+#include "format/error.h"
+
+namespace weir {
+namespace {
+
+TEST(Colormap, GrayIsLinearInSrgb) {
+  const auto gray = colormap("gray", 256);
+  for (std::size_t i = 0; i < 256; ++i) {
+    EXPECT_NEAR(srgb_from_linear(gray[i].x), static_cast<float>(i) / 255, 1e-5F);
+    EXPECT_EQ(gray[i].x, gray[i].z);
+  }
+}
+
+TEST(Colormap, EndsAreControlPoints) {
+  for (const std::string_view name : colormap_names()) {
+    const auto map = colormap(name, 2);
+    ASSERT_EQ(map.size(), 2U);
+    for (const Float3& c : map) {
+      EXPECT_TRUE(c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1 && c.z >= 0 && c.z <= 1) << name;
+    }
+  }
+  EXPECT_NEAR(srgb_from_linear(colormap("cool-warm", 3)[1].y), 221.0F / 255, 1e-5F);
+}
+
+TEST(Colormap, UnknownNameListsTheNames) {
+  try {
+    colormap("jet", 2);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_STREQ(error.what(), "unknown colormap \"jet\"; use one of gray, white, heat, cool-warm, dusk, ct, water");
+  }
+}
+
+TEST(Srgb, RoundTripAndClamp) {
+  for (const float v : {0.0F, 0.001F, 0.0031308F, 0.2F, 0.5F, 1.0F}) {
+    EXPECT_NEAR(linear_from_srgb(srgb_from_linear(v)), v, 1e-6F);
+  }
+  EXPECT_EQ(srgb_from_linear(-1), 0.0F);
+  EXPECT_NEAR(srgb_from_linear(7), 1.0F, 1e-6F);
+  EXPECT_NEAR(srgb_from_linear(0.214041F), 0.5F, 1e-5F);
+}
+
+}  // namespace
+}  // namespace weir
