@@ -39,6 +39,12 @@ MemoryVolume::MemoryVolume(VolumeSource& source) : MemoryVolume(source.info().do
   info_.type = source.info().type;
 }
 
+MemoryVolume::MemoryVolume(MemoryVolume&& other) noexcept
+    : info_(std::move(other.info_)),
+      access_(other.access_),
+      values_(std::move(other.values_)),
+      bytes_read_(other.bytes_read_.load()) {}
+
 ConversionLoss MemoryVolume::read(const Box& box, std::span<float> values) {
   const auto found = in(box);
   if (found.size() != values.size()) throw std::invalid_argument("a read outside the volume, or into another size");

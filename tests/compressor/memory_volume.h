@@ -19,6 +19,7 @@ class MemoryVolume final : public VolumeSource {
   MemoryVolume(const Box& domain, const std::function<float(const Index3&)>& value);
   /// All that `source` holds.
   explicit MemoryVolume(VolumeSource& source);
+  MemoryVolume(MemoryVolume&& other) noexcept;
 
   /// Name, spacing, origin and scalar type may be changed before the volume is used.
   SourceInfo& info() { return info_; }

@@ -1,0 +1,144 @@
+#include "compressor/leaf_gain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/compressor/converted.h"
+#include "tests/compressor/surveyed.h"
+
+namespace weir {
+namespace {
+
+using test::MemoryVolume;
+using test::Surveyed;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+struct Case {
+  Box domain;
+  std::int64_t brick;  // voxels
+};
+
+float value_at(const Index3& i) {
+  return std::sin(0.3F * static_cast<float>(i.x)) * static_cast<float>(i.y) - 0.05F * static_cast<float>(i.z * i.z);
+}
+
+// Visits the gains of all regions with the leaf's lattice position.
+template <typename Visit>
+void for_each_gain(const Surveyed& surveyed, const GainRule& rule, Visit&& visit) {
+  const TreeRegions tree(surveyed.volume.info().domain());
+  for (std::int64_t region = 0; region < tree.region_lattice.size(); ++region) {
+    const Box box = tree.leaf_box(region);
+    std::vector<LeafRow> rows;
+    surveyed.rows.read_box(box, rows);
+    std::vector<LeafGain> gains;
+    rule.gains(tree, RegionRows(rows.data(), box.extent(), box), gains);
+    ASSERT_EQ(std::ssize(gains), box.voxels());
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      visit(tree, box.lo + index_at(static_cast<std::int64_t>(i), box.extent()), gains[i]);
+    }
+  }
+}
+
+class PaperMetricTest : public testing::TestWithParam<Case> {};
+
+TEST_P(PaperMetricTest, IsTheDistanceOfTheBricksRangeFromTheBackground) {
+  MemoryVolume volume(GetParam().domain, value_at);
+  const Surveyed surveyed(volume);
+  const float background = -1.5F;
+  for (const Metric metric : {Metric::closest, Metric::farthest, Metric::median}) {
+    const GainRule rule{metric, GetParam().brick / 8, {FillMode::background, background, NonFinitePolicy::error}};
+    for_each_gain(surveyed, rule, [&](const TreeRegions& tree, const Index3& leaf, const LeafGain& gain) {
+      const Index3 lo = floor_div(tree.leaves.node_box(leaf).lo, GetParam().brick) * GetParam().brick;
+      const Box brick{lo, lo + Index3{GetParam().brick, GetParam().brick, GetParam().brick}};
+      const std::vector<float> values = volume.in(brick);
+      const auto low = static_cast<double>(*std::min_element(values.begin(), values.end()));
+      const auto high = static_cast<double>(*std::max_element(values.begin(), values.end()));
+      const double to_low = std::abs(low - static_cast<double>(background));
+      const double to_high = std::abs(high - static_cast<double>(background));
+      const double expected = metric == Metric::closest ? std::min(to_low, to_high)
+                              : metric == Metric::farthest
+                                  ? std::max(to_low, to_high)
+                                  : std::abs((low + high) / 2 - static_cast<double>(background));
+      ASSERT_EQ(gain.gain, expected) << leaf.x << ' ' << leaf.y << ' ' << leaf.z;
+    });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bricks, PaperMetricTest,
+                         testing::Values(Case{{{0, 0, 0}, {70, 45, 33}}, 8}, Case{{{0, 0, 0}, {70, 45, 33}}, 16},
+                                         Case{{{0, 0, 0}, {140, 45, 33}}, 32}, Case{{{-77, -3, 5}, {66, 40, 41}}, 8},
+                                         Case{{{-77, -3, 5}, {66, 40, 41}}, 16},
+                                         Case{{{-77, -3, 5}, {66, 40, 41}}, 32}),
+                         [](const auto& parameter) { return "Case" + std::to_string(parameter.index); });
+
+TEST(LeafGain, SseIsTheSquaredErrorThatTheTileCosts) {
+  MemoryVolume volume({{-20, 3, 0}, {130, 20, 17}}, value_at);
+  const Surveyed surveyed(volume);
+  for (const FillMode mode : {FillMode::mean, FillMode::background}) {
+    const GainRule rule{Metric::sse, 1, {mode, 0.75F, NonFinitePolicy::error}};
+    for_each_gain(surveyed, rule, [&](const TreeRegions& tree, const Index3& leaf, const LeafGain& gain) {
+      const Box box = tree.leaves.voxels(leaf);
+      const auto tile = static_cast<long double>(test::expected_tile(volume, box, mode, 0.75F));
+      long double expected = 0;
+      for (const float v : volume.in(box)) {
+        expected += (static_cast<long double>(v) - tile) * (static_cast<long double>(v) - tile);
+      }
+      EXPECT_NEAR(gain.gain, static_cast<double>(expected), static_cast<double>(expected) * 1e-13);
+      EXPECT_FALSE(gain.exact);
+    });
+  }
+}
+
+TEST(LeafGain, CornersAndKeptNonFiniteValuesAreRequired) {
+  MemoryVolume volume({{0, 0, 0}, {32, 16, 8}}, [](const Index3& i) {
+    return i == Index3{9, 1, 1} ? kNaN : static_cast<float>(i.x);
+  });
+  const Surveyed surveyed(volume);
+  for (const NonFinitePolicy policy : {NonFinitePolicy::background, NonFinitePolicy::keep}) {
+    std::vector<std::int64_t> required;
+    for_each_gain(surveyed, {Metric::sse, 1, {FillMode::mean, 0, policy}},
+                  [&](const TreeRegions& tree, const Index3& leaf, const LeafGain& gain) {
+                    if (gain.required) required.push_back(tree.leaves.linear(leaf));
+                  });
+    EXPECT_EQ(required, policy == NonFinitePolicy::keep ? (std::vector<std::int64_t>{0, 1, 7})
+                                                        : (std::vector<std::int64_t>{0, 7}));
+  }
+}
+
+TEST(LeafGain, ExactTilesAreWorthNothingToAnyMetric) {
+  // The second brick of 16 holds one leaf that its tile reproduces, and three that it does not.
+  MemoryVolume volume({{0, 0, 0}, {32, 16, 8}}, [](const Index3& i) {
+    return i.x >= 16 && i.x < 24 && i.y < 8 ? 3.0F : static_cast<float>(i.x * i.y);
+  });
+  const Surveyed surveyed(volume);
+  for (const Metric metric : {Metric::sse, Metric::closest, Metric::farthest, Metric::median}) {
+    for_each_gain(surveyed, {metric, 2, {FillMode::mean, -5.0F, NonFinitePolicy::error}},
+                  [&](const TreeRegions&, const Index3& leaf, const LeafGain& gain) {
+                    const bool exact = leaf == Index3{2, 0, 0};
+                    EXPECT_EQ(gain.exact, exact);
+                    EXPECT_EQ(gain.gain == 0, exact);
+                  });
+  }
+}
+
+TEST(LeafGain, PositionsAndBricksFollowTheLowerNode) {
+  MemoryVolume volume({{-16, 120, 8}, {8, 136, 24}}, value_at);
+  const Surveyed surveyed(volume);
+  for_each_gain(surveyed, {Metric::farthest, 4, {}},
+                [](const TreeRegions& tree, const Index3& leaf, const LeafGain& gain) {
+                  const Index3 node = tree.leaves.first + leaf;
+                  const std::int64_t x = (node.x % 16 + 16) % 16;
+                  const std::int64_t y = node.y % 16;
+                  const std::int64_t z = node.z % 16;
+                  EXPECT_EQ(gain.position, x * 256 + y * 16 + z);
+                  EXPECT_EQ(gain.brick, x / 4 + 4 * (y / 4) + 16 * (z / 4));
+                });
+}
+
+}  // namespace
+}  // namespace weir
