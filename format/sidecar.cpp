@@ -174,9 +174,15 @@ class JsonReader {
   }
 
  private:
+  // Arrays and objects are not shown: they may be large, and nested deeper than a recursion can follow.
+  static std::string shown(const Json& value) {
+    if (value.is_array()) return cat("an array of ", value.size());
+    if (value.is_object()) return "an object";
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+  }
+
   [[noreturn]] void fail(const std::string& key, const char* expected, const Json& found) const {
-    throw Error(ErrorKind::input, cat(path_, ": key ", prefix_, key, ": expected ", expected, ", found ",
-                                      found.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60),
+    throw Error(ErrorKind::input, cat(path_, ": key ", prefix_, key, ": expected ", expected, ", found ", shown(found),
                                       "; write the sidecar again with weir convert"));
   }
 

@@ -1,0 +1,19 @@
+// libFuzzer target for the sidecar: any text parses or throws Error(input), and
+// what was parsed is written as text that reads back the same.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "format/error.h"
+#include "format/sidecar.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view input(reinterpret_cast<const char*>(data), size);
+  try {
+    const std::string text = weir::to_json_text(weir::parse_sidecar(input, "fuzz.json"));
+    if (weir::to_json_text(weir::parse_sidecar(text, "fuzz.json")) != text) std::abort();
+  } catch (const weir::Error& error) {
+    if (error.kind() != weir::ErrorKind::input) std::abort();
+  }
+  return 0;
+}
