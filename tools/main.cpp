@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // none is refused below, after an unknown one was named
   app.set_version_flag("--version", WEIR_VERSION);
   try {
     // COMMANDS
@@ -66,6 +66,9 @@ int main(int argc, char** argv) {
     weir::add_sample(app);
     weir::add_compare(app);
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) {
+      return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
+    }
     return 0;
   } catch (const CLI::CallForHelp& help) {
     return app.exit(help);

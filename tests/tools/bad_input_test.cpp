@@ -224,7 +224,8 @@ TEST_F(BadInput, WorkDirectoryInMemory) {
 
 TEST_F(BadInput, CommandLine) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
-  expect_refused({}, 2, "A subcommand is required; see weir --help");
+  expect_refused({}, 2, "no command given; see weir --help");
+  expect_refused({"divert"}, 2, "The following argument was not expected: divert; see weir --help");
   expect_refused({"convert"}, 2, "input is required; see weir --help");
   expect_convert_refused(path, {"--speed"}, 2, "The following argument was not expected: --speed; see weir --help");
   expect_convert_refused(path, {"--rate", "8", "--size", "1MB"}, 2,
