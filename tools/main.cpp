@@ -58,7 +58,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);  // none is refused below, after an unknown one was named
   app.set_version_flag("--version", WEIR_VERSION);
   try {
-    // COMMANDS
     weir::add_verify(app);
     weir::add_inspect(app);
     weir::add_convert(app);
