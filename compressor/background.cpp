@@ -105,13 +105,28 @@ Background middle_of(const Survey& survey, std::size_t bin, std::uint64_t count)
 
 constexpr std::size_t kPaperBins = 1024;
 
-// The published code's arithmetic: all in float.
-std::size_t paper_bin(float value, float min, float max) {
-  float v = value - min;
+// The published code's arithmetic, all in Real = float.
+template <typename Real>
+std::size_t paper_bin_in(Real value, Real min, Real max) {
+  Real v = value - min;
   v /= max - min;
-  v *= static_cast<float>(kPaperBins - 1);
-  // Written to be false for NaN, which a range beyond float gives.
-  return v > 0 ? static_cast<std::size_t>(std::min(v, static_cast<float>(kPaperBins - 1))) : 0;
+  v *= static_cast<Real>(kPaperBins - 1);
+  return static_cast<std::size_t>(v);
+}
+
+template <typename Real>
+Real paper_edge_in(std::size_t bin, Real min, Real max) {
+  return static_cast<Real>(bin) / static_cast<Real>(kPaperBins - 1) * (max - min) + min;
+}
+
+// In double where the range overflows float, which ends in NaN in the published code.
+std::size_t paper_bin(float value, float min, float max) {
+  return std::isfinite(max - min) ? paper_bin_in(value, min, max) : paper_bin_in<double>(value, min, max);
+}
+
+float paper_edge(std::size_t bin, float min, float max) {
+  return std::isfinite(max - min) ? paper_edge_in(bin, min, max)
+                                  : static_cast<float>(paper_edge_in<double>(bin, min, max));
 }
 
 }  // namespace
@@ -138,7 +153,7 @@ Background find_background(const Survey& survey, const RowStore& rows, VolumeSou
 Background paper_background(const Survey& survey, VolumeSource& source, const BlockPlan& plan,
                             const StreamOptions& options) {
   if (survey.finite == 0) return {0, "none", 0};
-  if (survey.min == survey.max) return {survey.min, "paper", 1};
+  if (survey.min == survey.max) return {survey.min + 0.0F, "paper", 1};
   std::vector<std::uint64_t> counts(kPaperBins);
   if (!survey.value_counts.empty()) {
     for (std::size_t i = 0; i < survey.value_counts.size(); ++i) {
@@ -161,8 +176,7 @@ Background paper_background(const Survey& survey, VolumeSource& source, const Bl
     }
   }
   const std::size_t bin = fullest(counts);
-  const float value =
-      static_cast<float>(bin) / static_cast<float>(kPaperBins - 1) * (survey.max - survey.min) + survey.min;
+  const float value = paper_edge(bin, survey.min, survey.max);
   return {value, "paper", static_cast<double>(counts[bin]) / static_cast<double>(survey.finite)};
 }
 

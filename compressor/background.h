@@ -33,8 +33,8 @@ Background find_background(const Survey& survey, const RowStore& rows, VolumeSou
                            const StreamOptions& options);
 
 /// The paper's: left edge of the fullest of its 1024 bins, lo + i/1023 (hi - lo), in float as its code
-/// computes it (Zellmann et al., EGPGV 2025). One more pass over the volume unless the survey counted
-/// every value.
+/// computes it (Zellmann et al., EGPGV 2025), in double where hi - lo overflows. One more pass over the volume unless
+/// the survey counted every value.
 Background paper_background(const Survey& survey, VolumeSource& source, const BlockPlan& plan,
                             const StreamOptions& options);
 

@@ -1,6 +1,9 @@
 #include "compressor/budget.h"
 
-#include <cmath>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <string_view>
 
 #include "format/error.h"
 #include "format/text.h"
@@ -8,13 +11,34 @@
 namespace weir {
 namespace {
 
+// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as: 2.3 in binary is a
+// little less than 2.3, and 92 bytes would become 41. In integers, because dense_bytes may exceed 2^53.
 std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
-  // Whole rates by integers: exact beyond 2^53 bytes too.
-  if (rate == std::floor(rate) && rate < 0x1p53) {
-    const auto whole = static_cast<std::uint64_t>(rate);
-    return dense_bytes / whole + (dense_bytes % whole != 0 ? 1 : 0);
+  std::array<char, 32> text{};
+  std::to_chars(text.data(), text.data() + text.size(), rate, std::chars_format::scientific);  // "2.3e+00"
+  const std::string_view number(text.data());
+  const std::size_t e = number.find('e');
+  std::uint64_t digits = 0;  // rate = digits * 10^power; 17 at most
+  int power = 0;
+  std::from_chars(&number[e + (number[e + 1] == '+' ? 2 : 1)], number.data() + number.size(), power);
+  for (std::size_t i = 0; i < e; ++i) {
+    if (number[i] == '.') continue;
+    digits = digits * 10 + static_cast<std::uint64_t>(number[i] - '0');
+    if (i > 0) --power;
   }
-  return static_cast<std::uint64_t>(std::ceil(static_cast<long double>(dense_bytes) / static_cast<long double>(rate)));
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t quotient = dense_bytes / digits;
+  std::uint64_t remainder = dense_bytes % digits;
+  for (; power < 0; ++power) {  // long division
+    if (quotient > kMost / 10 - 1) return kMost;
+    quotient = quotient * 10 + remainder * 10 / digits;
+    remainder = remainder * 10 % digits;
+  }
+  for (; power > 0 && quotient > 0; --power) {
+    remainder += quotient % 10;  // from here on only zero or not counts
+    quotient /= 10;
+  }
+  return quotient + (remainder > 0 ? 1 : 0);
 }
 
 }  // namespace

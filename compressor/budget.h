@@ -16,7 +16,7 @@ struct Budget {
     lossless    ///< as many bytes as every bit needs
   };
   Kind kind = Kind::automatic;
-  double rate = 8;          ///< > 0
+  double rate = 8;          ///< finite, > 0; its shortest decimal form counts
   std::uint64_t bytes = 0;  ///< for Kind::size
 };
 

@@ -1,6 +1,7 @@
 #include "compressor/certificate.h"
 
 #include <cmath>
+#include <limits>
 
 namespace weir {
 
@@ -12,6 +13,7 @@ Certificate make_certificate(double squared_error, double max_abs, bool lossless
   c.mse = finite == 0 ? 0 : squared_error / static_cast<double>(finite);
   c.rmse = std::sqrt(c.mse);
   const double range = static_cast<double>(max) - static_cast<double>(min);
+  if (range == 0 && c.mse > 0) c.nmse = std::numeric_limits<double>::infinity();
   if (range > 0) {
     // Divide before squaring: range^2 of 1e-40 fields would underflow.
     c.nmse = c.rmse / range * (c.rmse / range);

@@ -10,7 +10,7 @@ namespace weir {
 struct Certificate {
   double mse = 0;
   double rmse = 0;
-  double nmse = 0;                ///< mse / range^2; 0 where the range is 0 and nothing was lost
+  double nmse = 0;                ///< mse / range^2; infinite where something was lost of a volume of one value
   std::optional<double> psnr_db;  ///< 10 log10(range^2 / mse); none when lossless or without a range
   double max_abs = 0;
   bool lossless = false;  ///< every voxel, NaN too where kept, reads bit for bit

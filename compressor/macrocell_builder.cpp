@@ -95,7 +95,8 @@ void MacrocellBuilder::finish(std::int64_t layer, std::vector<MinMax>& cells) co
       if (!lattice_.domain.contains(Box{box.lo - apron, box.hi + apron})) widen(bounds, {background_, background_});
       // Nothing but NaN in reach: no majorant is asked for, but readers expect min <= max.
       if (bounds.min > bounds.max) bounds = {background_, background_};
-      cells.push_back(bounds);
+      // A zero's sign is that of the region merged first: make it one.
+      cells.push_back({bounds.min + 0.0F, bounds.max + 0.0F});
     }
   }
 }

@@ -1,7 +1,8 @@
 // A one-pass histogram whose result depends on the values alone: bins are a
 // power of two wide with edges at its multiples, and neighbours merge as the
 // range grows. In the end the range is covered by 513 to 1024 bins (one bin where
-// all values are equal), whatever the order and however the work was divided.
+// all values are equal, fewer where the range is below 512 of the smallest
+// denormal), whatever the order and however the work was divided.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,73 @@
+#include "compressor/memory_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <string>
+
+#include "format/digest.h"
+#include "format/error.h"
+#include "ingest/staging.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+const Box kLarge{{0, 0, 0}, {3000, 3000, 3000}};
+
+TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
+  for (const std::uint64_t ceiling : {256 * kMiB, 300 * kMiB, 512 * kMiB, 4096 * kMiB}) {
+    for (const std::size_t threads : {1U, 2U, 7U, 16U}) {
+      for (const std::uint64_t resident : {10 * kMiB, 60 * kMiB}) {
+        const MemoryPlan plan = plan_memory(ceiling, resident, threads, kLarge);
+        const std::uint64_t rows =
+            threads * static_cast<std::uint64_t>(plan.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
+        // The passes follow each other: blocks, rows and digests are never held together.
+        EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
+        EXPECT_LT(resident + kStagingBytes + rows, ceiling);
+        EXPECT_LT(resident + plan.digest_threads * kDigestPieceBytes, ceiling);
+        EXPECT_GE(plan.block_bytes, kMiB);
+        EXPECT_GE(plan.segment_regions, 1);
+        EXPECT_GE(plan.digest_threads, 1U);
+        EXPECT_LE(plan.digest_threads, threads);
+      }
+    }
+  }
+}
+
+TEST(MemoryPlan, MoreMemoryNeverMeansSmallerShares) {
+  MemoryPlan before;
+  before.block_bytes = 0;
+  before.segment_regions = 0;
+  before.digest_threads = 0;
+  for (std::uint64_t ceiling = 200 * kMiB; ceiling < 8192 * kMiB; ceiling += 97 * kMiB) {
+    const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge);
+    EXPECT_GE(plan.block_bytes, before.block_bytes);
+    EXPECT_GE(plan.segment_regions, before.segment_regions);
+    EXPECT_GE(plan.digest_threads, before.digest_threads);
+    before = plan;
+  }
+}
+
+TEST(MemoryPlan, TooLittleIsAnErrorWhoseAdviceIsEnough) {
+  for (const Box& domain : {Box{{0, 0, 0}, {1, 1, 1}}, kLarge, Box{{0, 0, 0}, {20000, 20000, 20000}}}) {
+    for (const std::size_t threads : {1U, 64U}) {
+      try {
+        plan_memory(kMiB, 20 * kMiB, threads, domain);
+        FAIL();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string message = error.what();
+        std::smatch match;
+        const std::regex form("--memory 1.0 MiB is too small for this volume with " + std::to_string(threads) +
+                              " threads; give at least ([0-9]+)MiB");
+        ASSERT_TRUE(std::regex_match(message, match, form)) << message;
+        EXPECT_NO_THROW(plan_memory(std::stoull(match[1]) * kMiB, 20 * kMiB, threads, domain));
+        EXPECT_THROW(plan_memory((std::stoull(match[1]) - 2) * kMiB, 20 * kMiB, threads, domain), Error);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weir
