@@ -277,6 +277,9 @@ Sidecar parse_sidecar(std::string_view text, const std::string& path) {
   } catch (const nlohmann::json::parse_error& error) {
     throw Error(ErrorKind::input,
                 cat(path, ": at byte ", error.byte - 1, ": not valid JSON; write the sidecar again with weir convert"));
+  } catch (const nlohmann::json::out_of_range&) {
+    throw Error(ErrorKind::input,
+                path + ": a number is beyond the range of double; write the sidecar again with weir convert");
   }
   if (!document.is_object()) throw Error(ErrorKind::input, path + ": not a JSON object; give the sidecar of a volume");
   JsonReader reader(document, path);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "format/error.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
@@ -139,6 +139,11 @@ TEST(Sidecar, ErrorsNameTheKey) {
             "a.nvdb.json: key weir.options.rate: expected a string, found 8" + remedy);
 }
 
+TEST(Sidecar, NumbersBeyondDoubleAreRefused) {
+  EXPECT_EQ(message("{\"weir_sidecar\": 1e999}"),
+            "a.nvdb.json: a number is beyond the range of double; write the sidecar again with weir convert");
+}
+
 TEST(Sidecar, SurvivesDeepNesting) {
   const std::string deep = "{\"weir_sidecar\": " + std::string(1000000, '[') + std::string(1000000, ']') + "}";
   EXPECT_EQ(message(deep),
@@ -152,7 +157,8 @@ TEST(Sidecar, IgnoresKeysItDoesNotKnow) {
 
 // 'y' or 'n' for each document; empty where python3 has no jsonschema.
 std::string validate_against_schema(const std::vector<std::string>& documents) {
-  const std::string path = testing::TempDir() + "weir_sidecar_test.jsonl";
+  const TemporaryDirectory directory;
+  const std::string path = directory / "documents.jsonl";
   {
     std::ofstream out(path);
     for (const std::string& document : documents) out << nlohmann::json::parse(document).dump() << '\n';
@@ -167,7 +173,6 @@ std::string validate_against_schema(const std::vector<std::string>& documents) {
     for (int c = std::fgetc(pipe); c != EOF && c != '\n'; c = std::fgetc(pipe)) answers += static_cast<char>(c);
     pclose(pipe);
   }
-  std::filesystem::remove(path);
   return answers;
 }
 
