@@ -11,22 +11,17 @@
 #include "format/error.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
 
 class ConversionFaultTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    directory_ = std::filesystem::path(::testing::TempDir()) / "weir_conversion_fault";
-    std::filesystem::remove_all(directory_);
-    std::filesystem::create_directories(directory_);
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
   std::set<std::string> listing() const {
     std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_)) names.insert(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(directory_.path()))
+      names.insert(entry.path().filename());
     return names;
   }
 
@@ -34,13 +29,13 @@ class ConversionFaultTest : public ::testing::Test {
   void convert(FileSystem& files) const {
     const auto source = open_synthetic("cloud", {{40, 33, 21}, 1});
     ConversionOptions options;
-    options.output = (directory_ / "out.nvdb").string();
+    options.output = directory_ / "out.nvdb";
     options.threads = 1;
     options.work_dir = work_dir_;
     convert_volume(*source, options, {}, files);
   }
 
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
   std::string work_dir_;
   std::unique_ptr<FileSystem> real_ = make_posix_file_system();
 };
@@ -85,7 +80,7 @@ TEST_F(ConversionFaultTest, CancelledBeforeItBeginsLeavesNothing) {
   ConversionControl control;
   control.cancel = &cancel;
   ConversionOptions options;
-  options.output = (directory_ / "out.nvdb").string();
+  options.output = directory_ / "out.nvdb";
   try {
     convert_volume(*source, options, control, *real_);
     FAIL();

@@ -3,7 +3,6 @@
 // change of the format or of the selection, to be made on purpose.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "format/error.h"
 #include "ingest/source_registry.h"
 #include "ingest/synthetic/synthetic.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
@@ -37,9 +37,6 @@ std::string name_of(const ::testing::TestParamInfo<Golden>& info) {
 class GoldenTest : public ::testing::TestWithParam<Golden> {
  protected:
   void SetUp() override {
-    directory_ = std::filesystem::path(::testing::TempDir()) / ("weir_golden_" + name_of({GetParam(), 0}));
-    std::filesystem::remove_all(directory_);
-    std::filesystem::create_directories(directory_);
     const auto source = open_synthetic(GetParam().kind, {GetParam().extent, 1});
     std::vector<float> values(static_cast<std::size_t>(volume(GetParam().extent)));
     source->read(source->info().domain(), values);
@@ -47,9 +44,8 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
     file.write(reinterpret_cast<const char*>(values.data()),
                static_cast<std::streamsize>(values.size() * sizeof(float)));
   }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
 
-  std::string input() const { return (directory_ / "in.raw").string(); }
+  std::string input() const { return directory_ / "in.raw"; }
 
   std::string convert(std::size_t threads, std::uint64_t memory, DirectIo direct_io) const {
     const Golden& golden = GetParam();
@@ -59,7 +55,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
     source_options.raw.direct_io = direct_io;
     const auto source = open_source(input(), source_options);
     ConversionOptions options;
-    options.output = (directory_ / "out.nvdb").string();
+    options.output = directory_ / "out.nvdb";
     options.overwrite = true;
     options.budget = golden.budget;
     options.metric = golden.metric;
@@ -77,7 +73,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
     return sidecar.file.digest;
   }
 
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
 };
 
 TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {

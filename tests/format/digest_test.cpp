@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <vector>
+
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
@@ -63,13 +64,10 @@ TEST(Digest, OfFileIsOverPiecesOf16MiB) {
 TEST(Digest, OfFileThroughTheFileSystemIsTheSame) {
   const auto data = pattern(kDigestPieceBytes + 4097);
   const auto system = make_posix_file_system();
-  const std::string path = testing::TempDir() + "weir_digest_test.bin";
-  {
-    const auto file = system->create(path);
-    file->write_at(0, data);
-    EXPECT_EQ(file_digest(*file), file_digest(std::span<const std::byte>(data)));
-  }
-  std::filesystem::remove(path);
+  const TemporaryDirectory directory;
+  const auto file = system->create(directory / "volume");
+  file->write_at(0, data);
+  EXPECT_EQ(file_digest(*file), file_digest(std::span<const std::byte>(data)));
 }
 
 }  // namespace

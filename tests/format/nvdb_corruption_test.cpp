@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "format/nvdb_file.h"
 #include "format/nvdb_grid.h"
 #include "tests/format/stock_nvdb.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
@@ -389,7 +389,8 @@ TEST(NvdbFile, SaysWhatIsNoFile) {
   };
   EXPECT_EQ(message_at("/nonexistent/a.nvdb"), "/nonexistent/a.nvdb: cannot open: No such file or directory");
   EXPECT_EQ(message_at("/tmp"), "/tmp: not a regular file; give a .nvdb file");
-  const std::string path = testing::TempDir() + "weir_nvdb_file_test.nvdb";
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a.nvdb";
   test::write_whole(path, {});
   EXPECT_EQ(message_at(path), path + ": the file is empty; give a .nvdb file");
   test::write_whole(path, Bytes(20));
@@ -401,7 +402,6 @@ TEST(NvdbFile, SaysWhatIsNoFile) {
   const NvdbFile moved = std::move(file);
   EXPECT_EQ(moved.grid().value({1, 1, 1}), value);
   EXPECT_EQ(moved.path(), path);
-  std::remove(path.c_str());
 }
 
 }  // namespace

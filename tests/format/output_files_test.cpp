@@ -12,6 +12,7 @@
 
 #include "format/error.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {
@@ -21,21 +22,13 @@ using Listing = std::map<std::string, std::string>;
 
 class OutputFilesTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    directory_ = std::filesystem::path(::testing::TempDir()) /
-                 (std::string("weir_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(directory_);
-    std::filesystem::create_directories(directory_);
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  std::string output() const { return (directory_ / "out.nvdb").string(); }
+  std::string output() const { return directory_ / "out.nvdb"; }
 
   void put(const std::string& name, const std::string& text) const { std::ofstream(directory_ / name) << text; }
 
   Listing listing() const {
     Listing all;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
+    for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
       std::ifstream file(entry.path(), std::ios::binary);
       all[entry.path().filename().string()] = std::string(std::istreambuf_iterator<char>(file), {});
     }
@@ -58,7 +51,7 @@ class OutputFilesTest : public ::testing::Test {
 
   const Listing written_{{"out.nvdb", "volume"}, {"out.nvdb.json", "sidecar"}};
   std::unique_ptr<FileSystem> real_ = make_posix_file_system();
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
 };
 
 TEST_F(OutputFilesTest, WritesBothFilesAndNothingElse) {
@@ -165,14 +158,14 @@ TEST_F(OutputFilesTest, TakesOverThePartialFileOfADeadProcess) {
 }
 
 TEST_F(OutputFilesTest, SaysThatTheDirectoryIsMissing) {
-  const std::string path = (directory_ / "absent" / "out.nvdb").string();
+  const std::string path = directory_ / "absent/out.nvdb";
   try {
     OutputFiles output_files(*real_, path, false);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
-    EXPECT_EQ(std::string(error.what()), path + ": the directory " + (directory_ / "absent").string() +
-                                             " does not exist; make it or choose another output");
+    EXPECT_EQ(std::string(error.what()),
+              path + ": the directory " + directory_ / "absent" + " does not exist; make it or choose another output");
   }
 }
 

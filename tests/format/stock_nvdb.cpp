@@ -6,11 +6,12 @@
 #include <openvdb/openvdb.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <span>
 #include <stdexcept>
+
+#include "tests/support/temporary_directory.h"
 
 namespace weir::test {
 namespace {
@@ -63,11 +64,9 @@ nanovdb::GridHandle<nanovdb::HostBuffer> convert(const openvdb::FloatGrid& grid)
 }
 
 std::vector<std::byte> written(const std::function<void(const std::string&)>& write) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / "stock_nvdb_sample.nvdb").string();
-  write(path);
-  auto bytes = read_whole(path);
-  std::filesystem::remove(path);
-  return bytes;
+  const TemporaryDirectory directory;
+  write(directory / "sample.nvdb");
+  return read_whole(directory / "sample.nvdb");
 }
 
 }  // namespace

@@ -164,17 +164,6 @@ CommandResult run_weir(std::vector<std::string> arguments, const CommandOptions&
   return run_command(arguments, options);
 }
 
-TemporaryDirectory::TemporaryDirectory() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "weir_test_XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) fail(errno, "mkdtemp " + pattern);
-  path_ = pattern;
-}
-
-TemporaryDirectory::~TemporaryDirectory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::vector<std::string> list_directory(const std::filesystem::path& directory) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))

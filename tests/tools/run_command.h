@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/temporary_directory.h"
+
 namespace weir {
 
 struct CommandOptions {
@@ -64,22 +66,6 @@ class ChildProcess {
 CommandResult run_command(const std::vector<std::string>& argv, const CommandOptions& options = {});
 /// run_command of the `weir` this test was built with; `arguments` without argv[0].
 CommandResult run_weir(std::vector<std::string> arguments, const CommandOptions& options = {});
-
-/// An empty directory below the system's temporary one, removed with all in it on destruction.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory();
-  ~TemporaryDirectory();
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  const std::filesystem::path& path() const noexcept { return path_; }
-  /// The path of `name` inside, for command lines.
-  std::string operator/(std::string_view name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Everything in `directory` and below, hidden names too: paths relative to it, sorted, directories with a
 /// trailing slash.
