@@ -54,6 +54,7 @@ float linear_from_srgb(float srgb) {
 
 std::vector<std::string_view> colormap_names() {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kMaps));
   for (const Map& map : kMaps) names.push_back(map.name);
   return names;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -19,7 +20,7 @@ namespace weir {
 namespace {
 
 std::uint8_t to_byte(float display_linear) {
-  return static_cast<std::uint8_t>(srgb_from_linear(display_linear) * 255.0F + 0.5F);
+  return static_cast<std::uint8_t>(std::lround(srgb_from_linear(display_linear) * 255.0F));
 }
 
 std::string extension_of(const std::string& path) {
