@@ -50,11 +50,13 @@ Box trim_to_kept(const TreeRegions& tree, const MaskStore& masks, const Box& blo
   return kept;
 }
 
-// Encodes the kept leaves of one x layer of one region, which follow each other in the file.
-class LayerEncoder {
+// Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
+// follow each other in the file. One per thread.
+class LeafEncoder {
  public:
-  void run(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
-           const LeafMask& mask, std::int64_t x) {
+  // The kept leaves of one x layer of one region, as far as they lie in the block.
+  void add_layer(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
+                 const LeafMask& mask, std::int64_t x) {
     const TreeRegions& tree = target.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
     const Box box = intersect(tree.leaf_box(region_index), leaf_box);
@@ -63,36 +65,50 @@ class LayerEncoder {
         const Index3 leaf{x, y, z};
         const std::size_t position = tree.mask_position(leaf);
         if (!mask.test(position)) continue;
-        const std::uint64_t ordinal = region.first_leaf + mask.count_before(position);
-        if (ordinal != first_ + records_.size() + waiting_) {
-          flush(target);
-          first_ = ordinal;
-        }
-        encode(target, block, leaf);
+        gather(target, block, leaf, region.first_leaf + mask.count_before(position));
       }
     }
-    flush(target);
+  }
+
+  // Writes what is still held; call before the thread turns to another block.
+  void finish(const EncodeTarget& target) {
+    encode_batch();
+    for (std::size_t first = 0; first < ordinals_.size();) {
+      std::size_t end = first + 1;
+      while (end < ordinals_.size() && ordinals_[end] == ordinals_[end - 1] + 1) ++end;
+      const std::span<const std::byte> bytes(bytes_);
+      target.out.write_at(target.layout.leaves + ordinals_[first] * nvdb::kFloatLeafBytes,
+                          bytes.subspan(first * nvdb::kFloatLeafBytes, (end - first) * nvdb::kFloatLeafBytes));
+      target.records.write(ordinals_[first], std::span(records_).subspan(first, end - first));
+      first = end;
+    }
+    bytes_.clear();
+    records_.clear();
+    ordinals_.clear();
   }
 
  private:
-  // Gathers one leaf; statistics and bytes come when the batch is full.
-  void encode(const EncodeTarget& target, const Block& block, const Index3& leaf) {
+  static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
+
+  void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, std::uint64_t ordinal) {
     const Box node = target.tree.leaves.node_box(leaf);
     const Box inside = target.tree.leaves.voxels(leaf);
-    LeafValues& values = values_[waiting_];
+    LeafValues& values = values_[batch_];
     gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values);
     if (target.fill.non_finite != NonFinitePolicy::keep) {
       for (float& v : values) v = std::isfinite(v) ? v : target.fill.background;
     }
-    nodes_[waiting_] = node;
-    insides_[waiting_] = inside;
-    if (++waiting_ == kLeafBatch) encode_waiting();
+    nodes_[batch_] = node;
+    insides_[batch_] = inside;
+    ordinals_.push_back(ordinal);
+    if (++batch_ == kLeafBatch) encode_batch();
+    if (ordinals_.size() >= kHeldLeaves) finish(target);
   }
 
-  void encode_waiting() {
-    const std::span<NodeStatistics> statistics(statistics_.data(), waiting_);
-    full_leaf_statistics({values_.data(), waiting_}, {nodes_.data(), waiting_}, statistics);
-    for (std::size_t i = 0; i < waiting_; ++i) {
+  void encode_batch() {
+    const std::span<NodeStatistics> statistics(statistics_.data(), batch_);
+    full_leaf_statistics({values_.data(), batch_}, {nodes_.data(), batch_}, statistics);
+    for (std::size_t i = 0; i < batch_; ++i) {
       if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
       const std::size_t at = bytes_.size();
       bytes_.resize(at + nvdb::kFloatLeafBytes);
@@ -100,32 +116,38 @@ class LayerEncoder {
                         std::span<std::byte, nvdb::kFloatLeafBytes>(bytes_.data() + at, nvdb::kFloatLeafBytes));
       records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
     }
-    waiting_ = 0;
+    batch_ = 0;
   }
 
-  void flush(const EncodeTarget& target) {
-    encode_waiting();
-    if (records_.empty()) return;
-    target.out.write_at(target.layout.leaves + first_ * nvdb::kFloatLeafBytes, bytes_);
-    target.records.write(first_, records_);
-    bytes_.clear();
-    records_.clear();
-  }
-
-  std::uint64_t first_ = 0;  // ordinal of the first leaf not yet written
-  std::size_t waiting_ = 0;  // leaves gathered and not yet encoded
+  std::size_t batch_ = 0;  // leaves gathered and not yet encoded
   std::array<LeafValues, kLeafBatch> values_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};
   std::array<NodeStatistics, kLeafBatch> statistics_{};
+  std::vector<std::uint64_t> ordinals_;  // of the leaves held, encoded or not
   std::vector<std::byte> bytes_;
   std::vector<LeafRecord> records_;
 };
 
+// Calls visit(region, mask, x) for every x layer of every region of a block that holds kept leaves;
+// `for_each(begin, end, action)` is the loop to use.
+template <typename ForEach, typename Visit>
+void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEach& for_each, const Visit& visit) {
+  const TreeRegions& tree = target.tree;
+  const Box regions = regions_under(tree, leaf_box);
+  for_each(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
+    const std::int64_t region = tree.region_lattice.linear(regions.lo + index_at(i, regions.extent()));
+    if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
+    const LeafMask mask = target.masks.read(region);
+    const Box box = intersect(tree.leaf_box(region), leaf_box);
+    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, mask, x); });
+  });
+}
+
 }  // namespace
 
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options) {
+                   const StreamOptions& options, Reading reading) {
   const TreeRegions& tree = target.tree;
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
@@ -135,17 +157,30 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     leaf_boxes.push_back(kept);
     voxel_boxes.push_back(plan.voxel_box(kept));
   }
-  tbb::enumerable_thread_specific<LayerEncoder> encoders;
+  tbb::enumerable_thread_specific<LeafEncoder> encoders;
+  if (reading == Reading::in_place) {
+    const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
+      for (std::int64_t i = begin; i < end; ++i) action(i);
+    };
+    work_in_place(source, voxel_boxes, options, [&](const Block& block) {
+      const Box& leaf_box = leaf_boxes[block.index];
+      LeafEncoder& encoder = encoders.local();
+      for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafMask& mask, std::int64_t x) {
+        encoder.add_layer(target, block, leaf_box, region, mask, x);
+      });
+      encoder.finish(target);
+    });
+    return;
+  }
+  const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
+    tbb::parallel_for(begin, end, action);
+  };
   stream_blocks(source, voxel_boxes, options, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
-    const Box regions = regions_under(tree, leaf_box);
-    tbb::parallel_for(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
-      const std::int64_t region = tree.region_lattice.linear(regions.lo + index_at(i, regions.extent()));
-      if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
-      const LeafMask mask = target.masks.read(region);
-      const Box box = intersect(tree.leaf_box(region), leaf_box);
-      tbb::parallel_for(box.lo.x, box.hi.x,
-                        [&](std::int64_t x) { encoders.local().run(target, block, leaf_box, region, mask, x); });
+    for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafMask& mask, std::int64_t x) {
+      LeafEncoder& encoder = encoders.local();
+      encoder.add_layer(target, block, leaf_box, region, mask, x);
+      encoder.finish(target);
     });
   });
 }

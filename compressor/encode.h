@@ -26,6 +26,6 @@ struct EncodeTarget {
 
 /// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads.
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options);
+                   const StreamOptions& options, Reading reading = Reading::ahead);
 
 }  // namespace weir

@@ -37,13 +37,17 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
   const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
   const std::int64_t bricks = kLowerLeaves / brick_leaves;
   out.clear();
+  const bool whole =
+      leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
+      leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const Index3 node = leaves.first + leaf;
     const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
-    const std::int64_t voxels = leaves.voxels(leaf).voxels();
+    const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
     LeafGain gain;
     gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
-    gain.brick = static_cast<std::uint32_t>(linear_index(floor_div(entry, brick_leaves), {bricks, bricks, bricks}));
+    gain.brick = static_cast<std::uint32_t>(linear_index(
+        {entry.x / brick_leaves, entry.y / brick_leaves, entry.z / brick_leaves}, {bricks, bricks, bricks}));
     gain.required = leaf == Index3{0, 0, 0} || leaf == last_leaf ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
     const float tile = fill.leaf_value(row);

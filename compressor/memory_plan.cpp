@@ -41,6 +41,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   // A block comes with its rows, one 43rd of its size; a quarter of what is left stays free for both
   // passes' small buffers and the allocator's waste.
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * 3);
+  plan.worker_bytes = 2 * plan.block_bytes / threads;
   plan.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
   return plan;

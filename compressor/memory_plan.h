@@ -11,6 +11,7 @@ namespace weir {
 
 struct MemoryPlan {
   std::uint64_t block_bytes = 0;     ///< float32 bytes of one block; two are held at a time
+  std::uint64_t worker_bytes = 0;    ///< of one worker's block where each reads its own
   std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
   std::size_t digest_threads = 1;    ///< file pieces hashed at a time
 };

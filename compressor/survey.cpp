@@ -1,6 +1,6 @@
 #include "compressor/survey.h"
 
-#include <tbb/blocked_range2d.h>
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -170,7 +170,8 @@ void spill(RowStore& store, const Box& leaf_box, std::span<const LeafRow> rows) 
 
 }  // namespace
 
-Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options) {
+Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
+                     Reading reading) {
   const NodeLattice& leaves = plan.lattice;
   const ValueTable table = value_table(source.info().type);
   Tally fresh;
@@ -181,21 +182,33 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     boxes[i] = plan.voxel_box(plan.leaf_box(static_cast<std::int64_t>(i)));
   }
-  std::vector<LeafRow> block_rows;
-  Survey survey;
-  survey.loss = stream_blocks(source, boxes, options, [&](const Block& block) {
+  const auto survey_block = [&](const Block& block, const auto& for_rows) {
     const Box leaf_box = plan.leaf_box(static_cast<std::int64_t>(block.index));
     const Index3 extent = leaf_box.extent();
-    block_rows.resize(static_cast<std::size_t>(volume(extent)));
+    std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
     const BlockSurvey work(leaves, table, block, leaf_box, block_rows);
-    tbb::parallel_for(tbb::blocked_range2d<std::int64_t>(0, extent.z, 0, extent.y), [&](const auto& range) {
-      Tally& tally = tallies.local();
-      for (std::int64_t z = range.rows().begin(); z < range.rows().end(); ++z) {
-        for (std::int64_t y = range.cols().begin(); y < range.cols().end(); ++y) work.leaf_row(y, z, tally);
-      }
-    });
+    for_rows(extent.y * extent.z,
+             [&](std::int64_t row, Tally& tally) { work.leaf_row(row % extent.y, row / extent.y, tally); });
     spill(rows, leaf_box, block_rows);
-  });
+  };
+  Survey survey;
+  if (reading == Reading::in_place) {
+    survey.loss = work_in_place(source, boxes, options, [&](const Block& block) {
+      survey_block(block, [&](std::int64_t count, const auto& on_row) {
+        Tally& tally = tallies.local();
+        for (std::int64_t row = 0; row < count; ++row) on_row(row, tally);
+      });
+    });
+  } else {
+    survey.loss = stream_blocks(source, boxes, options, [&](const Block& block) {
+      survey_block(block, [&](std::int64_t count, const auto& on_row) {
+        tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count), [&](const auto& range) {
+          Tally& tally = tallies.local();
+          for (std::int64_t row = range.begin(); row < range.end(); ++row) on_row(row, tally);
+        });
+      });
+    });
+  }
 
   Tally total = fresh;
   for (const Tally& tally : tallies) total.merge(tally);

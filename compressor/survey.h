@@ -32,8 +32,9 @@ struct Survey {
 };
 
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
-/// number of threads.
-Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options);
+/// number of threads, nor on the way of reading.
+Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
+                     Reading reading = Reading::ahead);
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

@@ -125,7 +125,7 @@ Box BlockPlan::voxel_box(const Box& leaf_box) const {
                    lattice.domain);
 }
 
-BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes) {
+BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes, BlockShape shape) {
   Axes axes{make_axis(domain.lo.x, domain.hi.x, access.chunk.x, access.chunk_origin.x),
             make_axis(domain.lo.y, domain.hi.y, access.chunk.y, access.chunk_origin.y),
             make_axis(domain.lo.z, domain.hi.z, access.chunk.z, access.chunk_origin.z)};
@@ -143,10 +143,11 @@ BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_
   }
   // Long rows for the disk, then a lower node's width in y and in z for the output, then more of both.
   const std::uint64_t ample = std::clamp(kAmpleBlockBytes, largest_bytes(axes), block_bytes);
+  const std::size_t first = shape == BlockShape::wide ? 1 : 2;
   const bool full_rows = grow_by_steps(axes, 0, block_bytes);
   if (!full_rows) {
     grow_to_step(axes, 0, block_bytes);
-  } else if (grow_to_step(axes, 1, block_bytes) && grow_to_step(axes, 2, block_bytes)) {
+  } else if (grow_to_step(axes, first, block_bytes) && grow_to_step(axes, 3 - first, block_bytes)) {
     if (grow_by_steps(axes, 1, ample)) grow_by_steps(axes, 2, ample);
   }
 

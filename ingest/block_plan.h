@@ -39,6 +39,11 @@ inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 /// leaf edges, then as above. A block is never smaller than one leaf.
 /// `domain` is not empty and its float32 bytes fit 63 bits. Throws Error(usage) where not even one leaf
 /// fits.
-BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes);
+///
+/// Blocks too small for a lower node's width in both axes are as long as possible in y, whose rows follow
+/// each other in the input, or, for `BlockShape::deep`, in z, whose leaves follow each other in the output.
+enum class BlockShape { wide, deep };
+BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes,
+                      BlockShape shape = BlockShape::wide);
 
 }  // namespace weir

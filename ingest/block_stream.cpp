@@ -1,5 +1,8 @@
 #include "ingest/block_stream.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <condition_variable>
@@ -126,6 +129,33 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
     if (options.progress) options.progress(done, total);
     throw_if_cancelled(options);
   }
+  return loss;
+}
+
+ConversionLoss work_in_place(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
+                             const std::function<void(const Block&)>& work) {
+  std::int64_t total = 0;
+  std::int64_t largest = 0;
+  for (const Box& box : boxes) {
+    total += box.voxels();
+    largest = std::max(largest, box.voxels());
+  }
+  ConversionLoss loss;
+  std::int64_t done = 0;
+  std::mutex mutex;
+  const std::size_t bytes = static_cast<std::size_t>(largest) * sizeof(float);
+  tbb::enumerable_thread_specific<PageBuffer> buffers([bytes] { return PageBuffer(bytes); });
+  tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t i) {
+    throw_if_cancelled(options);
+    const std::span<float> values = buffers.local().floats().first(static_cast<std::size_t>(boxes[i].voxels()));
+    const ConversionLoss lost = source.read_alone(boxes[i], values);
+    work({i, boxes[i], values});
+    const std::lock_guard lock(mutex);
+    loss.add(lost);
+    done += boxes[i].voxels();
+    if (options.progress) options.progress(done, total);
+  });
+  throw_if_cancelled(options);
   return loss;
 }
 

@@ -1,5 +1,6 @@
-// Reads blocks ahead of the work on them: while one block is being worked on,
-// the next is being read by a thread of its own.
+// The two ways to work on a volume block by block. From a device: while one block
+// is being worked on, the next is being read by a thread of its own. From memory:
+// each worker reads what it works on, so that a copy never leaves its core's cache.
 #pragma once
 
 #include <atomic>
@@ -18,6 +19,9 @@ struct Block {
   std::span<const float> values;  ///< x fastest over `voxels`; valid during the call only
 };
 
+/// stream_blocks or work_in_place.
+enum class Reading { ahead, in_place };
+
 struct StreamOptions {
   const std::atomic<bool>* cancel = nullptr;  ///< set by another thread or a signal handler
   /// Called on the calling thread after each block with the voxels done and the voxels of all boxes.
@@ -29,6 +33,12 @@ struct StreamOptions {
 /// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the read
 /// in progress has ended. Returns the loss summed over all boxes.
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
+                             const std::function<void(const Block&)>& work);
+
+/// The same for a source that is in memory: TBB's workers read each box themselves, into a buffer of the
+/// largest box's size per worker, and call `work` on it at once. Calls of `work` run concurrently and in
+/// any order, and may not use TBB themselves; `progress` is called by one thread at a time.
+ConversionLoss work_in_place(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
                              const std::function<void(const Block&)>& work);
 
 }  // namespace weir

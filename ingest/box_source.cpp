@@ -20,15 +20,23 @@ class BoxSource final : public VolumeSource {
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return source_->access(); }
   std::uint64_t bytes_read() const override { return source_->bytes_read(); }
+  bool in_memory() const override { return source_->in_memory(); }
   ConversionLoss read(const Box& box, std::span<float> values) override {
-    if (box.empty() || !info_.domain().contains(box)) {
-      throw Error(ErrorKind::internal,
-                  cat(info_.path, ": read of box ", box_text(box), " outside the region ", box_text(info_.domain())));
-    }
+    check(box);
     return source_->read(box, values);
+  }
+  ConversionLoss read_alone(const Box& box, std::span<float> values) override {
+    check(box);
+    return source_->read_alone(box, values);
   }
 
  private:
+  void check(const Box& box) const {
+    if (!box.empty() && info_.domain().contains(box)) return;
+    throw Error(ErrorKind::internal,
+                cat(info_.path, ": read of box ", box_text(box), " outside the region ", box_text(info_.domain())));
+  }
+
   std::unique_ptr<VolumeSource> source_;
   SourceInfo info_;
 };

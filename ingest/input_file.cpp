@@ -87,6 +87,16 @@ bool InputFile::is_cached(std::uint64_t offset, std::uint64_t count) const {
   return true;
 }
 
+bool InputFile::looks_cached() const {
+  if (mode_ == DirectIo::on || mapping_ == nullptr) return false;
+  constexpr std::uint64_t kSamples = 256;
+  const std::uint64_t pages = (size_ + page_bytes() - 1) / page_bytes();
+  for (std::uint64_t i = 0; i < std::min(kSamples, pages); ++i) {
+    if (!is_cached(pages * i / std::min(kSamples, pages) * page_bytes(), 1)) return false;
+  }
+  return true;
+}
+
 ReadPath InputFile::path_for(std::uint64_t offset, std::uint64_t count) const {
   if (mode_ != DirectIo::on && mapping_ != nullptr && is_cached(offset, count)) return ReadPath::cache;
   return direct_works_ ? ReadPath::direct : ReadPath::through;

@@ -48,6 +48,10 @@ class InputFile {
   /// How bytes [offset, offset + count) should be read. Looks only, reads nothing.
   ReadPath path_for(std::uint64_t offset, std::uint64_t count) const;
 
+  /// Whether the whole file lies in the page cache, as far as 256 pages spread over it tell, and may be
+  /// read from there.
+  bool looks_cached() const;
+
   /// Fills `into` from `offset` through the page cache. On the path `through`, pages this read brought
   /// in are dropped again and pages that were there stay; on `cache` none is looked at. Throws
   /// Error(input) where the file ends early (it was cut since it was opened), Error(io) where the

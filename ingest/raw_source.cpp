@@ -108,19 +108,25 @@ class RawSource final : public VolumeSource {
   AccessShape access() const override { return {scalar_bytes(shape_.type), {}, {}}; }
   std::uint64_t bytes_read() const override { return file_.bytes_read(); }
 
+  bool in_memory() const override { return file_.looks_cached(); }
+
   ConversionLoss read(const Box& box, std::span<float> values) override {
+    const std::int64_t bytes = box.voxels() * static_cast<std::int64_t>(scalar_bytes(shape_.type));
+    return read_by(std::clamp<std::int64_t>(bytes / kBytesPerThread, 1, static_cast<std::int64_t>(kIoThreads)), box,
+                   values);
+  }
+  ConversionLoss read_alone(const Box& box, std::span<float> values) override { return read_by(1, box, values); }
+
+ private:
+  ConversionLoss read_by(std::int64_t threads, const Box& box, std::span<float> values) {
     if (box.empty() || !info_.domain().contains(box) || std::cmp_not_equal(values.size(), box.voxels())) {
       throw Error(ErrorKind::internal, cat(info_.path, ": read of box ", box_text(box), " into ", values.size(),
                                            " values does not fit ", box_text(info_.domain())));
     }
-    const std::size_t voxel_bytes = scalar_bytes(shape_.type);
-    const BoxPieces pieces(shape_.extent, box, voxel_bytes, offset_, kPieceBytes);
-    const auto threads = static_cast<std::size_t>(
-        std::clamp<std::int64_t>(box.voxels() * static_cast<std::int64_t>(voxel_bytes) / kBytesPerThread, 1,
-                                 static_cast<std::int64_t>(kIoThreads)));
+    const BoxPieces pieces(shape_.extent, box, scalar_bytes(shape_.type), offset_, kPieceBytes);
     ConversionLoss total;
     std::mutex mutex;
-    for_pieces(pieces.size(), threads, [&](std::int64_t i) {
+    for_pieces(pieces.size(), static_cast<std::size_t>(threads), [&](std::int64_t i) {
       const ConversionLoss loss = read_piece(pieces.piece(i), values);
       const std::lock_guard lock(mutex);
       total.add(loss);
@@ -128,7 +134,6 @@ class RawSource final : public VolumeSource {
     return total;
   }
 
- private:
   ConversionLoss read_piece(const BoxPiece& piece, std::span<float> values) {
     const auto run = static_cast<std::size_t>(piece.run_voxels);
     values = values.subspan(static_cast<std::size_t>(piece.first_value), run * static_cast<std::size_t>(piece.runs));

@@ -64,6 +64,13 @@ class VolumeSource {
   /// missing, Error(io) where the device fails.
   virtual ConversionLoss read(const Box& box, std::span<float> values) = 0;
 
+  /// True where reading is a copy out of memory (the file is in the page cache) and waits for nothing:
+  /// callers then read on their working threads, in pieces that stay in a core's cache.
+  virtual bool in_memory() const { return false; }
+
+  /// The same as read, by the calling thread alone.
+  virtual ConversionLoss read_alone(const Box& box, std::span<float> values) { return read(box, values); }
+
   /// Bytes read from the device or cache so far (for progress and the sidecar).
   virtual std::uint64_t bytes_read() const = 0;
 };
