@@ -13,6 +13,8 @@ namespace weir {
 
 /// Transmittance below which a ray has seen enough: an eighth of a step of 8-bit output.
 inline constexpr float kOpaque = 1.0F / 2048.0F;
+/// Contribution to a pixel below which a sample is not worth the six lookups of a gradient.
+inline constexpr float kUnshaded = 1.0F / 4096.0F;
 
 /// Radiance from unit `direction`. `step` is the distance between samples, in the shortest voxel edges;
 /// `shading` in [0, 1] blends the colour with its reflection of the lights on a surface
@@ -37,14 +39,15 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
       const float sigma = medium.extinction(colour.a);
       if (!(sigma > 0.0F)) continue;
       const float through = std::exp(-sigma * step);
+      const float weight = transmittance * (1.0F - through);
       Float3 emitted = rgb(colour);
-      if (shading > 0.0F) {
+      if (shading > 0.0F && weight > kUnshaded) {
         const Float3 slope = gradient(medium.volume, p) / medium.stretch;
         const Float3 normal = normalised(slope, direction);
         const Float3 facing = dot(normal, direction) > 0.0F ? -normal : normal;
         emitted = mix(emitted, emitted * lighting.on_surface(facing), shading);
       }
-      radiance += emitted * (transmittance * (1.0F - through));
+      radiance += emitted * weight;
       transmittance *= through;
       if (transmittance < kOpaque) return radiance;
     }

@@ -55,7 +55,11 @@ Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults) {
   light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
   light.horizon = narrow(s.horizon.value_or(Double3{0.6, 0.6, 0.6}));
   light.ground = narrow(s.ground.value_or(Double3{0.22, 0.2, 0.18}));
-  light.background = narrow(s.background.value_or(defaults.background));
+  // The default ground is what a screen shows, whatever the exposure.
+  const double exposure = std::max(s.exposure.value_or(defaults.exposure), 1e-6);
+  const Double3& ground = defaults.background;
+  light.background =
+      narrow(s.background.value_or(Double3{ground[0] / exposure, ground[1] / exposure, ground[2] / exposure}));
   light.sky_behind = false;
   const std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
   for (const SceneLight& l : s.lights.value_or(key)) {
