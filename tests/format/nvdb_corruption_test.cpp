@@ -12,7 +12,6 @@
 #include "format/error.h"
 #include "format/macrocells.h"
 #include "format/nanovdb_layout.h"
-#include "format/nvdb_file.h"
 #include "format/nvdb_grid.h"
 #include "tests/format/stock_nvdb.h"
 #include "tests/support/temporary_directory.h"
@@ -375,33 +374,6 @@ TEST(NvdbCorruption, Macrocells) {
   put<std::int32_t>(empty, kRoot, std::numeric_limits<std::int32_t>::max());
   EXPECT_EQ(message_of(empty),
             "a.nvdb: at byte " + std::to_string(record) + ": macrocells of a grid without active voxels");
-}
-
-TEST(NvdbFile, SaysWhatIsNoFile) {
-  const auto message_at = [](const std::string& path) -> std::string {
-    try {
-      NvdbFile file(path);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input);
-      return error.what();
-    }
-    return "no error";
-  };
-  EXPECT_EQ(message_at("/nonexistent/a.nvdb"), "/nonexistent/a.nvdb: cannot open: No such file or directory");
-  EXPECT_EQ(message_at("/tmp"), "/tmp: not a regular file; give a .nvdb file");
-  const TemporaryDirectory directory;
-  const std::string path = directory / "a.nvdb";
-  test::write_whole(path, {});
-  EXPECT_EQ(message_at(path), path + ": the file is empty; give a .nvdb file");
-  test::write_whole(path, Bytes(20));
-  EXPECT_EQ(message_at(path), path + ": at byte 0: magic number 0x0 is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
-  test::write_whole(path, stock(GridType::fpn));
-  NvdbFile file(path);
-  EXPECT_EQ(file.bytes().size(), stock(GridType::fpn).size());
-  const float value = file.grid().value({1, 1, 1});
-  const NvdbFile moved = std::move(file);
-  EXPECT_EQ(moved.grid().value({1, 1, 1}), value);
-  EXPECT_EQ(moved.path(), path);
 }
 
 }  // namespace

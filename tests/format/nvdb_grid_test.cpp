@@ -162,36 +162,5 @@ TEST(NvdbGrid, CoordinatesBeyond32BitsAreBackground) {
   EXPECT_EQ(grid.block_at({std::int64_t{1} << 32U, 0, 0}).origin, (Index3{std::int64_t{1} << 32U, 0, 0}));
 }
 
-TEST(LeafDecode, RoundsTwice) {
-  // Found by search: the fused result differs in the last bit.
-  std::uint32_t differing = 0;
-  for (std::uint32_t code = 0; code < 65536; ++code) {
-    const float quantum = 0.1F;
-    const float minimum = 0.3F;
-    const float fused = std::fma(static_cast<float>(code), quantum, minimum);
-    const volatile float product = static_cast<float>(code) * quantum;
-    const float twice = product + minimum;
-    EXPECT_EQ(dequantize(code, quantum, minimum), twice);
-    differing += fused != twice ? 1 : 0;
-  }
-  EXPECT_GT(differing, 1000U);
-}
-
-TEST(LeafDecode, CodesArePackedFromTheLowestBit) {
-  std::array<std::byte, 1024> codes{};
-  for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = static_cast<std::byte>(i * 37 + 11);
-  for (unsigned log2 = 0; log2 <= kMaxLeafBitsLog2; ++log2) {
-    const unsigned bits = 1U << log2;
-    for (unsigned i = 0; i < 512; ++i) {
-      std::uint32_t expected = 0;
-      for (unsigned b = 0; b < bits; ++b) {
-        const unsigned at = i * bits + b;
-        expected |= (static_cast<unsigned>(codes[at >> 3U]) >> (at & 7U) & 1U) << b;
-      }
-      ASSERT_EQ(leaf_code(codes.data(), log2, i), expected) << bits << " bits, voxel " << i;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace weir

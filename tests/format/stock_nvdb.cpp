@@ -4,12 +4,14 @@
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <span>
 #include <stdexcept>
+#include <string>
 
 #include "tests/support/temporary_directory.h"
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/plot_canvas.h"
-
 namespace weir {
 namespace {
 
@@ -86,17 +84,6 @@ TEST(HistogramImage, SurvivesExtremeRanges) {
         Sidecar::Histogram{0, 1, {std::numeric_limits<std::uint64_t>::max(), 1}}, Sidecar::Histogram{}}) {
     EXPECT_EQ(histogram_image(h, h.min).pixels.size(), 720U * 360U);
   }
-}
-
-TEST(PlotCanvas, ClipsWhatLiesOutside) {
-  PlotCanvas canvas(10, 10, {1, 1, 1});
-  canvas.fill(-5, -5, 2, 2, {0, 0, 0});
-  canvas.text(7, 7, "88", {0, 0, 0});
-  canvas.fill(20, 20, 30, 30, {0, 0, 0});
-  EXPECT_EQ(canvas.image().at(1, 1), (Float3{0, 0, 0}));
-  EXPECT_EQ(canvas.image().at(2, 2), (Float3{1, 1, 1}));
-  EXPECT_EQ(canvas.image().at(8, 7), (Float3{0, 0, 0}));  // the top of the first 8
-  EXPECT_EQ(PlotCanvas::text_width("1e4"), 17);
 }
 
 }  // namespace
