@@ -225,6 +225,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   start_pass(control, "encode", voxels);
   encode_leaves(source, reading.encode, {tree, masks, layout, rule.fill, output.volume(), records}, stream,
                 reading.reading);
+  // Most of the file goes to the device while the rest is made.
+  const std::jthread writeback([&output] { output.volume().start_writeback(); });
   check_cancel(control);
   GridHead head;
   head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;

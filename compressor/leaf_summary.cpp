@@ -11,11 +11,24 @@
 namespace weir {
 namespace {
 
+// Sums run in 16 lanes, two vectors of eight, whatever the machine: lane l takes values l, l + 16, ...
 constexpr std::size_t kLanes = 16;
-using Lanes = std::array<double, kLanes>;
+
+struct Lanes {
+  Doubles8 low{};
+  Doubles8 high{};
+};
+
+using LaneArray = std::array<double, kLanes>;
+
+LaneArray to_array(const Lanes& lanes) {
+  LaneArray all;
+  std::memcpy(all.data(), &lanes, sizeof lanes);
+  return all;
+}
 
 // Pairwise, so that the result does not depend on how the lanes were computed.
-double sum(Lanes lanes) {
+double sum(LaneArray lanes) {
   for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) lanes[i] += lanes[i + width];
   }
@@ -48,34 +61,35 @@ struct Moments {
 };
 
 WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
-  std::array<float, kLanes> low;
-  std::array<float, kLanes> high;
-  Lanes total{};
-  low.fill(values[0]);
-  high.fill(values[0]);
+  Floats8 low = values[0] - Floats8{};
+  Floats8 high = low;
+  Lanes total;
   const std::size_t whole = count / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const float v = values[i + l];
-      low[l] = v < low[l] ? v : low[l];
-      high[l] = v > high[l] ? v : high[l];
-      total[l] += static_cast<double>(v);
-    }
-  }
-  for (std::size_t i = whole; i < count; ++i) {
-    const std::size_t l = i - whole;
-    const float v = values[i];
-    low[l] = v < low[l] ? v : low[l];
-    high[l] = v > high[l] ? v : high[l];
-    total[l] += static_cast<double>(v);
+    Floats8 a;
+    Floats8 b;
+    std::memcpy(&a, values + i, sizeof a);
+    std::memcpy(&b, values + i + kLanes / 2, sizeof b);
+    low = a < low ? a : low;
+    low = b < low ? b : low;
+    high = a > high ? a : high;
+    high = b > high ? b : high;
+    total.low += __builtin_convertvector(a, Doubles8);
+    total.high += __builtin_convertvector(b, Doubles8);
   }
   float min = low[0];
   float max = high[0];
-  for (std::size_t l = 1; l < kLanes; ++l) {
+  for (int l = 1; l < 8; ++l) {
     min = low[l] < min ? low[l] : min;
     max = high[l] > max ? high[l] : max;
   }
-  return {min, max, sum(total)};
+  LaneArray lanes = to_array(total);
+  for (std::size_t i = whole; i < count; ++i) {
+    min = values[i] < min ? values[i] : min;
+    max = values[i] > max ? values[i] : max;
+    lanes[i - whole] += static_cast<double>(values[i]);
+  }
+  return {min, max, sum(lanes)};
 }
 
 struct Deviation {
@@ -84,23 +98,30 @@ struct Deviation {
 };
 
 WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mean) {
-  Lanes total{};
-  Lanes squares{};
   const auto centre = static_cast<double>(mean);
+  Lanes total;
+  Lanes squares;
   const std::size_t whole = count / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double d = static_cast<double>(values[i + l]) - centre;
-      total[l] += d;
-      squares[l] += d * d;
-    }
+    Floats8 a;
+    Floats8 b;
+    std::memcpy(&a, values + i, sizeof a);
+    std::memcpy(&b, values + i + kLanes / 2, sizeof b);
+    const Doubles8 da = __builtin_convertvector(a, Doubles8) - centre;
+    const Doubles8 db = __builtin_convertvector(b, Doubles8) - centre;
+    total.low += da;
+    total.high += db;
+    squares.low += da * da;
+    squares.high += db * db;
   }
+  LaneArray total_lanes = to_array(total);
+  LaneArray square_lanes = to_array(squares);
   for (std::size_t i = whole; i < count; ++i) {
     const double d = static_cast<double>(values[i]) - centre;
-    total[i - whole] += d;
-    squares[i - whole] += d * d;
+    total_lanes[i - whole] += d;
+    square_lanes[i - whole] += d * d;
   }
-  return {sum(total), sum(squares)};
+  return {sum(total_lanes), sum(square_lanes)};
 }
 
 Digest uniform_digest(std::span<const float> values, UniformDigest& last) {

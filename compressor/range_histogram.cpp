@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "format/simd.h"
@@ -15,9 +16,23 @@ constexpr int kFinest = -149;
 
 // Bin of each value. floor() comes before the subtraction: both operands are then integers that
 // double holds exactly, where value * scale - base could round across an edge.
-WEIR_SIMD void bins_of(const float* values, std::size_t count, double scale, double base, std::int32_t* bins) {
-  for (std::size_t i = 0; i < count; ++i) {
+void bins_one_by_one(std::span<const float> values, double scale, double base, std::int32_t* bins) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
     bins[i] = static_cast<std::int32_t>(std::floor(static_cast<double>(values[i]) * scale) - base);
+  }
+}
+
+// The same for a multiple of eight values whose floor(value * scale) fits 32 bits.
+WEIR_SIMD void bins_by_eight(const float* values, std::size_t count, double scale, std::int32_t base,
+                             std::int32_t* bins) {
+  for (std::size_t i = 0; i < count; i += 8) {
+    Floats8 v;
+    std::memcpy(&v, values + i, sizeof v);
+    const Doubles8 x = __builtin_convertvector(v, Doubles8) * scale;
+    const Ints8 cut = __builtin_convertvector(x, Ints8);            // towards zero
+    const auto above = __builtin_convertvector(cut, Doubles8) > x;  // -1 where that is not the floor
+    const Ints8 bin = cut + __builtin_convertvector(above, Ints8) - base;
+    std::memcpy(bins + i, &bin, sizeof bin);
   }
 }
 
@@ -70,9 +85,12 @@ void RangeHistogram::add(std::span<const float> values, float low, float high) {
   cover(low, high);
   constexpr std::size_t kPiece = 512;
   std::array<std::int32_t, kPiece> bins;
+  const bool small = std::abs(base_) < 0x1p30;
   while (!values.empty()) {
     const std::size_t count = std::min(values.size(), kPiece);
-    bins_of(values.data(), count, scale_, base_, bins.data());
+    const std::size_t eights = small ? count / 8 * 8 : 0;
+    if (eights > 0) bins_by_eight(values.data(), eights, scale_, static_cast<std::int32_t>(base_), bins.data());
+    bins_one_by_one(values.subspan(eights, count - eights), scale_, base_, bins.data() + eights);
     std::size_t i = 0;
     for (; i + 1 < count; i += 2) {
       ++even_[static_cast<std::size_t>(bins[i])];

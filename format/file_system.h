@@ -21,6 +21,9 @@ class File {
   /// Sets the size and reserves the blocks. Returns false where the file system cannot reserve (the
   /// size is set all the same, and a full disk shows later); a full disk throws.
   virtual bool preallocate(std::uint64_t bytes) = 0;
+  /// Asks the system to begin writing what it holds to the device, so that sync has less to wait for; a
+  /// hint, no error.
+  virtual void start_writeback() = 0;
   virtual void sync() = 0;
   virtual std::uint64_t size() = 0;
 };

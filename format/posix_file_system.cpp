@@ -62,6 +62,8 @@ class PosixFile final : public File {
     return false;
   }
 
+  void start_writeback() override { ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
+
   void sync() override {
     if (::fsync(descriptor_) != 0) throw io_error(path_, "flush to the device", errno);
   }

@@ -9,3 +9,15 @@
 // Sanitizers start too late for the resolvers, and clang 14 clones no functions in namespaces.
 #define WEIR_SIMD
 #endif
+
+#include <cstdint>
+
+namespace weir {
+
+// Lanes that the compiler keeps in registers of whatever width the clone has; arrays of lanes end up as
+// scalars. Elementwise + - * / and comparisons mean what they mean for the elements.
+using Floats8 = float __attribute__((vector_size(32)));
+using Ints8 = std::int32_t __attribute__((vector_size(32)));
+using Doubles8 = double __attribute__((vector_size(64)));
+
+}  // namespace weir

@@ -24,6 +24,7 @@ class FaultyFile final : public File {
     files_.count("preallocate", path());
     return real_->preallocate(bytes);
   }
+  void start_writeback() override { real_->start_writeback(); }
   void sync() override {
     files_.count("sync", path());
     real_->sync();
