@@ -6,7 +6,9 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "format/error.h"
@@ -62,11 +64,10 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
     std::uint64_t lossless_leaves = 0;
   };
   tbb::enumerable_thread_specific<Totals> totals;
-  tbb::enumerable_thread_specific<std::vector<LeafGain>> scratch;
   for_each_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
-    summarize_region(region, region_rows);
-    auto& gains = scratch.local();
+    std::vector<LeafGain> gains;
     rule_.gains(tree_, region_rows, gains);
+    summarize_region(region, region_rows, gains);
     Totals& total = totals.local();
     for (const LeafGain& leaf : gains) {
       total.required_leaves += leaf.required ? 1 : 0;
@@ -98,7 +99,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   bytes_.lossless = make_layout(lossless);
 }
 
-void Selection::summarize_region(std::int64_t index, const RegionRows& rows) {
+void Selection::summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains) {
   Region& region = tree_.regions[static_cast<std::size_t>(index)];
   TileSumsBuilder builder;
   rows.for_each([&](const Index3&, const LeafRow& row) {
@@ -119,9 +120,7 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows) {
   region.sums = builder.sums;
   region.sums.exact = exact;
 
-  std::vector<LeafGain> gains;
   std::vector<double> values;
-  rule_.gains(tree_, rows, gains);
   bool required = false;
   double highest = 0;
   for (const LeafGain& leaf : gains) {
@@ -175,39 +174,85 @@ void Selection::summarize_uppers() {
   }
 }
 
+// Calls visit(key, bytes) for everything below the upper nodes that can be bought.
+template <typename Visit>
+void Selection::for_each_key(const Visit& visit) const {
+  for_each_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
+    const Region& region = tree_.regions[static_cast<std::size_t>(index)];
+    visit(region.key, nvdb::kLowerBytes);
+    if (region.key == 0) return;  // no leaf in it has a higher one
+    std::vector<LeafGain> gains;
+    rule_.gains(tree_, rows, gains);
+    for (const LeafGain& leaf : gains) visit(leaf_key(rule_, leaf, region.key), nvdb::kFloatLeafBytes);
+  });
+}
+
 double Selection::find_threshold(std::uint64_t budget, std::uint64_t& bytes_above) const {
-  // Radix selection from the top: 16 bits of the keys a pass, bytes counted per bucket.
+  // Radix selection from the top: 16 bits of the keys a pass, bytes counted per bucket, until the bucket
+  // that the budget ends in is small enough to be sorted.
   constexpr int kDigit = 16;
   constexpr std::size_t kBuckets = std::size_t{1} << kDigit;
-  using Buckets = std::vector<std::uint64_t>;
+  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 19U;  // of 16 bytes
+  struct Bucket {
+    std::uint64_t bytes = 0;
+    std::uint64_t items = 0;
+  };
+  using Buckets = std::vector<Bucket>;
   std::uint64_t prefix = 0;
   bytes_above = 0;
   for (int shift = 64 - kDigit; shift >= 0; shift -= kDigit) {
-    tbb::enumerable_thread_specific<Buckets> local(Buckets(kBuckets, 0));
-    const auto count = [&](Buckets& buckets, double key, std::uint64_t bytes) {
-      const std::uint64_t bits = bits_of(key);
-      if (key == 0 || (shift < 64 - kDigit && bits >> (shift + kDigit) != prefix)) return;
-      buckets[bits >> shift & (kBuckets - 1)] += bytes;
+    const auto matches = [&](double key, int bits) {
+      return key > 0 && (bits == 64 || bits_of(key) >> bits == prefix);
     };
-    for_each_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
-      const Region& region = tree_.regions[static_cast<std::size_t>(index)];
-      Buckets& buckets = local.local();
-      count(buckets, region.key, nvdb::kLowerBytes);
-      std::vector<LeafGain> gains;
-      rule_.gains(tree_, rows, gains);
-      for (const LeafGain& leaf : gains) count(buckets, leaf_key(rule_, leaf, region.key), nvdb::kFloatLeafBytes);
-    });
-    Buckets total(kBuckets, 0);
+    tbb::enumerable_thread_specific<Buckets> local(kBuckets);
+    const auto count = [&](Buckets& buckets, double key, std::uint64_t bytes) {
+      if (!matches(key, shift + kDigit)) return;
+      Bucket& bucket = buckets[bits_of(key) >> shift & (kBuckets - 1)];
+      bucket.bytes += bytes;
+      ++bucket.items;
+    };
+    for_each_key([&](double key, std::uint64_t bytes) { count(local.local(), key, bytes); });
+    Buckets total(kBuckets);
     for (const Buckets& buckets : local) {
-      for (std::size_t i = 0; i < kBuckets; ++i) total[i] += buckets[i];
+      for (std::size_t i = 0; i < kBuckets; ++i) {
+        total[i].bytes += buckets[i].bytes;
+        total[i].items += buckets[i].items;
+      }
     }
     for (const Upper& upper : tree_.uppers) count(total, upper.key, nvdb::kUpperBytes);
     std::size_t bucket = kBuckets;
-    while (bucket > 0 && bytes_above + total[bucket - 1] <= budget) bytes_above += total[--bucket];
-    if (bucket == 0) return 0;  // everything that matches so far fits
+    while (bucket > 0 && bytes_above + total[bucket - 1].bytes <= budget) bytes_above += total[--bucket].bytes;
+    if (bucket == 0) return 0;  // everything fits
     prefix = prefix << kDigit | (bucket - 1);
+    if (shift == 0) break;
+    if (total[bucket - 1].items <= kSortedItems) {
+      return sorted_threshold(budget, bytes_above, [&](double key) { return matches(key, shift); });
+    }
   }
   return std::bit_cast<double>(prefix);
+}
+
+double Selection::sorted_threshold(std::uint64_t budget, std::uint64_t& bytes_above,
+                                   const std::function<bool(double)>& matches) const {
+  using Item = std::pair<double, std::uint64_t>;  // key, bytes
+  tbb::enumerable_thread_specific<std::vector<Item>> local;
+  for_each_key([&](double key, std::uint64_t bytes) {
+    if (matches(key)) local.local().emplace_back(key, bytes);
+  });
+  std::vector<Item> items;
+  for (const std::vector<Item>& some : local) items.insert(items.end(), some.begin(), some.end());
+  for (const Upper& upper : tree_.uppers) {
+    if (matches(upper.key)) items.emplace_back(upper.key, nvdb::kUpperBytes);
+  }
+  std::sort(items.begin(), items.end(), std::greater<>());
+  for (std::size_t i = 0; i < items.size();) {
+    const double key = items[i].first;
+    std::uint64_t bytes = 0;
+    for (; i < items.size() && items[i].first == key; ++i) bytes += items[i].second;
+    if (bytes_above + bytes > budget) return key;
+    bytes_above += bytes;
+  }
+  throw Error(ErrorKind::internal, "the selection's cut lies in no bucket");
 }
 
 void Selection::resolve_ties(std::uint64_t left) {

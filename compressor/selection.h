@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "compressor/leaf_gain.h"
@@ -55,9 +56,13 @@ class Selection {
   const GainRule& rule() const { return rule_; }
 
  private:
-  void summarize_region(std::int64_t region, const RegionRows& rows);
+  void summarize_region(std::int64_t region, const RegionRows& rows, const std::vector<LeafGain>& gains);
   void summarize_uppers();
+  template <typename Visit>
+  void for_each_key(const Visit& visit) const;
   double find_threshold(std::uint64_t budget, std::uint64_t& bytes_above) const;
+  double sorted_threshold(std::uint64_t budget, std::uint64_t& bytes_above,
+                          const std::function<bool(double)>& matches) const;
   void resolve_ties(std::uint64_t left);
 
   GainRule rule_;

@@ -112,13 +112,16 @@ class RawSource final : public VolumeSource {
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
     const std::int64_t bytes = box.voxels() * static_cast<std::int64_t>(scalar_bytes(shape_.type));
-    return read_by(std::clamp<std::int64_t>(bytes / kBytesPerThread, 1, static_cast<std::int64_t>(kIoThreads)), box,
-                   values);
+    const auto threads = std::clamp<std::int64_t>(bytes / kBytesPerThread, 1, static_cast<std::int64_t>(kIoThreads));
+    return read_by(threads, box, values,
+                   [this](const BoxPiece& piece) { return file_.path_for(piece.offset, piece.bytes); });
   }
-  ConversionLoss read_alone(const Box& box, std::span<float> values) override { return read_by(1, box, values); }
+  ConversionLoss read_alone(const Box& box, std::span<float> values) override {
+    return read_by(1, box, values, [](const BoxPiece&) { return ReadPath::cache; });
+  }
 
  private:
-  ConversionLoss read_by(std::int64_t threads, const Box& box, std::span<float> values) {
+  ConversionLoss read_by(std::int64_t threads, const Box& box, std::span<float> values, const auto& path_for) {
     if (box.empty() || !info_.domain().contains(box) || std::cmp_not_equal(values.size(), box.voxels())) {
       throw Error(ErrorKind::internal, cat(info_.path, ": read of box ", box_text(box), " into ", values.size(),
                                            " values does not fit ", box_text(info_.domain())));
@@ -127,17 +130,17 @@ class RawSource final : public VolumeSource {
     ConversionLoss total;
     std::mutex mutex;
     for_pieces(pieces.size(), static_cast<std::size_t>(threads), [&](std::int64_t i) {
-      const ConversionLoss loss = read_piece(pieces.piece(i), values);
+      const BoxPiece piece = pieces.piece(i);
+      const ConversionLoss loss = read_piece(piece, path_for(piece), values);
       const std::lock_guard lock(mutex);
       total.add(loss);
     });
     return total;
   }
 
-  ConversionLoss read_piece(const BoxPiece& piece, std::span<float> values) {
+  ConversionLoss read_piece(const BoxPiece& piece, ReadPath path, std::span<float> values) {
     const auto run = static_cast<std::size_t>(piece.run_voxels);
     values = values.subspan(static_cast<std::size_t>(piece.first_value), run * static_cast<std::size_t>(piece.runs));
-    const ReadPath path = file_.path_for(piece.offset, piece.bytes);
     if (path != ReadPath::direct && piece.runs == 1 && is_native_float32(shape_.type, shape_.big_endian)) {
       file_.read_buffered(piece.offset, std::as_writable_bytes(values), path);
       return {};

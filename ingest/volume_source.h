@@ -68,7 +68,8 @@ class VolumeSource {
   /// callers then read on their working threads, in pieces that stay in a core's cache.
   virtual bool in_memory() const { return false; }
 
-  /// The same as read, by the calling thread alone.
+  /// The same as read, by the calling thread alone and without asking again whether the bytes are in
+  /// memory: for callers that in_memory() told so.
   virtual ConversionLoss read_alone(const Box& box, std::span<float> values) { return read(box, values); }
 
   /// Bytes read from the device or cache so far (for progress and the sidecar).
