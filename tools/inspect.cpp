@@ -1,5 +1,6 @@
 // weir inspect: what a NanoVDB file holds and what its sidecar says about it.
 // Reads no leaf unless the histogram has to be counted (no sidecar).
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -53,6 +54,13 @@ std::string hex(std::uint32_t value) {
   return text.data();
 }
 
+// A name from a foreign file must not steer the terminal.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
+  return text;
+}
+
 const char* checksum_state(const NvdbGrid& grid) {
   if (grid.head_checksum() == static_cast<std::uint32_t>(nvdb::kNoChecksum)) return "absent";
   return grid.head_checksum() == grid.computed_head_checksum() ? "ok" : "wrong";
@@ -95,7 +103,7 @@ void print_grid(const NvdbFile& file) {
                            g.grid_offset(), ", ", g.grid_bytes() - g.data_bytes(), " bytes of padding"));
   line("format      ", cat("NanoVDB ", nvdb_version_text(g.version()), ", head checksum ", hex(g.head_checksum()), ' ',
                            checksum_state(g)));
-  line("grid        ", cat('"', g.name(), "\" ", grid_type_name(g.type()), ", ", text_of(box.extent()),
+  line("grid        ", cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), ", ", text_of(box.extent()),
                            " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", text_of(g.voxel_size()), ", origin ", text_of(g.world_origin())));
   const std::string range = g.value_min() <= g.value_max() ? cat(g.value_min(), " .. ", g.value_max()) : "none finite";
