@@ -35,7 +35,8 @@ double distance(Metric metric, const BrickRange& range, float background) {
 void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const {
   const NodeLattice& leaves = tree.leaves;
   const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
-  const std::int64_t bricks = kLowerLeaves / brick_leaves;
+  const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
+  const std::int64_t bricks = kLowerLeaves / side;
   out.clear();
   const bool whole =
       leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
@@ -46,8 +47,8 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
     const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
     LeafGain gain;
     gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
-    gain.brick = static_cast<std::uint32_t>(linear_index(
-        {entry.x / brick_leaves, entry.y / brick_leaves, entry.z / brick_leaves}, {bricks, bricks, bricks}));
+    gain.brick = static_cast<std::uint32_t>(
+        linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
     gain.required = leaf == Index3{0, 0, 0} || leaf == last_leaf ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
     const float tile = fill.leaf_value(row);

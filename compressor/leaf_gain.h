@@ -16,7 +16,7 @@ enum class Metric { sse, farthest, closest, median };
 
 struct LeafGain {
   double gain = 0;             ///< squared error saved, or the brick's distance; 0 where `exact`
-  std::uint32_t brick = 0;     ///< rank of its brick in the region
+  std::uint32_t brick = 0;     ///< rank of its brick in the region; of itself for sse
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
   bool exact = false;          ///< its tile reads the same bits: never worth a leaf
   bool required = false;       ///< always a leaf
@@ -25,7 +25,7 @@ struct LeafGain {
 /// Decides gains; the same for every thread, plan and memory ceiling.
 struct GainRule {
   Metric metric = Metric::sse;
-  std::int64_t brick_leaves = 1;  ///< leaves along a brick: 1, 2 or 4
+  std::int64_t brick_leaves = 1;  ///< leaves along a brick of the paper's metrics: 1, 2 or 4
   Fill fill;
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that

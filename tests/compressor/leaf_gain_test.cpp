@@ -140,5 +140,15 @@ TEST(LeafGain, PositionsAndBricksFollowTheLowerNode) {
                 });
 }
 
+TEST(LeafGain, SseBuysSingleLeavesWhateverTheBrick) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 16}}, value_at);
+  const Surveyed surveyed(volume);
+  std::vector<std::uint32_t> bricks;
+  for_each_gain(surveyed, {Metric::sse, 4, {}},
+                [&](const TreeRegions&, const Index3&, const LeafGain& gain) { bricks.push_back(gain.brick); });
+  std::sort(bricks.begin(), bricks.end());
+  EXPECT_EQ(std::adjacent_find(bricks.begin(), bricks.end()), bricks.end());
+}
+
 }  // namespace
 }  // namespace weir
