@@ -192,7 +192,7 @@ double Selection::find_threshold(std::uint64_t budget, std::uint64_t& bytes_abov
   // that the budget ends in is small enough to be sorted.
   constexpr int kDigit = 16;
   constexpr std::size_t kBuckets = std::size_t{1} << kDigit;
-  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 19U;  // of 16 bytes
+  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 16U;  // of 16 bytes
   struct Bucket {
     std::uint64_t bytes = 0;
     std::uint64_t items = 0;
