@@ -13,6 +13,7 @@
 #include "format/error.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/converted.h"
+#include "tests/compressor/memory_file_system.h"
 #include "tests/compressor/surveyed.h"
 
 namespace weir {
@@ -212,6 +213,32 @@ TEST_P(SelectionTest, PlannedErrorIsTheMeasuredOne) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, SelectionTest, testing::ValuesIn(ways()),
                          [](const auto& parameter) { return name_of(parameter.param); });
+
+TEST(Selection, FindsTheCutAmongKeysThatDifferInTheirLastBits) {
+  // More leaves than are sorted at once, in every region: half of the keys share their first 16 bits, the
+  // other half their first 32, and every fourth of those are one value.
+  const Box domain{{0, 0, 0}, {512, 512, 640}};
+  RowStore rows(test::MemoryFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), 64);
+  std::vector<LeafRow> all(static_cast<std::size_t>(rows.leaves().size()));
+  std::mt19937_64 random(13);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto draw = random();
+    const double key = draw % 2 == 0   ? 1 + static_cast<double>(draw >> 48U) * 0x1p-21
+                       : draw % 4 == 1 ? 1.5 + static_cast<double>(draw >> 40U) * 0x1p-48
+                                       : 1.5;
+    all[i].sse = key * 2144;
+    // One leaf a region is required, so that all regions are open and every leaf has its own key.
+    const Index3 leaf = rows.leaves().position(static_cast<std::int64_t>(i));
+    const bool first = leaf.x % 16 == 0 && leaf.y % 16 == 0 && leaf.z % 16 == 0;
+    all[i].finite = first ? 511 : 512;
+  }
+  rows.write(0, all);
+  Chooser chooser(domain, rows, {Metric::sse, 1, {FillMode::mean, 0, NonFinitePolicy::keep}});
+  const std::vector<Item> items = sorted_items(chooser);
+  for (const std::uint64_t size : spread(chooser.minimum(), chooser.lossless(), 17)) {
+    ASSERT_TRUE(chooser.choose(size).kept == sorted_choice(chooser, items, size).kept) << size;
+  }
+}
 
 TEST(Selection, KeepsTheSubsetOfLeastErrorOfAllSubsets) {
   // 3 x 2 x 2 leaves, two of them corners: every subset of the other ten is tried.

@@ -20,14 +20,17 @@ std::vector<LeafRow> Surveyed::all_rows() const {
   return all;
 }
 
+Chooser::Chooser(const Box& domain, const RowStore& rows, const GainRule& rule)
+    : rows_(rows), tree_(domain), selection_(rule, rows, tree_) {}
+
 Chooser::Chooser(const Surveyed& surveyed, const GainRule& rule)
-    : surveyed_(surveyed), tree_(surveyed.volume.info().domain()), selection_(rule, surveyed.rows, tree_) {}
+    : Chooser(surveyed.volume.info().domain(), surveyed.rows, rule) {}
 
 Choice Chooser::choose(std::uint64_t file_bytes) {
   selection_.choose(file_bytes);
   MaskStore masks(MemoryFileSystem().create_unnamed("masks"), tree_.region_lattice.size());
   Choice choice;
-  choice.plan = plan_tree(selection_, surveyed_.rows, tree_, masks);
+  choice.plan = plan_tree(selection_, rows_, tree_, masks);
   choice.kept.resize(static_cast<std::size_t>(tree_.leaves.size()));
   for (std::int64_t i = 0; i < tree_.leaves.size(); ++i) {
     const Index3 node = tree_.leaves.first + tree_.leaves.position(i);
@@ -42,7 +45,7 @@ Choice Chooser::choose(std::uint64_t file_bytes) {
 std::vector<LeafGain> Chooser::gains(std::int64_t region) const {
   std::vector<LeafRow> rows;
   const Box box = tree_.leaf_box(region);
-  surveyed_.rows.read_box(box, rows);
+  rows_.read_box(box, rows);
   std::vector<LeafGain> gains;
   selection_.rule().gains(tree_, RegionRows(rows.data(), box.extent(), box), gains);
   return gains;

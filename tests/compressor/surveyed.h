@@ -38,6 +38,7 @@ struct Choice {
 /// One Selection asked again and again.
 class Chooser {
  public:
+  Chooser(const Box& domain, const RowStore& rows, const GainRule& rule);
   Chooser(const Surveyed& surveyed, const GainRule& rule);
 
   const Selection& selection() const { return selection_; }
@@ -49,7 +50,7 @@ class Chooser {
   std::vector<LeafGain> gains(std::int64_t region) const;
 
  private:
-  const Surveyed& surveyed_;
+  const RowStore& rows_;
   TreeRegions tree_;
   Selection selection_;
 };
