@@ -1,0 +1,64 @@
+// The memory ceiling of the whole process, from outside: a volume eight times as
+// large as --memory, read from the cache and past it. The kernel's figure counts.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+
+bool sanitized() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+TEST(Memory, ATwoGibibyteVolumeStaysUnderTheCeiling) {
+  if (sanitized()) GTEST_SKIP() << "sanitizers' own memory counts as the process's";
+  const TemporaryDirectory directory;
+  const std::string input = directory / "cloud_820x820x800_float32.raw";
+  CommandOptions patient;
+  patient.timeout = std::chrono::minutes(10);
+  const CommandResult sample = run_weir({"sample", "cloud", "-o", input, "--memory", "128MiB"}, patient);
+  ASSERT_EQ(sample.exit_code, 0) << sample.err;
+  EXPECT_LT(sample.peak_rss_bytes, 128 * kMiB);
+  const std::uint64_t bytes = 820ULL * 820 * 800 * 4;
+  ASSERT_GT(bytes, 2048 * kMiB);
+  ASSERT_EQ(std::filesystem::file_size(input), bytes);
+
+  std::string digest;
+  for (const std::string direct_io : {"on", "auto"}) {
+    const CommandResult result = run_weir({"convert", input, "-o", directory / "out.nvdb", "--overwrite", "--memory",
+                                           "256MiB", "--direct-io", direct_io, "--json"},
+                                          patient);
+    if (result.exit_code == 2 && direct_io == "on") continue;  // no direct I/O on this file system
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json sidecar = nlohmann::json::parse(result.out);
+    EXPECT_LT(result.peak_rss_bytes, 256 * kMiB) << direct_io;
+    EXPECT_LT(sidecar["timing"]["peak_rss_bytes"].get<std::uint64_t>(), 256 * kMiB) << direct_io;
+    EXPECT_GT(sidecar["timing"]["peak_rss_bytes"].get<std::uint64_t>(), 4 * kMiB) << direct_io;
+    EXPECT_EQ(std::filesystem::file_size(directory / "out.nvdb"), bytes / 8);
+    const std::string found = sidecar["file"]["digest"];
+    EXPECT_TRUE(digest.empty() || digest == found) << digest << " with direct I/O, " << found << " without";
+    digest = found;
+  }
+  const CommandResult compare =
+      run_weir({"compare", input, directory / "out.nvdb", "--memory", "256MiB", "--json"}, patient);
+  ASSERT_EQ(compare.exit_code, 0) << compare.err;
+  EXPECT_LT(compare.peak_rss_bytes, 256 * kMiB);
+  const nlohmann::json measured = nlohmann::json::parse(compare.out);
+  const nlohmann::json certified = nlohmann::json::parse(read_file(directory / "out.nvdb.json"))["error"];
+  EXPECT_NEAR(measured["mse"].get<double>() / certified["mse"].get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(measured["max_abs"].get<double>(), certified["max_abs"].get<double>());
+}
+
+}  // namespace
+}  // namespace weir
