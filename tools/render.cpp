@@ -113,7 +113,7 @@ Scene make_scene(const RenderArguments& arguments) {
 }
 
 // Enough that a default picture is clean; the other modes only have edges to smooth.
-std::int64_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 64 : 4; }
+std::int64_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 32 : 4; }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -189,7 +189,7 @@ void add_render(CLI::App& app) {
                    "path: multiple scattering; dvr: emission and absorption; iso: surface; mip: largest value")
       ->check(CLI::IsMember({"path", "dvr", "iso", "mip"}));
   command->add_option("--size", arguments->size, "WxH in pixels")->capture_default_str();
-  command->add_option("--spp", arguments->samples, "samples a pixel; default 64 for path, 4 for the others");
+  command->add_option("--spp", arguments->samples, "samples a pixel; default 32 for path, 4 for the others");
   command->add_option("--seed", arguments->seed, "of the random numbers; the same seed gives the same picture")
       ->capture_default_str();
   command->add_option("--scene", arguments->scene, "SCENE.toml: camera, transfer function, medium, light");
