@@ -14,6 +14,7 @@
 #include "compressor/selection.h"
 #include "compressor/tree_plan.h"
 #include "format/file_system.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 namespace {
@@ -65,9 +66,7 @@ std::string measure() {
 }
 
 TEST(SelectionMemory, StaysUnderTheCeilingWithRowsSixteenTimesAsLarge) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers' own memory counts as the process's";
-#else
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   std::fflush(nullptr);
@@ -92,7 +91,6 @@ TEST(SelectionMemory, StaysUnderTheCeilingWithRowsSixteenTimesAsLarge) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
   EXPECT_EQ(answer, "ok");
-#endif
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/sanitized.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -116,6 +117,7 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
 }
 
 TEST(Compare, BoundedMemory) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const Converted volume("turbulence", "400x400x400_float32", {"--rate", "2"});  // 244 MiB, half of it leaves
   EXPECT_LT(volume.compare({"--memory", "128MiB"})["peak_rss_bytes"], std::uint64_t{128} << 20U);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/sanitized.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -13,16 +14,8 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
-bool sanitized() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return true;
-#else
-  return false;
-#endif
-}
-
 TEST(Memory, ATwoGibibyteVolumeStaysUnderTheCeiling) {
-  if (sanitized()) GTEST_SKIP() << "sanitizers' own memory counts as the process's";
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
   const std::string input = directory / "cloud_820x820x800_float32.raw";
   CommandOptions patient;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ingest/synthetic/synthetic.h"
+#include "tests/support/sanitized.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -114,6 +115,7 @@ TEST(Sample, ProgressAlwaysSaysThePass) {
 }
 
 TEST(Sample, BoundedMemory) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
   for (const std::string dims : {"256,256,256", "640,640,512"}) {  // 64 MiB, 800 MiB
     const CommandResult result = run_weir(
