@@ -71,17 +71,20 @@ function(weir_benchmarks)
   endforeach()
 endfunction()
 
-# weir_fuzzers(): every tests/fuzz/NAME.cpp as the libFuzzer program NAME in the build folder's fuzz/.
+# weir_fuzzers(): every tests/fuzz/NAME.cpp as the libFuzzer program NAME in the build folder's fuzz/; all of them
+# are the target weir_fuzzers.
 function(weir_fuzzers)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "libFuzzer needs clang: use the preset fuzz, or -DWEIR_BUILD_FUZZ=OFF")
   endif()
+  add_custom_target(weir_fuzzers)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/fuzz/*.cpp)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME_WE)
     add_executable(${name} ${source})
-    target_link_libraries(${name} PRIVATE weir_compressor weir_gpu)
+    target_link_libraries(${name} PRIVATE weir_ingest)
     target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    add_dependencies(weir_fuzzers ${name})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz)
   endforeach()
 endfunction()
