@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <ostream>
 #include <regex>
 #include <string>
 #include <vector>
@@ -36,7 +37,7 @@ struct HardCase {
   std::function<MemoryVolume()> make;
 };
 
-void PrintTo(const HardCase& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const HardCase& c) { return out << c.name; }
 
 HardCase synthetic(const std::string& name, const std::string& kind, const Index3& extent) {
   return {name, [kind, extent] {

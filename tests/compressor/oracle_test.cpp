@@ -8,7 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <map>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -209,7 +209,7 @@ struct Case {
   std::array<double, 3> origin{0, 0, 0};
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 float noise(const Index3& i) {
   std::minstd_rand random(static_cast<unsigned>(i.x * 7919 + i.y * 104729 + i.z * 1299709 + 17));
