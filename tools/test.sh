@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# All checks, as CI runs them: tools/test.sh [--quick]
-#   the tests of the release build, of the AddressSanitizer + UndefinedBehaviorSanitizer build and, where threads
-#   run, of the ThreadSanitizer build; a short run of each fuzzer; clang-format, clang-tidy, shellcheck.
+# The checks: tools/test.sh [--quick|--full]
+#   as CI runs them: the tests of the release build, a short run of each fuzzer, clang-format, shellcheck.
 #   --quick: the tests of the release build only.
+#   --full: besides, the tests of the AddressSanitizer + UndefinedBehaviorSanitizer build and, where threads run, of
+#   the ThreadSanitizer build, and clang-tidy; three more builds of everything, an hour on two cores.
 # Logs are in build/checks/. The last line is `N passed, N failed, N skipped`; failed and skipped checks are named
 # above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 30
@@ -10,11 +11,13 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 quick=false
+full=false
 case ${1-} in
   '') ;;
   --quick) quick=true ;;
+  --full) full=true ;;
   *)
-    echo "tools/test.sh: unknown option '$1': there is --quick" >&2
+    echo "tools/test.sh: unknown option '$1': there are --quick and --full" >&2
     exit 2
     ;;
 esac
@@ -129,9 +132,11 @@ run_tests release
 if ! $quick; then
   check_format
   check_shell
+  run_fuzzers
+fi
+if $full; then
   run_tests asan
   run_tsan
-  run_fuzzers
   check_tidy
 fi
 
