@@ -84,9 +84,10 @@ void start_pass(const ConversionControl& control, const std::string& name, std::
 void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
   if (survey.non_finite == 0) return;
   const Index3& at = survey.first_non_finite;
-  throw Error(ErrorKind::input, cat(info.path, ": ", survey.non_finite, " voxels are NaN or infinite, the first (",
-                                    survey.first_non_finite_value, ") at ", at.x, ",", at.y, ",", at.z,
-                                    "; choose --nonfinite background or --nonfinite keep"));
+  throw Error(ErrorKind::input,
+              cat(info.path, ": ", survey.non_finite, survey.non_finite == 1 ? " voxel is" : " voxels are",
+                  " NaN or infinite, the first (", survey.first_non_finite_value, ") at ", at.x, ",", at.y, ",", at.z,
+                  "; choose --nonfinite background or --nonfinite keep"));
 }
 
 Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,

@@ -82,10 +82,10 @@ void check_size(const InputFile& file, const RawShape& shape, std::uint64_t offs
   if (expected == file.size()) return;
   const bool too_short = expected > file.size();
   const std::uint64_t difference = too_short ? expected - file.size() : file.size() - expected;
-  throw Error(ErrorKind::input,
-              cat(file.path(), ": ", difference, " bytes too ", too_short ? "short" : "long", ": ",
-                  extent_text(shape.extent), ' ', scalar_name(shape.type), " after an offset of ", offset, " needs ",
-                  expected, " bytes, the file has ", file.size(), "; check --dims, --type and --offset"));
+  throw Error(ErrorKind::input, cat(file.path(), ": ", difference, difference == 1 ? " byte too " : " bytes too ",
+                                    too_short ? "short" : "long", ": ", extent_text(shape.extent), ' ',
+                                    scalar_name(shape.type), " after an offset of ", offset, " needs ", expected,
+                                    " bytes, the file has ", file.size(), "; check --dims, --type and --offset"));
 }
 
 class RawSource final : public VolumeSource {

@@ -196,7 +196,7 @@ TEST(RawSource, SizeMustMatch) {
                 "check --dims, --type and --offset");
   const std::string longer = scratch.write_values("l_7x5x9_uint8.raw", ramp<std::uint8_t>(), 1);
   EXPECT_EQ(refusal(ErrorKind::input, longer),
-            longer + ": 1 bytes too long: 7x5x9 uint8 after an offset of 0 needs 315 bytes, the file has 316; " +
+            longer + ": 1 byte too long: 7x5x9 uint8 after an offset of 0 needs 315 bytes, the file has 316; " +
                 "check --dims, --type and --offset");
   RawOptions options;
   options.offset = 1;
