@@ -163,6 +163,9 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   if (std::filesystem::equivalent(a.input, options.output, ignored)) {
     throw usage(cat(options.output, ": is the input; choose another output with -o"));
   }
+  if (std::filesystem::is_directory(options.output, ignored)) {
+    throw usage(cat(options.output, ": is a directory; name a file in it with -o"));
+  }
   Progress progress(a.run.progress);
   ConversionControl control;
   control.cancel = &interrupt_flag();

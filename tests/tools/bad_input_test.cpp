@@ -182,6 +182,13 @@ TEST_F(BadInput, OutputIsTheInput) {
   EXPECT_EQ(read_file(path), std::string(512, '\1'));
 }
 
+TEST_F(BadInput, OutputIsADirectory) {
+  const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
+  for (const std::string& output : {out_.string(), out_.string() + "/"})
+    expect_refused({"convert", path, "-o", output, "--overwrite"}, 2,
+                   output + ": is a directory; name a file in it with -o");
+}
+
 TEST_F(BadInput, OutputDirectoryReadOnly) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
   const auto expect_reason = [&](const std::string& reason) {
