@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <ostream>
 #include <random>
 #include <set>
 #include <string>
@@ -26,6 +27,8 @@ struct Values {
   std::vector<float> values;
   bool exact = false;  // all sums are exact in double: compare without tolerance
 };
+
+std::ostream& operator<<(std::ostream& out, const Values& v) { return out << v.name; }
 
 std::vector<float> draw(std::size_t count, const std::function<float(std::mt19937&)>& value) {
   std::mt19937 random(5);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -48,6 +49,8 @@ struct Values {
   std::string name;
   std::vector<float> values;
 };
+
+std::ostream& operator<<(std::ostream& out, const Values& v) { return out << v.name; }
 
 std::vector<float> draw(std::size_t count, const std::function<float(std::mt19937&)>& value) {
   std::mt19937 random(7);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ std::string name_of(const Way& way) {
   return metrics[static_cast<std::size_t>(way.metric)] + std::to_string(8 * way.brick_leaves) +
          (way.fill == FillMode::mean ? "Mean" : "Background");
 }
+
+std::ostream& operator<<(std::ostream& out, const Way& way) { return out << name_of(way); }
 
 GainRule rule_of(const Way& way, float background = 0.25F) {
   return {way.metric, way.brick_leaves, {way.fill, background, NonFinitePolicy::background}};
