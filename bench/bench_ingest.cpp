@@ -80,7 +80,7 @@ void read_plainly(int flags) {
 }
 
 void read_stream(DirectIo mode) {
-  RawOptions options;
+  SourceOptions options;
   options.direct_io = mode;
   const auto source = open_raw(noise_file().path(), options);
   const BlockPlan plan = plan_blocks(source->info().domain(), source->access(), 64 * kMiB);

@@ -131,6 +131,14 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   sidecar.source.mtime = utc_text(info.mtime_ns);
   sidecar.value_range = range_of(survey);
   sidecar.nonfinite = {survey.non_finite, policy_name(options.non_finite)};
+  sidecar.source.index = info.index;
+  sidecar.source.axes = info.axis_labels;
+  sidecar.source.units = info.units;
+  sidecar.source.unit_si = info.unit_si;
+  sidecar.source.scale = info.mapping.scale;
+  sidecar.source.offset = info.mapping.offset;
+  sidecar.missing.count = survey.missing;
+  for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
   sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
   sidecar.histogram = histogram_of(survey);
   sidecar.weir = options.provenance;
@@ -183,7 +191,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
 
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
-  const MemoryPlan memory = plan_memory(options.memory, resident_bytes(), threads, domain);
+  const MemoryPlan memory = plan_memory(options.memory, resident_bytes() + source.working_bytes(), threads, domain);
   const ReadingPlan reading = plan_reading(source, memory);
   const StreamOptions stream = stream_options(control);
 

@@ -17,14 +17,16 @@ namespace {
 
 constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
 
-// Smallest value and number of values of an 8- or 16-bit type; zero values for wider ones.
+// Smallest value and number of values of an 8- or 16-bit integer type; zero values where they are scaled, and for
+// wider types.
 struct ValueTable {
   int offset = 0;
   std::size_t size = 0;
 };
 
-ValueTable value_table(ScalarType type) {
-  switch (type) {
+ValueTable value_table(const SourceInfo& info) {
+  if (info.mapping.scales()) return {};
+  switch (info.type) {
     case ScalarType::uint8:
       return {0, 256};
     case ScalarType::int8:
@@ -43,6 +45,7 @@ struct Tally {
   float min = std::numeric_limits<float>::infinity();
   float max = -std::numeric_limits<float>::infinity();
   std::uint64_t finite = 0;
+  std::uint64_t missing = 0;
   std::uint64_t non_finite = 0;
   std::int64_t first_non_finite = kNowhere;  // linear voxel index in the domain
   float first_non_finite_value = 0;
@@ -51,9 +54,11 @@ struct Tally {
   UniformDigest uniform;
 
   void merge(const Tally& other) {
-    min = std::min(min, other.min);
-    max = std::max(max, other.max);
+    // Of -0.0 and 0.0 either may be met first: adding 0.0 makes both 0.0.
+    min = std::min(min, other.min) + 0.0F;
+    max = std::max(max, other.max) + 0.0F;
     finite += other.finite;
+    missing += other.missing;
     non_finite += other.non_finite;
     if (other.first_non_finite < first_non_finite) {
       first_non_finite = other.first_non_finite;
@@ -131,10 +136,15 @@ class BlockSurvey {
   void count_non_finite(std::span<const float> values, const Box& inside, const LeafRow& row, Tally& tally) const {
     std::array<float, kLeafVoxels> finite;
     std::size_t kept = 0;
+    std::size_t missing = 0;
     const Index3 extent = inside.extent();
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (std::isfinite(values[i])) {
         finite[kept++] = values[i];
+        continue;
+      }
+      if (is_missing(values[i])) {
+        ++missing;
         continue;
       }
       const Index3 voxel = inside.lo + index_at(static_cast<std::int64_t>(i), extent);
@@ -144,7 +154,8 @@ class BlockSurvey {
         tally.first_non_finite_value = values[i];
       }
     }
-    tally.non_finite += values.size() - kept;
+    tally.missing += missing;
+    tally.non_finite += values.size() - kept - missing;
     if (kept > 0) count_values(std::span(finite.data(), kept), row, tally);
   }
 
@@ -173,7 +184,7 @@ void spill(RowStore& store, const Box& leaf_box, std::span<const LeafRow> rows) 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      Reading reading) {
   const NodeLattice& leaves = plan.lattice;
-  const ValueTable table = value_table(source.info().type);
+  const ValueTable table = value_table(source.info());
   Tally fresh;
   fresh.value_counts.resize(table.size);
   tbb::enumerable_thread_specific<Tally> tallies(fresh);
@@ -213,6 +224,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
   Tally total = fresh;
   for (const Tally& tally : tallies) total.merge(tally);
   survey.finite = total.finite;
+  survey.missing = total.missing;
   survey.non_finite = total.non_finite;
   if (total.finite > 0) {
     survey.min = total.min;

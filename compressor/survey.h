@@ -19,7 +19,8 @@ struct Survey {
   float min = 0;  ///< of the finite values; 0 where there is none
   float max = 0;
   std::uint64_t finite = 0;      ///< voxels
-  std::uint64_t non_finite = 0;  ///< voxels
+  std::uint64_t missing = 0;     ///< voxels the source declares to hold no data
+  std::uint64_t non_finite = 0;  ///< voxels, the missing ones aside
   Index3 first_non_finite;       ///< first in x-fastest order, index space; valid where non_finite > 0
   float first_non_finite_value = 0;
   RangeHistogram histogram;  ///< of the finite values
@@ -28,7 +29,7 @@ struct Survey {
   int value_offset = 0;
   ConversionLoss loss;
 
-  std::uint64_t voxels() const { return finite + non_finite; }
+  std::uint64_t voxels() const { return finite + missing + non_finite; }
 };
 
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the

@@ -11,14 +11,17 @@ struct Entry {
   std::size_t bytes;
 };
 
-constexpr std::array<Entry, 8> kTypes{{{ScalarType::uint8, "uint8", 1},
-                                       {ScalarType::int8, "int8", 1},
-                                       {ScalarType::uint16, "uint16", 2},
-                                       {ScalarType::int16, "int16", 2},
-                                       {ScalarType::uint32, "uint32", 4},
-                                       {ScalarType::int32, "int32", 4},
-                                       {ScalarType::float32, "float32", 4},
-                                       {ScalarType::float64, "float64", 8}}};
+constexpr std::array<Entry, 11> kTypes{{{ScalarType::uint8, "uint8", 1},
+                                        {ScalarType::int8, "int8", 1},
+                                        {ScalarType::uint16, "uint16", 2},
+                                        {ScalarType::int16, "int16", 2},
+                                        {ScalarType::uint32, "uint32", 4},
+                                        {ScalarType::int32, "int32", 4},
+                                        {ScalarType::uint64, "uint64", 8},
+                                        {ScalarType::int64, "int64", 8},
+                                        {ScalarType::float16, "float16", 2},
+                                        {ScalarType::float32, "float32", 4},
+                                        {ScalarType::float64, "float64", 8}}};
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 namespace weir {
 
-enum class ScalarType { uint8, int8, uint16, int16, uint32, int32, float32, float64 };
+enum class ScalarType { uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, float32, float64 };
 
 /// Bytes of one value.
 std::size_t scalar_bytes(ScalarType type);

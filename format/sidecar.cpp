@@ -27,6 +27,12 @@ void describe(Archive& archive, S& s) {
     archive.field("bytes", s.source.bytes);
     archive.field("mtime", s.source.mtime);
     archive.field("digest", s.source.digest);
+    archive.field("index", s.source.index);
+    archive.field("axes", s.source.axes);
+    archive.field("units", s.source.units);
+    archive.field("unit_si", s.source.unit_si);
+    archive.field("scale", s.source.scale);
+    archive.field("offset", s.source.offset);
   });
   archive.object("grid", [&] {
     archive.field("name", s.grid.name);
@@ -40,6 +46,10 @@ void describe(Archive& archive, S& s) {
   archive.object("nonfinite", [&] {
     archive.field("count", s.nonfinite.count);
     archive.field("policy", s.nonfinite.policy);
+  });
+  archive.object("missing", [&] {
+    archive.field("count", s.missing.count);
+    archive.field("values", s.missing.values);
   });
   archive.object("conversion_loss", [&] {
     archive.field("inexact", s.conversion_loss.inexact);
@@ -237,7 +247,8 @@ class JsonReader {
     read(key, from, corners);
     to = {corners[0], corners[1]};
   }
-  void read(const std::string& key, const Json& from, std::vector<std::uint64_t>& to) const {
+  template <typename T>
+  void read(const std::string& key, const Json& from, std::vector<T>& to) const {
     if (!from.is_array()) fail(key, "an array", from);
     to.resize(from.size());
     for (std::size_t i = 0; i < to.size(); ++i) read(cat(key, '[', i, ']'), from[i], to[i]);

@@ -24,11 +24,17 @@ struct Sidecar {
     std::string path;    ///< as the user gave it
     std::string format;  ///< "raw", "hdf5", ...
     std::string dataset;
-    Index3 extent;            ///< voxels of the file's volume, before --roi
-    std::string type;         ///< scalar_name()
-    std::uint64_t bytes = 0;  ///< size of the input file
-    std::string mtime;        ///< utc_text() of the input file
-    std::string digest;       ///< xxh3-128 of the float32 values, see FORMAT.md; 32 hex digits
+    Index3 extent;                    ///< voxels of the volume that was read, after --roi
+    std::string type;                 ///< scalar_name()
+    std::uint64_t bytes = 0;          ///< size of the input file
+    std::string mtime;                ///< utc_text() of the input file
+    std::string digest;               ///< xxh3-128 of the float32 values, see FORMAT.md; 32 hex digits
+    std::vector<std::int64_t> index;  ///< --index: position on the leading axes of the array
+    std::array<std::string, 3> axes;  ///< the file's names of x, y, z, x fastest in memory; empty: not named
+    std::string units;                ///< of the values, as the file says; else empty
+    std::optional<double> unit_si;    ///< openPMD unitSI
+    double scale = 1;                 ///< value = stored * scale + offset
+    double offset = 0;
   } source;
 
   struct Grid {
@@ -46,6 +52,13 @@ struct Sidecar {
     std::uint64_t count = 0;       ///< voxels of the source that are NaN or infinite
     std::string policy = "error";  ///< error, background or keep
   } nonfinite;
+
+  /// Voxels the source declares to hold no data. They read as the background, or as NaN under the policy
+  /// keep, and are in no error figure.
+  struct Missing {
+    std::uint64_t count = 0;
+    std::vector<std::string> values;  ///< the stored values that say so
+  } missing;
 
   /// What the conversion to float32 lost.
   struct ConversionLoss {

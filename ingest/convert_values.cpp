@@ -34,6 +34,25 @@ T load(const std::byte* bytes, std::size_t i) {
   return std::bit_cast<T>(word);
 }
 
+/// IEEE 754 binary16 to binary32, exact; NaN payloads move to the upper bits.
+float half_to_float(std::uint16_t half) {
+  const auto sign = static_cast<std::uint32_t>(half & 0x8000U) << 16U;
+  const std::uint32_t exponent = (half >> 10U) & 0x1FU;
+  const std::uint32_t fraction = half & 0x3FFU;
+  if (exponent == 0) {  // zero or denormal: fraction * 2^-24
+    const float magnitude = static_cast<float>(fraction) * 0x1p-24F;
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(magnitude) | sign);
+  }
+  const std::uint32_t widened = exponent == 0x1FU ? 0xFFU : exponent + 112U;
+  return std::bit_cast<float>(sign | (widened << 23U) | (fraction << 13U));
+}
+
+template <bool Swap>
+ConversionLoss convert_half(const std::byte* bytes, std::span<float> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = half_to_float(load<std::uint16_t, Swap>(bytes, i));
+  return {};
+}
+
 template <typename T, bool Swap>
 ConversionLoss convert_exact(const std::byte* bytes, std::span<float> values) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(load<T, Swap>(bytes, i));
@@ -79,6 +98,19 @@ WEIR_SIMD void round_chunk(const std::int32_t* original, float* values, double* 
 WEIR_SIMD void round_chunk(const std::uint32_t* original, float* values, double* error) {
   round_values<std::uint32_t>(original, values, error);
 }
+
+/// 64-bit integers and their difference to a float32 need 64 bits of significand, which long double has.
+template <typename T>
+void round_wide(const T* original, float* values, double* error) {
+  static_assert(std::numeric_limits<long double>::digits >= 64);
+  for (std::size_t i = 0; i < kChunk; ++i) {
+    values[i] = static_cast<float>(original[i]);
+    error[i] =
+        static_cast<double>(std::fabs(static_cast<long double>(values[i]) - static_cast<long double>(original[i])));
+  }
+}
+void round_chunk(const std::int64_t* original, float* values, double* error) { round_wide(original, values, error); }
+void round_chunk(const std::uint64_t* original, float* values, double* error) { round_wide(original, values, error); }
 
 WEIR_SIMD void count_chunk(const double* error, std::uint64_t* inexact, std::uint64_t* overflow, double* worst) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -129,6 +161,12 @@ ConversionLoss convert(const std::byte* bytes, ScalarType type, std::span<float>
       return convert_rounding<std::uint32_t, Swap>(bytes, values);
     case ScalarType::int32:
       return convert_rounding<std::int32_t, Swap>(bytes, values);
+    case ScalarType::uint64:
+      return convert_rounding<std::uint64_t, Swap>(bytes, values);
+    case ScalarType::int64:
+      return convert_rounding<std::int64_t, Swap>(bytes, values);
+    case ScalarType::float16:
+      return convert_half<Swap>(bytes, values);
     case ScalarType::float32:
       return copy_float32<Swap>(bytes, values);
     case ScalarType::float64:

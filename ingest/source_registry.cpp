@@ -3,32 +3,77 @@
 #include <algorithm>
 #include <array>
 
-#include "ingest/box_source.h"
+#include "format/error.h"
+#include "format/text.h"
 #include "ingest/input_file.h"
+#include "ingest/raw_source.h"
+#include "ingest/source_view.h"
 
 namespace weir {
 namespace {
 
+std::vector<DatasetInfo> list_raw(const std::string& path, const SourceOptions& options) {
+  return list_single(open_raw(path, options)->info(), "contiguous");
+}
+
 constexpr std::array kFormats{
     // A raw file has no magic: it is what no other format wants.
-    SourceFormat{"raw", [](std::string_view, std::span<const std::byte>) { return true; },
-                 [](const std::string& path, const SourceOptions& options) { return open_raw(path, options.raw); }},
+    SourceFormat{.name = "raw",
+                 .recognises = [](std::string_view, std::span<const std::byte>) { return true; },
+                 .open = open_raw,
+                 .list = list_raw,
+                 .raw_shape = true},
 };
+
+void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options) {
+  const auto refuse = [&](bool given, std::string_view option, std::string_view meant) {
+    if (!given) return;
+    throw Error(ErrorKind::usage,
+                cat(path, ": ", option, " is for ", meant, ", and this is ", format.name, "; leave it out"));
+  };
+  if (!format.raw_shape) {
+    refuse(options.extent.has_value(), "--dims", "raw files");
+    refuse(options.type.has_value(), "--type", "raw files");
+    refuse(options.big_endian.has_value(), "--endian", "raw files");
+    refuse(options.offset.has_value(), "--offset", "raw files");
+  }
+  if (!format.container) {
+    refuse(!options.dataset.empty(), "--dataset", "files that hold several volumes");
+    refuse(!options.index.empty(), "--index", "arrays of more than three axes");
+  }
+}
 
 }  // namespace
 
 std::span<const SourceFormat> source_formats() { return kFormats; }
 
-std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options) {
+const SourceFormat& format_of(const std::string& path) {
   std::array<std::byte, kMagicBytes> bytes{};
   InputFile file(path, DirectIo::off);
   const auto head = std::span(bytes).first(std::min<std::uint64_t>(kMagicBytes, file.size()));
   file.read_buffered(0, head, ReadPath::through);
+  return *std::find_if(kFormats.begin(), kFormats.end(),
+                       [&](const SourceFormat& f) { return f.recognises(path, head); });
+}
 
-  const auto format =
-      std::find_if(kFormats.begin(), kFormats.end(), [&](const SourceFormat& f) { return f.recognises(path, head); });
-  auto source = format->open(path, options);
+std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options) {
+  const SourceFormat& format = format_of(path);
+  refuse_foreign_options(path, format, options);
+  auto source = place_source(format.open(path, options), options);
+  const ScalarType type = source->info().type;
+  if (options.missing && !holds(type, *options.missing)) {
+    throw Error(ErrorKind::usage, cat(path, ": --missing is ", stored_value_text(*options.missing), ", and no ",
+                                      scalar_name(type), " is; give a value of that type"));
+  }
   return options.roi ? crop_source(std::move(source), *options.roi) : std::move(source);
+}
+
+std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout) {
+  DatasetInfo only;
+  only.extents = {info.extent.x, info.extent.y, info.extent.z};
+  only.type = scalar_name(info.type);
+  only.layout = std::move(layout);
+  return {only};
 }
 
 }  // namespace weir

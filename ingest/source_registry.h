@@ -3,22 +3,28 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "format/index.h"
-#include "ingest/raw_source.h"
+#include "ingest/source_options.h"
 #include "ingest/volume_source.h"
 
 namespace weir {
 
-/// What the command line says about an input.
-struct SourceOptions {
-  RawOptions raw;          ///< what a raw file does not say itself; spacing, origin and direct I/O of any format
-  std::optional<Box> roi;  ///< --roi: index space, half open; the whole volume where absent
+/// One array or grid of a file, as `weir inspect` lists it.
+struct DatasetInfo {
+  std::string name;                   ///< as --dataset takes it; empty where the file holds one volume and no name
+  std::vector<std::int64_t> extents;  ///< as the file orders them: slowest axis first for HDF5, x first for headers
+  std::string type;                   ///< "float32", "big-endian float64", ...
+  std::string layout;                 ///< "contiguous", "chunked 64 x 64 x 64, gzip, shuffle", ...
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< those that matter: units, missing value, spacing
+  std::size_t leading_axes = 0;                                 ///< how many positions --index must give
+  std::string obstacle;                                         ///< why it cannot be converted; empty where it can
 };
 
 /// One format. All functions are thread-safe.
@@ -27,6 +33,11 @@ struct SourceFormat {
   /// Whether a file is of this format, by its path and its first kMagicBytes bytes (fewer in a shorter file).
   bool (*recognises)(std::string_view path, std::span<const std::byte> head);
   std::unique_ptr<VolumeSource> (*open)(const std::string& path, const SourceOptions& options);
+  /// What the file holds, in the file's order. Reads no values. Throws what open throws, but for a choice
+  /// among several.
+  std::vector<DatasetInfo> (*list)(const std::string& path, const SourceOptions& options);
+  bool raw_shape = false;  ///< takes --dims, --type, --endian and --offset
+  bool container = false;  ///< takes --dataset and --index
 };
 
 inline constexpr std::size_t kMagicBytes = 16;
@@ -34,8 +45,15 @@ inline constexpr std::size_t kMagicBytes = 16;
 /// In the order they are asked; the last one takes every file.
 std::span<const SourceFormat> source_formats();
 
-/// Opens `path` in the first format that recognises it and cuts out options.roi. Throws what that
-/// format's open throws; Error(input) where the file cannot be read at all.
+/// The format that opens `path`. Throws Error(input) where the file cannot be read at all.
+const SourceFormat& format_of(const std::string& path);
+
+/// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi.
+/// Throws what that format's open throws, and Error(usage) where an option is not for this format, or the
+/// stored type cannot hold options.missing.
 std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options);
+
+/// The list of a format whose files hold one volume: opens it and says what it is.
+std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout);
 
 }  // namespace weir

@@ -5,22 +5,30 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "format/index.h"
 #include "format/scalar_type.h"
+#include "ingest/stored_value.h"
 
 namespace weir {
 
 /// What a source knows about its volume without reading it.
 struct SourceInfo {
   std::string path;
-  std::string format;   ///< "raw", "synthetic", ...
-  std::string dataset;  ///< name inside a container, else empty
-  Index3 extent;        ///< voxels, each >= 1 and < 2^31
+  std::string format;                      ///< "raw", "synthetic", ...
+  std::string dataset;                     ///< name inside a container, else empty
+  std::vector<std::int64_t> index;         ///< position on the leading axes of an array of more than three
+  std::array<std::string, 3> axis_labels;  ///< of x, y, z, x fastest in memory; empty where the file names none
+  std::string units;                       ///< of the values as the file says it, "kg m-3"; else empty
+  std::optional<double> unit_si;           ///< openPMD unitSI: value * unit_si is in SI units
+  Index3 extent;                           ///< voxels, each >= 1 and < 2^31
   Index3 index_origin;  ///< index of the first voxel; not zero for OpenVDB input or a region of interest
-  ScalarType type = ScalarType::float32;
+  ScalarType type = ScalarType::float32;         ///< as stored
+  ValueMapping mapping;                          ///< from stored values to the volume's
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< world units per voxel, > 0
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of index (0, 0, 0)
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
@@ -71,6 +79,9 @@ class VolumeSource {
   /// The same as read, by the calling thread alone and without asking again whether the bytes are in
   /// memory: for callers that in_memory() told so.
   virtual ConversionLoss read_alone(const Box& box, std::span<float> values) { return read(box, values); }
+
+  /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
+  virtual std::uint64_t working_bytes() const { return 0; }
 
   /// Bytes read from the device or cache so far (for progress and the sidecar).
   virtual std::uint64_t bytes_read() const = 0;

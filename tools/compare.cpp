@@ -37,8 +37,8 @@ struct CompareArguments {
   bool json = false;
 };
 
-std::uint64_t block_bytes(std::uint64_t memory) {
-  const std::uint64_t fixed = resident_bytes() + kStagingBytes + kWorkingBytes;
+std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes) {
+  const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kWorkingBytes;
   if (memory < fixed + 2 * kLeastBlockBytes) {
     throw Error(ErrorKind::usage, cat("--memory ", format_bytes(memory), " is too small; give at least ",
                                       ((fixed + 2 * kLeastBlockBytes) >> 20U) + 1, "MiB"));
@@ -100,12 +100,14 @@ void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t memory = parse_memory(arguments.run);
   const auto threads = limit_threads(arguments.run);
-  const auto source = open_source(arguments.input, parse_input(arguments.source));
+  SourceOptions source_options = parse_input(arguments.source);
+  source_options.memory = memory;
+  const auto source = open_source(arguments.input, source_options);
   const NvdbFile file(arguments.volume);
   release_pages(file.bytes());  // what its validation looked at
 
   CompareOptions options;
-  options.block_bytes = block_bytes(memory);
+  options.block_bytes = block_bytes(memory, source->working_bytes());
   options.cancel = &interrupt_flag();
   options.release_pages = [&] { release_pages(file.bytes()); };
   Progress progress(arguments.run.progress);

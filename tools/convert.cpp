@@ -138,6 +138,12 @@ std::string default_output(const std::string& input) {
   return std::filesystem::path(input).replace_extension(".nvdb").string();
 }
 
+// Where a file lies; "." where its path has no directory.
+std::string directory_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return parent.empty() ? "." : parent;
+}
+
 void report(const Sidecar& s, const std::string& output) {
   const std::string error =
       s.error.lossless ? "lossless" : cat("PSNR ", s.error.psnr_db.value_or(0), " dB, largest error ", s.error.max_abs);
@@ -158,7 +164,10 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   options.work_dir = a.work_dir;
   options.provenance = {WEIR_VERSION, WEIR_COMMIT, given_options(command)};
 
-  const std::unique_ptr<VolumeSource> source = open_source(a.input, parse_input(a.source));
+  SourceOptions source_options = parse_input(a.source);
+  source_options.memory = options.memory;
+  source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
+  const std::unique_ptr<VolumeSource> source = open_source(a.input, source_options);
   std::error_code ignored;
   if (std::filesystem::equivalent(a.input, options.output, ignored)) {
     throw usage(cat(options.output, ": is the input; choose another output with -o"));

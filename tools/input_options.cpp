@@ -58,6 +58,22 @@ std::uint64_t parse_offset(const std::string& text) {
   return *bytes;
 }
 
+std::vector<std::int64_t> parse_index(const std::string& text) {
+  std::vector<std::int64_t> index;
+  for (const std::string& part : split(text, ',')) {
+    const auto number = parse_int(part);
+    if (!number || *number < 0) throw bad_option("--index", text, "i,j,..., whole numbers from 0 on");
+    index.push_back(*number);
+  }
+  return index;
+}
+
+StoredValue parse_missing(const std::string& text) {
+  const auto value = parse_stored_value(text);
+  if (!value) throw bad_option("--missing", text, "a number or nan");
+  return *value;
+}
+
 DirectIo parse_direct_io(const std::string& text) {
   if (text == "auto") return DirectIo::automatic;
   if (text == "on") return DirectIo::on;
@@ -81,21 +97,28 @@ void add_input_options(CLI::App& command, InputArguments& arguments) {
   add("--type", arguments.type, "TYPE", scalar_names());
   add("--endian", arguments.endian, "little|big", "byte order; default: the name's, else little");
   add("--offset", arguments.offset, "BYTES", "bytes before the first value; default 0");
-  add("--spacing", arguments.spacing, "x,y,z", "world units per voxel; default 1,1,1");
-  add("--origin", arguments.origin, "x,y,z", "world position of voxel 0,0,0; default 0,0,0");
+  add("--dataset", arguments.dataset, "NAME", "dataset or grid of a file that holds several; weir inspect lists them");
+  add("--index", arguments.index, "i,j,...", "position on each leading axis of an array of more than three");
+  add("--spacing", arguments.spacing, "x,y,z", "world units per voxel; default: the file's, else 1,1,1");
+  add("--origin", arguments.origin, "x,y,z", "world position of voxel 0,0,0; default: the file's, else 0,0,0");
+  add("--missing", arguments.missing, "VALUE",
+      "a stored value that stands for \"no data\", besides what the file says");
   add("--roi", arguments.roi, "x0:x1,y0:y1,z0:z1", "only this box of voxels, half open");
   add("--direct-io", arguments.direct_io, "auto|on|off", "read past the page cache; default auto: what is not in it");
 }
 
 SourceOptions parse_input(const InputArguments& arguments) {
   SourceOptions options;
-  if (!arguments.dims.empty()) options.raw.extent = parse_dims("--dims", arguments.dims);
-  if (!arguments.type.empty()) options.raw.type = parse_type(arguments.type);
-  if (!arguments.endian.empty()) options.raw.big_endian = parse_big_endian(arguments.endian);
-  if (!arguments.offset.empty()) options.raw.offset = parse_offset(arguments.offset);
-  if (!arguments.spacing.empty()) options.raw.spacing = parse_triple("--spacing", arguments.spacing);
-  if (!arguments.origin.empty()) options.raw.origin = parse_triple("--origin", arguments.origin);
-  if (!arguments.direct_io.empty()) options.raw.direct_io = parse_direct_io(arguments.direct_io);
+  if (!arguments.dims.empty()) options.extent = parse_dims("--dims", arguments.dims);
+  if (!arguments.type.empty()) options.type = parse_type(arguments.type);
+  if (!arguments.endian.empty()) options.big_endian = parse_big_endian(arguments.endian);
+  if (!arguments.offset.empty()) options.offset = parse_offset(arguments.offset);
+  options.dataset = arguments.dataset;
+  if (!arguments.index.empty()) options.index = parse_index(arguments.index);
+  if (!arguments.missing.empty()) options.missing = parse_missing(arguments.missing);
+  if (!arguments.spacing.empty()) options.spacing = parse_triple("--spacing", arguments.spacing);
+  if (!arguments.origin.empty()) options.origin = parse_triple("--origin", arguments.origin);
+  if (!arguments.direct_io.empty()) options.direct_io = parse_direct_io(arguments.direct_io);
   if (!arguments.roi.empty()) options.roi = parse_roi(arguments.roi);
   return options;
 }

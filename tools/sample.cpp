@@ -64,7 +64,7 @@ Shape resolve_shape(const SampleArguments& arguments) {
   given.dims = arguments.dims;
   given.type = arguments.type;
   given.endian = arguments.endian;
-  const RawOptions options = parse_input(given).raw;
+  const SourceOptions options = parse_input(given);
   const auto name = parse_raw_name(path);
   if (!name && !options.extent) {
     throw Error(ErrorKind::usage, cat(path, ": extent unknown; give --dims X,Y,Z or name it NAME_XxYxZ_TYPE.raw"));

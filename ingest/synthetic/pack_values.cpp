@@ -72,6 +72,10 @@ ValuePacker::ValuePacker(const SyntheticKind& kind, ScalarType type, bool big_en
     : type_(type),
       big_endian_(big_endian),
       identity_(type == ScalarType::float32 && big_endian == (std::endian::native == std::endian::big)) {
+  if (type == ScalarType::uint64 || type == ScalarType::int64 || type == ScalarType::float16) {
+    throw Error(ErrorKind::usage, cat("synthetic volumes have no type ", scalar_name(type),
+                                      "; use float32, float64 or an integer of up to 32 bits"));
+  }
   if (!is_integer(type)) return;
   const Limits limits = integer_limits(type);
   const auto low = static_cast<double>(kind.min);
@@ -119,6 +123,10 @@ void ValuePacker::pack(std::span<const float> values, std::span<std::byte> bytes
         return pack_as<float>(part, scale_, shift_, swap, out);
       case ScalarType::float64:
         return pack_as<double>(part, scale_, shift_, swap, out);
+      case ScalarType::uint64:
+      case ScalarType::int64:
+      case ScalarType::float16:
+        return;  // refused by the constructor
     }
   });
 }

@@ -50,9 +50,9 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
   std::string convert(std::size_t threads, std::uint64_t memory, DirectIo direct_io) const {
     const Golden& golden = GetParam();
     SourceOptions source_options;
-    source_options.raw.extent = golden.extent;
-    source_options.raw.type = ScalarType::float32;
-    source_options.raw.direct_io = direct_io;
+    source_options.extent = golden.extent;
+    source_options.type = ScalarType::float32;
+    source_options.direct_io = direct_io;
     const auto source = open_source(input(), source_options);
     ConversionOptions options;
     options.output = directory_ / "out.nvdb";

@@ -39,7 +39,7 @@ TEST(SourceRegistry, OpensEveryFormat) {
 
     SourceOptions options;
     options.roi = Box{{1, 1, 1}, {3, 2, 2}};
-    options.raw.spacing = {2.0, 3.0, 4.0};
+    options.spacing = {2.0, 3.0, 4.0};
     const auto part = open_source(path, options);
     EXPECT_EQ(part->info().index_origin, (Index3{1, 1, 1}));
     EXPECT_EQ(part->info().spacing, (std::array<double, 3>{2.0, 3.0, 4.0}));

@@ -29,28 +29,33 @@ std::string message_of(const std::function<void()>& call) {
 
 TEST(InputOptions, NothingGivenIsNothingSaid) {
   const SourceOptions options = parse("");
-  EXPECT_FALSE(options.raw.extent || options.raw.type || options.raw.big_endian || options.raw.spacing ||
-               options.raw.origin || options.roi);
-  EXPECT_EQ(options.raw.offset, 0U);
-  EXPECT_EQ(options.raw.direct_io, DirectIo::automatic);
+  EXPECT_FALSE(options.extent || options.type || options.big_endian || options.spacing || options.origin ||
+               options.roi);
+  EXPECT_FALSE(options.offset || options.missing);
+  EXPECT_EQ(options.dataset, "");
+  EXPECT_TRUE(options.index.empty());
+  EXPECT_EQ(options.direct_io, DirectIo::automatic);
 }
 
 TEST(InputOptions, AllGiven) {
   const SourceOptions options = parse(
       "--dims 3,4,5 --type uint16 --endian big --offset 1KiB --spacing 0.5,1,2e-3 --origin -1.5,0,7"
-      " --roi -1:2,0:4,3:5 --direct-io off");
-  EXPECT_EQ(options.raw.extent, (Index3{3, 4, 5}));
-  EXPECT_EQ(options.raw.type, ScalarType::uint16);
-  EXPECT_EQ(options.raw.big_endian, true);
-  EXPECT_EQ(options.raw.offset, 1024U);
-  EXPECT_EQ(options.raw.spacing, (std::array<double, 3>{0.5, 1, 2e-3}));
-  EXPECT_EQ(options.raw.origin, (std::array<double, 3>{-1.5, 0, 7}));
+      " --roi -1:2,0:4,3:5 --direct-io off --dataset '/a b/c' --index 3,0 --missing -9999");
+  EXPECT_EQ(options.extent, (Index3{3, 4, 5}));
+  EXPECT_EQ(options.type, ScalarType::uint16);
+  EXPECT_EQ(options.big_endian, true);
+  EXPECT_EQ(options.offset, 1024U);
+  EXPECT_EQ(options.spacing, (std::array<double, 3>{0.5, 1, 2e-3}));
+  EXPECT_EQ(options.origin, (std::array<double, 3>{-1.5, 0, 7}));
   EXPECT_EQ(options.roi, (Box{{-1, 0, 3}, {2, 4, 5}}));
-  EXPECT_EQ(options.raw.direct_io, DirectIo::off);
+  EXPECT_EQ(options.direct_io, DirectIo::off);
+  EXPECT_EQ(options.dataset, "/a b/c");
+  EXPECT_EQ(options.index, (std::vector<std::int64_t>{3, 0}));
+  EXPECT_EQ(options.missing, StoredValue{std::int64_t{-9999}});
 }
 
 TEST(InputOptions, ExtentsThatNoVolumeHasAreForTheSourceToRefuse) {
-  EXPECT_EQ(parse("--dims -1,0,5").raw.extent, (Index3{-1, 0, 5}));
+  EXPECT_EQ(parse("--dims -1,0,5").extent, (Index3{-1, 0, 5}));
 }
 
 TEST(InputOptions, Dims) {
@@ -62,7 +67,8 @@ TEST(InputOptions, Dims) {
 
 TEST(InputOptions, Type) {
   EXPECT_EQ(message_of([] { parse("--type half"); }),
-            "--type is \"half\", it must be one of uint8, int8, uint16, int16, uint32, int32, float32, float64");
+            "--type is \"half\", it must be one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, "
+            "float32, float64");
 }
 
 TEST(InputOptions, Endian) {
@@ -81,6 +87,18 @@ TEST(InputOptions, SpacingAndOrigin) {
             "--origin is \"1,2,3,4\", it must be x,y,z, three numbers in world units");
   EXPECT_EQ(message_of([] { parse("--origin 1,two,3"); }),
             "--origin is \"1,two,3\", it must be x,y,z, three numbers in world units");
+}
+
+TEST(InputOptions, Index) {
+  for (const std::string text : {"-1", "1,", "a", "1.5"}) {
+    EXPECT_EQ(message_of([&] { parse("--index " + text); }),
+              "--index is \"" + text + "\", it must be i,j,..., whole numbers from 0 on");
+  }
+}
+
+TEST(InputOptions, Missing) {
+  EXPECT_EQ(message_of([] { parse("--missing none"); }), "--missing is \"none\", it must be a number or nan");
+  EXPECT_EQ(parse("--missing 18446744073709551615").missing, StoredValue{~std::uint64_t{0}});
 }
 
 TEST(InputOptions, Roi) {

@@ -1,7 +1,9 @@
-#include "ingest/box_source.h"
+#include "ingest/source_view.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "ingest/raw_source.h"
@@ -13,13 +15,13 @@ namespace {
 std::unique_ptr<VolumeSource> open_ramp(const Scratch& scratch) {
   std::vector<std::uint16_t> values(10 * 8 * 6);
   std::iota(values.begin(), values.end(), std::uint16_t{0});
-  RawOptions options;
+  SourceOptions options;
   options.origin = {1.0, 2.0, 3.0};
   options.spacing = {0.5, 0.5, 0.5};
-  return open_raw(scratch.write_values("v_10x8x6_uint16.raw", values), options);
+  return place_source(open_raw(scratch.write_values("v_10x8x6_uint16.raw", values), options), options);
 }
 
-TEST(BoxSource, KeepsIndicesAndWorld) {
+TEST(SourceView, KeepsIndicesAndWorld) {
   const Scratch scratch;
   const auto source = crop_source(open_ramp(scratch), {{3, 2, 1}, {9, 8, 4}});
   const SourceInfo& info = source->info();
@@ -38,7 +40,7 @@ TEST(BoxSource, KeepsIndicesAndWorld) {
   EXPECT_GE(source->bytes_read(), 4U);
 }
 
-TEST(BoxSource, RegionOfARegion) {
+TEST(SourceView, RegionOfARegion) {
   const Scratch scratch;
   auto source = crop_source(open_ramp(scratch), {{3, 2, 1}, {9, 8, 4}});
   source = crop_source(std::move(source), {{4, 4, 3}, {5, 5, 4}});
@@ -47,7 +49,7 @@ TEST(BoxSource, RegionOfARegion) {
   EXPECT_EQ(value[0], 4.0F + 10 * 4 + 80 * 3);
 }
 
-TEST(BoxSource, RefusesEmptyAndOutside) {
+TEST(SourceView, RefusesEmptyAndOutside) {
   const Scratch scratch;
   const std::string path = scratch.path("v_10x8x6_uint16.raw");
   const auto refusal = [&](const Box& region) {
@@ -61,7 +63,7 @@ TEST(BoxSource, RefusesEmptyAndOutside) {
             path + ": --roi -1:9,2:8,1:4 reaches outside the volume 0:10,0:8,0:6; keep it within");
 }
 
-TEST(BoxSource, ReadsNothingOutsideTheRegion) {
+TEST(SourceView, ReadsNothingOutsideTheRegion) {
   const Scratch scratch;
   const auto source = crop_source(open_ramp(scratch), {{3, 2, 1}, {9, 8, 4}});
   std::vector<float> value(1);
@@ -70,6 +72,22 @@ TEST(BoxSource, ReadsNothingOutsideTheRegion) {
                                source->read({{0, 0, 0}, {1, 1, 1}}, value);
                              }),
             scratch.path("v_10x8x6_uint16.raw") + ": read of box 0:1,0:1,0:1 outside the region 3:9,2:8,1:4");
+}
+
+TEST(SourceView, RefusesAnImpossiblePlace) {
+  const Scratch scratch;
+  const std::string path = scratch.path("v_10x8x6_uint16.raw");
+  const auto refusal = [&](const SourceOptions& options) {
+    return message_of_error(ErrorKind::usage, [&] { place_source(open_ramp(scratch), options); });
+  };
+  SourceOptions options;
+  options.spacing = {1.0, 0.0, 1.0};
+  EXPECT_EQ(refusal(options), path + ": --spacing has 0; each must be finite and above 0");
+  options.spacing = {1.0, 1.0, std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(refusal(options), path + ": --spacing has inf; each must be finite and above 0");
+  options.spacing.reset();
+  options.origin = {0.0, std::nan(""), 0.0};
+  EXPECT_EQ(refusal(options), path + ": --origin has nan; each must be finite");
 }
 
 }  // namespace

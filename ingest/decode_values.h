@@ -1,0 +1,19 @@
+// Stored values to the volume's: convert_values, and then scale, offset and
+// missing data.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "format/scalar_type.h"
+#include "ingest/stored_value.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+/// As convert_values, after `mapping`: missing values become missing_value() and count as no loss; scaled
+/// ones are computed in double, and their loss is counted against that double.
+ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
+                             const ValueMapping& mapping, std::span<float> values);
+
+}  // namespace weir
