@@ -36,8 +36,8 @@ class Decoder {
     for (const T m : missing_) mark(stored, m, missing);
     // A missing value, 1e36 in a double say, must not count as rounded.
     for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
-    const ConversionLoss loss =
-        mapping_.scales() ? scale(stored, values) : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
+    const ConversionLoss loss = mapping_.scales() ? scale(stored, missing, values)
+                                                  : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
     const float mark = missing_value();
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (missing[i]) std::memcpy(&values[i], &mark, sizeof mark);
@@ -54,10 +54,10 @@ class Decoder {
     }
   }
 
-  ConversionLoss scale(std::span<const T> stored, std::span<float> values) const {
+  ConversionLoss scale(std::span<const T> stored, const Mask& missing, std::span<float> values) const {
     std::array<double, kChunk> scaled;
     for (std::size_t i = 0; i < stored.size(); ++i) {
-      scaled[i] = static_cast<double>(stored[i]) * mapping_.scale + mapping_.offset;
+      scaled[i] = missing[i] ? 0.0 : static_cast<double>(stored[i]) * mapping_.scale + mapping_.offset;
     }
     const auto used = std::span<const double>(scaled).first(stored.size());
     return convert_values(std::as_bytes(used), ScalarType::float64, kNativeIsBig, values);

@@ -1,5 +1,6 @@
-// weir inspect: what a NanoVDB file holds and what its sidecar says about it.
-// Reads no leaf unless the histogram has to be counted (no sidecar).
+// weir inspect: what a NanoVDB file holds and what its sidecar says about it, or
+// what an input holds. Reads no leaf unless the histogram has to be counted (no
+// sidecar).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +20,8 @@
 #include "gpu/image_output.h"
 #include "tools/command.h"
 #include "tools/histogram_plot.h"
+#include "tools/input_listing.h"
+#include "tools/input_options.h"
 #include "tools/progress.h"
 #include "tools/read_sidecar.h"
 #include "tools/tree_census.h"
@@ -32,6 +35,7 @@ constexpr std::size_t kBins = 256;  // of a histogram counted here
 
 struct InspectArguments {
   std::string path;
+  InputArguments source;
   std::string plot;
   bool json = false;
   ProgressMode progress = ProgressMode::automatic;
@@ -192,6 +196,15 @@ void print_json(const NvdbFile& file, const Inspection& found) {
 }
 
 void run(const InspectArguments& arguments) {
+  // A damaged .nvdb without its magic is still no raw file.
+  if (!arguments.path.ends_with(".nvdb") && format_of(arguments.path).name != "nvdb") {
+    if (!arguments.plot.empty()) {
+      throw Error(ErrorKind::usage,
+                  cat("--plot is for .nvdb files, and ", arguments.path, " is none; convert it first"));
+    }
+    print_listing(list_input(arguments.path, parse_input(arguments.source)), arguments.json);
+    return;
+  }
   const auto files = make_posix_file_system();
   std::optional<ImageFile> picture;
   if (!arguments.plot.empty()) picture.emplace(*files, arguments.plot);
@@ -211,11 +224,13 @@ void run(const InspectArguments& arguments) {
 
 void add_inspect(CLI::App& app) {
   auto arguments = std::make_shared<InspectArguments>();
-  CLI::App* command =
-      app.add_subcommand("inspect", "Shows header, tree, budget, certificate and histogram of a volume");
-  command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's")->required();
+  CLI::App* command = app.add_subcommand("inspect",
+                                         "Shows header, tree, budget, certificate and histogram of a .nvdb file, or "
+                                         "lists what an input holds and the command to convert it");
+  command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")->required();
   command->add_option("--plot", arguments->plot, "also draws the histogram as FILE.png");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
+  add_input_options(*command, arguments->source);
   add_progress_option(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { run(*arguments); });

@@ -137,6 +137,31 @@ TEST(ConvertValues, Float64CountsRoundingOverflowAndNothingElse) {
   EXPECT_EQ(loss.max_abs_error, rounds_to_max - static_cast<double>(std::numeric_limits<float>::max()));
 }
 
+TEST(ConvertValues, SixtyFourBitIntegers) {
+  constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+  const auto exact = convert(std::vector<std::int64_t>{0, -1, 1 << 24, kMin, std::int64_t{1} << 62}, ScalarType::int64);
+  expect_lossless(exact.loss);
+  EXPECT_EQ(exact.values[3], -0x1p63F);
+  // 2^63 - 1 rounds to 2^63; the error of 2^53 + 1 would vanish in a double.
+  const auto rounded = convert(std::vector<std::int64_t>{-(kMin + 1), (std::int64_t{1} << 53) + 1}, ScalarType::int64);
+  EXPECT_EQ(rounded.values, (std::vector<float>{0x1p63F, 0x1p53F}));
+  EXPECT_EQ(rounded.loss.inexact, 2U);
+  EXPECT_EQ(rounded.loss.max_abs_error, 1.0);
+  const auto largest = convert(std::vector<std::uint64_t>{~std::uint64_t{0}, 16777217U}, ScalarType::uint64);
+  EXPECT_EQ(largest.values, (std::vector<float>{0x1p64F, 16777216.0F}));
+  EXPECT_EQ(largest.loss.inexact, 2U);
+}
+
+TEST(ConvertValues, HalfFloatsAreExact) {
+  const auto [out, loss] = convert(std::vector<std::uint16_t>{0x0000, 0x8000, 0x0001, 0x03FF, 0x0400, 0x3C00, 0xC000,
+                                                              0x7BFF, 0x7C00, 0xFC00, 0x7E01},
+                                   ScalarType::float16);
+  const std::vector<float> expected{0.0F, -0.0F, 0x1p-24F, 0x1.FF8p-15F, 0x1p-14F, 1.0F, -2.0F, 65504.0F, kInf, -kInf};
+  EXPECT_EQ(std::memcmp(out.data(), expected.data(), expected.size() * sizeof(float)), 0);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(out[10]), 0x7FC02000U);
+  expect_lossless(loss);
+}
+
 TEST(ConvertValues, CountsInEveryPlaceOfEveryLength) {
   // The lanes of the vectorised loop and the tail after it count alike.
   for (std::size_t n = 1; n <= 50; ++n) {

@@ -103,12 +103,12 @@ TEST_F(BadInput, DimsThatAreNoExtent) {
 }
 
 TEST_F(BadInput, UnknownType) {
-  const std::string types = "uint8, int8, uint16, int16, uint32, int32, float32, float64";
+  const std::string types = "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, float32, float64";
   expect_convert_refused(bytes("volume.raw", 512), {"--dims", "8,8,8", "--type", "uint7"}, 2,
                          "--type is \"uint7\", it must be one of " + types);
-  const std::string named = bytes("volume_8x8x8_float16.raw", 1024);
+  const std::string named = bytes("volume_8x8x8_float80.raw", 1024);
   expect_convert_refused(named, {}, 2,
-                         named + ": unknown type 'float16' in the file's name; give --type with one of " + types);
+                         named + ": unknown type 'float80' in the file's name; give --type with one of " + types);
   const std::string plain = bytes("plain.raw", 512);
   expect_convert_refused(plain, {"--dims", "8,8,8"}, 2, plain + ": type unknown; give --type with one of " + types);
 }
