@@ -25,6 +25,8 @@ struct SourceOptions {
   std::string dataset;              ///< --dataset: path or name inside the container; empty: the only one
   std::vector<std::int64_t> index;  ///< --index: position on each leading axis of an array of more than three
 
+  bool stack = false;  ///< --stack: the path is a pattern, the volume many files on top of each other along z
+
   // Of every format.
   std::optional<std::array<double, 3>> spacing;  ///< --spacing: world units per voxel, > 0; the file's, else 1
   std::optional<std::array<double, 3>> origin;   ///< --origin: world position of index (0, 0, 0); the file's, else 0

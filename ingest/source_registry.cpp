@@ -8,6 +8,7 @@
 #include "ingest/input_file.h"
 #include "ingest/raw_source.h"
 #include "ingest/source_view.h"
+#include "ingest/stack_source.h"
 
 namespace weir {
 namespace {
@@ -43,6 +44,12 @@ void refuse_foreign_options(const std::string& path, const SourceFormat& format,
   }
 }
 
+std::unique_ptr<VolumeSource> open_file(const std::string& path, const SourceOptions& options) {
+  const SourceFormat& format = format_of(path);
+  refuse_foreign_options(path, format, options);
+  return format.open(path, options);
+}
+
 }  // namespace
 
 std::span<const SourceFormat> source_formats() { return kFormats; }
@@ -57,9 +64,7 @@ const SourceFormat& format_of(const std::string& path) {
 }
 
 std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options) {
-  const SourceFormat& format = format_of(path);
-  refuse_foreign_options(path, format, options);
-  auto source = place_source(format.open(path, options), options);
+  auto source = place_source(options.stack ? open_stack(path, options) : open_file(path, options), options);
   const ScalarType type = source->info().type;
   if (options.missing && !holds(type, *options.missing)) {
     throw Error(ErrorKind::usage, cat(path, ": --missing is ", stored_value_text(*options.missing), ", and no ",

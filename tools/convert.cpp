@@ -8,6 +8,7 @@
 
 #include "compressor/conversion.h"
 #include "format/error.h"
+#include "format/output_files.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
@@ -136,12 +137,6 @@ std::map<std::string, std::string> given_options(const CLI::App& command) {
 
 std::string default_output(const std::string& input) {
   return std::filesystem::path(input).replace_extension(".nvdb").string();
-}
-
-// Where a file lies; "." where its path has no directory.
-std::string directory_of(const std::string& path) {
-  const std::string parent = std::filesystem::path(path).parent_path().string();
-  return parent.empty() ? "." : parent;
 }
 
 void report(const Sidecar& s, const std::string& output) {

@@ -99,6 +99,10 @@ void add_input_options(CLI::App& command, InputArguments& arguments) {
   add("--offset", arguments.offset, "BYTES", "bytes before the first value; default 0");
   add("--dataset", arguments.dataset, "NAME", "dataset or grid of a file that holds several; weir inspect lists them");
   add("--index", arguments.index, "i,j,...", "position on each leading axis of an array of more than three");
+  command
+      .add_flag("--stack", arguments.stack,
+                "the input is a pattern, 'plane_%05d.raw': one volume from many files along z")
+      ->group("Input");
   add("--spacing", arguments.spacing, "x,y,z", "world units per voxel; default: the file's, else 1,1,1");
   add("--origin", arguments.origin, "x,y,z", "world position of voxel 0,0,0; default: the file's, else 0,0,0");
   add("--missing", arguments.missing, "VALUE",
@@ -113,6 +117,7 @@ SourceOptions parse_input(const InputArguments& arguments) {
   if (!arguments.type.empty()) options.type = parse_type(arguments.type);
   if (!arguments.endian.empty()) options.big_endian = parse_big_endian(arguments.endian);
   if (!arguments.offset.empty()) options.offset = parse_offset(arguments.offset);
+  options.stack = arguments.stack;
   options.dataset = arguments.dataset;
   if (!arguments.index.empty()) options.index = parse_index(arguments.index);
   if (!arguments.missing.empty()) options.missing = parse_missing(arguments.missing);

@@ -20,12 +20,13 @@ struct InputArguments {
   std::string origin;     ///< x,y,z world position of index (0, 0, 0)
   std::string dataset;    ///< path or name inside a container
   std::string index;      ///< i,j,... on the leading axes
+  bool stack = false;     ///< the input is a pattern of files, one z-slab each
   std::string missing;    ///< the stored value that says "no data"
   std::string roi;        ///< x0:x1,y0:y1,z0:z1 in index space, half open
   std::string direct_io;  ///< auto, on or off
 };
 
-/// Adds --dims, --type, --endian, --offset, --dataset, --index, --spacing, --origin, --missing, --roi and
+/// Adds --dims, --type, --endian, --offset, --dataset, --index, --stack, --spacing, --origin, --missing, --roi and
 /// --direct-io, stored in `arguments`, which must live as long as the command.
 void add_input_options(CLI::App& command, InputArguments& arguments);
 
