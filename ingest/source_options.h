@@ -22,7 +22,9 @@ struct SourceOptions {
   std::optional<std::uint64_t> offset;  ///< --offset: bytes before the first value; default 0
 
   // Of containers.
-  std::string dataset;              ///< --dataset: path or name inside the container; empty: the only one
+  std::string dataset;  ///< --dataset: path or name inside the container; empty: the only one
+  /// --index: position on each leading axis of an array of more than three; kEveryIndex (ingest/series.h) is
+  /// for who makes several volumes of them.
   std::vector<std::int64_t> index;  ///< --index: position on each leading axis of an array of more than three
 
   bool stack = false;  ///< --stack: the path is a pattern, the volume many files on top of each other along z

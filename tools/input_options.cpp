@@ -7,6 +7,7 @@
 #include "format/error.h"
 #include "format/scalar_type.h"
 #include "format/text.h"
+#include "ingest/series.h"
 
 namespace weir {
 namespace {
@@ -61,8 +62,10 @@ std::uint64_t parse_offset(const std::string& text) {
 std::vector<std::int64_t> parse_index(const std::string& text) {
   std::vector<std::int64_t> index;
   for (const std::string& part : split(text, ',')) {
-    const auto number = parse_int(part);
-    if (!number || *number < 0) throw bad_option("--index", text, "i,j,..., whole numbers from 0 on");
+    const auto number = part == "*" ? kEveryIndex : parse_int(part);
+    if (!number || (*number < 0 && part != "*")) {
+      throw bad_option("--index", text, "i,j,..., whole numbers from 0 on, or * for each of them");
+    }
     index.push_back(*number);
   }
   return index;
@@ -98,7 +101,8 @@ void add_input_options(CLI::App& command, InputArguments& arguments) {
   add("--endian", arguments.endian, "little|big", "byte order; default: the name's, else little");
   add("--offset", arguments.offset, "BYTES", "bytes before the first value; default 0");
   add("--dataset", arguments.dataset, "NAME", "dataset or grid of a file that holds several; weir inspect lists them");
-  add("--index", arguments.index, "i,j,...", "position on each leading axis of an array of more than three");
+  add("--index", arguments.index, "i,j,...",
+      "position on each leading axis of an array of more than three; * for a volume of each");
   command
       .add_flag("--stack", arguments.stack,
                 "the input is a pattern, 'plane_%05d.raw': one volume from many files along z")

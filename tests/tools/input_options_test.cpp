@@ -92,7 +92,7 @@ TEST(InputOptions, SpacingAndOrigin) {
 TEST(InputOptions, Index) {
   for (const std::string text : {"-1", "1,", "a", "1.5"}) {
     EXPECT_EQ(message_of([&] { parse("--index " + text); }),
-              "--index is \"" + text + "\", it must be i,j,..., whole numbers from 0 on");
+              "--index is \"" + text + "\", it must be i,j,..., whole numbers from 0 on, or * for each of them");
   }
 }
 

@@ -1,0 +1,103 @@
+// A series on the command line: every step a file of its own, all of one size.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+class SeriesCommand : public testing::Test {
+ protected:
+  void write_steps(int count) const {
+    for (int i = 0; i < count; ++i) {
+      std::string bytes(64 * 48 * 40, '\0');
+      for (std::size_t b = 0; b < bytes.size(); ++b)
+        bytes[b] = static_cast<char>((b * static_cast<std::size_t>(i + 3)) % 251);
+      write_file(directory_.path() / ("t_" + std::to_string(i) + "_64x48x40_uint8.raw"), bytes);
+    }
+  }
+
+  TemporaryDirectory directory_;
+  std::string pattern_ = directory_ / "t_%d_64x48x40_uint8.raw";
+};
+
+TEST_F(SeriesCommand, EveryStepHasTheSameSizeAndItsOwnValues) {
+  write_steps(3);
+  std::filesystem::create_directory(directory_.path() / "out");
+  const auto made =
+      run_weir({"convert", pattern_, "-o", directory_ / "out/{stem}-{step}.nvdb", "--size", "400000", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto steps = nlohmann::json::parse(made.out)["steps"];
+  ASSERT_EQ(steps.size(), 3U);
+  for (int i = 0; i < 3; ++i) {
+    const std::string stem = "t_" + std::to_string(i) + "_64x48x40_uint8";
+    const std::string volume = directory_ / ("out/" + stem + "-" + std::to_string(i) + ".nvdb");
+    EXPECT_EQ(std::filesystem::file_size(volume), 400000U);
+    EXPECT_EQ(steps[static_cast<std::size_t>(i)]["source"]["path"], directory_ / (stem + ".raw"));
+    const auto compared = run_weir({"compare", directory_ / (stem + ".raw"), volume, "--json"});
+    EXPECT_EQ(nlohmann::json::parse(compared.out)["mse"], steps[static_cast<std::size_t>(i)]["error"]["mse"]);
+  }
+  EXPECT_EQ(list_directory(directory_.path() / "out").size(), 6U);
+}
+
+TEST_F(SeriesCommand, RefusesOneNameForAll) {
+  write_steps(2);
+  const auto made = run_weir({"convert", pattern_, "-o", directory_ / "one.nvdb"});
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_NE(made.err.find("2 volumes, and two of them"), std::string::npos) << made.err;
+  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "one.nvdb"));
+}
+
+TEST_F(SeriesCommand, RefusesWhatExistsBeforeTheFirstStep) {
+  write_steps(2);
+  write_file(directory_.path() / "t_1_64x48x40_uint8.nvdb", "precious");
+  const auto made = run_weir({"convert", pattern_});
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_EQ(made.err, "weir: " + directory_ / "t_1_64x48x40_uint8.nvdb" +
+                          ": exists; choose another output with -o or pass --overwrite\n");
+  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "t_0_64x48x40_uint8.nvdb"));
+}
+
+TEST_F(SeriesCommand, StepsOfTwoExtentsNeedASize) {
+  write_steps(1);
+  const std::string other = directory_ / "u_9x8x7_uint8.raw";
+  write_file(other, std::string(9 * 8 * 7, '\5'));
+  const std::string first = directory_ / "t_0_64x48x40_uint8.raw";
+  const auto by_rate = run_weir({"convert", first, other, "--rate", "1"});
+  EXPECT_EQ(by_rate.exit_code, 3);
+  EXPECT_NE(by_rate.err.find(other + ": extent 9x8x7 differs from 64x48x40 of " + first +
+                             ", so that a rate gives files of two sizes; give --size"),
+            std::string::npos)
+      << by_rate.err;
+  const auto by_size = run_weir({"convert", first, other, "--size", "1MB", "--overwrite"});
+  EXPECT_EQ(by_size.exit_code, 0) << by_size.err;
+  EXPECT_EQ(std::filesystem::file_size(directory_.path() / "u_9x8x7_uint8.nvdb"), 1000000U);
+}
+
+TEST_F(SeriesCommand, AStackIsOneVolume) {
+  const std::string whole = directory_ / "w_64x48x40_uint8.raw";
+  std::string bytes(64 * 48 * 40, '\0');
+  for (std::size_t b = 0; b < bytes.size(); ++b) bytes[b] = static_cast<char>(b % 251);
+  write_file(whole, bytes);
+  for (std::size_t z = 0; z < 40; ++z) {
+    write_file(directory_.path() / ("p_" + std::to_string(1000 + z) + ".raw"), bytes.substr(z * 64 * 48, 64 * 48));
+  }
+  const std::string stacked = directory_ / "stacked.nvdb";
+  const std::vector<std::string> stack{directory_ / "p_%04d.raw", "--stack", "--dims", "64,48,1", "--type", "uint8"};
+  std::vector<std::string> convert{"convert", "-o", stacked, "--lossless"};
+  convert.insert(convert.end(), stack.begin(), stack.end());
+  const auto made = run_weir(convert);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(run_weir({"convert", whole, "-o", directory_ / "w.nvdb", "--lossless"}).exit_code, 0);
+  EXPECT_EQ(read_file(stacked), read_file(directory_ / "w.nvdb"));
+  std::vector<std::string> compare{"compare", stacked};
+  compare.insert(compare.begin() + 1, stack.begin(), stack.end());
+  EXPECT_EQ(run_weir(compare).out, "lossless: all 122880 finite voxels read bit for bit\n");
+}
+
+}  // namespace
+}  // namespace weir

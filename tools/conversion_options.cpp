@@ -1,0 +1,125 @@
+#include "tools/conversion_options.h"
+
+#include <cmath>
+#include <utility>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+Budget parse_budget(const ConversionArguments& a) {
+  if ((a.size.empty() ? 0 : 1) + (a.rate.empty() ? 0 : 1) + (a.lossless ? 1 : 0) > 1) {
+    throw usage("--size, --rate and --lossless exclude each other; give one");
+  }
+  Budget budget;
+  if (a.lossless) budget.kind = Budget::Kind::lossless;
+  if (!a.size.empty()) {
+    const auto bytes = parse_bytes(a.size);
+    if (!bytes || *bytes == 0) {
+      throw usage(cat("--size is \"", a.size, "\", it must be a size such as 1048577, 64MiB or 1.5GB"));
+    }
+    budget.kind = Budget::Kind::size;
+    budget.bytes = *bytes;
+  }
+  if (!a.rate.empty()) {
+    const auto rate = parse_double(a.rate);
+    // Above 2^60 no volume has a byte left; below 2^-20 no disk holds the file.
+    if (!rate || !(*rate >= 0x1p-20 && *rate <= 0x1p60)) {
+      throw usage(cat("--rate is \"", a.rate, "\", it must be a positive number: dense float32 bytes / file bytes"));
+    }
+    budget.kind = Budget::Kind::rate;
+    budget.rate = *rate;
+  }
+  return budget;
+}
+
+Metric parse_metric(const std::string& name) {
+  for (const Metric metric : {Metric::sse, Metric::farthest, Metric::closest, Metric::median}) {
+    if (metric_name(metric) == name) return metric;
+  }
+  throw usage(cat("--metric is \"", name, "\", it must be sse, farthest, closest or median"));
+}
+
+FillMode parse_fill(const std::string& name) {
+  for (const FillMode fill : {FillMode::mean, FillMode::background}) {
+    if (fill_name(fill) == name) return fill;
+  }
+  throw usage(cat("--fill is \"", name, "\", it must be mean or background"));
+}
+
+NonFinitePolicy parse_policy(const std::string& name) {
+  for (const NonFinitePolicy policy : {NonFinitePolicy::error, NonFinitePolicy::background, NonFinitePolicy::keep}) {
+    if (policy_name(policy) == name) return policy;
+  }
+  throw usage(cat("--nonfinite is \"", name, "\", it must be error, background or keep"));
+}
+
+// Empty means "not given" everywhere: the defaults are those of ConversionOptions.
+void parse_method(const ConversionArguments& a, ConversionOptions& options) {
+  if (!a.encoding.empty() && a.encoding != "auto" && a.encoding != "float") {
+    throw usage(cat("--encoding is \"", a.encoding, "\", it must be auto or float"));
+  }
+  if (!a.metric.empty()) options.metric = parse_metric(a.metric);
+  if (!a.fill.empty()) options.fill = parse_fill(a.fill);
+  if (!a.brick.empty()) {
+    const auto brick = parse_int(a.brick);
+    if (!brick || (*brick != 8 && *brick != 16 && *brick != 32)) {
+      throw usage(cat("--brick is \"", a.brick, "\", it must be 8, 16 or 32"));
+    }
+    options.brick = *brick;
+  }
+  if (!a.preset.empty()) {
+    if (a.preset != "paper") throw usage(cat("--preset is \"", a.preset, "\", the one there is is paper"));
+    for (const auto& [fixed, given] :
+         {std::pair{"--metric", a.metric}, std::pair{"--fill", a.fill}, std::pair{"--background", a.background}}) {
+      if (!given.empty()) throw usage(cat("--preset paper sets ", fixed, "; leave one of them out"));
+    }
+    options.metric = Metric::farthest;
+    options.fill = FillMode::background;
+    options.paper_background = true;
+  }
+  if (options.metric == Metric::sse && options.brick != 8) {
+    throw usage(
+        cat("--brick ", options.brick, " is for --metric farthest, closest or median; sse chooses single leaves"));
+  }
+  if (!a.background.empty() && a.background != "auto") {
+    const auto value = parse_double(a.background);
+    const auto rounded = value ? static_cast<float>(*value) : 0.0F;
+    if (!value || !(rounded - rounded == 0)) {
+      throw usage(cat("--background is \"", a.background, "\", it must be auto or a finite float32"));
+    }
+    options.background = rounded;
+  }
+}
+
+}  // namespace
+
+void add_conversion_options(CLI::App& command, ConversionArguments& a) {
+  command.add_option("--nonfinite", a.non_finite, "NaN and infinite voxels: error, background or keep; default error");
+  command.add_option("--size", a.size, "the file is exactly that long, 64MiB for instance");
+  command.add_option("--rate", a.rate, "the file is exactly ceil(float32 bytes of the volume / RATE) long; default 8");
+  command.add_flag("--lossless", a.lossless, "as long as every bit of every voxel needs");
+  command.add_option("--encoding", a.encoding, "leaves: auto or float; default auto");
+  command.add_option("--metric", a.metric,
+                     "what the budget is spent on: sse (squared error saved per byte), farthest, closest or median "
+                     "(the paper's distances from a brick's range to the background); default sse");
+  command.add_option("--fill", a.fill, "what dropped blocks read: mean or background; default mean");
+  command.add_option("--background", a.background, "auto (the most frequent value) or a value; default auto");
+  command.add_option("--brick", a.brick, "granularity of the paper's metrics in voxels: 8, 16 or 32; default 8");
+  command.add_option("--preset", a.preset,
+                     "paper: --encoding float --metric farthest --fill background and the paper's background");
+}
+
+ConversionOptions parse_conversion(const ConversionArguments& a) {
+  ConversionOptions options;
+  options.budget = parse_budget(a);
+  if (!a.non_finite.empty()) options.non_finite = parse_policy(a.non_finite);
+  parse_method(a, options);
+  return options;
+}
+
+}  // namespace weir

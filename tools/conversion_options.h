@@ -1,0 +1,34 @@
+// The options that say how to convert: budget, method and policy. The same ones
+// for every command that converts.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "compressor/conversion.h"
+
+namespace weir {
+
+/// The options as given; empty: not given.
+struct ConversionArguments {
+  std::string non_finite;  ///< error, background or keep
+  std::string size;        ///< a size: the file is exactly that long
+  std::string rate;        ///< dense float32 bytes / file bytes
+  bool lossless = false;
+  std::string encoding;    ///< auto or float
+  std::string metric;      ///< sse, farthest, closest or median
+  std::string fill;        ///< mean or background
+  std::string background;  ///< auto or a finite float32
+  std::string brick;       ///< 8, 16 or 32 voxels
+  std::string preset;      ///< paper
+};
+
+/// Adds --nonfinite, --size, --rate, --lossless, --encoding, --metric, --fill, --background, --brick and
+/// --preset, stored in `arguments`, which must live as long as the command.
+void add_conversion_options(CLI::App& command, ConversionArguments& arguments);
+
+/// What they mean: budget, metric, fill, brick, background and policy of ConversionOptions. Throws
+/// Error(usage) naming option, text and form where one cannot be read or two contradict each other.
+ConversionOptions parse_conversion(const ConversionArguments& arguments);
+
+}  // namespace weir
