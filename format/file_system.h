@@ -26,6 +26,8 @@ class File {
   virtual void start_writeback() = 0;
   virtual void sync() = 0;
   virtual std::uint64_t size() = 0;
+  /// The system's, for as long as this file is open; -1 where there is none.
+  virtual int descriptor() const { return -1; }
 };
 
 /// All paths are as the user wrote them. Thread-safe.

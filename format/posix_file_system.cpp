@@ -74,6 +74,8 @@ class PosixFile final : public File {
     return static_cast<std::uint64_t>(status.st_size);
   }
 
+  int descriptor() const override { return descriptor_; }
+
  private:
   int descriptor_;
   std::string path_;

@@ -39,15 +39,15 @@ bool may_see_residency(const std::string& path, const struct stat& status) {
 
 }  // namespace
 
-InputFile::InputFile(const std::string& path, DirectIo mode) : path_(path), mode_(mode) {
+InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& shown) : path_(shown), mode_(mode) {
   // O_NONBLOCK: opening a pipe must not wait for its writer. Regular files ignore it.
   buffered_.reset(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!buffered_) throw open_error(path, cat("cannot open for reading: ", message_of(errno)));
+  if (!buffered_) throw open_error(shown, cat("cannot open for reading: ", message_of(errno)));
   struct stat status {};
-  if (::fstat(buffered_.get(), &status) != 0) throw open_error(path, cat("cannot look at: ", message_of(errno)));
-  if (S_ISDIR(status.st_mode)) throw open_error(path, "is a directory; name a file in it");
-  if (!S_ISREG(status.st_mode)) throw open_error(path, "is not a regular file; copy its content to one");
-  if (status.st_size == 0) throw open_error(path, "is empty (0 bytes)");
+  if (::fstat(buffered_.get(), &status) != 0) throw open_error(shown, cat("cannot look at: ", message_of(errno)));
+  if (S_ISDIR(status.st_mode)) throw open_error(shown, "is a directory; name a file in it");
+  if (!S_ISREG(status.st_mode)) throw open_error(shown, "is not a regular file; copy its content to one");
+  if (status.st_size == 0) throw open_error(shown, "is empty (0 bytes)");
   size_ = static_cast<std::uint64_t>(status.st_size);
   mtime_ns_ = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
 

@@ -34,7 +34,9 @@ class InputFile {
  public:
   /// Throws Error(input) where the file is missing, no regular file, unreadable or empty, and, with
   /// DirectIo::on, where the file system has no direct I/O.
-  InputFile(const std::string& path, DirectIo mode);
+  InputFile(const std::string& path, DirectIo mode) : InputFile(path, mode, path) {}
+  /// The same, but path() and messages say `shown`: of files without a name, opened by /proc/self/fd.
+  InputFile(const std::string& path, DirectIo mode, const std::string& shown);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;

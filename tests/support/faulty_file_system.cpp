@@ -30,6 +30,7 @@ class FaultyFile final : public File {
     real_->sync();
   }
   std::uint64_t size() override { return real_->size(); }
+  int descriptor() const override { return real_->descriptor(); }
 
  private:
   FaultyFileSystem& files_;
