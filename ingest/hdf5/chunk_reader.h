@@ -6,14 +6,19 @@
 #include <hdf5.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <mutex>
+#include <set>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "format/index.h"
 #include "format/scalar_type.h"
+#include "ingest/hdf5/chunk_scratch.h"
+#include "ingest/hdf5/chunk_store.h"
 #include "ingest/stored_value.h"
 #include "ingest/volume_source.h"
 
@@ -27,7 +32,7 @@ struct ChunkedSlice {
   ScalarType type = ScalarType::float32;  ///< whose size is the stored type's
   bool big_endian = false;
   ValueMapping mapping;
-  std::vector<std::byte> fill;  ///< one stored value: what voxels of chunks that were never written read as
+  std::vector<std::byte> fill;  ///< one stored value: what voxels of chunks that the file does not hold read as
 };
 
 /// What reading has done so far.
@@ -38,23 +43,22 @@ struct ChunkCounts {
   std::size_t decoding_threads = 0;  ///< different threads that decoded
 };
 
-/// Takes the library's lock (Hdf5Lock) itself, in every member and in the constructor: callers must not
-/// hold it. Thread-safe.
+/// Takes the library's lock (Hdf5Lock) itself, in the constructor and in read: callers must not hold it.
+/// Thread-safe.
 class ChunkReader {
  public:
-  /// Whether all filters of a chunked dataset are ones that are run here: deflate, shuffle, fletcher32, in
-  /// any order and number, or none. The caller holds the lock.
+  /// Whether all filters of a chunked dataset are ones that are run here (own_pipeline). The caller holds
+  /// the lock.
   static bool decodes(hid_t dataset);
 
-  /// Decodes at most as many chunks at a time as fit half of `memory` bytes. Throws Error(usage) naming a
-  /// sufficient --memory where not even one does. `slice.dataset` satisfies decodes().
+  /// Decodes at most as many chunks at a time as ScratchPool allows for `memory` bytes, and throws what it
+  /// throws; Error(input) where a chunk has no sensible size. `slice.dataset` satisfies decodes().
   ChunkReader(ChunkedSlice slice, std::uint64_t memory);
-  ~ChunkReader();
 
   /// Chunk extent in voxels and bytes per voxel, for the block plan; chunks begin at index 0.
   AccessShape access() const;
   /// Memory for chunks being decoded, in bytes.
-  std::uint64_t working_bytes() const;
+  std::uint64_t working_bytes() const { return scratch_.bytes(); }
   ChunkCounts counts() const;
 
   /// Reads `box` (voxels from the slice's first, inside it, not empty) into `values`, x fastest. Every
@@ -63,8 +67,26 @@ class ChunkReader {
   ConversionLoss read(const Box& box, std::span<float> values);
 
  private:
-  class Decoder;
-  std::unique_ptr<Decoder> decoder_;
+  /// The part of `box` that the chunk at `chunk` (chunk coordinates) holds.
+  ConversionLoss read_chunk(const Index3& chunk, const Box& box, std::span<float> values, ChunkScratch& scratch);
+  /// The chunk's bytes, filters undone, which lie in `scratch`; empty where the file does not hold it.
+  std::span<const std::byte> decode(std::span<const hsize_t> corner, ChunkScratch& scratch);
+  std::vector<hsize_t> corner_of(const Index3& chunk) const;
+
+  ChunkedSlice slice_;
+  ChunkStore store_;
+  Index3 chunk_;                 ///< voxels
+  std::size_t first_byte_ = 0;   ///< of the slice inside a chunk
+  std::size_t chunk_bytes_ = 0;  ///< unfiltered, all leading axes
+  float fill_ = 0;
+  ConversionLoss fill_loss_;  ///< of one voxel
+  ScratchPool scratch_;
+
+  std::atomic<std::uint64_t> decoded_{0};
+  std::atomic<std::uint64_t> unallocated_{0};
+  std::atomic<std::uint64_t> bytes_read_{0};
+  mutable std::mutex mutex_;
+  std::set<std::thread::id> threads_;
 };
 
 }  // namespace weir

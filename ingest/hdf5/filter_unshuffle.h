@@ -1,0 +1,14 @@
+// HDF5's shuffle filter, undone: byte j of every value lies in plane j.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace weir {
+
+/// Puts the bytes of values of `value_bytes` each, stored plane by plane, back together. Bytes beyond the
+/// last whole value are at the end of both. `values` is as long as `planes` and does not overlap it;
+/// value_bytes >= 1.
+void unshuffle(std::span<const std::byte> planes, std::size_t value_bytes, std::span<std::byte> values);
+
+}  // namespace weir
