@@ -2,79 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
+#include <vector>
 
 #include "format/error.h"
 #include "format/text.h"
+#include "ingest/block_axis.h"
 
 namespace weir {
 namespace {
 
 constexpr std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return -floor_div(-a, b); }
 
-/// One axis of a plan. Lengths in leaves, except where they say voxels.
-struct Axis {
-  std::int64_t lo = 0;          ///< domain, voxels
-  std::int64_t hi = 0;          ///< domain, voxels
-  std::int64_t first = 0;       ///< global coordinate of the first leaf
-  std::int64_t count = 0;       ///< leaves
-  std::int64_t chunk = 0;       ///< voxels, zero where not chunked
-  std::int64_t chunk_edge = 0;  ///< index of any chunk's edge, voxels
-  std::int64_t unit = 1;        ///< smallest block that ends with a chunk; 1 where there is none
-  std::int64_t size = 1;        ///< the block's length as chosen so far
-
-  /// Smallest multiple of the unit that holds a lower node's width.
-  std::int64_t step() const { return unit * ceil_div(kLowerLeaves, unit); }
-  bool whole() const { return size >= count; }
-  /// Leaves of the first block before the domain's first leaf. Blocks lie on multiples of their size
-  /// from the global origin, or from a chunk's edge.
-  std::int64_t lead() const {
-    if (whole()) return 0;
-    const std::int64_t anchor = unit > 1 ? floor_div(chunk_edge, kLeafDim) : 0;
-    return first - anchor - floor_div(first - anchor, size) * size;
-  }
-  std::int64_t blocks() const { return ceil_div(count + lead(), size); }
-  /// Lattice positions of block k.
-  std::int64_t begin(std::int64_t k) const { return std::max<std::int64_t>(k * size - lead(), 0); }
-  std::int64_t end(std::int64_t k) const { return std::min((k + 1) * size - lead(), count); }
-  std::int64_t voxels(std::int64_t k) const {
-    return std::min((first + end(k)) * kLeafDim, hi) - std::max((first + begin(k)) * kLeafDim, lo);
-  }
-  /// Voxels of the longest block: one in the middle where there is one.
-  std::int64_t longest() const {
-    const std::int64_t n = blocks();
-    return std::max({voxels(0), voxels(std::min<std::int64_t>(1, n - 1)), voxels(n - 1)});
-  }
-  /// Chunks decoded, all blocks together, over chunks there are.
-  double amplification() const {
-    const auto chunks = [&](std::int64_t from, std::int64_t to) {
-      return floor_div(to - 1 - chunk_edge, chunk) - floor_div(from - chunk_edge, chunk) + 1;
-    };
-    std::int64_t decoded = 0;
-    for (std::int64_t k = 0; k < blocks(); ++k) {
-      const std::int64_t from = std::max((first + begin(k)) * kLeafDim, lo);
-      decoded += chunks(from, from + voxels(k));
-    }
-    return static_cast<double>(decoded) / static_cast<double>(chunks(lo, hi));
-  }
-};
-
-using Axes = std::array<Axis, 3>;
-
-Axis make_axis(std::int64_t lo, std::int64_t hi, std::int64_t chunk, std::int64_t chunk_edge) {
-  Axis axis;
-  axis.lo = lo;
-  axis.hi = hi;
-  axis.first = floor_div(lo, kLeafDim);
-  axis.count = floor_div(hi - 1, kLeafDim) + 1 - axis.first;
-  axis.chunk = chunk;
-  axis.chunk_edge = chunk_edge;
-  // Where chunk edges are off the leaf lattice, no block of leaves ends with a chunk.
-  if (chunk > 0 && chunk_edge % kLeafDim == 0) {
-    axis.unit = std::min(std::lcm(chunk, kLeafDim) / kLeafDim, axis.count);
-  }
-  return axis;
-}
+using Axes = std::array<BlockAxis, 3>;
 
 std::uint64_t largest_bytes(const Axes& axes) {
   return static_cast<std::uint64_t>(axes[0].longest() * axes[1].longest() * axes[2].longest()) * sizeof(float);
@@ -111,6 +52,45 @@ bool grow_by_steps(Axes& axes, std::size_t a, std::uint64_t budget) {
   return false;
 }
 
+/// Long rows for the disk, then a lower node's width in y and in z for the output, then more of both.
+void grow_rows(Axes& axes, std::uint64_t budget, BlockShape shape) {
+  const std::uint64_t ample = std::clamp(kAmpleBlockBytes, largest_bytes(axes), budget);
+  const std::size_t first = shape == BlockShape::wide ? 1 : 2;
+  const bool full_rows = grow_by_steps(axes, 0, budget);
+  if (!full_rows) {
+    grow_to_step(axes, 0, budget);
+  } else if (grow_to_step(axes, first, budget) && grow_to_step(axes, 3 - first, budget)) {
+    if (grow_by_steps(axes, 1, ample)) grow_by_steps(axes, 2, ample);
+  }
+}
+
+double amplification(const Axes& axes) {
+  constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+  return axes[0].amplification(kAll) * axes[1].amplification(kAll) * axes[2].amplification(kAll);
+}
+
+/// The cut that decodes the fewest chunks twice; of several the one with the longest rows.
+void cut_for_chunks(Axes& axes, std::uint64_t budget) {
+  const std::array<std::vector<AxisCut>, 3> cuts{useful_cuts(axes[0]), useful_cuts(axes[1]), useful_cuts(axes[2])};
+  const auto most_voxels = static_cast<std::int64_t>(budget / sizeof(float));
+  double least = std::numeric_limits<double>::infinity();
+  for (auto x = cuts[0].rbegin(); x != cuts[0].rend(); ++x) {
+    for (auto y = cuts[1].rbegin(); y != cuts[1].rend(); ++y) {
+      // The longest cut in z that fits has the smallest amplification of those that do.
+      const std::int64_t fits = most_voxels / (x->longest * y->longest);
+      const auto beyond = std::ranges::upper_bound(cuts[2], fits, {}, &AxisCut::longest);
+      if (beyond == cuts[2].begin()) continue;
+      const AxisCut& z = *std::prev(beyond);
+      const double decoded = x->amplification * y->amplification * z.amplification;
+      if (decoded >= least) continue;
+      least = decoded;
+      axes[0].size = x->size;
+      axes[1].size = y->size;
+      axes[2].size = z.size;
+    }
+  }
+}
+
 }  // namespace
 
 Box BlockPlan::leaf_box(std::int64_t i) const {
@@ -126,30 +106,21 @@ Box BlockPlan::voxel_box(const Box& leaf_box) const {
 }
 
 BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes, BlockShape shape) {
-  Axes axes{make_axis(domain.lo.x, domain.hi.x, access.chunk.x, access.chunk_origin.x),
-            make_axis(domain.lo.y, domain.hi.y, access.chunk.y, access.chunk_origin.y),
-            make_axis(domain.lo.z, domain.hi.z, access.chunk.z, access.chunk_origin.z)};
-  const std::uint64_t leaf_bytes = largest_bytes(axes);
-  if (leaf_bytes > block_bytes) {
-    throw Error(ErrorKind::usage,
-                cat("--memory leaves ", block_bytes, " bytes for a block of the volume, and one leaf needs ",
-                    leaf_bytes, "; raise it"));
+  Axes axes{BlockAxis(domain.lo.x, domain.hi.x, access.chunk.x, access.chunk_origin.x),
+            BlockAxis(domain.lo.y, domain.hi.y, access.chunk.y, access.chunk_origin.y),
+            BlockAxis(domain.lo.z, domain.hi.z, access.chunk.z, access.chunk_origin.z)};
+  const bool whole_chunks = largest_bytes(axes) <= block_bytes;
+  if (!whole_chunks) {
+    for (BlockAxis& axis : axes) axis.size = 1;
+    const std::uint64_t leaf_bytes = largest_bytes(axes);
+    if (leaf_bytes > block_bytes) {
+      throw Error(ErrorKind::usage,
+                  cat("--memory leaves ", block_bytes, " bytes for a block of the volume, and one leaf needs ",
+                      leaf_bytes, "; raise it"));
+    }
   }
-
-  // Whole chunks, where one of them fits at all.
-  for (Axis& axis : axes) axis.size = axis.unit;
-  if (largest_bytes(axes) > block_bytes) {
-    for (Axis& axis : axes) axis.size = axis.unit = 1;
-  }
-  // Long rows for the disk, then a lower node's width in y and in z for the output, then more of both.
-  const std::uint64_t ample = std::clamp(kAmpleBlockBytes, largest_bytes(axes), block_bytes);
-  const std::size_t first = shape == BlockShape::wide ? 1 : 2;
-  const bool full_rows = grow_by_steps(axes, 0, block_bytes);
-  if (!full_rows) {
-    grow_to_step(axes, 0, block_bytes);
-  } else if (grow_to_step(axes, first, block_bytes) && grow_to_step(axes, 3 - first, block_bytes)) {
-    if (grow_by_steps(axes, 1, ample)) grow_by_steps(axes, 2, ample);
-  }
+  if (whole_chunks) grow_rows(axes, block_bytes, shape);
+  if (!whole_chunks || amplification(axes) > 1) cut_for_chunks(axes, block_bytes);
 
   BlockPlan plan;
   plan.lattice = make_lattice(domain, kLeafDim);
@@ -160,10 +131,19 @@ BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_
   plan.run_voxels = axes[0].longest();
   if (axes[0].whole()) plan.run_voxels *= axes[1].longest();
   if (axes[0].whole() && axes[1].whole()) plan.run_voxels *= axes[2].longest();
-  if (access.chunk != Index3{}) {
-    plan.amplification = axes[0].amplification() * axes[1].amplification() * axes[2].amplification();
-  }
+  plan.amplification = amplification(axes);
   return plan;
+}
+
+std::uint64_t bytes_for_whole_chunks(const Box& domain, const AccessShape& access) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+  std::uint64_t too_few = 0;
+  std::uint64_t enough = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) / kMiB + 1;
+  while (too_few + 1 < enough) {
+    const std::uint64_t middle = std::midpoint(too_few, enough);
+    (plan_blocks(domain, access, middle * kMiB).amplification > 1 ? too_few : enough) = middle;
+  }
+  return enough * kMiB;
 }
 
 }  // namespace weir

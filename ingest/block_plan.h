@@ -35,8 +35,9 @@ inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 /// Blocks whose float32 values fit `block_bytes`. Where rows are contiguous in the file: full rows in x,
 /// whole rows of lower nodes (128 x 128 voxels in y and z, on multiples of 128 of the index) and, up to
 /// kAmpleBlockBytes, more of them in y and then in z; otherwise fewer leaf layers in z, then fewer leaf
-/// rows in y, and x is cut last. For chunked sources: whole chunks first, as far as chunk edges lie on
-/// leaf edges, then as above. A block is never smaller than one leaf.
+/// rows in y, and x is cut last. For chunked sources: whole chunks first, then as above; where that does
+/// not fit, or chunk edges are off leaf edges, the cut that decodes the fewest chunks twice. A block is
+/// never smaller than one leaf.
 /// `domain` is not empty and its float32 bytes fit 63 bits. Throws Error(usage) where not even one leaf
 /// fits.
 ///
@@ -45,5 +46,8 @@ inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 enum class BlockShape { wide, deep };
 BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes,
                       BlockShape shape = BlockShape::wide);
+
+/// The fewest bytes, in whole MiB, with which plan_blocks decodes no chunk twice.
+std::uint64_t bytes_for_whole_chunks(const Box& domain, const AccessShape& access);
 
 }  // namespace weir

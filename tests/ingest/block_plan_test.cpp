@@ -198,10 +198,43 @@ TEST(BlockPlan, ChunksRatherThanLongRows) {
 }
 
 TEST(BlockPlan, AmplificationOfChunksThatDoNotFit) {
-  // 64^3 chunks take 1 MiB; rows of leaves decode each chunk 8 x 8 times.
+  // 64^3 chunks take 1 MiB; a sixteenth of one fits. Rows of leaves would decode each chunk 8 x 8 times.
   const BlockPlan plan = checked_plan(at_origin({256, 256, 256}), {4, {64, 64, 64}, {}}, 65536);
-  EXPECT_EQ(plan.leaves, (Index3{32, 1, 1}));
-  EXPECT_EQ(plan.amplification, 64.0);
+  EXPECT_EQ(plan.leaves, (Index3{8, 4, 1}));
+  EXPECT_EQ(plan.amplification, 16.0);
+}
+
+TEST(BlockPlan, PlanesOfWhichEightDoNotFit) {
+  // Eight planes of 4096^2 take 512 MiB: strips of them, as wide as fits, cut as few times as that allows.
+  const Box domain = at_origin({4096, 4096, 1000});
+  const AccessShape planes{4, {4096, 4096, 1}, {}};
+  const BlockPlan plan = checked_plan(domain, planes, 150 * kMiB);
+  EXPECT_EQ(plan.leaves, (Index3{512, 128, 1}));
+  EXPECT_EQ(plan.amplification, 4.0);
+  EXPECT_EQ(checked_plan(domain, planes, 100 * kMiB).amplification, 6.0);
+  EXPECT_EQ(checked_plan(domain, planes, 512 * kMiB).amplification, 1.0);
+}
+
+TEST(BlockPlan, ChunksThatNoBlockOfLeavesEndsWith) {
+  // 75 and 8 meet at 600 voxels only, and such a block takes 824 MiB.
+  const Box domain = at_origin({1200, 1200, 1200});
+  const AccessShape chunks{4, {75, 75, 75}, {}};
+  EXPECT_EQ(checked_plan(domain, chunks, 824 * kMiB).amplification, 1.0);
+  const BlockPlan plan = checked_plan(domain, chunks, 150 * kMiB);
+  EXPECT_EQ(plan.leaves, (Index3{75, 38, 25}));
+  EXPECT_DOUBLE_EQ(plan.amplification, 19.0 / 16 * 20 / 16);
+}
+
+TEST(BlockPlan, BytesThatDecodeEveryChunkOnce) {
+  const Box domain = at_origin({4096, 4096, 1000});
+  const AccessShape planes{4, {4096, 4096, 1}, {}};
+  const std::uint64_t enough = bytes_for_whole_chunks(domain, planes);
+  EXPECT_EQ(enough, 512 * kMiB);
+  // Off the leaf lattice only the whole axis will do.
+  const Box odd = at_origin({64, 64, 512});
+  const AccessShape off{4, {64, 64, 64}, {0, 0, 4}};
+  EXPECT_EQ(bytes_for_whole_chunks(odd, off), 8 * kMiB);
+  EXPECT_EQ(bytes_for_whole_chunks(odd, {}), kMiB);
 }
 
 TEST(BlockPlan, ChunksFromAnOddOrigin) {
