@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <vector>
 
@@ -53,11 +54,26 @@ ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
   const bool in_place = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) <= kInPlaceVolumeBytes &&
                         kInPlaceEncodeBytes <= memory.worker_bytes && source.in_memory();
   if (!in_place) {
-    return {Reading::ahead, plan_blocks(domain, access, std::min(memory.block_bytes, kSurveyBytes)),
-            plan_blocks(domain, access, memory.block_bytes)};
+    // Chunks are decoded many at a time, and once each where the blocks may be large enough.
+    const bool chunked = access.chunk != Index3{};
+    const std::uint64_t survey_bytes = chunked ? memory.block_bytes : std::min(memory.block_bytes, kSurveyBytes);
+    return {Reading::ahead, plan_blocks(domain, access, survey_bytes), plan_blocks(domain, access, memory.block_bytes)};
   }
   return {Reading::in_place, plan_blocks(domain, access, kInPlaceSurveyBytes),
           plan_blocks(domain, access, kInPlaceEncodeBytes, BlockShape::deep)};
+}
+
+// "each is decoded 4 times in a pass": what a ceiling that is too small for whole chunks costs.
+std::string amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
+                                 const BlockPlan& plan) {
+  const AccessShape access = source.access();
+  std::uint64_t enough = ceiling_for_blocks(memory, ceiling, bytes_for_whole_chunks(source.info().domain(), access));
+  // A source may take more for its own work where there is more: up to an eighth.
+  if (source.working_bytes() > 0) enough = enough / 7 * 8 + 8;
+  return cat(source.info().path, ": its chunks of ", access.chunk.x, " x ", access.chunk.y, " x ", access.chunk.z,
+             " voxels do not fit the blocks of ", format_bytes(plan.block_bytes), " that --memory ",
+             format_bytes(ceiling), " leaves, so that each is decoded ", std::round(plan.amplification * 10) / 10,
+             " times in a pass; --memory ", (enough >> 20U) + 1, "MiB decodes it once");
 }
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -194,6 +210,9 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   const MemoryPlan memory = plan_memory(options.memory, resident_bytes() + source.working_bytes(), threads, domain);
   const ReadingPlan reading = plan_reading(source, memory);
   const StreamOptions stream = stream_options(control);
+  if (reading.encode.amplification > 1 && control.notice) {
+    control.notice(amplification_notice(source, memory, options.memory, reading.encode));
+  }
 
   // Survey.
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());

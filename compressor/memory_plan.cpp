@@ -20,6 +20,9 @@ constexpr std::uint64_t kWorkerBytes = 3ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image.
 constexpr std::uint64_t kSlackBytes = 16ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
+// A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for
+// both passes' small buffers and the allocator's waste.
+constexpr std::uint64_t kBlockEighths = 3;
 
 }  // namespace
 
@@ -38,13 +41,16 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   }
   const std::uint64_t free = ceiling - fixed;
   MemoryPlan plan;
-  // A block comes with its rows, one 43rd of its size; a quarter of what is left stays free for both
-  // passes' small buffers and the allocator's waste.
-  plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * 3);
+  plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
   plan.worker_bytes = 2 * plan.block_bytes / threads;
   plan.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
   return plan;
+}
+
+std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes) {
+  const std::uint64_t more = block_bytes > plan.block_bytes ? block_bytes - plan.block_bytes : 0;
+  return ceiling + (more / kBlockEighths + 1) * 8;
 }
 
 }  // namespace weir

@@ -20,4 +20,7 @@ struct MemoryPlan {
 /// Throws Error(usage) naming a sufficient --memory where it is too small.
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
 
+/// The ceiling that leaves `block_bytes` for a block, all else as `plan`, made for `ceiling`, has it.
+std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes);
+
 }  // namespace weir

@@ -69,5 +69,16 @@ TEST(MemoryPlan, TooLittleIsAnErrorWhoseAdviceIsEnough) {
   }
 }
 
+TEST(MemoryPlan, ACeilingForLargerBlocksHoldsThem) {
+  const MemoryPlan plan = plan_memory(256 * kMiB, 30 * kMiB, 4, kLarge);
+  for (const std::uint64_t block : {plan.block_bytes / 2, plan.block_bytes + 1, 512 * kMiB, 5000 * kMiB + 7}) {
+    const std::uint64_t ceiling = ceiling_for_blocks(plan, 256 * kMiB, block);
+    EXPECT_GE(plan_memory(ceiling, 30 * kMiB, 4, kLarge).block_bytes, block);
+    if (block > plan.block_bytes) {
+      EXPECT_LT(plan_memory(ceiling - 32, 30 * kMiB, 4, kLarge).block_bytes, block);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weir
