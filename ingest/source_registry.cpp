@@ -6,6 +6,9 @@
 #include "format/error.h"
 #include "format/text.h"
 #include "ingest/input_file.h"
+#include "ingest/meta_image_source.h"
+#include "ingest/nifti_source.h"
+#include "ingest/nrrd_source.h"
 #include "ingest/raw_source.h"
 #include "ingest/source_view.h"
 #include "ingest/stack_source.h"
@@ -18,6 +21,15 @@ std::vector<DatasetInfo> list_raw(const std::string& path, const SourceOptions& 
 }
 
 constexpr std::array kFormats{
+    SourceFormat{
+        .name = "nrrd", .recognises = recognises_nrrd, .open = open_nrrd, .list = list_nrrd, .container = true},
+    SourceFormat{.name = "meta-image",
+                 .recognises = recognises_meta_image,
+                 .open = open_meta_image,
+                 .list = list_meta_image,
+                 .container = true},
+    SourceFormat{
+        .name = "nifti", .recognises = recognises_nifti, .open = open_nifti, .list = list_nifti, .container = true},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },

@@ -12,8 +12,37 @@ namespace {
 
 constexpr Index3 kExtent{4, 3, 2};
 
+/// `header`, then the bytes 0 ... 23.
+std::string write_with_header(const Scratch& scratch, const std::string& name, const std::string& header) {
+  std::vector<std::byte> bytes(header.size() + 24);
+  std::memcpy(bytes.data(), header.data(), header.size());
+  for (std::size_t i = 0; i < 24; ++i) bytes[header.size() + i] = static_cast<std::byte>(i);
+  return scratch.write(name, bytes);
+}
+
 /// A file of each format, all with the values 0 ... 23 in 4 x 3 x 2 voxels.
 const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSamples{
+    {"nrrd",
+     [](const Scratch& scratch) {
+       return write_with_header(scratch, "sample.nrrd",
+                                "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: raw\n\n");
+     }},
+    {"meta-image",
+     [](const Scratch& scratch) {
+       return write_with_header(scratch, "sample.mha",
+                                "NDims = 3\nDimSize = 4 3 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n");
+     }},
+    {"nifti",
+     [](const Scratch& scratch) {
+       std::string header(352, '\0');
+       const auto put = [&](std::size_t at, std::string_view text) { header.replace(at, text.size(), text); };
+       put(0, {"\x5C\x01\0\0", 4});               // sizeof_hdr 348
+       put(40, {"\x03\0\x04\0\x03\0\x02\0", 8});  // dim
+       put(70, {"\x02\0", 2});                    // datatype uint8
+       put(108, {"\0\0\xB0\x43", 4});             // vox_offset 352
+       put(344, {"n+1\0", 4});
+       return write_with_header(scratch, "sample.nii", header);
+     }},
     {"raw", [](const Scratch& scratch) {
        std::vector<std::uint8_t> values(24);
        std::iota(values.begin(), values.end(), std::uint8_t{0});
