@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "ingest/block_plan.h"
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
 
@@ -143,6 +144,29 @@ TEST(ChunkReader, GzipAndShuffleRunOnSeveralThreads) {
   EXPECT_GT(reader.counts().decoding_threads, 1U);
   EXPECT_LT(reader.counts().bytes_read, all.size() * sizeof(float));
   EXPECT_GT(reader.counts().bytes_read, 100'000U);
+}
+
+TEST(ChunkReader, APassOverTheBlocksOfAPlanDecodesEveryChunkOnce) {
+  const Scratch scratch;
+  const Index3 extent{200, 136, 100};
+  for (const std::vector<hsize_t>& chunk :
+       std::vector<std::vector<hsize_t>>{{32, 32, 32}, {1, 136, 200}, {10, 24, 64}}) {
+    const ChunkedFile file(scratch.path("f.h5"), {{100, 136, 200}, chunk, {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}});
+    const std::vector<float> all = field(file.elements());
+    file.write(H5T_NATIVE_FLOAT, all);
+    ChunkReader reader(slice_of(file), kMemory);
+    const BlockPlan plan = plan_blocks(box_of(extent), reader.access(), std::uint64_t{4} << 20U);  // of 10 MiB
+    EXPECT_GT(plan.size(), 1);
+    EXPECT_EQ(plan.amplification, 1.0);
+    for (std::int64_t i = 0; i < plan.size(); ++i) {
+      const Box box = plan.voxel_box(plan.leaf_box(i));
+      EXPECT_EQ(read(reader, box), part_of(all, extent, box));
+    }
+    std::uint64_t chunks = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      chunks *= (std::vector<hsize_t>{100, 136, 200}[axis] + chunk[axis] - 1) / chunk[axis];
+    EXPECT_EQ(reader.counts().decoded, chunks);
+  }
 }
 
 TEST(ChunkReader, SeveralReadsAtATime) {
