@@ -1,5 +1,6 @@
 #include "ingest/axis_placement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -7,19 +8,22 @@
 namespace weir {
 namespace {
 
-/// Of a step's length: smaller parts are rounding of the float32 matrices and quaternions in headers.
+/// Of a step's largest part: smaller ones are rounding of the float32 matrices and quaternions in headers.
 constexpr double kRounding = 1e-6;
 
 /// The world axis that a step runs along; nullopt for an oblique one and none at all.
-std::optional<std::size_t> world_axis(const Vector3& step, double length) {
+std::optional<std::size_t> world_axis(const Vector3& step) {
+  const double largest = std::max({std::fabs(step[0]), std::fabs(step[1]), std::fabs(step[2])});
   std::optional<std::size_t> axis;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (std::fabs(step[c]) <= kRounding * length) continue;
+    if (std::fabs(step[c]) <= kRounding * largest) continue;
     if (axis) return std::nullopt;
     axis = c;
   }
   return axis;
 }
+
+double length(const Vector3& step) { return std::sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]); }
 
 }  // namespace
 
@@ -30,13 +34,10 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first) {
   std::array<bool, 3> taken{};
   bool oblique = false;
   for (std::size_t a = 0; a < steps.size(); ++a) {
-    placement.spacing[a] = std::hypot(steps[a][0], steps[a][1], steps[a][2]);
-    along[a] = world_axis(steps[a], placement.spacing[a]);
-    if (!along[a] || taken[*along[a]]) {
-      oblique = true;
-    } else {
-      taken[*along[a]] = true;
-    }
+    along[a] = world_axis(steps[a]);
+    placement.spacing[a] = along[a] ? std::fabs(steps[a][*along[a]]) : length(steps[a]);
+    oblique = oblique || !along[a] || taken[*along[a]];
+    if (along[a]) taken[*along[a]] = true;
   }
   if (oblique) {
     placement.orientation = "axes oblique to the file's world, ignored: spacing is the length of a step";

@@ -47,7 +47,7 @@ std::vector<std::string_view> words(std::string_view text);
 /// ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 /// "'text'" for a message: one line, cut after 60 characters, what is not printable ASCII as '?'.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// Each word as a whole number or a finite or non-finite double; nullopt where one is none.
 std::optional<std::vector<std::int64_t>> parse_ints(std::string_view text);

@@ -125,7 +125,7 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
   if (name == volume.info.path) return std::make_unique<InputFile>(name, mode);
   if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; })) {
     throw Error(ErrorKind::input,
-                cat(volume.info.path, ": its data file ", quoted(name), " has control characters in its name"));
+                cat(volume.info.path, ": its data file ", in_quotes(name), " has control characters in its name"));
   }
   try {
     return std::make_unique<InputFile>(name, mode);

@@ -54,12 +54,12 @@ class Entries {
       if (trimmed(*line).empty()) continue;
       const auto entry = key_and_value(*line);
       if (!entry) {
-        throw Error(ErrorKind::input,
-                    cat(path, ": line ", lines.number(), " of its header is ", quoted(*line), ", not 'Key = Value'"));
+        throw Error(ErrorKind::input, cat(path, ": line ", lines.number(), " of its header is ", in_quotes(*line),
+                                          ", not 'Key = Value'"));
       }
       if (!entries_.emplace(entry->first, Entry{entry->second, lines.number()}).second) {
         throw Error(ErrorKind::input, cat(path, ": line ", lines.number(), " of its header gives ",
-                                          quoted(entry->first), " a second time"));
+                                          in_quotes(entry->first), " a second time"));
       }
       if (entry->first == "ElementDataFile") {
         header_bytes_ = lines.position();
@@ -81,7 +81,7 @@ class Entries {
   Error wrong(std::string_view key, const std::string& expected) const {
     const Entry& entry = required(key);
     return Error(ErrorKind::input,
-                 cat(path_, ": line ", entry.line, ": ", key, " is ", quoted(entry.value), "; ", expected));
+                 cat(path_, ": line ", entry.line, ": ", key, " is ", in_quotes(entry.value), "; ", expected));
   }
 
   /// MetaIO takes every value that begins with T, t or 1 as true.

@@ -109,8 +109,8 @@ class Reader {
     const auto stored = bytes_.subspan(Layout::kMagic, Layout::kSingle.size());
     const std::string_view magic(reinterpret_cast<const char*>(stored.data()), stored.size());
     if (magic == Layout::kSingle || magic == Layout::kPair) return magic == Layout::kPair;
-    throw wrong("magic", Layout::kMagic, quoted(magic),
-                cat("it must be ", quoted(Layout::kSingle), " or ", quoted(Layout::kPair),
+    throw wrong("magic", Layout::kMagic, in_quotes(magic),
+                cat("it must be ", in_quotes(Layout::kSingle), " or ", in_quotes(Layout::kPair),
                     "; Analyze 7.5 files, which have none, cannot be read"));
   }
 

@@ -44,7 +44,7 @@ class Fields {
     const std::string_view version = magic.substr(kNrrdMagic.size());
     if (version.size() != 1 || version[0] < '1' || version[0] > '5') {
       throw Error(ErrorKind::input,
-                  cat(path, ": begins with ", quoted(magic), "; versions NRRD0001 to NRRD0005 can be read"));
+                  cat(path, ": begins with ", in_quotes(magic), "; versions NRRD0001 to NRRD0005 can be read"));
     }
     while (const auto line = lines.next()) {
       if (lines.open_ended() && !whole) break;
@@ -75,7 +75,7 @@ class Fields {
   Error wrong(const std::string& name, const std::string& expected) const {
     const Field& field = required(name);
     return Error(ErrorKind::input,
-                 cat(path_, ": line ", field.line, ": ", name, " is ", quoted(field.value), "; ", expected));
+                 cat(path_, ": line ", field.line, ": ", name, " is ", in_quotes(field.value), "; ", expected));
   }
   std::string_view value(const std::string& name) const {
     const Field* field = find(name);
@@ -87,8 +87,8 @@ class Fields {
     if (line.front() == '#') return;
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) {
-      throw Error(ErrorKind::input,
-                  cat(path_, ": line ", number, " of its header is ", quoted(line), ", neither a field nor a comment"));
+      throw Error(ErrorKind::input, cat(path_, ": line ", number, " of its header is ", in_quotes(line),
+                                        ", neither a field nor a comment"));
     }
     if (line.substr(colon).starts_with(":=")) return;  // key:=value is for people
     std::string name = lower_case(line.substr(0, colon));
@@ -96,7 +96,12 @@ class Fields {
     if (name == "centers") name = "centerings";
     if (!fields_.emplace(name, Field{trimmed(line.substr(colon + 1)), number}).second) {
       throw Error(ErrorKind::input,
-                  cat(path_, ": line ", number, " of its header gives ", quoted(name), " a second time"));
+                  cat(path_, ": line ", number, " of its header gives ", in_quotes(name), " a second time"));
+    }
+    // The lines after LIST are names of files, not fields.
+    const std::string_view value = fields_[name].value;
+    if (name == "datafile" && (value.starts_with("LIST") || value.find('%') != std::string_view::npos)) {
+      throw wrong(name, "one file for all values can be read; stack the files of a list with --stack");
     }
   }
 
@@ -219,10 +224,6 @@ void read_space(const Fields& fields, NrrdHeader& header) {
 
 void read_place_of_values(const Fields& fields, NrrdHeader& header) {
   header.data_file = fields.value("datafile");
-  const auto parts = words(header.data_file);
-  if (!parts.empty() && (parts.front() == "LIST" || header.data_file.find('%') != std::string::npos)) {
-    throw fields.wrong("datafile", "one file for all values can be read; stack the files of a list with --stack");
-  }
   if (header.data_file.empty() && fields.ended_by_file()) {
     fields.required("datafile");
     throw fields.wrong("datafile", "a file name belongs there");

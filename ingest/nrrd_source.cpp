@@ -37,7 +37,7 @@ std::size_t first_axis(const NrrdHeader& header, const std::string& path) {
   for (std::size_t a = first; a < std::min(first + 3, header.sizes.size()); ++a) {
     if (role_of(header, a) != AxisRole::range) continue;
     throw Error(ErrorKind::input, cat(path, ": axis ", a, " of ", header.sizes[a], " values",
-                                      header.kinds.empty() ? "" : cat(" and kind ", quoted(header.kinds[a])),
+                                      header.kinds.empty() ? "" : cat(" and kind ", in_quotes(header.kinds[a])),
                                       " is no axis of space; take one component with `unu slice -a ", a, " -p 0`"));
   }
   return first;
