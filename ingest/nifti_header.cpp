@@ -110,8 +110,9 @@ class Reader {
     const std::string_view magic(reinterpret_cast<const char*>(stored.data()), stored.size());
     if (magic == Layout::kSingle || magic == Layout::kPair) return magic == Layout::kPair;
     throw wrong("magic", Layout::kMagic, in_quotes(magic),
-                cat("it must be ", in_quotes(Layout::kSingle), " or ", in_quotes(Layout::kPair),
-                    "; Analyze 7.5 files, which have none, cannot be read"));
+                cat("it must be ", Layout::kSingle.substr(0, 3), " or ", Layout::kPair.substr(0, 3),
+                    Layout::kSingle.size() > 4 ? " and its line ends, which copying as text changes"
+                                               : "; Analyze 7.5 files, which have none, cannot be read"));
   }
 
   std::vector<std::int64_t> extents() const {

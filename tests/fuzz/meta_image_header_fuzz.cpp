@@ -1,0 +1,28 @@
+// libFuzzer target for MetaImage headers: any bytes parse to a header whose parts fit each other, or throw
+// Error(input) of one line.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "format/error.h"
+#include "ingest/meta_image_header.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view input(reinterpret_cast<const char*>(data), size);
+  for (const bool whole : {false, true}) {
+    try {
+      const weir::MetaImageHeader header = weir::parse_meta_image_header(input, whole, "fuzz.mha");
+      const std::size_t axes = header.dim_size.size();
+      const auto fits = [](const auto& values, std::size_t count) { return values.empty() || values.size() == count; };
+      if (axes == 0 || header.header_bytes > size || !fits(header.spacing, axes) || !fits(header.origin, axes) ||
+          !fits(header.transform, axes * axes) || header.slope == 0 || !std::isfinite(header.slope)) {
+        std::abort();
+      }
+    } catch (const weir::Error& error) {
+      const std::string_view message = error.what();
+      if (error.kind() != weir::ErrorKind::input || message.find('\n') != std::string_view::npos) std::abort();
+    }
+  }
+  return 0;
+}
