@@ -112,25 +112,6 @@ INSTANTIATE_TEST_SUITE_P(All, ChunkReaderFilters,
                                                     {H5Z_FILTER_FLETCHER32, H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}}),
                          [](const auto& parameter) { return parameter.param.name; });
 
-TEST(ChunkReader, LeavesOtherFiltersToTheLibrary) {
-  const Scratch scratch;
-  const auto decodes = [&](const std::function<void(hid_t)>& set_filters) {
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    set_filters(creation);
-    const bool own = own_pipeline(creation).has_value();
-    H5Pclose(creation);
-    return own;
-  };
-  EXPECT_TRUE(decodes([](hid_t p) { H5Pset_deflate(p, 9); }));
-  EXPECT_FALSE(decodes([](hid_t p) { H5Pset_nbit(p); }));
-  EXPECT_FALSE(decodes([](hid_t p) { H5Pset_scaleoffset(p, H5Z_SO_INT, 0); }));
-  EXPECT_FALSE(decodes([](hid_t p) {
-    H5Pset_deflate(p, 1);
-    H5Pset_shuffle(p);
-    H5Pset_filter(p, H5Z_FILTER_DEFLATE, 0, 0, nullptr);
-  }));
-}
-
 TEST(ChunkReader, GzipAndShuffleRunOnSeveralThreads) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
   const Scratch scratch;
@@ -272,18 +253,6 @@ TEST(ChunkReader, ChunksNeverWrittenReadAsTheFillValue) {
   }
 }
 
-TEST(ChunkReader, MillionsOfChunksOpenAtOnceAndAreFoundAtOnce) {
-  const Scratch scratch;
-  // 2^20 chunks, four of them written: no list of all is made.
-  ChunkedFile file(scratch.path("f.h5"), {{128, 8192, 8192}, {8, 64, 64}, {H5Z_FILTER_DEFLATE}});
-  const std::vector<float> ones(std::size_t{8} * 64 * 64, 1.0F);
-  file.write_chunk({120, 8128, 8128}, std::as_bytes(std::span(ones)), kAllLeftOut);
-  ChunkReader reader(slice_of(file), kMemory);
-  EXPECT_LT(reader.working_bytes(), std::uint64_t{32} << 20U);
-  EXPECT_EQ(read(reader, {{8127, 8191, 127}, {8129, 8192, 128}}), (std::vector<float>{kFill, 1}));
-  EXPECT_EQ(reader.counts().decoded, 1U);
-}
-
 // Damage. Every message names the dataset and the chunk, and no other chunk is harmed.
 
 std::string message_of_read(const ChunkedFile& file, const Box& box) {
@@ -350,21 +319,6 @@ TEST(ChunkReader, AFileThatIsCutShortIsNoCrash) {
   const std::string message = message_of_read(file, box_of({32, 32, 64}));
   EXPECT_TRUE(std::string_view(message).starts_with("run.h5: d: chunk at ")) << message;
   EXPECT_TRUE(std::string_view(message).ends_with("; the file is damaged")) << message;
-}
-
-TEST(ChunkReader, MemoryForChunksIsAnEighthOrOneChunk) {
-  const Scratch scratch;
-  const ChunkedFile file(scratch.path("f.h5"), {{64, 256, 256}, {16, 256, 256}, {H5Z_FILTER_DEFLATE}});  // 4 MiB
-  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
-  const auto working = [&](std::uint64_t memory) { return ChunkReader(slice_of(file), memory).working_bytes(); };
-  const std::uint64_t one = working(17 * kMiB);
-  EXPECT_GE(one, 8 * kMiB);
-  EXPECT_LT(one, 9 * kMiB);
-  EXPECT_EQ(working(128 * kMiB), one);
-  EXPECT_EQ(working(8192 * kMiB), one * std::thread::hardware_concurrency());
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { working(16 * kMiB); }),
-            "run.h5: d: decoding one of its chunks of 4.0 MiB takes 8.1 MiB, more than half of --memory 16.0 MiB; give "
-            "at least 17MiB");
 }
 
 }  // namespace
