@@ -46,11 +46,11 @@ std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const SelectionBytes& bytes,
                        const std::string& path) {
   const std::uint64_t minimum = bytes.minimum.file_bytes;
-  const std::uint64_t lossless = bytes.lossless.file_bytes;
+  const std::uint64_t full = bytes.full.file_bytes;
   FileSize size;
   switch (budget.kind) {
     case Budget::Kind::lossless:
-      return {lossless, "lossless", ""};
+      return {full, "lossless", ""};
     case Budget::Kind::automatic:
       size = {bytes_at_rate(dense_bytes, budget.rate), "rate", ""};
       if (size.bytes < minimum) {
@@ -70,9 +70,9 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
     throw Error(ErrorKind::budget, cat(path, ": ", size.bytes, " bytes asked, the smallest tree for this volume takes ",
                                        minimum, "; ask for --size ", minimum, " or more"));
   }
-  if (size.bytes > lossless) {
-    size.notice = cat(path, ": lossless takes ", lossless, " bytes; the other ", size.bytes - lossless, " of the ",
-                      size.bytes, " asked are padding");
+  if (size.bytes > full) {
+    size.notice = cat(path, bytes.lossy_leaves == 0 ? ": lossless takes " : ": the best this encoding can takes ", full,
+                      " bytes; the other ", size.bytes - full, " of the ", size.bytes, " asked are padding");
   }
   return size;
 }

@@ -13,6 +13,7 @@
 
 #include "compressor/background.h"
 #include "compressor/encode.h"
+#include "compressor/encoding_choice.h"
 #include "compressor/memory_plan.h"
 #include "compressor/process_memory.h"
 #include "compressor/selection.h"
@@ -161,10 +162,24 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   return sidecar;
 }
 
-Sidecar::CertifiedError describe_error(const TreePlan& plan, const Survey& survey) {
+Sidecar::CertifiedError describe_error(const TreePlan& plan, const WrittenTree& written, const Survey& survey) {
   const Certificate c =
-      make_certificate(plan.squared_error, plan.max_abs, plan.lossless, survey.finite, survey.min, survey.max);
+      make_certificate(plan.squared_error + written.leaf_squared_error, std::max(plan.max_abs, written.leaf_max_abs),
+                       plan.lossless && written.leaves_exact, survey.finite, survey.min, survey.max);
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
+}
+
+FileRequest request_for(const ConversionOptions& options, const Survey& survey, float background, const Box& domain) {
+  FileRequest request;
+  request.encoding = options.encoding;
+  request.rule.metric = options.metric;
+  request.rule.brick_leaves = options.brick / kLeafDim;
+  request.rule.fill = {options.fill, background, options.non_finite};
+  request.budget = options.budget;
+  request.domain = domain;
+  request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
+  request.path = options.output;
+  return request;
 }
 
 }  // namespace
@@ -218,7 +233,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());
   start_pass(control, "survey", voxels);
   RowStore rows(work.spill(), reading.survey.lattice, memory.segment_regions);
-  const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading);
+  const bool widths = options.encoding != Encoding::float32 && options.metric == Metric::sse;
+  const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading, widths);
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   Background background;
   Sidecar sidecar = describe_source(info, survey, options);
@@ -228,20 +244,12 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
 
   // Selection.
   check_cancel(control);
-  GainRule rule;
-  rule.metric = options.metric;
-  rule.brick_leaves = options.brick / kLeafDim;
-  rule.fill = {options.fill, background.value, options.non_finite};
-  TreeRegions tree(domain);
-  Selection selection(rule, rows, tree);
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const FileSize size = file_size_for(options.budget, dense_bytes, selection.bytes(), options.output);
+  const FilePlan file = plan_file(request_for(options, survey, background.value, domain), rows, work);
+  const FileSize& size = file.size;
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
-  selection.choose(size.bytes);
-  MaskStore masks(work.spill(), tree.region_lattice.size());
-  TreePlan tree_plan = plan_tree(selection, rows, tree, masks);
-  tree_plan.layout = padded_to(tree_plan.layout, size.bytes);
-  const TreeLayout& layout = tree_plan.layout;
+  const TreeLayout& layout = file.plan.layout;
+  const GridType type = grid_type_of(file.encoding);
 
   // Encode.
   const Clock::time_point encoding = Clock::now();
@@ -251,16 +259,19 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   }
   RecordStore records(work.spill(), layout.counts.leaves);
   start_pass(control, "encode", voxels);
-  encode_leaves(source, reading.encode, {tree, masks, layout, rule.fill, output.volume(), records}, stream,
-                reading.reading);
+  encode_leaves(source, reading.encode, {*file.tree, *file.choices, layout, file.fill, type, output.volume(), records},
+                stream, reading.reading);
   // Most of the file goes to the device while the rest is made.
   const std::jthread writeback([&output] { output.volume().start_writeback(); });
   check_cancel(control);
   GridHead head;
+  head.type = type;
+  head.breadth_first = type != GridType::fpn;
   head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
   head.voxel_size = info.spacing;
   head.origin = info.origin;
-  const std::uint32_t checksum = write_tree({tree, rows, masks, records, rule.fill, layout}, head, output.volume());
+  const WrittenTree written =
+      write_tree({*file.tree, rows, *file.choices, records, file.fill, layout}, head, output.volume());
   check_cancel(control);
 
   // Finish.
@@ -275,13 +286,12 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   sidecar.selection = {metric_name(options.metric),
                        fill_name(options.fill),
                        options.brick,
-                       static_cast<std::uint64_t>(tree.leaves.size()),
+                       static_cast<std::uint64_t>(file.tree->leaves.size()),
                        layout.counts.leaves,
-                       {}};
-  sidecar.selection.bits[5] = layout.counts.leaves;
-  sidecar.error = describe_error(tree_plan, survey);
+                       file.plan.leaves_by_width};
+  sidecar.error = describe_error(file.plan, written, survey);
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
+  sidecar.file = {size.bytes, layout.grid, written.head_checksum, digest_of_file(output.volume(), size.bytes).hex()};
   sidecar.timing.encode_s = seconds_since(encoding);
   sidecar.timing.total_s = seconds_since(started);
   sidecar.timing.bytes_read = source.bytes_read();

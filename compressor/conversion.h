@@ -10,6 +10,7 @@
 #include <string>
 
 #include "compressor/budget.h"
+#include "compressor/encoding.h"
 #include "compressor/fill.h"
 #include "compressor/leaf_gain.h"
 #include "format/file_system.h"
@@ -22,7 +23,8 @@ struct ConversionOptions {
   std::string output;      ///< path of the .nvdb
   bool overwrite = false;  ///< replace an existing output
   Budget budget;
-  Metric metric = Metric::sse;  ///< what the budget is spent on
+  Encoding encoding = Encoding::float32;  ///< automatic: the better of float32 and fpn at the asked size
+  Metric metric = Metric::sse;            ///< what the budget is spent on
   FillMode fill = FillMode::mean;
   std::int64_t brick = 8;           ///< voxels; granularity of the paper's metrics: 8, 16 or 32
   std::optional<float> background;  ///< found in the data where absent

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <vector>
 
+#include "compressor/quantised_leaf.h"
 #include "format/leaf_codec.h"
+#include "format/quantised_codec.h"
 
 namespace weir {
 namespace {
@@ -32,14 +34,14 @@ void for_each_in(const Box& box, Visit&& visit) {
 
 // The leaf layers and rows of `block` (lattice positions) that hold kept leaves; x is left whole,
 // because rows are what a file is read by. Empty where nothing is kept.
-Box trim_to_kept(const TreeRegions& tree, const MaskStore& masks, const Box& block) {
+Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& block) {
   Box kept{block.hi, block.lo};
   for_each_in(regions_under(tree, block), [&](const Index3& at) {
     const std::int64_t region = tree.region_lattice.linear(at);
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
-    const LeafMask mask = masks.read(region);
+    const LeafChoices choices = store.read(region);
     for_each_in(intersect(tree.leaf_box(region), block), [&](const Index3& leaf) {
-      if (!mask.test(tree.mask_position(leaf))) return;
+      if (!choices.kept(tree.mask_position(leaf))) return;
       kept.lo = min(kept.lo, leaf);
       kept.hi = max(kept.hi, leaf + Index3{1, 1, 1});
     });
@@ -56,7 +58,7 @@ class LeafEncoder {
  public:
   // The kept leaves of one x layer of one region, as far as they lie in the block.
   void add_layer(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
-                 const LeafMask& mask, std::int64_t x) {
+                 const LeafPlaces& places, std::int64_t x) {
     const TreeRegions& tree = target.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
     const Box box = intersect(tree.leaf_box(region_index), leaf_box);
@@ -64,72 +66,109 @@ class LeafEncoder {
       for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
         const Index3 leaf{x, y, z};
         const std::size_t position = tree.mask_position(leaf);
-        if (!mask.test(position)) continue;
-        gather(target, block, leaf, region.first_leaf + mask.count_before(position));
+        if (!places.kept(position)) continue;
+        const LeafPlaces::Place before = places.before(position);
+        gather(target, block, leaf,
+               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes,
+                places.width(position)});
       }
     }
   }
 
   // Writes what is still held; call before the thread turns to another block.
   void finish(const EncodeTarget& target) {
-    encode_batch();
-    for (std::size_t first = 0; first < ordinals_.size();) {
-      std::size_t end = first + 1;
-      while (end < ordinals_.size() && ordinals_[end] == ordinals_[end - 1] + 1) ++end;
-      const std::span<const std::byte> bytes(bytes_);
-      target.out.write_at(target.layout.leaves + ordinals_[first] * nvdb::kFloatLeafBytes,
-                          bytes.subspan(first * nvdb::kFloatLeafBytes, (end - first) * nvdb::kFloatLeafBytes));
-      target.records.write(ordinals_[first], std::span(records_).subspan(first, end - first));
+    encode_batch(target);
+    const std::span<const std::byte> bytes(bytes_);
+    std::size_t at = 0;
+    for (std::size_t first = 0; first < leaves_.size();) {
+      std::size_t end = first;
+      std::size_t size = 0;
+      do {
+        size += leaf_bytes(leaves_[end++].width);
+      } while (end < leaves_.size() && leaves_[end].ordinal == leaves_[end - 1].ordinal + 1);
+      target.out.write_at(leaves_[first].offset, bytes.subspan(at, size));
+      target.records.write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
+      at += size;
       first = end;
     }
     bytes_.clear();
     records_.clear();
-    ordinals_.clear();
+    leaves_.clear();
   }
 
  private:
   static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
 
-  void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, std::uint64_t ordinal) {
+  // A kept leaf's place in the file.
+  struct Leaf {
+    std::uint64_t ordinal;
+    std::uint64_t offset;
+    LeafWidth width;
+  };
+
+  void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, const Leaf& place) {
     const Box node = target.tree.leaves.node_box(leaf);
     const Box inside = target.tree.leaves.voxels(leaf);
     LeafValues& values = values_[batch_];
     gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values);
-    if (target.fill.non_finite != NonFinitePolicy::keep) {
+    finite_[batch_] = std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+    if (!finite_[batch_] && target.fill.non_finite != NonFinitePolicy::keep) {
+      sources_[batch_] = values;
       for (float& v : values) v = std::isfinite(v) ? v : target.fill.background;
     }
     nodes_[batch_] = node;
     insides_[batch_] = inside;
-    ordinals_.push_back(ordinal);
-    if (++batch_ == kLeafBatch) encode_batch();
-    if (ordinals_.size() >= kHeldLeaves) finish(target);
+    leaves_.push_back(place);
+    if (++batch_ == kLeafBatch) encode_batch(target);
+    if (leaves_.size() >= kHeldLeaves) finish(target);
   }
 
-  void encode_batch() {
+  void encode_batch(const EncodeTarget& target) {
+    const std::size_t first = leaves_.size() - batch_;
+    if (target.type != GridType::float32) {
+      for (std::size_t i = 0; i < batch_; ++i) {
+        const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
+        quantised_[i] =
+            quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaves_[first + i].width));
+        values_[i] = quantised_[i].decoded;
+      }
+    }
     const std::span<NodeStatistics> statistics(statistics_.data(), batch_);
     full_leaf_statistics({values_.data(), batch_}, {nodes_.data(), batch_}, statistics);
     for (std::size_t i = 0; i < batch_; ++i) {
       if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
       const std::size_t at = bytes_.size();
-      bytes_.resize(at + nvdb::kFloatLeafBytes);
-      encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i],
-                        std::span<std::byte, nvdb::kFloatLeafBytes>(bytes_.data() + at, nvdb::kFloatLeafBytes));
+      bytes_.resize(at + leaf_bytes(leaves_[first + i].width));
+      const std::span<std::byte> image = std::span(bytes_).subspan(at);
       records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
+      if (target.type == GridType::float32) {
+        encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i], image.first<nvdb::kFloatLeafBytes>());
+      } else {
+        const QuantisedLeaf& leaf = quantised_[i];
+        encode_quantised_leaf(target.type, leaf.codes, leaf.bits_log2, leaf.quantiser.minimum, leaf.quantiser.quantum,
+                              nodes_[i], insides_[i], statistics[i], image);
+        records_.back().squared_error = leaf.squared_error;
+        records_.back().max_abs = leaf.max_abs;
+        records_.back().exact = leaf.exact ? 1 : 0;
+      }
     }
     batch_ = 0;
   }
 
-  std::size_t batch_ = 0;  // leaves gathered and not yet encoded
+  std::size_t batch_ = 0;  // leaves gathered and not yet encoded: the last ones of leaves_
   std::array<LeafValues, kLeafBatch> values_{};
+  std::array<LeafValues, kLeafBatch> sources_{};  // before non-finite values were replaced; where there are any
+  std::array<bool, kLeafBatch> finite_{};
+  std::array<QuantisedLeaf, kLeafBatch> quantised_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};
   std::array<NodeStatistics, kLeafBatch> statistics_{};
-  std::vector<std::uint64_t> ordinals_;  // of the leaves held, encoded or not
+  std::vector<Leaf> leaves_;  // held, encoded or not
   std::vector<std::byte> bytes_;
   std::vector<LeafRecord> records_;
 };
 
-// Calls visit(region, mask, x) for every x layer of every region of a block that holds kept leaves;
+// Calls visit(region, places, x) for every x layer of every region of a block that holds kept leaves;
 // `for_each(begin, end, action)` is the loop to use.
 template <typename ForEach, typename Visit>
 void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEach& for_each, const Visit& visit) {
@@ -138,9 +177,9 @@ void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEa
   for_each(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
     const std::int64_t region = tree.region_lattice.linear(regions.lo + index_at(i, regions.extent()));
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
-    const LeafMask mask = target.masks.read(region);
+    const LeafPlaces places(target.choices.read(region));
     const Box box = intersect(tree.leaf_box(region), leaf_box);
-    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, mask, x); });
+    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, x); });
   });
 }
 
@@ -152,7 +191,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
   for (std::int64_t i = 0; i < plan.size(); ++i) {
-    const Box kept = trim_to_kept(tree, target.masks, plan.leaf_box(i));
+    const Box kept = trim_to_kept(tree, target.choices, plan.leaf_box(i));
     if (kept.empty()) continue;
     leaf_boxes.push_back(kept);
     voxel_boxes.push_back(plan.voxel_box(kept));
@@ -165,8 +204,8 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     work_in_place(source, voxel_boxes, options, [&](const Block& block) {
       const Box& leaf_box = leaf_boxes[block.index];
       LeafEncoder& encoder = encoders.local();
-      for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafMask& mask, std::int64_t x) {
-        encoder.add_layer(target, block, leaf_box, region, mask, x);
+      for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
+        encoder.add_layer(target, block, leaf_box, region, places, x);
       });
       encoder.finish(target);
     });
@@ -177,9 +216,9 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   };
   stream_blocks(source, voxel_boxes, options, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
-    for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafMask& mask, std::int64_t x) {
+    for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
       LeafEncoder& encoder = encoders.local();
-      encoder.add_layer(target, block, leaf_box, region, mask, x);
+      encoder.add_layer(target, block, leaf_box, region, places, x);
       encoder.finish(target);
     });
   });

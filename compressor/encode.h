@@ -5,10 +5,11 @@
 #include <cstdint>
 
 #include "compressor/fill.h"
-#include "compressor/leaf_mask.h"
+#include "compressor/leaf_choice.h"
 #include "compressor/leaf_record.h"
 #include "compressor/tree_regions.h"
 #include "format/file_system.h"
+#include "format/nvdb_type.h"
 #include "format/tree_layout.h"
 #include "ingest/block_plan.h"
 #include "ingest/block_stream.h"
@@ -17,9 +18,10 @@ namespace weir {
 
 struct EncodeTarget {
   const TreeRegions& tree;
-  const MaskStore& masks;
+  const ChoiceStore& choices;
   const TreeLayout& layout;
   Fill fill;
+  GridType type;  ///< float32 or quantised
   File& out;
   RecordStore& records;
 };

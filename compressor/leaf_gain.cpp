@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace weir {
 namespace {
@@ -30,7 +31,94 @@ double distance(Metric metric, const BrickRange& range, float background) {
   return 0;
 }
 
+LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
+  const std::uint32_t bytes = leaf_bytes(width) - leaf_bytes(from);
+  return {gain, gain / static_cast<double>(bytes), bytes, width};
+}
+
+// The widest width of FpN that can be of use to a leaf: what is exact needs no more bits.
+LeafWidth widest(const LeafRow& row) {
+  LeafWidth width = LeafWidth::bits1;
+  while (width != LeafWidth::bits16 && (row.exact_bits == 0 || 1U << bits_log2_of(width) < row.exact_bits)) {
+    width = width_of(bits_log2_of(width) + 1);
+  }
+  return width;
+}
+
+// Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`.
+void add_hull(const LeafRow& row, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
+  while (from != last) {
+    LeafStep best;
+    for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
+      const LeafStep step = step_to(width_of(log2), from, error - quantised_error(row, width_of(log2)));
+      if (step.gain > 0 && step.key > best.key) best = step;
+    }
+    if (best.width == LeafWidth::tile) return;
+    error -= best.gain;
+    from = best.width;
+    leaf.add(best);
+  }
+}
+
 }  // namespace
+
+double quantised_error(const LeafRow& row, LeafWidth width) {
+  if (width == LeafWidth::float32) return 0;
+  const unsigned log2 = bits_log2_of(width);
+  const unsigned bits = 1U << log2;
+  if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
+  if (log2 < row.quantised.size()) return row.sse * static_cast<double>(row.quantised[log2]);
+  // Errors uniform over a quantum: q^2 / 12 a value.
+  const double quantum = (static_cast<double>(row.max) - static_cast<double>(row.min)) / ((1U << bits) - 1U);
+  return std::min(row.sse, row.finite * quantum * quantum / 12);
+}
+
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {
+  if (width == LeafWidth::float32) return true;
+  return row.finite == voxels && row.exact_bits != 0 && (1U << bits_log2_of(width)) >= row.exact_bits;
+}
+
+void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const {
+  leaf.lossless = leaf.exact;
+  if (leaf.exact && !leaf.required) return;
+  const double error = leaf.exact ? 0 : row.sse_about(tile);
+  switch (encoding) {
+    case Encoding::automatic:
+    case Encoding::float32:
+      leaf.add(step_to(LeafWidth::float32, LeafWidth::tile, error));
+      break;
+    case Encoding::fp4:
+    case Encoding::fp8:
+    case Encoding::fp16: {
+      const LeafWidth width = encoding == Encoding::fp4   ? LeafWidth::bits4
+                              : encoding == Encoding::fp8 ? LeafWidth::bits8
+                                                          : LeafWidth::bits16;
+      const double gain = std::max(0.0, error - quantised_error(row, width));
+      if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, width)) {
+        leaf.add(step_to(width, LeafWidth::tile, gain));
+      }
+      break;
+    }
+    case Encoding::fpn: {
+      const LeafWidth last = widest(row);
+      LeafWidth from = LeafWidth::tile;
+      double left = error;
+      if (leaf.required) {
+        from = LeafWidth::bits1;
+        left = std::min(error, quantised_error(row, from));
+        leaf.add(step_to(from, LeafWidth::tile, error - left));
+      }
+      add_hull(row, from, left, last, leaf);
+      // Saves nothing that can be measured, but without it not every bit is kept.
+      const LeafWidth reached = leaf.step_count > 0 ? leaf.steps[leaf.step_count - 1].width : LeafWidth::tile;
+      if (!leaf.exact && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));
+      break;
+    }
+  }
+  if (leaf.step_count > 0) {
+    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, leaf.steps[leaf.step_count - 1].width);
+  }
+}
 
 void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const {
   const NodeLattice& leaves = tree.leaves;
@@ -53,7 +141,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
     const float tile = fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);
-    if (metric == Metric::sse && !gain.exact) gain.gain = row.sse_about(tile);
+    add_steps(row, voxels, tile, gain);
     out.push_back(gain);
   });
   if (metric != Metric::sse) rank_bricks(rows, out);
@@ -70,7 +158,8 @@ void GainRule::rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves
     range.any = true;
   });
   for (LeafGain& gain : leaves) {
-    if (!gain.exact) gain.gain = distance(metric, ranges[gain.brick], fill.background);
+    const double by_brick = gain.exact ? 0 : distance(metric, ranges[gain.brick], fill.background);
+    if (gain.step_count > 0) gain.steps[0].gain = gain.steps[0].key = by_brick;
   }
 }
 

@@ -1,10 +1,14 @@
-// What keeping a leaf is worth: the order in which leaves are bought.
+// What keeping a leaf is worth: the steps by which its error is bought down, and
+// so the order in which leaves are bought.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "compressor/encoding.h"
 #include "compressor/fill.h"
+#include "compressor/leaf_choice.h"
 #include "compressor/region_rows.h"
 
 namespace weir {
@@ -14,12 +18,26 @@ namespace weir {
 /// median |(lo + hi) / 2 - B| (Zellmann et al., EGPGV 2025).
 enum class Metric { sse, farthest, closest, median };
 
+/// From one way to keep a leaf to the next better one.
+struct LeafStep {
+  double gain = 0;          ///< squared error saved, or the brick's distance
+  double key = 0;           ///< for sse gain / bytes, else gain: steps are bought by falling key
+  std::uint32_t bytes = 0;  ///< what the file grows by
+  LeafWidth width = LeafWidth::tile;
+};
+
 struct LeafGain {
-  double gain = 0;             ///< squared error saved, or the brick's distance; 0 where `exact`
+  /// In the order they are bought, keys falling: the convex hull of error over bytes. None where the tile
+  /// reads the same bits.
+  std::array<LeafStep, 5> steps{};
+  std::uint32_t step_count = 0;
   std::uint32_t brick = 0;     ///< rank of its brick in the region; of itself for sse
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
   bool exact = false;          ///< its tile reads the same bits: never worth a leaf
-  bool required = false;       ///< always a leaf
+  bool required = false;       ///< always a leaf: its first step is taken whatever it saves
+  bool lossless = false;       ///< the last step, or the tile, reads the same bits
+
+  void add(const LeafStep& step) { steps[step_count++] = step; }
 };
 
 /// Decides gains; the same for every thread, plan and memory ceiling.
@@ -27,14 +45,22 @@ struct GainRule {
   Metric metric = Metric::sse;
   std::int64_t brick_leaves = 1;  ///< leaves along a brick of the paper's metrics: 1, 2 or 4
   Fill fill;
+  Encoding encoding = Encoding::float32;  ///< not automatic
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
   /// hold non-finite values to keep, are required.
   void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
 
  private:
+  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const;
   // The paper's metrics: gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
 };
+
+/// Squared error over the finite values of a leaf kept at `width`: exact for float32 and where `exact_bits`
+/// says so, else an estimate.
+double quantised_error(const LeafRow& row, LeafWidth width);
+/// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit.
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width);
 
 }  // namespace weir

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "compressor/leaf_lattice.h"
+#include "compressor/leaf_quantiser.h"
 #include "format/simd.h"
 
 namespace weir {
@@ -167,6 +169,23 @@ LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, Uni
     summarize_finite(finite.data(), kept, scan_bits(finite.data(), kept).differ, row);
   }
   return row;
+}
+
+void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
+  // What takes the place of a value that is not finite need not lie on the others' lattice.
+  if (row.uniform()) row.exact_bits = all ? 1 : 0;
+  if (!(row.min < row.max)) return;
+  if (const auto lattice = all ? find_lattice(values, row.min, row.max) : std::nullopt) {
+    row.exact_bits = bits_for(lattice->largest);
+  }
+  for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
+    const unsigned bits = 1U << log2;
+    if (row.exact_bits != 0 && bits >= row.exact_bits) {
+      row.quantised[log2] = 0;
+    } else if (row.sse > 0) {
+      row.quantised[log2] = static_cast<float>(estimated_error(values, {row.min, row.max, row.mean}, bits, row.sse));
+    }
+  }
 }
 
 std::size_t sample_position(std::int64_t index, std::size_t count) {

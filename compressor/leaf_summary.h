@@ -24,6 +24,10 @@ inline LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_
   return summarize_leaf(values, sample_at, none);
 }
 
+/// Fills `quantised` and `exact_bits` of a row that summarize_leaf made: `values` are the leaf's finite
+/// in-domain values, row.finite of them, `all` that there are no others.
+void summarize_widths(std::span<const float> values, bool all, LeafRow& row);
+
 /// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in
 /// the data can hide from it.
 std::size_t sample_position(std::int64_t index, std::size_t count);

@@ -14,9 +14,9 @@
 namespace weir {
 namespace {
 
-// Per worker: stack, allocator arena, histogram or value table (512 KiB), radix buckets (512 KiB),
-// leaves being encoded (600 KiB).
-constexpr std::uint64_t kWorkerBytes = 3ULL << 20U;
+// Per worker: stack, allocator arena, histogram or value table (512 KiB), radix buckets (512 KiB), a region's steps
+// (1.3 MiB), leaves being encoded (700 KiB).
+constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image.
 constexpr std::uint64_t kSlackBytes = 16ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
@@ -31,7 +31,8 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   const NodeLattice cells = make_lattice(domain, kMacrocell);
   // Macrocell layers: the window, its successor while it moves, and those being written.
   const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
-  const std::uint64_t tree = regions * (sizeof(Region) + sizeof(NodeStatistics)) + 28 * cell_layer;
+  // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
+  const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + 28 * cell_layer;
   const std::uint64_t fixed = resident + kSlackBytes + kStagingBytes + threads * kWorkerBytes + tree;
   const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
   if (ceiling < least) {

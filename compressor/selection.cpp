@@ -21,35 +21,56 @@ namespace {
 constexpr double kRequired = std::numeric_limits<double>::infinity();
 // Saves nothing that can be measured, but without it not every bit is kept: bought last.
 constexpr double kLast = std::numeric_limits<double>::denorm_min();
-constexpr auto kLeafCost = static_cast<double>(nvdb::kFloatLeafBytes);
 constexpr auto kLowerCost = static_cast<double>(nvdb::kLowerBytes);
 constexpr auto kUpperCost = static_cast<double>(nvdb::kUpperBytes);
 
-double leaf_key(const GainRule& rule, const LeafGain& leaf, double region_key) {
-  if (leaf.required) return kRequired;
-  if (leaf.exact) return 0;
-  const double own = rule.metric == Metric::sse ? leaf.gain / kLeafCost : leaf.gain;
-  return std::max(kLast, std::min(own, region_key));
+// Key of step `i` of a leaf in a region of `region_key`: never above it, and falling from step to step.
+double step_key(const LeafGain& leaf, std::uint32_t i, double region_key) {
+  if (leaf.required && i == 0) return kRequired;
+  return std::max(kLast, std::min(leaf.steps[i].key, region_key));
 }
 
-// The best ratio of saved error to bytes over opening a region and keeping its k best leaves.
-double hull_step(double opening_gain, std::vector<double>& gains) {
-  std::sort(gains.begin(), gains.end(), std::greater<>());
+// One step of one leaf.
+struct Item {
+  const LeafGain* leaf;
+  std::uint32_t step;
+};
+
+// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves.
+double hull_step(double opening_gain, std::vector<LeafStep>& steps) {
+  // Equal keys in any order: the best ratio is at the end of a run of them.
+  std::sort(steps.begin(), steps.end(), [](const LeafStep& a, const LeafStep& b) { return a.key > b.key; });
   double saved = opening_gain;
   double cost = kLowerCost;
   double best = saved / cost;
-  for (const double gain : gains) {
-    saved += gain;
-    cost += kLeafCost;
-    best = std::max(best, saved / cost);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    saved += steps[i].gain;
+    cost += static_cast<double>(steps[i].bytes);
+    if (i + 1 == steps.size() || steps[i + 1].key != steps[i].key) best = std::max(best, saved / cost);
   }
   return best;
 }
 
-// Among leaves of equal keys: more gain first, then whole bricks, then the leaf index.
-bool goes_before(const LeafGain& a, const LeafGain& b) {
-  if (a.gain != b.gain) return a.gain > b.gain;
-  return a.brick < b.brick;
+// Among steps of equal keys: the higher own key first, which is a leaf's earlier step too, then whole bricks, then
+// the leaf index.
+bool goes_before(const Item& a, const Item& b) {
+  const double of_a = a.leaf->steps[a.step].key;
+  const double of_b = b.leaf->steps[b.step].key;
+  if (of_a != of_b) return of_a > of_b;
+  if (a.leaf->brick != b.leaf->brick) return a.leaf->brick < b.leaf->brick;
+  return a.leaf == b.leaf && a.step < b.step;
+}
+
+// The steps of a region's leaves whose key is `threshold`, in the order they are bought.
+std::vector<Item> tied_steps(const std::vector<LeafGain>& gains, double region_key, double threshold) {
+  std::vector<Item> ties;
+  for (const LeafGain& leaf : gains) {
+    for (std::uint32_t i = 0; i < leaf.step_count; ++i) {
+      if (step_key(leaf, i, region_key) == threshold) ties.push_back({&leaf, i});
+    }
+  }
+  std::stable_sort(ties.begin(), ties.end(), goes_before);
+  return ties;
 }
 
 // Keys are not negative, so that their bits sort as they do.
@@ -60,8 +81,9 @@ std::uint64_t bits_of(double key) { return std::bit_cast<std::uint64_t>(key); }
 Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree)
     : rule_(rule), rows_(rows), tree_(tree) {
   struct Totals {
-    std::uint64_t required_leaves = 0;
-    std::uint64_t lossless_leaves = 0;
+    NodeCounts minimum;
+    NodeCounts full;
+    std::uint64_t lossy = 0;
   };
   tbb::enumerable_thread_specific<Totals> totals;
   for_each_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
@@ -70,33 +92,40 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
     summarize_region(region, region_rows, gains);
     Totals& total = totals.local();
     for (const LeafGain& leaf : gains) {
-      total.required_leaves += leaf.required ? 1 : 0;
-      total.lossless_leaves += leaf.required || !leaf.exact ? 1 : 0;
+      total.lossy += leaf.lossless ? 0 : 1;
+      if (leaf.step_count == 0) continue;
+      ++total.full.leaves;
+      for (std::uint32_t i = 0; i < leaf.step_count; ++i) total.full.leaf_bytes += leaf.steps[i].bytes;
+      if (!leaf.required) continue;
+      ++total.minimum.leaves;
+      total.minimum.leaf_bytes += leaf.steps[0].bytes;
     }
   });
   summarize_uppers();
 
   NodeCounts minimum;
-  NodeCounts lossless;
+  NodeCounts full;
   for (const Totals& total : totals) {
-    minimum.leaves += total.required_leaves;
-    lossless.leaves += total.lossless_leaves;
+    minimum.leaves += total.minimum.leaves;
+    minimum.leaf_bytes += total.minimum.leaf_bytes;
+    full.leaves += total.full.leaves;
+    full.leaf_bytes += total.full.leaf_bytes;
+    bytes_.lossy_leaves += total.lossy;
   }
   for (const Region& region : tree_.regions) {
     minimum.lowers += region.key == kRequired ? 1 : 0;
-    lossless.lowers += region.key > 0 ? 1 : 0;
+    full.lowers += region.key > 0 ? 1 : 0;
   }
   for (const Upper& upper : tree_.uppers) {
     minimum.uppers += upper.key == kRequired ? 1 : 0;
-    lossless.uppers += upper.key > 0 ? 1 : 0;
+    full.uppers += upper.key > 0 ? 1 : 0;
   }
-  for (NodeCounts* counts : {&minimum, &lossless}) {
+  for (NodeCounts* counts : {&minimum, &full}) {
     counts->root_tiles = tree_.uppers.size();
-    counts->leaf_bytes = counts->leaves * nvdb::kFloatLeafBytes;
     counts->macrocells = static_cast<std::uint64_t>(make_lattice(tree_.leaves.domain, kMacrocell).size());
   }
   bytes_.minimum = make_layout(minimum);
-  bytes_.lossless = make_layout(lossless);
+  bytes_.full = make_layout(full);
 }
 
 void Selection::summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains) {
@@ -120,20 +149,20 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows, con
   region.sums = builder.sums;
   region.sums.exact = exact;
 
-  std::vector<double> values;
+  std::vector<LeafStep> steps;
   bool required = false;
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
-    highest = std::max(highest, leaf.gain);
-    if (!leaf.exact) values.push_back(leaf.gain);
+    highest = std::max(highest, leaf.steps[0].gain);
+    steps.insert(steps.end(), leaf.steps.begin(), leaf.steps.begin() + leaf.step_count);
   }
   if (required) {
     region.key = kRequired;
   } else if (exact) {
     region.key = 0;
   } else if (rule_.metric == Metric::sse) {
-    region.key = std::max(kLast, hull_step(std::max(0.0, region.sums.sse_about(tile) - dropped_leaves), values));
+    region.key = std::max(kLast, hull_step(std::max(0.0, region.sums.sse_about(tile) - dropped_leaves), steps));
   } else {
     region.key = std::max(kLast, highest);
   }
@@ -183,7 +212,9 @@ void Selection::for_each_key(const Visit& visit) const {
     if (region.key == 0) return;  // no leaf in it has a higher one
     std::vector<LeafGain> gains;
     rule_.gains(tree_, rows, gains);
-    for (const LeafGain& leaf : gains) visit(leaf_key(rule_, leaf, region.key), nvdb::kFloatLeafBytes);
+    for (const LeafGain& leaf : gains) {
+      for (std::uint32_t i = 0; i < leaf.step_count; ++i) visit(step_key(leaf, i, region.key), leaf.steps[i].bytes);
+    }
   });
 }
 
@@ -234,13 +265,13 @@ double Selection::find_threshold(std::uint64_t budget, std::uint64_t& bytes_abov
 
 double Selection::sorted_threshold(std::uint64_t budget, std::uint64_t& bytes_above,
                                    const std::function<bool(double)>& matches) const {
-  using Item = std::pair<double, std::uint64_t>;  // key, bytes
-  tbb::enumerable_thread_specific<std::vector<Item>> local;
+  using Purchase = std::pair<double, std::uint64_t>;  // key, bytes
+  tbb::enumerable_thread_specific<std::vector<Purchase>> local;
   for_each_key([&](double key, std::uint64_t bytes) {
     if (matches(key)) local.local().emplace_back(key, bytes);
   });
-  std::vector<Item> items;
-  for (const std::vector<Item>& some : local) items.insert(items.end(), some.begin(), some.end());
+  std::vector<Purchase> items;
+  for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   for (const Upper& upper : tree_.uppers) {
     if (matches(upper.key)) items.emplace_back(upper.key, nvdb::kUpperBytes);
   }
@@ -268,9 +299,9 @@ void Selection::resolve_ties(std::uint64_t left) {
     Region& region = tree_.regions[static_cast<std::size_t>(index)];
     if (region.key < cut_.threshold) continue;
     Upper& upper = tree_.uppers[static_cast<std::size_t>(tree_.upper_of(index))];
-    const auto stop = [&](std::uint32_t leaves) {
+    const auto stop = [&](std::size_t steps) {
       cut_.tie_region = index;
-      cut_.tie_leaves = leaves;
+      cut_.tie_steps = static_cast<std::uint32_t>(steps);
     };
     if (!upper.open) {
       if (!buy(nvdb::kUpperBytes)) return stop(0);
@@ -283,12 +314,14 @@ void Selection::resolve_ties(std::uint64_t left) {
     const Box box = tree_.leaf_box(index);
     rows_.read_box(box, row_buffer);
     rule_.gains(tree_, RegionRows(row_buffer.data(), box.extent(), box), gains);
-    std::erase_if(gains, [&](const LeafGain& leaf) { return leaf_key(rule_, leaf, region.key) != cut_.threshold; });
-    std::stable_sort(gains.begin(), gains.end(), goes_before);
-    for (std::size_t first = 0; first < gains.size();) {
+    const std::vector<Item> ties = tied_steps(gains, region.key, cut_.threshold);
+    for (std::size_t first = 0; first < ties.size();) {
       std::size_t end = first + 1;  // a brick goes as one
-      while (end < gains.size() && gains[end].brick == gains[first].brick) ++end;
-      if (!buy((end - first) * nvdb::kFloatLeafBytes)) return stop(static_cast<std::uint32_t>(first));
+      while (rule_.metric != Metric::sse && end < ties.size() && ties[end].leaf->brick == ties[first].leaf->brick)
+        ++end;
+      std::uint64_t bytes = 0;
+      for (std::size_t i = first; i < end; ++i) bytes += ties[i].leaf->steps[ties[i].step].bytes;
+      if (!buy(bytes)) return stop(first);
       first = end;
     }
   }
@@ -304,7 +337,7 @@ void Selection::choose(std::uint64_t file_bytes) {
     throw Error(ErrorKind::internal, cat("budget of ", file_bytes, " bytes is below the minimum tree"));
   }
   cut_ = Cut{};
-  if (file_bytes >= bytes_.lossless.file_bytes) {
+  if (file_bytes >= bytes_.full.file_bytes) {
     for (Region& region : tree_.regions) region.open = region.key > 0;
     for (Upper& upper : tree_.uppers) upper.open = upper.key > 0;
     return;
@@ -322,25 +355,23 @@ void Selection::choose(std::uint64_t file_bytes) {
   resolve_ties(budget - above);
 }
 
-LeafMask Selection::mask(std::int64_t index, const RegionRows& rows) const {
-  LeafMask mask;
+LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows) const {
+  LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
-  if (!region.open) return mask;
+  if (!region.open) return choices;
   std::vector<LeafGain> gains;
   rule_.gains(tree_, rows, gains);
-  std::vector<LeafGain> ties;
   for (const LeafGain& leaf : gains) {
-    const double key = leaf_key(rule_, leaf, region.key);
-    if (key > cut_.threshold) {
-      mask.set(leaf.position);
-    } else if (key == cut_.threshold && key > 0 && index <= cut_.tie_region) {
-      ties.push_back(leaf);
+    // Keys fall from step to step: the last one above the cut is the width.
+    for (std::uint32_t i = 0; i < leaf.step_count && step_key(leaf, i, region.key) > cut_.threshold; ++i) {
+      choices.set(leaf.position, leaf.steps[i].width);
     }
   }
-  std::stable_sort(ties.begin(), ties.end(), goes_before);
-  if (index == cut_.tie_region) ties.resize(std::min<std::size_t>(ties.size(), cut_.tie_leaves));
-  for (const LeafGain& leaf : ties) mask.set(leaf.position);
-  return mask;
+  if (cut_.threshold == 0 || index > cut_.tie_region) return choices;
+  std::vector<Item> ties = tied_steps(gains, region.key, cut_.threshold);
+  if (index == cut_.tie_region) ties.resize(std::min<std::size_t>(ties.size(), cut_.tie_steps));
+  for (const Item& tie : ties) choices.set(tie.leaf->position, tie.leaf->steps[tie.step].width);
+  return choices;
 }
 
 }  // namespace weir

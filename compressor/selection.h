@@ -1,11 +1,12 @@
 // Selection under a byte budget: which leaves are kept, which 128^3 regions
 // become lower nodes, which 4096^3 blocks upper nodes.
 //
-// Everything that can be bought has a key, the error it saves per byte: a leaf
-// (2144 bytes), a lower node (33,856) and an upper node (270,400). A node's key is
-// at least that of anything below it: a region's is the best ratio over all k of
-// what opening it and keeping its k best leaves saves to what they cost (its step
-// on the convex hull), and no leaf in it has a higher one. The budget then buys in
+// Everything that can be bought has a key, the error it saves per byte: a leaf's
+// step to its next better width (leaf_gain.h), a lower node (33,856 bytes) and an
+// upper node (270,400). A node's key is at least that of anything below it: a
+// region's is the best ratio over all k of what opening it and taking the k best
+// steps of its leaves saves to what they cost (its step on the convex hull), and no
+// step in it has a higher one. The budget then buys in
 // the order of keys, so that any larger budget buys a superset: error never grows
 // with size. The cut is found by radix selection over the keys' bits, in passes
 // over the spilled rows; ties go by region index, then by gain, then by leaf
@@ -16,8 +17,8 @@
 #include <functional>
 #include <optional>
 
+#include "compressor/leaf_choice.h"
 #include "compressor/leaf_gain.h"
-#include "compressor/leaf_mask.h"
 #include "compressor/region_rows.h"
 #include "compressor/tree_regions.h"
 #include "format/tree_layout.h"
@@ -25,17 +26,18 @@
 namespace weir {
 
 /// The decided cut. Keys above `threshold` are bought; of those equal to it, all in regions before
-/// `tie_region`, the first `tie_leaves` leaves in it, and none after it.
+/// `tie_region`, the first `tie_steps` steps in it, and none after it.
 struct Cut {
   double threshold = 0;
   std::int64_t tie_region = 0;
-  std::uint32_t tie_leaves = 0;
+  std::uint32_t tie_steps = 0;
 };
 
 /// What a selection comes to in the file.
 struct SelectionBytes {
-  TreeLayout minimum;   ///< the smallest file these rules allow
-  TreeLayout lossless;  ///< every leaf that no tile reproduces bit for bit
+  TreeLayout minimum;              ///< the smallest file these rules allow
+  TreeLayout full;                 ///< every step of every leaf: more bytes buy nothing
+  std::uint64_t lossy_leaves = 0;  ///< leaves that lose something even then; 0 for float leaves
 };
 
 class Selection {
@@ -49,8 +51,8 @@ class Selection {
   /// and upper nodes in the tree.
   void choose(std::uint64_t file_bytes);
 
-  /// The kept leaves of a region, after choose().
-  LeafMask mask(std::int64_t region, const RegionRows& rows) const;
+  /// What becomes of the leaves of a region, after choose().
+  LeafChoices choices(std::int64_t region, const RegionRows& rows) const;
 
   const Cut& cut() const { return cut_; }
   const GainRule& rule() const { return rule_; }

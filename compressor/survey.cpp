@@ -72,9 +72,9 @@ struct Tally {
 // Surveys the leaves of one block.
 class BlockSurvey {
  public:
-  BlockSurvey(const NodeLattice& leaves, const ValueTable& table, const Block& block, const Box& leaf_box,
+  BlockSurvey(const NodeLattice& leaves, const ValueTable& table, bool widths, const Block& block, const Box& leaf_box,
               std::vector<LeafRow>& rows)
-      : leaves_(leaves), table_(table), block_(block), leaf_box_(leaf_box), rows_(rows) {}
+      : leaves_(leaves), table_(table), widths_(widths), block_(block), leaf_box_(leaf_box), rows_(rows) {}
 
   // All leaves of one row along x; `row` is relative to the block.
   void leaf_row(std::int64_t y, std::int64_t z, Tally& tally) const {
@@ -106,10 +106,11 @@ class BlockSurvey {
     }
     const auto count = static_cast<std::size_t>(volume(extent));
     const std::span<const float> seen(values.data(), count);
-    const LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
+    LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
     tally.finite += row.finite;
     if (row.finite == count) {
       count_values(seen, row, tally);
+      if (widths_) summarize_widths(seen, true, row);
     } else {
       count_non_finite(seen, inside, row, tally);
     }
@@ -133,7 +134,7 @@ class BlockSurvey {
     }
   }
 
-  void count_non_finite(std::span<const float> values, const Box& inside, const LeafRow& row, Tally& tally) const {
+  void count_non_finite(std::span<const float> values, const Box& inside, LeafRow& row, Tally& tally) const {
     std::array<float, kLeafVoxels> finite;
     std::size_t kept = 0;
     std::size_t missing = 0;
@@ -156,11 +157,14 @@ class BlockSurvey {
     }
     tally.missing += missing;
     tally.non_finite += values.size() - kept - missing;
-    if (kept > 0) count_values(std::span(finite.data(), kept), row, tally);
+    if (kept == 0) return;
+    count_values(std::span(finite.data(), kept), row, tally);
+    if (widths_) summarize_widths(std::span(finite.data(), kept), false, row);
   }
 
   const NodeLattice& leaves_;
   const ValueTable& table_;
+  bool widths_;
   const Block& block_;
   const Box& leaf_box_;
   std::vector<LeafRow>& rows_;
@@ -182,7 +186,7 @@ void spill(RowStore& store, const Box& leaf_box, std::span<const LeafRow> rows) 
 }  // namespace
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading) {
+                     Reading reading, bool widths) {
   const NodeLattice& leaves = plan.lattice;
   const ValueTable table = value_table(source.info());
   Tally fresh;
@@ -197,7 +201,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
     const Box leaf_box = plan.leaf_box(static_cast<std::int64_t>(block.index));
     const Index3 extent = leaf_box.extent();
     std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
-    const BlockSurvey work(leaves, table, block, leaf_box, block_rows);
+    const BlockSurvey work(leaves, table, widths, block, leaf_box, block_rows);
     for_rows(extent.y * extent.z,
              [&](std::int64_t row, Tally& tally) { work.leaf_row(row % extent.y, row / extent.y, tally); });
     spill(rows, leaf_box, block_rows);

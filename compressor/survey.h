@@ -33,9 +33,10 @@ struct Survey {
 };
 
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
-/// number of threads, nor on the way of reading.
+/// number of threads, nor on the way of reading. `widths` asks for what each
+/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading = Reading::ahead);
+                     Reading reading = Reading::ahead, bool widths = false);
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

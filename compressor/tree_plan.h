@@ -1,12 +1,13 @@
-// From a selection to a plan of the file: the mask of every region, the node and
+// From a selection to a plan of the file: the choices of every region, the node and
 // leaf ordinals in file order, every offset, and the error of the result, which
 // for float leaves is known before a single one is written.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "compressor/certificate.h"
-#include "compressor/leaf_mask.h"
+#include "compressor/leaf_choice.h"
 #include "compressor/selection.h"
 #include "compressor/tree_regions.h"
 #include "format/tree_layout.h"
@@ -15,13 +16,17 @@ namespace weir {
 
 struct TreePlan {
   TreeLayout layout;  ///< without padding
+  // Of what reads a tile: exact. Leaves add theirs when they are encoded (leaf_record.h); float ones add none.
   double squared_error = 0;
   double max_abs = 0;
   bool lossless = false;
+  double expected_leaf_error = 0;  ///< squared, of the kept leaves, estimated
+  /// Kept leaves by log2(bits a voxel), 5 for float32.
+  std::array<std::uint64_t, 6> leaves_by_width{};
 };
 
-/// One pass over the rows after Selection::choose: writes the masks, fills `leaves`, `node`,
-/// `first_leaf` and `squared_error` of the regions and `node` of the upper nodes.
-TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, MaskStore& masks);
+/// One pass over the rows after Selection::choose: writes the choices, fills `leaves`, `leaf_bytes`, `node`,
+/// `first_leaf`, `first_byte` and `squared_error` of the regions and `node` of the upper nodes.
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& choices);
 
 }  // namespace weir

@@ -40,7 +40,9 @@ struct Region {
   std::uint32_t leaves = 0;      ///< kept ones
   std::uint64_t node = 0;        ///< ordinal of the lower node in the file
   std::uint64_t first_leaf = 0;  ///< ordinal of its first kept leaf in the file
-  double squared_error = 0;      ///< of all finite voxels as they will read
+  std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
+  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves
+  double squared_error = 0;      ///< of the finite voxels that read a tile
 };
 
 struct Upper {

@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <atomic>
 #include <span>
 #include <vector>
@@ -42,6 +43,7 @@ class LowerWriter {
       : parts_(parts),
         out_(out),
         statistics(parts.tree.regions.size()),
+        errors_(parts.tree.regions.size()),
         macrocells_(parts.tree.leaves.domain, parts.fill.background),
         images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {}
 
@@ -61,8 +63,24 @@ class LowerWriter {
   }
 
   std::uint64_t active_tiles() const { return active_tiles_; }
+  // Error of the kept leaves: sums in the order of the regions, whatever the threads.
+  void add_errors(WrittenTree& written) const {
+    CompensatedSum squares;
+    for (const LeafErrors& region : errors_) {
+      squares.add(region.squares);
+      written.leaf_max_abs = std::max(written.leaf_max_abs, static_cast<double>(region.max_abs));
+      written.leaves_exact = written.leaves_exact && region.exact;
+    }
+    written.leaf_squared_error = squares.value();
+  }
 
  private:
+  struct LeafErrors {
+    double squares = 0;
+    float max_abs = 0;
+    bool exact = true;
+  };
+
   void write_region(std::int64_t index, const RegionRows& rows) {
     const TreeRegions& tree = parts_.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(index)];
@@ -79,14 +97,17 @@ class LowerWriter {
 
   void write_lower(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
     const TreeRegions& tree = parts_.tree;
-    const LeafMask mask = parts_.masks.read(index);
+    const LeafChoices choices = parts_.choices.read(index);
     const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
     const Box box = rows.leaf_box();
     NodeImage& image = images_.local();
     image.reset();
     TableStatistics table;
+    CompensatedSum squares;
+    LeafErrors& errors = errors_[static_cast<std::size_t>(index)];
     std::size_t next = 0;
+    std::uint64_t offset = parts_.layout.leaves + region.first_byte;
     for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
       for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
         for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
@@ -96,7 +117,8 @@ class LowerWriter {
           const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
           const Box voxels = tree.leaves.voxels(leaf);
           const Box leaf_node = tree.leaves.node_box(leaf);
-          if (!mask.test(position)) {
+          const LeafWidth width = choices.width(position);
+          if (width == LeafWidth::tile) {
             const float value = parts_.fill.leaf_value(rows.at(leaf));
             const bool active = parts_.fill.active() && voxels == leaf_node;
             image.set_tile(entry, value, active);
@@ -104,14 +126,18 @@ class LowerWriter {
             cells.add_tile(voxels, value);
             continue;
           }
-          const std::uint64_t offset = parts_.layout.leaves + (region.first_leaf + next) * nvdb::kFloatLeafBytes;
           const LeafRecord& record = records[next++];
           image.set_child(entry, offset - node);
+          offset += leaf_bytes(width);
           table.add_child(record_statistics(record, voxels));
           cells.add_leaf(leaf_node, record);
+          squares.add(record.squared_error);
+          errors.max_abs = std::max(errors.max_abs, record.max_abs);
+          errors.exact = errors.exact && record.exact != 0;
         }
       }
     }
+    errors.squares = squares.value();
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());
@@ -137,6 +163,7 @@ class LowerWriter {
   std::vector<NodeStatistics> statistics;  // of the lower nodes, by region
 
  private:
+  std::vector<LeafErrors> errors_;  // by region
   MacrocellBuilder macrocells_;
   tbb::enumerable_thread_specific<NodeImage> images_;
   std::atomic<std::uint64_t> active_tiles_{0};
@@ -172,7 +199,7 @@ NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std
 
 }  // namespace
 
-std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
+WrittenTree write_tree(const TreeParts& parts, GridHead head, File& out) {
   LowerWriter lowers(parts, out);
   lowers.run();
   head.active_tiles = {lowers.active_tiles(), 0, 0};
@@ -204,7 +231,10 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
   out.write_at(parts.layout.blind_meta, encode_macrocell_record(parts.layout));
   const std::vector<std::byte> bytes = encode_head(head, parts.layout);
   out.write_at(0, bytes);
-  return load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
+  WrittenTree written;
+  written.head_checksum = load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
+  lowers.add_errors(written);
+  return written;
 }
 
 }  // namespace weir

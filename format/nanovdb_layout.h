@@ -73,7 +73,8 @@ inline constexpr InternalLayout kLower{4096, 32, 544, 1056, 1060, 1064, 1068, 10
 namespace leaf {
 inline constexpr std::uint64_t kBBoxMin = 0, kBBoxDim = 12, kFlags = 15, kValueMask = 16, kMin = 80, kMax = 84,
                                kAverage = 88, kStdDev = 92, kValues = 96;
-inline constexpr std::uint64_t kQuantMinimum = 80, kQuantum = 84, kCodes = 96;  ///< quantised leaves
+inline constexpr std::uint64_t kQuantMinimum = 80, kQuantum = 84, kQuantMin = 88, kQuantMax = 90, kQuantAverage = 92,
+                               kQuantStdDev = 94, kCodes = 96;  ///< quantised leaves
 }  // namespace leaf
 
 /// Blind data record, offsets from the record.

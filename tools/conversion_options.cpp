@@ -37,6 +37,14 @@ Budget parse_budget(const ConversionArguments& a) {
   return budget;
 }
 
+Encoding parse_encoding(const std::string& name) {
+  for (const Encoding encoding :
+       {Encoding::automatic, Encoding::float32, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16}) {
+    if (encoding_name(encoding) == name) return encoding;
+  }
+  throw usage(cat("--encoding is \"", name, "\", it must be auto, float, fpn, fp4, fp8 or fp16"));
+}
+
 Metric parse_metric(const std::string& name) {
   for (const Metric metric : {Metric::sse, Metric::farthest, Metric::closest, Metric::median}) {
     if (metric_name(metric) == name) return metric;
@@ -60,9 +68,7 @@ NonFinitePolicy parse_policy(const std::string& name) {
 
 // Empty means "not given" everywhere: the defaults are those of ConversionOptions.
 void parse_method(const ConversionArguments& a, ConversionOptions& options) {
-  if (!a.encoding.empty() && a.encoding != "auto" && a.encoding != "float") {
-    throw usage(cat("--encoding is \"", a.encoding, "\", it must be auto or float"));
-  }
+  options.encoding = parse_encoding(a.encoding.empty() ? "auto" : a.encoding);
   if (!a.metric.empty()) options.metric = parse_metric(a.metric);
   if (!a.fill.empty()) options.fill = parse_fill(a.fill);
   if (!a.brick.empty()) {
@@ -78,6 +84,9 @@ void parse_method(const ConversionArguments& a, ConversionOptions& options) {
          {std::pair{"--metric", a.metric}, std::pair{"--fill", a.fill}, std::pair{"--background", a.background}}) {
       if (!given.empty()) throw usage(cat("--preset paper sets ", fixed, "; leave one of them out"));
     }
+    if (!a.encoding.empty() && a.encoding != "float")
+      throw usage("--preset paper sets --encoding; leave one of them out");
+    options.encoding = Encoding::float32;
     options.metric = Metric::farthest;
     options.fill = FillMode::background;
     options.paper_background = true;
@@ -103,7 +112,9 @@ void add_conversion_options(CLI::App& command, ConversionArguments& a) {
   command.add_option("--size", a.size, "the file is exactly that long, 64MiB for instance");
   command.add_option("--rate", a.rate, "the file is exactly ceil(float32 bytes of the volume / RATE) long; default 8");
   command.add_flag("--lossless", a.lossless, "as long as every bit of every voxel needs");
-  command.add_option("--encoding", a.encoding, "leaves: auto or float; default auto");
+  command.add_option("--encoding", a.encoding,
+                     "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, "
+                     "chosen for each leaf), fp4, fp8 or fp16; default auto");
   command.add_option("--metric", a.metric,
                      "what the budget is spent on: sse (squared error saved per byte), farthest, closest or median "
                      "(the paper's distances from a brick's range to the background); default sse");

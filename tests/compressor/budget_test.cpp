@@ -13,7 +13,7 @@ namespace {
 SelectionBytes sizes(std::uint64_t minimum, std::uint64_t lossless) {
   SelectionBytes bytes;
   bytes.minimum.file_bytes = minimum;
-  bytes.lossless.file_bytes = lossless;
+  bytes.full.file_bytes = lossless;
   return bytes;
 }
 

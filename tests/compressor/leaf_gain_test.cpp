@@ -64,7 +64,7 @@ TEST_P(PaperMetricTest, IsTheDistanceOfTheBricksRangeFromTheBackground) {
                               : metric == Metric::farthest
                                   ? std::max(to_low, to_high)
                                   : std::abs((low + high) / 2 - static_cast<double>(background));
-      ASSERT_EQ(gain.gain, expected) << leaf.x << ' ' << leaf.y << ' ' << leaf.z;
+      ASSERT_EQ(gain.steps[0].gain, expected) << leaf.x << ' ' << leaf.y << ' ' << leaf.z;
     });
   }
 }
@@ -88,7 +88,7 @@ TEST(LeafGain, SseIsTheSquaredErrorThatTheTileCosts) {
       for (const float v : volume.in(box)) {
         expected += (static_cast<long double>(v) - tile) * (static_cast<long double>(v) - tile);
       }
-      EXPECT_NEAR(gain.gain, static_cast<double>(expected), static_cast<double>(expected) * 1e-13);
+      EXPECT_NEAR(gain.steps[0].gain, static_cast<double>(expected), static_cast<double>(expected) * 1e-13);
       EXPECT_FALSE(gain.exact);
     });
   }
@@ -121,7 +121,7 @@ TEST(LeafGain, ExactTilesAreWorthNothingToAnyMetric) {
                   [&](const TreeRegions&, const Index3& leaf, const LeafGain& gain) {
                     const bool exact = leaf == Index3{2, 0, 0};
                     EXPECT_EQ(gain.exact, exact);
-                    EXPECT_EQ(gain.gain == 0, exact);
+                    EXPECT_EQ(gain.steps[0].gain == 0, exact);
                   });
   }
 }

@@ -54,9 +54,9 @@ std::string measure() {
   if (row_bytes < 16 * kMemory) return "the row file is too small";
   fill_rows(rows);
   Selection selection(GainRule{}, rows, tree);
-  const std::uint64_t asked = selection.bytes().lossless.file_bytes / 8;
+  const std::uint64_t asked = selection.bytes().full.file_bytes / 8;
   selection.choose(asked);
-  MaskStore masks(files->create_unnamed(::testing::TempDir()), tree.region_lattice.size());
+  ChoiceStore masks(files->create_unnamed(::testing::TempDir()), tree.region_lattice.size());
   const TreePlan plan = plan_tree(selection, rows, tree, masks);
   if (plan.layout.file_bytes > asked || asked - plan.layout.file_bytes >= 33856 + 2144)
     return "the budget is not used up";

@@ -105,7 +105,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
 
   // The certificate of the smallest tree: one tile a region, but for the corners' two.
   selection.choose(selection.bytes().minimum.file_bytes);
-  MaskStore masks(test::MemoryFileSystem().create_unnamed("masks"), tree.region_lattice.size());
+  ChoiceStore masks(test::MemoryFileSystem().create_unnamed("masks"), tree.region_lattice.size());
   const TreePlan plan = plan_tree(selection, rows, tree, masks);
   long double expected = 0;
   for (std::size_t r = 0; r < regions.size(); ++r) {

@@ -28,14 +28,14 @@ Chooser::Chooser(const Surveyed& surveyed, const GainRule& rule)
 
 Choice Chooser::choose(std::uint64_t file_bytes) {
   selection_.choose(file_bytes);
-  MaskStore masks(MemoryFileSystem().create_unnamed("masks"), tree_.region_lattice.size());
+  ChoiceStore masks(MemoryFileSystem().create_unnamed("masks"), tree_.region_lattice.size());
   Choice choice;
   choice.plan = plan_tree(selection_, rows_, tree_, masks);
   choice.kept.resize(static_cast<std::size_t>(tree_.leaves.size()));
   for (std::int64_t i = 0; i < tree_.leaves.size(); ++i) {
     const Index3 node = tree_.leaves.first + tree_.leaves.position(i);
     const std::int64_t region = tree_.region_lattice.linear(floor_div(node, kLowerLeaves) - tree_.region_lattice.first);
-    choice.kept[static_cast<std::size_t>(i)] = masks.read(region).test(tree_.mask_position(tree_.leaves.position(i)));
+    choice.kept[static_cast<std::size_t>(i)] = masks.read(region).kept(tree_.mask_position(tree_.leaves.position(i)));
   }
   for (const Region& region : tree_.regions) choice.region.push_back(region.open);
   for (const Upper& upper : tree_.uppers) choice.upper.push_back(upper.open);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "compressor/leaf_mask.h"
+#include "compressor/leaf_choice.h"
 #include "compressor/selection.h"
 #include "compressor/survey.h"
 #include "compressor/tree_plan.h"
@@ -44,7 +44,7 @@ class Chooser {
   const Selection& selection() const { return selection_; }
   const TreeRegions& tree() const { return tree_; }
   std::uint64_t minimum() const { return selection_.bytes().minimum.file_bytes; }
-  std::uint64_t lossless() const { return selection_.bytes().lossless.file_bytes; }
+  std::uint64_t lossless() const { return selection_.bytes().full.file_bytes; }
   Choice choose(std::uint64_t file_bytes);
   /// Gains of one region in leaf order.
   std::vector<LeafGain> gains(std::int64_t region) const;

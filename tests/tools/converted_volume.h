@@ -14,7 +14,7 @@
 
 namespace weir {
 
-// 40 x 30 x 20 voxels, half of them zero, converted to a size that has leaves, tiles and padding.
+// 40 x 30 x 20 voxels, half of them zero, converted to float leaves of a size that has leaves, tiles and padding.
 class ConvertedVolume : public testing::Test {
  protected:
   ConvertedVolume() {
@@ -23,7 +23,8 @@ class ConvertedVolume : public testing::Test {
     std::string bytes(values.size() * sizeof(float), '\0');
     std::memcpy(bytes.data(), values.data(), bytes.size());
     write_file(directory_.path() / "v_40x30x20_float32.raw", bytes);
-    const auto made = run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "-o", volume_, "--size", "450001"});
+    const auto made = run_weir(
+        {"convert", directory_ / "v_40x30x20_float32.raw", "-o", volume_, "--size", "450001", "--encoding", "float"});
     EXPECT_EQ(made.exit_code, 0) << made.err;
   }
 

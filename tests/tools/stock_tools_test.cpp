@@ -61,7 +61,11 @@ TEST_F(StockTools, ValidateEveryKindOfTree) {
       {"zero", "300,20,20", {}},                                       // nothing worth keeping
       {"constant", "4100,8,8", {"--lossless"}},                        // two root tiles
       {"sphere", "257,129,140", {"--rate", "10", "--metric", "sse"}},  // homogeneous 128^3 regions
-      {"huge", "64,64,64", {"--rate", "2"}},                           // statistics that overflow float32
+      {"turbulence", "140,90,70", {"--rate", "9", "--encoding", "fpn"}},
+      {"noise", "130,60,61", {"--rate", "4", "--encoding", "fp4"}},
+      {"cloud", "70,90,131", {"--rate", "3", "--encoding", "fp8"}},
+      {"signed", "96,20,130", {"--rate", "2", "--encoding", "fp16"}},
+      {"huge", "64,64,64", {"--rate", "2"}},  // statistics that overflow float32
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(std::string(c.kind) + ' ' + c.dims);
@@ -81,7 +85,8 @@ TEST_F(StockTools, ValidateSaysFailedWithExitCode0) {
 
 TEST_F(StockTools, PrintShowsTheGrid) {
   const std::string nvdb =
-      convert("turbulence", "150,100,40", {"--rate", "2", "--spacing", "0.5,0.5,0.5", "--origin", "1,2,3"});
+      convert("turbulence", "150,100,40",
+              {"--rate", "2", "--encoding", "float", "--spacing", "0.5,0.5,0.5", "--origin", "1,2,3"});
   const CommandResult result = run_command({"nanovdb_print", "-l", nvdb});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");

@@ -1,0 +1,123 @@
+#include "compressor/encoding_choice.h"
+
+#include <utility>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+// One encoding's selection, before and after the size is known.
+class Candidate {
+ public:
+  Candidate(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work)
+      : request_(request),
+        rows_(rows),
+        work_(work),
+        encoding_(encoding),
+        tree_(std::make_unique<TreeRegions>(request.domain)),
+        selection_(rule_of(request, encoding), rows, *tree_) {}
+
+  const SelectionBytes& bytes() const { return bytes_; }
+  bool lossless() const { return bytes_.lossy_leaves == 0; }
+  FileSize size_for(const Budget& budget) const {
+    const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
+    return file_size_for(budget, dense, bytes_, request_.path);
+  }
+
+  FilePlan plan(const FileSize& size) {
+    selection_.choose(size.bytes);
+    FilePlan file;
+    file.encoding = encoding_;
+    file.fill = request_.rule.fill;
+    file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
+    file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
+    file.plan.layout = padded_to(file.plan.layout, size.bytes);
+    file.size = size;
+    file.tree = std::move(tree_);
+    return file;
+  }
+
+ private:
+  static GainRule rule_of(const FileRequest& request, Encoding encoding) {
+    GainRule rule = request.rule;
+    rule.encoding = encoding;
+    return rule;
+  }
+
+  const FileRequest& request_;
+  const RowStore& rows_;
+  WorkDirectory& work_;
+  Encoding encoding_;
+  std::unique_ptr<TreeRegions> tree_;
+  Selection selection_;
+  SelectionBytes bytes_ = selection_.bytes();
+};
+
+bool can_quantise(const FileRequest& request) {
+  return request.rule.metric == Metric::sse && !request.keeps_non_finite;
+}
+
+// Why a quantised file cannot be lossless.
+std::string lossy_leaves_text(const Candidate& quantised) {
+  const std::uint64_t leaves = quantised.bytes().lossy_leaves;
+  return cat(leaves, leaves == 1 ? " leaf holds" : " leaves hold",
+             " values that no lattice of 16 bits gives back bit for bit");
+}
+
+double expected_error(const FilePlan& file) { return file.plan.squared_error + file.plan.expected_leaf_error; }
+
+// What is expected of a quantised file: every kept leaf at a width that is exact for it.
+bool expected_lossless(const FilePlan& file) { return file.plan.lossless && file.plan.expected_leaf_error == 0; }
+
+FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
+  if (encoding != Encoding::float32 && !can_quantise(request)) {
+    throw Error(ErrorKind::usage,
+                cat("--encoding ", encoding_name(encoding),
+                    request.keeps_non_finite ? " holds no NaN or infinite voxels, which --nonfinite keep asks for"
+                                             : " selects by --metric sse only",
+                    "; use --encoding float"));
+  }
+  Candidate candidate(request, encoding, rows, work);
+  if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
+    throw Error(ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding), " cannot be lossless: ",
+                                       lossy_leaves_text(candidate), "; use --encoding auto or float"));
+  }
+  return candidate.plan(candidate.size_for(request.budget));
+}
+
+FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate quantised(request, Encoding::fpn, rows, work);
+  Candidate plain(request, Encoding::float32, rows, work);
+  if (quantised.lossless() && quantised.bytes().full.file_bytes <= plain.bytes().full.file_bytes) {
+    return quantised.plan(quantised.size_for(request.budget));
+  }
+  FileSize size = plain.size_for(request.budget);
+  if (!quantised.lossless()) {
+    size.notice = cat(request.path, ": lossless takes float32 leaves, ", lossy_leaves_text(quantised));
+  }
+  return plain.plan(size);
+}
+
+FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate candidate(request, Encoding::fpn, rows, work);
+  const FileSize size = candidate.size_for(request.budget);
+  FilePlan quantised = candidate.plan(size);
+  if (expected_lossless(quantised)) return quantised;
+  Candidate other(request, Encoding::float32, rows, work);
+  if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
+  FilePlan plain = other.plan(size.kind == "minimum" ? size : other.size_for(request.budget));
+  return expected_error(plain) <= expected_error(quantised) ? std::move(plain) : std::move(quantised);
+}
+
+}  // namespace
+
+FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);
+  if (!can_quantise(request)) return plan_one(request, Encoding::float32, rows, work);
+  if (request.budget.kind == Budget::Kind::lossless) return plan_lossless(request, rows, work);
+  return plan_best(request, rows, work);
+}
+
+}  // namespace weir

@@ -1,0 +1,42 @@
+// From the survey to one planned file: selection under the budget for each
+// encoding that may be used, and the choice between them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "compressor/budget.h"
+#include "compressor/leaf_choice.h"
+#include "compressor/leaf_gain.h"
+#include "compressor/row_store.h"
+#include "compressor/tree_plan.h"
+#include "compressor/tree_regions.h"
+#include "compressor/work_directory.h"
+
+namespace weir {
+
+/// A file, planned to its last offset.
+struct FilePlan {
+  Encoding encoding = Encoding::float32;
+  Fill fill;
+  std::unique_ptr<TreeRegions> tree;
+  std::unique_ptr<ChoiceStore> choices;
+  FileSize size;
+  TreePlan plan;  ///< its layout is padded to the size
+};
+
+struct FileRequest {
+  Encoding encoding = Encoding::float32;  ///< automatic: whichever of float32 and fpn has less error
+  GainRule rule;                          ///< but for its encoding
+  Budget budget;
+  Box domain;
+  bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
+  std::string path;               ///< of the output, for messages
+};
+
+/// Plans the file for a surveyed volume. Throws Error(budget) where the asked size or exactness cannot be met,
+/// Error(usage) where the encoding cannot hold the volume.
+FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
+
+}  // namespace weir

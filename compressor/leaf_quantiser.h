@@ -1,0 +1,47 @@
+// The quantiser of one leaf: equidistant levels of 1, 2, 4, 8 or 16 bits a voxel,
+// placed so that the squared error of what a reader decodes is least.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace weir {
+
+/// value = fl(fl(code * quantum) + minimum), code in 0 .. 2^bits - 1.
+struct Quantiser {
+  float minimum = 0;
+  float quantum = 0;  ///< >= 0; 0: one level
+};
+
+struct QuantiserFit {
+  Quantiser quantiser;
+  double squared_error = 0;  ///< of the decoded values; good to single precision, for choosing
+};
+
+/// What a fit needs to know of the values.
+struct ValueRange {
+  float min = 0;
+  float max = 0;
+  float mean = 0;
+};
+
+/// Fits `bits` (1, 2, 4, 8 or 16) to `values`, 1 to 512 finite ones of range.min != range.max: levels over
+/// the whole range at first and, at 1 and 2 bits, over less of it around the mean as well, each refitted by
+/// least squares (Lloyd's iteration with equidistant levels, as in k-means). More starts and more rounds
+/// gain less than 0.2 dB on the volumes of the tests.
+/// Where float cannot hold the levels (a range beyond it, or one so small that the quantum has no
+/// reciprocal) there is one level, the mean.
+/// The same on every machine: fixed lanes, nothing fused.
+QuantiserFit fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
+
+/// What fit_quantiser's squared error will be at 1, 2 or 4 bits, from a third of the work: within 15 % on
+/// average, relative to `squares`, the squared error about the mean (above 0).
+double estimated_error(std::span<const float> values, const ValueRange& range, unsigned bits, double squares);
+
+/// Levels over the whole range: the largest error is half a quantum, and the roundings of the decoder.
+Quantiser range_quantiser(const ValueRange& range, unsigned bits);
+
+/// The code of each value, the nearest level. `codes` is as long as `values`.
+void quantise(std::span<const float> values, const Quantiser& quantiser, unsigned bits, std::span<std::uint16_t> codes);
+
+}  // namespace weir

@@ -1,0 +1,80 @@
+#include "compressor/quantised_leaf.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "compressor/leaf_lattice.h"
+#include "format/leaf_decode.h"
+
+namespace weir {
+namespace {
+
+// Calls visit(i) for every in-domain voxel of a leaf, in leaf order.
+template <typename Visit>
+void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 hi = inside.hi - node.lo;
+  for (std::int64_t x = lo.x; x < hi.x; ++x) {
+    for (std::int64_t y = lo.y; y < hi.y; ++y) {
+      for (std::int64_t z = lo.z; z < hi.z; ++z) visit(static_cast<std::size_t>(x << 6 | y << 3 | z));
+    }
+  }
+}
+
+Quantiser choose_quantiser(std::span<const float> values, unsigned bits) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  ValueRange range{*low, *high, 0};
+  if (!(range.min < range.max)) return {range.min, 0};
+  if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
+    return {range.min, lattice->step};
+  }
+  double sum = 0;
+  for (const float v : values) sum += static_cast<double>(v);
+  range.mean = static_cast<float>(sum / static_cast<double>(values.size()));
+  return fit_quantiser(values, range, bits).quantiser;
+}
+
+float rounded_up(double value) {
+  const auto rounded = static_cast<float>(value);
+  return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                              : rounded;
+}
+
+}  // namespace
+
+QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
+                            unsigned bits_log2) {
+  QuantisedLeaf leaf;
+  leaf.bits_log2 = bits_log2;
+  const unsigned bits = 1U << bits_log2;
+  LeafValues compact;
+  std::size_t count = 0;
+  for_each_inside(node, inside, [&](std::size_t i) { compact[count++] = values[i]; });
+  const auto seen = std::span<const float>(compact).first(count);
+  leaf.quantiser = choose_quantiser(seen, bits);
+  std::array<std::uint16_t, kLeafVoxels> codes;
+  quantise(seen, leaf.quantiser, bits, std::span(codes).first(count));
+
+  leaf.codes.fill(codes[0]);
+  count = 0;
+  for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
+  for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+    leaf.decoded[i] = dequantize(leaf.codes[i], leaf.quantiser.quantum, leaf.quantiser.minimum);
+  }
+
+  double worst = 0;
+  for_each_inside(node, inside, [&](std::size_t i) {
+    leaf.exact = leaf.exact && std::bit_cast<std::uint32_t>(leaf.decoded[i]) == std::bit_cast<std::uint32_t>(values[i]);
+    if (!std::isfinite(source[i])) return;
+    const double error = static_cast<double>(source[i]) - static_cast<double>(leaf.decoded[i]);
+    leaf.squared_error += error * error;
+    worst = std::max(worst, std::fabs(error));
+  });
+  leaf.max_abs = rounded_up(worst);
+  return leaf;
+}
+
+}  // namespace weir

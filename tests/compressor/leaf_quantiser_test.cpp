@@ -1,0 +1,159 @@
+#include "compressor/leaf_quantiser.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "format/leaf_decode.h"
+
+namespace weir {
+namespace {
+
+ValueRange range_of(const std::vector<float>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  double sum = 0;
+  for (const float v : values) sum += static_cast<double>(v);
+  return {*low, *high, static_cast<float>(sum / static_cast<double>(values.size()))};
+}
+
+double decoded_error(const std::vector<float>& values, const Quantiser& q, unsigned bits) {
+  std::vector<std::uint16_t> codes(values.size());
+  quantise(values, q, bits, codes);
+  double error = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_LT(codes[i], 1U << bits);
+    const double d = static_cast<double>(values[i]) - static_cast<double>(dequantize(codes[i], q.quantum, q.minimum));
+    error += d * d;
+  }
+  return error;
+}
+
+std::vector<float> noise(std::size_t count, float scale, float offset, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> values(count);
+  for (float& v : values) {
+    float sum = 0;  // of four: near enough to a normal distribution, the same everywhere
+    for (int k = 0; k < 4; ++k) sum += static_cast<float>(random() % 65536) / 65536.0F - 0.5F;
+    v = offset + scale * sum;
+  }
+  return values;
+}
+
+TEST(LeafQuantiser, TheErrorItSaysIsTheErrorOfTheDecodedValues) {
+  for (const std::size_t count : {2UL, 7UL, 16UL, 100UL, 511UL, 512UL}) {
+    const auto values = noise(count, 3, 10, static_cast<unsigned>(count));
+    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+      const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
+      const double error = decoded_error(values, fit.quantiser, bits);
+      EXPECT_NEAR(fit.squared_error, error, 1e-4 * error) << count << ' ' << bits;
+    }
+  }
+}
+
+TEST(LeafQuantiser, RefittingBeatsLevelsOverTheRange) {
+  const auto values = noise(512, 3, 10, 1);
+  for (const auto& [bits, least_db] :
+       {std::pair{1U, 4.0}, std::pair{2U, 1.5}, std::pair{4U, 0.1}, std::pair{8U, 0.0}}) {
+    const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
+    const double plain = decoded_error(values, range_quantiser(range_of(values), bits), bits);
+    EXPECT_GE(10 * std::log10(plain / fit.squared_error), least_db) << bits;
+  }
+}
+
+TEST(LeafQuantiser, OneBitIsTheBestSplitInTwo) {
+  // Two clusters: the least squared error is that about their means, found by trying every split.
+  auto values = noise(300, 0.3F, 1, 2);
+  const auto upper = noise(100, 0.5F, 4, 3);
+  values.insert(values.end(), upper.begin(), upper.end());
+  auto sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t split = 1; split < sorted.size(); ++split) {
+    double error = 0;
+    for (const auto& [from, to] : {std::pair{std::size_t{0}, split}, std::pair{split, sorted.size()}}) {
+      double mean = 0;
+      for (std::size_t i = from; i < to; ++i) mean += static_cast<double>(sorted[i]) / static_cast<double>(to - from);
+      for (std::size_t i = from; i < to; ++i) error += std::pow(static_cast<double>(sorted[i]) - mean, 2);
+    }
+    best = std::min(best, error);
+  }
+  EXPECT_NEAR(fit_quantiser(values, range_of(values), 1).squared_error, best, 1e-3 * best);
+}
+
+TEST(LeafQuantiser, ScaleChangesNothing) {
+  const auto values = noise(512, 3, 10, 4);
+  for (const float scale : {0x1p-60F, 0x1p-100F, 0x1p+100F}) {
+    std::vector<float> scaled = values;
+    for (float& v : scaled) v *= scale;
+    for (const unsigned bits : {1U, 2U, 4U, 8U}) {
+      const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
+      const QuantiserFit of_scaled = fit_quantiser(scaled, range_of(scaled), bits);
+      EXPECT_EQ(of_scaled.quantiser.quantum, fit.quantiser.quantum * scale) << scale << ' ' << bits;
+      EXPECT_EQ(of_scaled.quantiser.minimum, fit.quantiser.minimum * scale) << scale << ' ' << bits;
+    }
+  }
+}
+
+TEST(LeafQuantiser, SmallSignalOnALargeOffset) {
+  std::vector<float> values = noise(512, 1e4F, 1e8F, 5);
+  for (const unsigned bits : {1U, 2U, 4U, 8U}) {
+    const auto range = range_of(values);
+    const QuantiserFit fit = fit_quantiser(values, range, bits);
+    const double error = decoded_error(values, fit.quantiser, bits);
+    EXPECT_NEAR(fit.squared_error, error, 1e-3 * error);
+    EXPECT_LE(error, decoded_error(values, range_quantiser(range, bits), bits) * 1.0001);
+  }
+}
+
+TEST(LeafQuantiser, WhatFloatCannotHoldIsOneLevel) {
+  const std::vector<float> huge{-3e38F, 3e38F, 1e38F};
+  const std::vector<float> tiny{0, 1e-44F, 3e-44F};
+  for (const auto& values : {huge, tiny}) {
+    const ValueRange range = range_of(values);
+    for (const unsigned bits : {2U, 8U, 16U}) {
+      const QuantiserFit fit = fit_quantiser(values, range, bits);
+      EXPECT_EQ(fit.quantiser.quantum, 0.0F);
+      EXPECT_EQ(fit.quantiser.minimum, range.mean);
+      std::vector<std::uint16_t> codes(values.size());
+      quantise(values, fit.quantiser, bits, codes);
+      EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
+    }
+  }
+}
+
+TEST(LeafQuantiser, RangeLevelsAreWithinHalfAQuantum) {
+  const auto values = noise(512, 1, 0, 6);
+  for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+    const Quantiser q = range_quantiser(range_of(values), bits);
+    std::vector<std::uint16_t> codes(values.size());
+    quantise(values, q, bits, codes);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double d = static_cast<double>(values[i]) - static_cast<double>(dequantize(codes[i], q.quantum, q.minimum));
+      EXPECT_LE(std::fabs(d), 0.5 * static_cast<double>(q.quantum) * (1 + 1e-2) + 1e-7);
+    }
+  }
+}
+
+TEST(LeafQuantiser, EstimatesAreNearTheFit) {
+  double ratio = 0;
+  constexpr unsigned kLeaves = 50;
+  for (const unsigned bits : {1U, 2U, 4U}) {
+    ratio = 0;
+    for (unsigned seed = 0; seed < kLeaves; ++seed) {
+      const auto values = noise(512, 3, 10, seed);
+      const ValueRange range = range_of(values);
+      double squares = 0;
+      for (const float v : values) squares += std::pow(static_cast<double>(v) - static_cast<double>(range.mean), 2);
+      ratio +=
+          estimated_error(values, range, bits, squares) * squares / fit_quantiser(values, range, bits).squared_error;
+    }
+    EXPECT_NEAR(ratio / kLeaves, 1, 0.15) << bits;
+  }
+}
+
+}  // namespace
+}  // namespace weir
