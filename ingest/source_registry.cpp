@@ -5,6 +5,8 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "ingest/hdf5/hdf5_signature.h"
+#include "ingest/hdf5/hdf5_source.h"
 #include "ingest/input_file.h"
 #include "ingest/meta_image_source.h"
 #include "ingest/nifti_source.h"
@@ -30,6 +32,9 @@ constexpr std::array kFormats{
                  .container = true},
     SourceFormat{
         .name = "nifti", .recognises = recognises_nifti, .open = open_nifti, .list = list_nifti, .container = true},
+    // Asked late: its signature may lie anywhere behind a user block.
+    SourceFormat{
+        .name = "hdf5", .recognises = recognises_hdf5, .open = open_hdf5, .list = list_hdf5, .container = true},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },

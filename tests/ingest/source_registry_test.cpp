@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
 
 namespace weir {
@@ -42,6 +43,14 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
        put(108, {"\0\0\xB0\x43", 4});             // vox_offset 352
        put(344, {"n+1\0", 4});
        return write_with_header(scratch, "sample.nii", header);
+     }},
+    {"hdf5",
+     [](const Scratch& scratch) {
+       std::vector<std::uint8_t> values(24);
+       std::iota(values.begin(), values.end(), std::uint8_t{0});
+       const std::string path = scratch.path("sample");
+       ChunkedFile(path, {{2, 3, 4}, {2, 3, 4}, {}, false, H5T_STD_U8LE}).write(H5T_NATIVE_UINT8, values);
+       return path;
      }},
     {"raw", [](const Scratch& scratch) {
        std::vector<std::uint8_t> values(24);

@@ -1,0 +1,83 @@
+#include <utility>
+
+#include "format/text.h"
+#include "ingest/hdf5/dataset_facts.h"
+#include "ingest/hdf5/dimension_scales.h"
+#include "ingest/hdf5/hdf5_attribute.h"
+#include "ingest/hdf5/hdf5_file.h"
+#include "ingest/hdf5/hdf5_source.h"
+#include "ingest/hdf5/hdf5_walk.h"
+#include "ingest/hdf5/volume_slice.h"
+
+namespace weir {
+namespace {
+
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+void add(Attributes& attributes, std::string name, std::string value) {
+  if (!value.empty()) attributes.emplace_back(std::move(name), std::move(value));
+}
+
+std::string missing_text(const ValueMapping& mapping) {
+  std::string text;
+  for (const StoredValue& value : mapping.missing) text += cat(text.empty() ? "" : ", ", stored_value_text(value));
+  return text;
+}
+
+std::string packing_text(const ValueMapping& mapping) {
+  return mapping.scales() ? cat("stored * ", mapping.scale, " + ", mapping.offset) : "";
+}
+
+void describe_axes(const std::vector<AxisPlace>& axes, Attributes& attributes) {
+  bool named = false;
+  for (const AxisPlace& axis : axes) named = named || !axis.label.empty();
+  if (named) add(attributes, "axes", axes_text(axes));
+  if (axes.size() < kVolumeRank) return;
+  std::string spacing;
+  std::string origin;
+  for (std::size_t i = 1; i <= kVolumeRank; ++i) {
+    const AxisPlace& axis = axes[axes.size() - i];
+    const char* const comma = i == 1 ? "" : ",";
+    spacing += cat(comma, axis.spacing.value_or(1.0));
+    origin += cat(comma, axis.origin.value_or(0.0));
+    if (!axis.note.empty()) add(attributes, cat("axis ", std::string("xyz").substr(i - 1, 1)), axis.note);
+  }
+  if (spacing != "1,1,1") add(attributes, "spacing x,y,z", spacing);
+  if (origin != "0,0,0") add(attributes, "origin x,y,z", origin);
+}
+
+DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
+  DatasetInfo info;
+  info.name = object.name;
+  for (const AxisPlace& axis : facts.axes) info.extents.push_back(axis.extent);
+  info.type = facts.type_text;
+  info.layout = facts.layout_text();
+  for (const char* text : {"long_name", "description"}) {
+    const std::vector<std::string> values = text_attribute(object.handle.get(), text);
+    if (!values.empty()) add(info.attributes, text, values[0]);
+  }
+  add(info.attributes, "units", facts.meaning.units);
+  if (facts.meaning.unit_si) add(info.attributes, "unit_si", cat(*facts.meaning.unit_si));
+  add(info.attributes, "missing", missing_text(facts.meaning.mapping));
+  add(info.attributes, "values", packing_text(facts.meaning.mapping));
+  describe_axes(facts.axes, info.attributes);
+  info.obstacle = facts.obstacle;
+  info.leading_axes = facts.obstacle.empty() ? leading_axes(facts.axes) : 0;
+  return info;
+}
+
+}  // namespace
+
+std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions& /*options*/) {
+  const Hdf5Lock lock;
+  const Hdf5Handle file = open_hdf5_file(path);
+  std::vector<DatasetInfo> datasets;
+  walk_datasets(file.get(), "/", [&](std::string name, Hdf5Handle handle) {
+    if (is_bare_dimension(handle.get())) return;
+    const Hdf5Object object{std::move(handle), path, std::move(name)};
+    datasets.push_back(described(object, dataset_facts(file.get(), object)));
+  });
+  return datasets;
+}
+
+}  // namespace weir

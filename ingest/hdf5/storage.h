@@ -1,0 +1,37 @@
+// How a dataset lies in its file: layout and filters, and what keeps its values
+// from being read.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace weir {
+
+enum class StorageKind {
+  contiguous,
+  external,  ///< contiguous, in files of their own
+  compact,   ///< in the dataset's header
+  chunked,
+  mapped  ///< "virtual": in other datasets
+};
+
+struct Storage {
+  StorageKind kind = StorageKind::contiguous;
+  std::vector<hsize_t> chunk;        ///< elements along each axis, slowest first; empty where not chunked
+  std::vector<std::string> filters;  ///< in the order of writing: "shuffle", "gzip"
+  std::vector<std::byte> fill;       ///< one stored value: what unwritten elements read as
+  bool fill_is_set = false;          ///< whoever wrote the file chose it
+  std::string obstacle;              ///< no value ever written, or a filter that is not there; else empty
+
+  /// "contiguous", "chunked 64 x 64 x 64, shuffle, gzip".
+  std::string text() const;
+};
+
+/// The caller holds Hdf5Lock.
+Storage storage_of(hid_t dataset);
+
+}  // namespace weir
