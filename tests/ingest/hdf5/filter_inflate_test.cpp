@@ -25,7 +25,7 @@ std::vector<std::byte> counted(std::size_t size) {
 
 TEST(ChunkInflater, OneStreamAfterAnotherAlsoAfterADamagedOne) {
   ChunkInflater inflater;
-  for (const std::size_t size : {1, 100, 4096, 1'000'000}) {
+  for (const std::size_t size : {1U, 100U, 4096U, 1000000U}) {
     const std::vector<std::byte> expected = counted(size);
     const std::vector<std::byte> stream = deflated(expected);
     std::vector<std::byte> bytes(size);

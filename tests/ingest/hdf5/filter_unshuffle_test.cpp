@@ -33,8 +33,8 @@ TEST(Unshuffle, TwoValuesByHand) {
 }
 
 TEST(Unshuffle, EveryWidthLengthAndRemainder) {
-  for (const std::size_t value_bytes : {1, 2, 3, 4, 5, 8, 12, 16, 100}) {
-    for (const std::size_t size : {0, 1, 7, 8, 63, 64, 65, 257, 1000, 4099}) {
+  for (const std::size_t value_bytes : {1U, 2U, 3U, 4U, 5U, 8U, 12U, 16U, 100U}) {
+    for (const std::size_t size : {0U, 1U, 7U, 8U, 63U, 64U, 65U, 257U, 1000U, 4099U}) {
       const std::vector<std::byte> expected = counted(size);
       std::vector<std::byte> values(size, std::byte{0xEE});
       unshuffle(shuffled(expected, value_bytes), value_bytes, values);

@@ -1,0 +1,115 @@
+// The memory ceiling of the whole process over gzip-chunked HDF5 several times as
+// large, chunks being cubes, planes, and planes of which a layer of leaves does
+// not fit the ceiling.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tests/support/sanitized.h"
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+
+/// Axes in the file's order, slowest first.
+struct ChunkedVolume {
+  std::string name;
+  std::vector<hsize_t> extent;
+  std::vector<hsize_t> chunk;
+  std::string memory;
+  std::uint64_t memory_bytes = 0;
+  bool decodes_twice = false;
+};
+
+std::ostream& operator<<(std::ostream& out, const ChunkedVolume& v) { return out << v.name; }
+
+/// One stored chunk of ramps and plateaus; the same everywhere but for a value that tells the chunk.
+std::vector<std::byte> stored_chunk(hsize_t elements, std::uint32_t number) {
+  std::vector<float> values(elements);
+  for (hsize_t i = 0; i < elements; ++i) values[i] = static_cast<float>((i >> 6U) % 1000) + static_cast<float>(number);
+  uLongf size = compressBound(elements * sizeof(float));
+  std::vector<std::byte> stored(size);
+  EXPECT_EQ(compress2(reinterpret_cast<Bytef*>(stored.data()), &size, reinterpret_cast<const Bytef*>(values.data()),
+                      elements * sizeof(float), 1),
+            Z_OK);
+  stored.resize(size);
+  return stored;
+}
+
+/// A volume made without deflating every chunk of it: seven different ones take turns.
+void write_volume(const std::string& path, const ChunkedVolume& volume) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(3, volume.extent.data(), nullptr);
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(creation, 3, volume.chunk.data());
+  H5Pset_deflate(creation, 1);
+  const hid_t dataset = H5Dcreate2(file, "density", H5T_IEEE_F32LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  ASSERT_GE(dataset, 0);
+  std::vector<std::vector<std::byte>> chunks;
+  for (std::uint32_t i = 0; i < 7; ++i) {
+    chunks.push_back(stored_chunk(volume.chunk[0] * volume.chunk[1] * volume.chunk[2], i));
+  }
+  std::size_t next = 0;
+  std::vector<hsize_t> at(3);
+  for (at[0] = 0; at[0] < volume.extent[0]; at[0] += volume.chunk[0]) {
+    for (at[1] = 0; at[1] < volume.extent[1]; at[1] += volume.chunk[1]) {
+      for (at[2] = 0; at[2] < volume.extent[2]; at[2] += volume.chunk[2]) {
+        const std::vector<std::byte>& chunk = chunks[next++ % chunks.size()];
+        ASSERT_GE(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, at.data(), chunk.size(), chunk.data()), 0);
+      }
+    }
+  }
+  H5Dclose(dataset);
+  H5Pclose(creation);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+class Hdf5Memory : public testing::TestWithParam<ChunkedVolume> {};
+
+TEST_P(Hdf5Memory, StaysUnderTheCeiling) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const ChunkedVolume& volume = GetParam();
+  const TemporaryDirectory directory;
+  const std::string input = directory / "run.h5";
+  write_volume(input, volume);
+  const std::uint64_t bytes = volume.extent[0] * volume.extent[1] * volume.extent[2] * 4;
+  ASSERT_GE(bytes, 4 * volume.memory_bytes);
+
+  CommandOptions patient;
+  patient.timeout = std::chrono::minutes(10);
+  const std::string output = directory / "out.nvdb";
+  const CommandResult convert =
+      run_weir({"convert", input, "-o", output, "--memory", volume.memory, "--json"}, patient);
+  ASSERT_EQ(convert.exit_code, 0) << convert.err;
+  EXPECT_LT(convert.peak_rss_bytes, volume.memory_bytes);
+  EXPECT_EQ(std::filesystem::file_size(output), bytes / 8);
+  EXPECT_EQ(convert.err.find("times in a pass") != std::string::npos, volume.decodes_twice) << convert.err;
+  RecordProperty("peak_rss_mib", static_cast<int>(convert.peak_rss_bytes / kMiB));
+
+  const CommandResult compare = run_weir({"compare", input, output, "--memory", volume.memory, "--json"}, patient);
+  ASSERT_EQ(compare.exit_code, 0) << compare.err;
+  EXPECT_LT(compare.peak_rss_bytes, volume.memory_bytes);
+  const nlohmann::json certified = nlohmann::json::parse(read_file(directory / "out.nvdb.json"))["error"];
+  EXPECT_EQ(nlohmann::json::parse(compare.out)["max_abs"].get<double>(), certified["max_abs"].get<double>());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Chunks, Hdf5Memory,
+    testing::Values(ChunkedVolume{"Cubes", {576, 520, 520}, {64, 64, 64}, "128MiB", 128 * kMiB},
+                    ChunkedVolume{"Planes", {576, 520, 520}, {1, 520, 520}, "128MiB", 128 * kMiB},
+                    ChunkedVolume{"LargePlanes", {70, 1500, 1500}, {1, 1500, 1500}, "128MiB", 128 * kMiB, true}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+}  // namespace
+}  // namespace weir
