@@ -77,9 +77,7 @@ Error group_given(hid_t file, const std::string& path, const std::string& name) 
 Hdf5Object find_dataset(hid_t file, const std::string& path, const std::string& name) {
   Hdf5Object found{{}, path, name.starts_with('/') ? name : '/' + name};
   while (found.name.size() > 1 && found.name.ends_with('/')) found.name.pop_back();
-  if (found.name.find('\0') == std::string::npos) {
-    found.handle = Hdf5Handle(H5Oopen(file, found.name.c_str(), H5P_DEFAULT));
-  }
+  found.handle = Hdf5Handle(H5Oopen(file, found.name.c_str(), H5P_DEFAULT));
   if (!found.handle) {
     H5L_info_t info;
     const std::string reason = hdf5_reason();

@@ -1,0 +1,398 @@
+// HDF5 datasets of every type and layout, as h5py writes them: every value bit
+// for bit what h5py reads.
+#include "ingest/hdf5/hdf5_source.h"
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "ingest/hdf5/hdf5_lock.h"
+#include "tests/ingest/hdf5/h5py_file.h"
+
+namespace weir {
+namespace {
+
+class Hdf5Source : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  }
+  std::string refused(const std::string& file, const SourceOptions& options, ErrorKind kind = ErrorKind::input) {
+    const std::string message = message_of_error(kind, [&] { open_source(scratch.path(file), options); });
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+
+  Scratch scratch;
+};
+
+TEST_F(Hdf5Source, ReadsEveryTypeInEveryLayout) {
+  write_by_h5py(scratch, R"(
+with h5py.File("types.h5", "w") as f:
+    for code in ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"]:
+        for order in "<>":
+            v = values(order + code)
+            name = code + ("le" if order == "<" else "be")
+            expect(name, v)
+            f["contiguous/" + name] = v
+            f.create_dataset("chunked/" + name, data=v, chunks=(2, 3, 4))
+            f.create_dataset("packed/" + name, data=v, chunks=(3, 4, 5), compression="gzip", shuffle=True, fletcher32=True)
+            f.create_dataset("szip/" + name, data=v, chunks=(2, 7, 4), compression="szip")
+            compact = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+            compact.set_layout(h5py.h5d.COMPACT)
+            group = f.require_group("compact")
+            space = h5py.h5s.create_simple(SHAPE)
+            d = h5py.h5d.create(group.id, name.encode(), h5py.h5t.py_create(v.dtype), space, compact)
+            d.write(h5py.h5s.ALL, h5py.h5s.ALL, v)
+)");
+  for (const char* code : {"i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"}) {
+    for (const char* order : {"le", "be"}) {
+      const std::string name = std::string(code) + order;
+      for (const char* layout : {"contiguous/", "chunked/", "packed/", "szip/", "compact/"}) {
+        expect_reads(scratch, "types.h5", dataset_options(layout + name), name);
+      }
+    }
+  }
+}
+
+TEST_F(Hdf5Source, SaysWhatItKnows) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("fields/rho: gas", data=values(">i2"), chunks=(2, 3, 4), compression="gzip")
+    d.attrs["units"] = "kg m-3"
+)");
+  const auto source = open_source(scratch.path("a.h5"), {});
+  const SourceInfo& info = source->info();
+  EXPECT_EQ(info.format, "hdf5");
+  EXPECT_EQ(info.dataset, "/fields/rho: gas");
+  EXPECT_EQ(info.units, "kg m-3");
+  EXPECT_EQ(info.type, ScalarType::int16);
+  EXPECT_EQ(info.extent, (Index3{9, 7, 5}));
+  EXPECT_EQ(info.spacing, (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(info.file_bytes, std::filesystem::file_size(scratch.path("a.h5")));
+  EXPECT_GT(info.mtime_ns, 0);
+  EXPECT_EQ(source->access().chunk, (Index3{4, 3, 2}));
+  EXPECT_EQ(source->access().bytes_per_voxel, 2U);
+  EXPECT_GT(source->working_bytes(), 0U);
+}
+
+// gzip and shuffle must not take the library's way: only that counts stored bytes as the unpacked ones.
+TEST_F(Hdf5Source, DecodesGzipItself) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("zeros", data=np.zeros((64, 64, 64), "f4"), chunks=(16, 16, 16), compression="gzip", shuffle=True)
+    f.create_dataset("szip", data=np.zeros((64, 64, 64), "f4"), chunks=(16, 16, 16), compression="szip")
+)");
+  const auto own = open_source(scratch.path("a.h5"), dataset_options("zeros"));
+  all_values(*own);
+  EXPECT_LT(own->bytes_read(), std::uint64_t{64} * 64 * 64);
+  const auto library = open_source(scratch.path("a.h5"), dataset_options("szip"));
+  all_values(*library);
+  EXPECT_EQ(library->bytes_read(), std::uint64_t{4} * 64 * 64 * 64);
+  EXPECT_EQ(library->access().chunk, (Index3{16, 16, 16}));
+}
+
+TEST_F(Hdf5Source, ReadsBehindUserBlocksAndByAnyName) {
+  write_by_h5py(scratch, R"(
+v = values("f4"); expect("v", v)
+for size in [512, 1024, 4096]:
+    with h5py.File("block%d.volume" % size, "w", userblock_size=size) as f:
+        f["plain"] = v
+        f.create_dataset("packed", data=v, chunks=(2, 3, 4), compression="gzip")
+    with open("block%d.volume" % size, "r+b") as f: f.write(b"MATLAB 7.3 MAT-file")
+)");
+  for (const char* file : {"block512.volume", "block1024.volume", "block4096.volume"}) {
+    expect_reads(scratch, file, dataset_options("plain"), "v");
+    expect_reads(scratch, file, dataset_options("packed"), "v");
+  }
+}
+
+TEST_F(Hdf5Source, FollowsLinks) {
+  write_by_h5py(scratch, R"(
+v = values("f4"); expect("v", v)
+os.mkdir("sub")
+with h5py.File("sub/other.h5", "w") as f:
+    f["deep/plain"] = v
+    f.create_dataset("deep/packed", data=v, chunks=(2, 3, 4), compression="gzip")
+    f["back"] = h5py.ExternalLink("../links.h5", "/")
+with h5py.File("links.h5", "w") as f:
+    f["a/real"] = v
+    f["soft"] = h5py.SoftLink("/a/real")
+    f["relative/soft"] = h5py.SoftLink("../a/real")
+    f["hard"] = f["a/real"]
+    f["a/loop"] = f["/"]
+    f["plain"] = h5py.ExternalLink("sub/other.h5", "/deep/plain")
+    f["group"] = h5py.ExternalLink("sub/other.h5", "/")
+    f["nowhere"] = h5py.SoftLink("/none")
+    f["lost"] = h5py.ExternalLink("none.h5", "/x")
+    f["circle"] = h5py.SoftLink("/circle")
+)");
+  for (const char* name : {"soft", "hard", "a/loop/a/loop/a/real", "plain", "group/deep/packed", "group/deep/plain"}) {
+    expect_reads(scratch, "links.h5", dataset_options(name), "v");
+  }
+  const std::string path = scratch.path("links.h5");
+  EXPECT_EQ(refused("links.h5", dataset_options("nowhere")),
+            path + ": /nowhere: a soft link to /none, which is not there");
+  EXPECT_EQ(refused("links.h5", dataset_options("lost/y")),
+            path + ": /lost: a link to /x of the file none.h5, which is not there; put the file beside this one");
+  EXPECT_EQ(refused("links.h5", dataset_options("circle")),
+            path + ": /circle: a soft link to /circle, which is not there");
+  std::vector<std::string> names;
+  for (const DatasetInfo& dataset : list_hdf5(path, {})) names.push_back(dataset.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"/hard", "/group/deep/packed", "/group/deep/plain"}));
+}
+
+TEST_F(Hdf5Source, TakesLeadingAxesByIndex) {
+  write_by_h5py(scratch, R"(
+v = values("i4", (3, 2) + SHAPE)
+for i in range(3):
+    for j in range(2): expect("%d%d" % (i, j), v[i, j])
+with h5py.File("a.h5", "w") as f:
+    f["plain"] = v
+    f.create_dataset("packed", data=v, chunks=(2, 1, 3, 3, 3), compression="gzip")
+    f.create_dataset("szip", data=v, chunks=(2, 2, 3, 7, 3), compression="szip")
+    f["ones"] = v[1:2, 1:2]
+    f.create_dataset("later", data=v[0], maxshape=(None,) + SHAPE)
+)");
+  for (const char* name : {"plain", "packed", "szip"}) {
+    for (const std::int64_t i : {0, 1, 2}) {
+      for (const std::int64_t j : {0, 1}) {
+        expect_reads(scratch, "a.h5", dataset_options(name, {i, j}), std::to_string(i) + std::to_string(j));
+      }
+    }
+  }
+  expect_reads(scratch, "a.h5", dataset_options("ones"), "11");
+  expect_reads(scratch, "a.h5", dataset_options("ones", {0, 0}), "11");
+  expect_reads(scratch, "a.h5", dataset_options("later", {1}), "01");
+  const std::string where = scratch.path("a.h5") + ": /plain: its axes are 3 x 2 x 5 x 7 x 9";
+  const std::string remedy = "; give --index with 2 positions: axis 0 in 0..2, axis 1 in 0..1";
+  EXPECT_EQ(refused("a.h5", dataset_options("plain"), ErrorKind::usage), where + ", and a volume has three" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {1}), ErrorKind::usage),
+            where + ", and --index has 1 position" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {1, 2}), ErrorKind::usage),
+            where + ", and --index has 2" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {-1, 0}), ErrorKind::usage),
+            where + ", and --index has -1" + remedy);
+}
+
+TEST_F(Hdf5Source, TakesTheOnlyVolumeUnasked) {
+  write_by_h5py(scratch, R"(
+v = values("f4"); expect("v", v)
+with h5py.File("one.h5", "w") as f:
+    f["time"] = 1.0
+    f["lat"] = np.zeros((3, 4))
+    f["deep/er/v"] = v
+with h5py.File("steps.h5", "w") as f:
+    f["v"] = v
+    f["steps"] = np.stack([v, v])
+with h5py.File("two.h5", "w") as f:
+    f["a"] = v
+    f["b"] = v
+with h5py.File("none.h5", "w") as f:
+    f["time"] = 1.0
+    f["lat"] = np.zeros((3, 4))
+with h5py.File("flat.h5", "w") as f: f["lat"] = np.zeros((3, 4))
+with h5py.File("empty.h5", "w") as f: f.create_group("g")
+)");
+  expect_reads(scratch, "one.h5", {}, "v");
+  expect_reads(scratch, "steps.h5", {}, "v");
+  expect_reads(scratch, "steps.h5", dataset_options("", {1}), "v");
+  EXPECT_EQ(refused("two.h5", {}, ErrorKind::usage),
+            scratch.path("two.h5") + ": holds 2 volumes; choose one with --dataset: /a (5 x 7 x 9), /b (5 x 7 x 9)");
+  EXPECT_EQ(refused("none.h5", {}), scratch.path("none.h5") +
+                                        ": none of its 2 datasets is a volume (/lat: 2 axes (3 x 4); a volume has "
+                                        "three); weir inspect lists them");
+  EXPECT_EQ(refused("flat.h5", {}), scratch.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
+  EXPECT_EQ(refused("empty.h5", {}), scratch.path("empty.h5") + ": holds no dataset");
+}
+
+TEST_F(Hdf5Source, NamesWhatThereIsForWhatThereIsNot) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    for name in ["fields/density", "fields/Temperature", "v"]: f[name] = np.zeros((2, 2, 2))
+    f.create_group("bare")
+    f["type"] = np.dtype("f4")
+)");
+  const std::string path = scratch.path("a.h5");
+  EXPECT_EQ(refused("a.h5", dataset_options("fields/desnity")),
+            path + ": no dataset /fields/desnity; alike are /fields/density; weir inspect lists all");
+  EXPECT_EQ(refused("a.h5", dataset_options("/temperature")),
+            path + ": no dataset /temperature; alike are /fields/Temperature; weir inspect lists all");
+  EXPECT_EQ(refused("a.h5", dataset_options("/x/y/z")),
+            path + ": no dataset /x/y/z; the file holds /v, /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("fields/")),
+            path + ": /fields is a group; give one of its datasets: /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("/bare")), path + ": /bare is a group, and holds no dataset");
+  EXPECT_EQ(refused("a.h5", dataset_options("v/w")),
+            path + ": no dataset /v/w; the file holds /v, /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("type")), path + ": /type: a named type, no dataset");
+}
+
+TEST_F(Hdf5Source, RefusesWhatIsNoVolumeOfNumbers) {
+  write_by_h5py(scratch, R"(
+S = (2, 2, 2)
+with h5py.File("a.h5", "w") as f:
+    f["compound"] = np.zeros(S, [("a", "f4"), ("b", "i4")])
+    f["complex"] = np.zeros(S, "c8")
+    f["text"] = np.zeros(S, "S5")
+    f.create_dataset("vtext", S, dtype=h5py.string_dtype())
+    f["bool"] = np.zeros(S, bool)
+    f.create_dataset("enum", S, dtype=h5py.enum_dtype({"A": 0, "B": 1, "C": 2}, basetype="i2"))
+    f.create_dataset("ref", S, dtype=h5py.ref_dtype)
+    f["opaque"] = np.zeros(S, "V3")
+    f["long double"] = np.zeros(S, "g")
+    f.create_dataset("array", S, dtype=np.dtype(("f4", (3,))))
+    f.create_dataset("list", S, dtype=h5py.vlen_dtype("f4"))
+    def odd(name, type): h5py.h5d.create(f.id, name, type, h5py.h5s.create_simple(S)).write(h5py.h5s.ALL, h5py.h5s.ALL, np.zeros(S, "i4"), type)
+    t = h5py.h5t.STD_I32LE.copy(); t.set_precision(20); odd(b"i20", t)
+    odd(b"bits", h5py.h5t.STD_B16LE)
+    t = h5py.h5t.IEEE_F32LE.copy(); t.set_fields(15, 7, 8, 0, 7); t.set_size(2); t.set_ebias(127); odd(b"bfloat16", t)
+    f["scalar"] = 1.0
+    f["line"] = np.zeros(4)
+    f.create_dataset("null", dtype="f4", data=h5py.Empty("f4"))
+    f.create_dataset("empty", (0, 3, 4), maxshape=(None, 3, 4))
+    f.create_dataset("unwritten", S)
+    f.create_dataset("unwritten chunks", S, chunks=S)
+)");
+  const auto said = [&](const std::string& name) {
+    const std::string start = scratch.path("a.h5") + ": /" + name + ": ";
+    const std::string message = refused("a.h5", dataset_options(name));
+    EXPECT_TRUE(message.starts_with(start)) << message;
+    return message.substr(std::min(start.size(), message.size()));
+  };
+  const auto typed = [](const std::string& type) {
+    return "its type is " + type + "; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64";
+  };
+  EXPECT_EQ(said("compound"), typed("compound of 2 members"));
+  EXPECT_EQ(said("complex"), typed("compound of 2 members"));
+  EXPECT_EQ(said("text"), typed("text of 5 bytes"));
+  EXPECT_EQ(said("vtext"), typed("text of any length"));
+  EXPECT_EQ(said("bool"), typed("boolean") + ", so store it as uint8");
+  EXPECT_EQ(said("enum"), typed("enumeration of 3 names") + ", so store it as uint8");
+  EXPECT_EQ(said("ref"), typed("reference"));
+  EXPECT_EQ(said("opaque"), typed("opaque of 3 bytes"));
+  EXPECT_EQ(said("long double"), typed("float of 80 bits in 16 bytes"));
+  EXPECT_EQ(said("array"), typed("array of float32"));
+  EXPECT_EQ(said("list"), typed("list of any length"));
+  EXPECT_EQ(said("i20"), typed("integer of 20 bits in 4 bytes"));
+  EXPECT_EQ(said("bits"), typed("bit field of 16 bits in 2 bytes"));
+  EXPECT_EQ(said("bfloat16"), typed("float of 16 bits in 2 bytes, not IEEE 754"));
+  EXPECT_EQ(said("scalar"), "a single value; a volume has three axes");
+  EXPECT_EQ(said("line"), "1 axis (4); a volume has three");
+  EXPECT_EQ(said("null"), "a single value; a volume has three axes");
+  EXPECT_EQ(said("empty"), "empty: 0 x 3 x 4");
+  EXPECT_EQ(said("unwritten"), "no value was ever written to it");
+  EXPECT_EQ(said("unwritten chunks"), "no value was ever written to it");
+}
+
+TEST_F(Hdf5Source, UnwrittenChunksReadAsTheFillValue) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, fill, how in [("default", None, {}), ("seven", 7, {}), ("marked", -99, {}), ("szip", 7, {"compression": "szip"})]:
+        d = f.create_dataset(name, (4, 4, 8), "f4", chunks=(4, 4, 4), fillvalue=fill, **how)
+        d[:, :, :4] = 1
+        expect(name, d[...])
+    f["marked"].attrs["_FillValue"] = np.float32(-99)
+)");
+  for (const char* name : {"default", "seven", "szip"}) expect_reads(scratch, "a.h5", dataset_options(name), name);
+  const auto marked = open_source(scratch.path("a.h5"), dataset_options("marked"));
+  const std::vector<float> values = all_values(*marked);
+  EXPECT_EQ(values[3], 1.0F);
+  EXPECT_TRUE(is_missing(values[4]));
+}
+
+TEST_F(Hdf5Source, ReadsFiltersThatPluginsUndo) {
+  write_by_h5py(scratch, R"(
+v = values("f4"); expect("v", v)
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("scaleoffset", data=(v * 100).astype("i4"), chunks=(2, 3, 4), scaleoffset=0)
+    expect("scaleoffset", (v * 100).astype("i4"))
+    made = []
+    for name, id, options in [("lz4", 32004, (0,)), ("bzip2", 307, (9,)), ("blosc", 32001, (0, 0, 0, 0, 5, 1, 0)),
+                              ("zfp", 32013, (5, 0, 0, 0, 0, 0))]:
+        if not h5py.h5z.filter_avail(id): continue
+        f.create_dataset(name, data=v, chunks=(2, 3, 4), compression=id, compression_opts=options)
+        expect(name, f[name][...])
+        made.append(name)
+    open("made", "w").write("\n".join(made))
+)");
+  expect_reads(scratch, "a.h5", dataset_options("scaleoffset"), "scaleoffset");
+  std::ifstream made(scratch.path("made"));
+  int count = 0;
+  for (std::string name; std::getline(made, name); ++count) expect_reads(scratch, "a.h5", dataset_options(name), name);
+  if (count < 4) std::cout << "skipped: the HDF5 filter plugins of " << 4 - count << " filters are missing\n";
+}
+
+TEST_F(Hdf5Source, NamesTheFilterThatIsMissing) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, id in [("sperr", 32028), ("own", 65000)]:
+        made = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        made.set_chunk((2, 2, 2))
+        made.set_shuffle()
+        made.set_filter(id, h5py.h5z.FLAG_OPTIONAL, ())
+        d = h5py.h5d.create(f.id, name.encode(), h5py.h5t.IEEE_F32LE, h5py.h5s.create_simple((2, 2, 2)), made)
+        d.write_direct_chunk((0, 0, 0), b"packed", 0)
+)");
+  EXPECT_EQ(refused("a.h5", dataset_options("sperr")),
+            scratch.path("a.h5") +
+                ": /sperr: packed by the filter sperr (32028), and no plugin for it is found; set "
+                "HDF5_PLUGIN_PATH to the directory that has it");
+  EXPECT_EQ(refused("a.h5", dataset_options("own")),
+            scratch.path("a.h5") +
+                ": /own: packed by the filter filter 65000 (65000), and no plugin for it is found; "
+                "set HDF5_PLUGIN_PATH to the directory that has it");
+}
+
+TEST_F(Hdf5Source, SourcesReadFromManyThreadsAtOnce) {
+  write_by_h5py(scratch, R"(
+v = values("f4", (32, 32, 32)); expect("v", v)
+with h5py.File("a.h5", "w") as f:
+    f["plain"] = v
+    f.create_dataset("gzip", data=v, chunks=(8, 8, 8), compression="gzip")
+    f.create_dataset("szip", data=v, chunks=(8, 8, 8), compression="szip")
+)");
+  const std::vector<float> whole = expected(scratch, "v");
+  std::vector<std::unique_ptr<VolumeSource>> sources;
+  for (const char* name : {"plain", "gzip", "szip"}) {
+    sources.push_back(open_source(scratch.path("a.h5"), dataset_options(name)));
+  }
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < 6; ++t) {
+    threads.emplace_back([&, t] {
+      for (std::int64_t z = 0; z + 4 <= 32; ++z) {
+        std::vector<float> part(4 * 32 * 32);
+        sources[t % 3]->read({{0, 0, z}, {32, 32, z + 4}}, part);
+        if (std::memcmp(part.data(), &whole[static_cast<std::size_t>(z * 1024)], part.size() * 4) != 0) ++wrong;
+        open_source(scratch.path("a.h5"), dataset_options("gzip"));  // others open and close meanwhile
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Hdf5Source, SaysWhatMemoryHugeChunksTake) {
+  write_by_h5py(scratch, R"(
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("v", data=np.zeros((64, 256, 256), "f4"), chunks=(64, 256, 256), compression="szip")
+)");
+  SourceOptions options = dataset_options("v");
+  options.memory = std::uint64_t{32} << 20U;
+  EXPECT_EQ(refused("a.h5", options, ErrorKind::usage),
+            scratch.path("a.h5") +
+                ": /v: reading one of its chunks takes 52.0 MiB, more than half of --memory 32.0 "
+                "MiB; give at least 105MiB");
+}
+
+TEST_F(Hdf5Source, PrintsNothingItself) {
+  write_by_h5py(scratch, "h5py.File(\"a.h5\", \"w\")[\"v\"] = np.zeros((2, 2, 2))");
+  testing::internal::CaptureStderr();
+  refused("a.h5", dataset_options("none"));
+  { open_source(scratch.path("a.h5"), {}); }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace weir
