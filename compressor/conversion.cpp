@@ -15,7 +15,6 @@
 #include "compressor/encode.h"
 #include "compressor/encoding_choice.h"
 #include "compressor/memory_plan.h"
-#include "compressor/process_memory.h"
 #include "compressor/selection.h"
 #include "compressor/survey.h"
 #include "compressor/tree_plan.h"
@@ -26,6 +25,7 @@
 #include "format/macrocells.h"
 #include "format/nvdb_type.h"
 #include "format/output_files.h"
+#include "format/process_memory.h"
 #include "format/text.h"
 #include "ingest/block_plan.h"
 

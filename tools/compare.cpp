@@ -10,9 +10,9 @@
 #include <string>
 
 #include "compressor/compare.h"
-#include "compressor/process_memory.h"
 #include "format/error.h"
 #include "format/nvdb_file.h"
+#include "format/process_memory.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
 #include "ingest/staging.h"

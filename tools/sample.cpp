@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "compressor/process_memory.h"
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/partial_file.h"
+#include "format/process_memory.h"
 #include "format/text.h"
 #include "ingest/extent.h"
 #include "ingest/raw_name.h"

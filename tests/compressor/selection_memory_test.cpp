@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "compressor/memory_plan.h"
-#include "compressor/process_memory.h"
 #include "compressor/selection.h"
 #include "compressor/tree_plan.h"
 #include "format/file_system.h"
+#include "format/process_memory.h"
 #include "tests/support/sanitized.h"
 
 namespace weir {

@@ -1,4 +1,4 @@
-#include "compressor/process_memory.h"
+#include "format/process_memory.h"
 
 #include <fstream>
 #include <string>
