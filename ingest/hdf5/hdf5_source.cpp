@@ -60,8 +60,9 @@ struct Opening {
   std::uint64_t slice_bytes() const {
     return static_cast<std::uint64_t>(volume(slice.extent)) * scalar_bytes(facts.type->scalar);
   }
-  RawLayout raw_layout(std::uint64_t offset) const {
-    return {offset, facts.type->scalar, facts.type->big_endian, info.mapping};
+  std::unique_ptr<VolumeSource> from_raw(std::unique_ptr<InputFile> file, std::uint64_t offset) {
+    const RawLayout layout{offset, facts.type->scalar, facts.type->big_endian, info.mapping};
+    return make_raw_values(std::move(file), layout, std::move(info));
   }
   std::unique_ptr<VolumeSource> from_boxes(std::unique_ptr<StoredBoxes> boxes) {
     return make_stored_box_source(std::move(boxes), std::move(info), facts.type->big_endian, options.memory,
@@ -85,7 +86,7 @@ std::unique_ptr<VolumeSource> open_contiguous(Opening opening) {
                 cat(opening.object.where(), ": its values end ", end_of_slice, " bytes after ", begin, ", and ",
                     file->path(), " has ", file->size(), " bytes; it is cut short or damaged"));
   }
-  return make_raw_values(std::move(file), opening.raw_layout(begin + opening.first_byte()), std::move(opening.info));
+  return opening.from_raw(std::move(file), begin + opening.first_byte());
 }
 
 std::unique_ptr<VolumeSource> open_external(Opening opening) {
@@ -99,7 +100,7 @@ std::unique_ptr<VolumeSource> open_external(Opening opening) {
   const std::uint64_t first = opening.first_byte();
   if (parts.size() == 1) {
     auto file = std::make_unique<InputFile>(parts[0].path, opening.options.direct_io);
-    return make_raw_values(std::move(file), opening.raw_layout(parts[0].offset + first), std::move(opening.info));
+    return opening.from_raw(std::move(file), parts[0].offset + first);
   }
   auto boxes = make_external_boxes(std::move(parts), opening.slice.extent, scalar_bytes(opening.facts.type->scalar),
                                    first, opening.options.direct_io);

@@ -108,6 +108,10 @@ class MappingReader {
  private:
   Error error(const std::string& what) const { return {ErrorKind::input, cat(where_, ": ", what)}; }
 
+  std::string source_text(const VirtualMapping& found) const {
+    return cat("its source ", found.file.empty() ? parent_ : found.file, ": ", found.dataset, ": ");
+  }
+
   StoredMapping stored(hid_t creation, std::size_t i) const {
     const auto name = [&](auto get) {
       std::vector<char> text(kMostNameBytes + 1, '\0');
@@ -198,9 +202,7 @@ class MappingReader {
     }
     const Hdf5Handle source = open_virtual_source(dataset_, found.file, found.dataset, where_);
     const Storage storage = storage_of(source.get());
-    const auto refuse = [&](const std::string& what) {
-      return error(cat("its source ", found.file.empty() ? parent_ : found.file, ": ", found.dataset, ": ", what));
-    };
+    const auto refuse = [&](const std::string& what) { return error(source_text(found) + what); };
     if (!storage.obstacle.empty()) throw refuse(storage.obstacle);
     if (storage.kind == StorageKind::mapped || storage.kind == StorageKind::external) {
       throw refuse("is spread over other files itself; write it as one with h5repack");
@@ -222,10 +224,9 @@ class MappingReader {
   }
 
   void keep(VirtualMapping found) {
-    if (H5Sget_select_npoints(found.in_virtual.get()) != H5Sget_select_npoints(found.in_source.get())) {
-      throw error(cat("maps ", H5Sget_select_npoints(found.in_source.get()), " elements of ", found.dataset, " to ",
-                      H5Sget_select_npoints(found.in_virtual.get()), " of its own; the file is damaged"));
-    }
+    const hssize_t mapped = H5Sget_select_npoints(found.in_virtual.get());
+    const hssize_t held = H5Sget_select_npoints(found.in_source.get());
+    if (mapped != held) throw error(cat(source_text(found), "has ", held, " elements where ", mapped, " are mapped"));
     const auto blocks = selection_blocks(found.in_virtual.get(), kMostBlocks - blocks_.size());
     if (!blocks) throw error("its mappings have too many pieces; write the dataset as one with h5repack");
     blocks_.insert(blocks_.end(), blocks->begin(), blocks->end());
