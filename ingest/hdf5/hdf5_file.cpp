@@ -15,6 +15,10 @@
 namespace weir {
 namespace {
 
+// Of metadata that a writer has half written. The library sleeps 1, 2, 4 ... ns between them: a quarter of a second in
+// all. Its default of 100 is without end for a file that is damaged.
+constexpr unsigned kReadAttempts = 28;
+
 // Readers need no cache of decoded chunks (they ask for each once), and a bounded one of metadata.
 Hdf5Handle access_properties() {
   Hdf5Handle properties(H5Pcreate(H5P_FILE_ACCESS));
@@ -31,8 +35,7 @@ Hdf5Handle access_properties() {
   return properties;
 }
 
-Error refused(const std::string& path) {
-  const std::string reason = hdf5_reason();
+Error refused(const std::string& path, const std::string& reason) {
   const auto says = [&](std::string_view part) { return reason.find(part) != std::string::npos; };
   const auto error = [&](const auto&... text) { return Error(ErrorKind::input, cat(path, ": ", text...)); };
   if (says("unable to lock file")) {
@@ -78,11 +81,14 @@ Hdf5Handle open_hdf5_file(const std::string& path) {
   const Hdf5Handle properties = access_properties();
   Hdf5Handle opened(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.get()));
   if (opened) return opened;
-  const Error error = refused(path);
-  // A file that a writer has opened for readers beside it wants to be asked so.
-  opened = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, properties.get()));
-  if (opened) return opened;
-  throw error;
+  // A file that a writer has opened for readers beside it wants to be asked so, by all of a process.
+  const std::string reason = hdf5_reason();
+  if (reason.find("open for write") != std::string::npos || reason.find("SWMR") != std::string::npos) {
+    H5Pset_metadata_read_attempts(properties.get(), kReadAttempts);
+    opened = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, properties.get()));
+    if (opened) return opened;
+  }
+  throw refused(path, reason);
 }
 
 }  // namespace weir
