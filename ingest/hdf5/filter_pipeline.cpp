@@ -7,14 +7,17 @@
 #include "format/error.h"
 #include "format/text.h"
 #include "ingest/hdf5/filter_fletcher32.h"
+#include "ingest/hdf5/filter_lzf.h"
 #include "ingest/hdf5/filter_unshuffle.h"
 
 namespace weir {
 namespace {
 
+constexpr H5Z_filter_t kLzf = 32000;  // registered by h5py
+
 bool applied(FilterMask left_out, std::size_t i) { return i >= 32 || (left_out >> i & 1U) == 0; }
 
-/// Bytes of a chunk before filter `i` was applied; none of the filters before it is deflate.
+/// Bytes of a chunk before filter `i` was applied; none of the filters before it is deflate or lzf.
 std::size_t bytes_before(const FilterPipeline& pipeline, FilterMask left_out, std::size_t chunk_bytes, std::size_t i) {
   std::size_t bytes = chunk_bytes;
   for (std::size_t k = 0; k < i; ++k) {
@@ -29,15 +32,17 @@ std::optional<FilterPipeline> own_pipeline(hid_t creation_properties) {
   const int count = H5Pget_nfilters(creation_properties);
   if (count < 0) return std::nullopt;
   FilterPipeline pipeline;
-  bool deflates = false;
+  bool packs = false;
   for (int i = 0; i < count; ++i) {
     std::array<unsigned, 8> parameters{};
     std::size_t parameter_count = parameters.size();
     unsigned flags = 0;
     const H5Z_filter_t id = H5Pget_filter2(creation_properties, static_cast<unsigned>(i), &flags, &parameter_count,
                                            parameters.data(), 0, nullptr, nullptr);
-    if (id == H5Z_FILTER_DEFLATE && !std::exchange(deflates, true)) {
+    if (id == H5Z_FILTER_DEFLATE && !std::exchange(packs, true)) {
       pipeline.push_back({FilterKind::deflate, 1});
+    } else if (id == kLzf && !std::exchange(packs, true)) {
+      pipeline.push_back({FilterKind::lzf, 1});
     } else if (id == H5Z_FILTER_SHUFFLE && parameter_count == 1 && parameters[0] > 0) {
       pipeline.push_back({FilterKind::shuffle, parameters[0]});
     } else if (id == H5Z_FILTER_FLETCHER32) {
@@ -77,6 +82,12 @@ std::span<const std::byte> undo_filters(const FilterPipeline& pipeline, FilterMa
         const std::span<std::byte> inflated = other.first(bytes_before(pipeline, left_out, chunk_bytes, i));
         inflater.inflate(bytes, inflated);
         bytes = inflated;
+        break;
+      }
+      case FilterKind::lzf: {
+        const std::span<std::byte> unpacked = other.first(bytes_before(pipeline, left_out, chunk_bytes, i));
+        unpack_lzf(bytes, unpacked);
+        bytes = unpacked;
         break;
       }
       case FilterKind::shuffle:

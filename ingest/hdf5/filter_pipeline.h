@@ -1,5 +1,5 @@
 // The filters that chunks of a dataset have gone through, and their undoing: the
-// ones that every HDF5 library has and that most files use.
+// ones that every HDF5 library has and that most files use, and h5py's own.
 #pragma once
 
 #include <hdf5.h>
@@ -14,14 +14,14 @@
 
 namespace weir {
 
-enum class FilterKind { deflate, shuffle, fletcher32 };
+enum class FilterKind { deflate, lzf, shuffle, fletcher32 };
 
 struct Filter {
   FilterKind kind = FilterKind::deflate;
   std::size_t value_bytes = 1;  ///< of shuffle
 };
 
-/// In the order they are applied on writing. At most one is deflate: all sizes in between are known then.
+/// In the order they are applied on writing. At most one is deflate or lzf: all sizes in between are known then.
 using FilterPipeline = std::vector<Filter>;
 
 /// Filters a chunk's mask says were left out: bit i for filter i.
@@ -29,7 +29,7 @@ using FilterMask = std::uint32_t;
 inline constexpr FilterMask kAllLeftOut = ~FilterMask{0};
 
 /// The pipeline of a dataset's creation properties; nullopt where a filter is not among FilterKind or
-/// deflate occurs twice. The caller holds Hdf5Lock.
+/// deflate and lzf occur twice. The caller holds Hdf5Lock.
 std::optional<FilterPipeline> own_pipeline(hid_t creation_properties);
 
 /// The most bytes a chunk of `chunk_bytes` can take at any stage of `pipeline`: the size of both buffers

@@ -5,6 +5,7 @@
 
 #include "format/text.h"
 #include "ingest/hdf5/filter_names.h"
+#include "ingest/hdf5/filter_pipeline.h"
 #include "ingest/hdf5/hdf5_handle.h"
 
 namespace weir {
@@ -23,8 +24,9 @@ StorageKind kind_of(hid_t creation) {
   }
 }
 
-// Names the filters, and the first one that cannot be undone as the obstacle.
+// Names the filters, and the first one that neither weir nor the library can undo as the obstacle.
 void look_at_filters(hid_t creation, Storage& storage) {
+  const bool own = own_pipeline(creation).has_value();
   for (int i = 0; i < H5Pget_nfilters(creation); ++i) {
     unsigned flags = 0;
     std::size_t values = 0;
@@ -32,7 +34,7 @@ void look_at_filters(hid_t creation, Storage& storage) {
     const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values, nullptr,
                                            name.size() - 1, name.data(), nullptr);
     storage.filters.push_back(filter_name(id, name.data()));
-    if (storage.obstacle.empty() && H5Zfilter_avail(id) <= 0) {
+    if (!own && storage.obstacle.empty() && H5Zfilter_avail(id) <= 0) {
       storage.obstacle = cat("packed by the filter ", storage.filters.back(), " (", id,
                              "), and no plugin for it is found; ", filter_remedy(id));
     }

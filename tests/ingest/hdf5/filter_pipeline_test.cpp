@@ -32,6 +32,9 @@ TEST(FilterPipeline, OwnFiltersInTheirOrder) {
   EXPECT_EQ((*all)[1].kind, FilterKind::shuffle);
   EXPECT_EQ((*all)[1].value_bytes, 8U);
   EXPECT_EQ((*all)[2].kind, FilterKind::deflate);
+  const auto lzf = pipeline_after([](hid_t p) { H5Pset_filter(p, 32000, H5Z_FLAG_OPTIONAL, 0, nullptr); });
+  ASSERT_TRUE(lzf);
+  EXPECT_EQ(lzf->at(0).kind, FilterKind::lzf);
 }
 
 TEST(FilterPipeline, OthersAreLeftToTheLibrary) {
@@ -46,6 +49,10 @@ TEST(FilterPipeline, OthersAreLeftToTheLibrary) {
     H5Pset_deflate(p, 1);
     H5Pset_filter(p, H5Z_FILTER_DEFLATE, 0, 1, &level);
   })) << "deflate twice";
+  EXPECT_FALSE(pipeline_after([](hid_t p) {
+    H5Pset_deflate(p, 1);
+    H5Pset_filter(p, 32000, H5Z_FLAG_OPTIONAL, 0, nullptr);
+  })) << "deflate and lzf";
   // A file says values of no bytes: nothing is divided by them.
   EXPECT_FALSE(pipeline_after([](hid_t p) {
     const unsigned value_bytes = 0;

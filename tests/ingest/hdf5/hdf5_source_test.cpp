@@ -37,6 +37,7 @@ with h5py.File("types.h5", "w") as f:
             f["contiguous/" + name] = v
             f.create_dataset("chunked/" + name, data=v, chunks=(2, 3, 4))
             f.create_dataset("packed/" + name, data=v, chunks=(3, 4, 5), compression="gzip", shuffle=True, fletcher32=True)
+            f.create_dataset("lzf/" + name, data=v, chunks=(3, 4, 5), compression="lzf", shuffle=True, fletcher32=True)
             f.create_dataset("szip/" + name, data=v, chunks=(2, 7, 4), compression="szip")
             compact = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
             compact.set_layout(h5py.h5d.COMPACT)
@@ -48,7 +49,7 @@ with h5py.File("types.h5", "w") as f:
   for (const char* code : {"i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"}) {
     for (const char* order : {"le", "be"}) {
       const std::string name = std::string(code) + order;
-      for (const char* layout : {"contiguous/", "chunked/", "packed/", "szip/", "compact/"}) {
+      for (const char* layout : {"contiguous/", "chunked/", "packed/", "lzf/", "szip/", "compact/"}) {
         expect_reads(scratch, "types.h5", dataset_options(layout + name), name);
       }
     }
