@@ -20,6 +20,7 @@ std::vector<std::int64_t> extents_of(hid_t dataset) {
   std::vector<hsize_t> dims(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
   std::vector<std::int64_t> extents;
+  extents.reserve(dims.size());
   for (const hsize_t d : dims) {
     extents.push_back(static_cast<std::int64_t>(std::min<hsize_t>(d, std::numeric_limits<std::int64_t>::max())));
   }
