@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compressor/leaf_quantiser.h"
+
 namespace weir {
 namespace {
 
@@ -68,9 +70,11 @@ double quantised_error(const LeafRow& row, LeafWidth width) {
   const unsigned bits = 1U << log2;
   if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
   if (log2 < row.quantised.size()) return row.sse * static_cast<double>(row.quantised[log2]);
-  // Errors uniform over a quantum: q^2 / 12 a value.
-  const double quantum = (static_cast<double>(row.max) - static_cast<double>(row.min)) / ((1U << bits) - 1U);
-  return std::min(row.sse, row.finite * quantum * quantum / 12);
+  const auto quantum = static_cast<double>(range_quantiser({row.min, row.max, row.mean}, bits).quantum);
+  if (!(quantum > 0)) return row.sse;  // float holds one level only
+  // Errors uniform over a quantum, q^2 / 12 a value; the ends of the range are levels. Sparse data has most of its
+  // values there: without them 8 bits would seem bad enough for 16 to be bought.
+  return std::min(row.sse, (row.finite - row.at_ends) * quantum * quantum / 12);
 }
 
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {

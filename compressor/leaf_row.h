@@ -24,7 +24,9 @@ struct LeafRow {
   /// Squared error at 1, 2 and 4 bits a voxel, estimated, in parts of `sse`; 1 where it was not looked at.
   std::array<float, 3> quantised{1, 1, 1};
   /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the values without loss; 0: more, or not looked at.
-  std::uint32_t exact_bits = 0;
+  std::uint16_t exact_bits = 0;
+  /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at.
+  std::uint16_t at_ends = 0;
 
   /// The finite values, one at least, all have the same bits: those of `mean`.
   bool uniform() const { return (flags & kUniform) != 0; }

@@ -126,6 +126,13 @@ WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mea
   return {sum(total_lanes), sum(square_lanes)};
 }
 
+// Values that equal `min` or `max`.
+WEIR_SIMD std::uint32_t count_at_ends(const float* values, std::size_t count, float min, float max) {
+  std::uint32_t at_ends = 0;
+  for (std::size_t i = 0; i < count; ++i) at_ends += (values[i] == min ? 1U : 0U) | (values[i] == max ? 1U : 0U);
+  return at_ends;
+}
+
 Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
   const auto bits = std::bit_cast<std::uint32_t>(values.front());
   if (last.bits != bits || last.count != values.size()) last = {bits, values.size(), leaf_digest(values)};
@@ -176,7 +183,10 @@ void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
   if (row.uniform()) row.exact_bits = all ? 1 : 0;
   if (!(row.min < row.max)) return;
   if (const auto lattice = all ? find_lattice(values, row.min, row.max) : std::nullopt) {
-    row.exact_bits = bits_for(lattice->largest);
+    row.exact_bits = static_cast<std::uint16_t>(bits_for(lattice->largest));
+  }
+  if (row.exact_bits == 0 || row.exact_bits > 8) {
+    row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));
   }
   for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
     const unsigned bits = 1U << log2;

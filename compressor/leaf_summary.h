@@ -24,7 +24,7 @@ inline LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_
   return summarize_leaf(values, sample_at, none);
 }
 
-/// Fills `quantised` and `exact_bits` of a row that summarize_leaf made: `values` are the leaf's finite
+/// Fills `quantised`, `exact_bits` and `at_ends` of a row that summarize_leaf made: `values` are the leaf's finite
 /// in-domain values, row.finite of them, `all` that there are no others.
 void summarize_widths(std::span<const float> values, bool all, LeafRow& row);
 

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
+#include "compressor/leaf_quantiser.h"
+#include "compressor/leaf_summary.h"
 #include "tests/compressor/converted.h"
 #include "tests/compressor/surveyed.h"
 
@@ -148,6 +151,46 @@ TEST(LeafGain, SseBuysSingleLeavesWhateverTheBrick) {
                 [&](const TreeRegions&, const Index3&, const LeafGain& gain) { bricks.push_back(gain.brick); });
   std::sort(bricks.begin(), bricks.end());
   EXPECT_EQ(std::adjacent_find(bricks.begin(), bricks.end()), bricks.end());
+}
+
+LeafRow summarized(const std::vector<float>& values) {
+  LeafRow row = summarize_leaf(values, 0);
+  summarize_widths(values, true, row);
+  return row;
+}
+
+double fitted_error(const std::vector<float>& values, const LeafRow& row, LeafWidth width) {
+  return fit_quantiser(values, {row.min, row.max, row.mean}, 1U << bits_log2_of(width)).squared_error;
+}
+
+TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {
+  std::mt19937 random(3);
+  std::vector<float> values(512);
+  // From all values but one anywhere down to a leaf at a border, whose others all are the least value.
+  for (const std::size_t anywhere : {511U, 300U, 100U, 20U}) {
+    for (const float end : {0.0F, 1.0F}) {
+      std::fill(values.begin(), values.end(), end);
+      values[0] = 1 - end;
+      for (std::size_t i = 1; i < anywhere; ++i) values[i] = static_cast<float>(random() >> 8U) * 0x1p-24F;
+      const LeafRow row = summarized(values);
+      EXPECT_EQ(row.exact_bits, 0U);
+      EXPECT_EQ(row.at_ends, 513 - anywhere);
+      for (const LeafWidth width : {LeafWidth::bits8, LeafWidth::bits16}) {
+        const double error = fitted_error(values, row, width);
+        EXPECT_NEAR(quantised_error(row, width), error, error * 0.35) << anywhere;
+      }
+    }
+  }
+}
+
+TEST(LeafGain, WidthsThatFloatCannotHoldGainNothing) {
+  for (const float most : {3e38F, 0x1p-130F}) {
+    std::vector<float> values(512, -most);
+    for (std::size_t i = 0; i < 512; i += 3) values[i] = most / static_cast<float>(1 + i);
+    const LeafRow row = summarized(values);
+    for (unsigned log2 = 0; log2 < 5; ++log2) EXPECT_EQ(quantised_error(row, width_of(log2)), row.sse);
+    EXPECT_EQ(quantised_error(row, LeafWidth::float32), 0);
+  }
 }
 
 }  // namespace
