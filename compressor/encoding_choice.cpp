@@ -68,9 +68,6 @@ std::string lossy_leaves_text(const Candidate& quantised) {
 
 double expected_error(const FilePlan& file) { return file.plan.squared_error + file.plan.expected_leaf_error; }
 
-// What is expected of a quantised file: every kept leaf at a width that is exact for it.
-bool expected_lossless(const FilePlan& file) { return file.plan.lossless && file.plan.expected_leaf_error == 0; }
-
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
   if (encoding != Encoding::float32 && !can_quantise(request)) {
     throw Error(ErrorKind::usage,
@@ -104,7 +101,7 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   Candidate candidate(request, Encoding::fpn, rows, work);
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
-  if (expected_lossless(quantised)) return quantised;
+  if (quantised.plan.lossless && quantised.plan.leaves_lossless) return quantised;
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
   FilePlan plain = other.plan(size.kind == "minimum" ? size : other.size_for(request.budget));

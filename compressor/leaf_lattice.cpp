@@ -16,8 +16,8 @@ constexpr std::uint32_t kLargestCode = 65535;
 /// Below this the unit of a value's last bit has no reciprocal in float.
 constexpr float kSmallest = 0x1p-100F;
 
-// Values in units of `1 / scale`, where all of them are whole numbers; false where one is not, or is -0.0. The
-// scaled values are below 2^24 in magnitude.
+// Values in units of `1 / scale`, where all of them are whole numbers; false where one is not, is -0.0, or is so
+// small beside the unit that scaling makes it 0. The scaled values are below 2^24 in magnitude.
 WEIR_SIMD bool to_integers(const float* values, std::size_t count, float scale, std::int32_t* integers) {
   bool whole = true;
   for (std::size_t i = 0; i < count && whole; i += 16) {
@@ -30,7 +30,7 @@ WEIR_SIMD bool to_integers(const float* values, std::size_t count, float scale, 
       const auto integer = static_cast<std::int32_t>(scaled);
       integers[k] = integer;
       bad |= static_cast<float>(integer) != scaled ? 1U : 0U;
-      bad |= bits == 0x80000000U ? 1U : 0U;
+      bad |= integer == 0 && bits != 0 ? 1U : 0U;
     }
     whole = bad == 0;
   }

@@ -24,10 +24,23 @@ void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
   }
 }
 
+// Gives voxels outside the domain the code of the nearest one inside: every layer of the leaf then stays within the
+// bounds of its part inside, which the macrocells that reach into it know.
+void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t, kLeafVoxels>& codes) {
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 last = inside.hi - node.lo - Index3{1, 1, 1};
+  for_each_inside(node, node, [&](std::size_t i) {
+    const auto at = static_cast<std::int64_t>(i);
+    const Index3 nearest = max(lo, min(last, Index3{at >> 6, at >> 3 & 7, at & 7}));
+    codes[i] = codes[static_cast<std::size_t>(nearest.x << 6 | nearest.y << 3 | nearest.z)];
+  });
+}
+
 Quantiser choose_quantiser(std::span<const float> values, unsigned bits) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   ValueRange range{*low, *high, 0};
-  if (!(range.min < range.max)) return {range.min, 0};
+  // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
+  if (!(range.min < range.max)) return {range.min, std::copysign(0.0F, range.min)};
   if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
     return {range.min, lattice->step};
   }
@@ -58,9 +71,9 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   std::array<std::uint16_t, kLeafVoxels> codes;
   quantise(seen, leaf.quantiser, bits, std::span(codes).first(count));
 
-  leaf.codes.fill(codes[0]);
   count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
+  if (inside != node) extend_outside(node, inside, leaf.codes);
   for (std::size_t i = 0; i < kLeafVoxels; ++i) {
     leaf.decoded[i] = dequantize(leaf.codes[i], leaf.quantiser.quantum, leaf.quantiser.minimum);
   }

@@ -23,8 +23,8 @@ struct QuantisedLeaf {
 
 /// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly where they lie on
 /// a lattice that fits, else with the least squared error (leaf_quantiser.h). `values` are finite there; `source` is
-/// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the first one
-/// inside, so that they widen no range.
+/// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the nearest
+/// one inside, so that they widen no range.
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
                             unsigned bits_log2);
 

@@ -14,7 +14,8 @@ namespace {
 // What merges without regard to order.
 struct Tally {
   double max_abs = 0;
-  bool exact = true;
+  bool exact = true;         // the tiles
+  bool leaves_exact = true;  // at their widths
   std::array<std::uint64_t, 6> leaves_by_width{};
 
   void add_tile(double tile_max_abs, bool tile_exact) {
@@ -23,6 +24,7 @@ struct Tally {
   }
   void add(const Tally& other) {
     add_tile(other.max_abs, other.exact);
+    leaves_exact = leaves_exact && other.leaves_exact;
     for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
   }
 };
@@ -37,6 +39,7 @@ double add_leaves(const TreeRegions& tree, const Fill& fill, const LeafChoices& 
     if (width != LeafWidth::tile) {
       ++tally.leaves_by_width[bits_log2_of(width)];
       expected.add(quantised_error(row, width));
+      tally.leaves_exact = tally.leaves_exact && keeps_every_bit(row, tree.leaves.voxels(leaf).voxels(), width);
       return;
     }
     const float value = fill.leaf_value(row);
@@ -99,6 +102,7 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   plan.expected_leaf_error = expected_squares.value();
   plan.max_abs = total.max_abs;
   plan.lossless = total.exact;
+  plan.leaves_lossless = total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;
 
   NodeCounts counts;

@@ -21,6 +21,7 @@ struct TreePlan {
   double max_abs = 0;
   bool lossless = false;
   double expected_leaf_error = 0;  ///< squared, of the kept leaves, estimated
+  bool leaves_lossless = false;    ///< each is kept at a width that reads every bit of it
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
 };

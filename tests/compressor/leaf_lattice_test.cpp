@@ -58,6 +58,8 @@ TEST(LeafLattice, WhatDoesNotLieOnOne) {
   EXPECT_FALSE(lattice_of({0, -0.0F, 2}));
   EXPECT_FALSE(lattice_of({1e-40F, 3e-40F}));
   EXPECT_FALSE(lattice_of({-3e38F, 3e38F}));
+  EXPECT_FALSE(lattice_of({0, 0x1p-80F, 0x1p100F}));  // in units of the largest one's last bit it underflows to 0
+  EXPECT_FALSE(lattice_of({0, 0x1p-149F, 0x1p40F}));
   std::mt19937 random(5);
   std::normal_distribution<float> normal(0, 1);
   std::vector<float> noise(512);
