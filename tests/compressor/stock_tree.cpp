@@ -2,6 +2,7 @@
 
 #include <iostream>  // GridValidator.h of 10.0.1 uses it without saying so
 
+#include <nanovdb/util/GridStats.h>
 #include <nanovdb/util/GridValidator.h>
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
@@ -66,31 +67,82 @@ std::vector<std::byte> StockTree::file(const std::string& name, const std::array
 
 struct StockReader::Implementation {
   nanovdb::GridHandle<nanovdb::HostBuffer> handle;
-  const nanovdb::FloatGrid* grid = nullptr;
+
+  virtual ~Implementation() = default;
+  virtual bool valid() const = 0;
+  virtual std::string name() const = 0;
+  virtual float value(const nanovdb::Coord& i) const = 0;
+  virtual bool active(const nanovdb::Coord& i) const = 0;
+  virtual nanovdb::CoordBBox index_bbox() const = 0;
+  virtual std::uint64_t active_voxels() const = 0;
+  virtual void set_statistics(nanovdb::GridHandle<nanovdb::HostBuffer>& of) const = 0;
 };
 
-StockReader::StockReader(std::span<const std::byte> file) : implementation_(std::make_unique<Implementation>()) {
+namespace {
+
+// Calls through a base class, because the type of the grid is known when the file is read.
+template <typename Base, typename BuildT>
+struct GridOf final : Base {
+  const nanovdb::NanoGrid<BuildT>* grid = nullptr;
+
+  bool valid() const override { return nanovdb::isValid(*grid, true); }
+  std::string name() const override { return grid->gridName(); }
+  float value(const nanovdb::Coord& i) const override { return grid->tree().getValue(i); }
+  bool active(const nanovdb::Coord& i) const override { return grid->tree().isActive(i); }
+  nanovdb::CoordBBox index_bbox() const override { return grid->indexBBox(); }
+  std::uint64_t active_voxels() const override { return grid->activeVoxelCount(); }
+  void set_statistics(nanovdb::GridHandle<nanovdb::HostBuffer>& of) const override {
+    nanovdb::gridStats(*of.grid<BuildT>(), nanovdb::StatsMode::All);
+  }
+};
+
+template <typename Base, typename BuildT>
+bool take(nanovdb::GridHandle<nanovdb::HostBuffer>& handle, std::unique_ptr<Base>& reader) {
+  if (handle.grid<BuildT>() == nullptr) return false;
+  auto grid = std::make_unique<GridOf<Base, BuildT>>();
+  grid->handle = std::move(handle);
+  grid->grid = grid->handle.template grid<BuildT>();
+  reader = std::move(grid);
+  return true;
+}
+
+std::vector<std::byte> bytes_of(const nanovdb::GridHandle<nanovdb::HostBuffer>& handle) {
+  const auto bytes = std::as_bytes(std::span(handle.data(), handle.size()));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+StockReader::StockReader(std::span<const std::byte> file) {
   std::istringstream in(std::string(reinterpret_cast<const char*>(file.data()), file.size()));
-  implementation_->handle = nanovdb::io::readGrid(in);
-  implementation_->grid = implementation_->handle.grid<float>();
-  if (implementation_->grid == nullptr) throw std::runtime_error("the stock reader finds no float grid");
+  auto handle = nanovdb::io::readGrid(in);
+  using I = Implementation;
+  if (take<I, float>(handle, implementation_) || take<I, nanovdb::FpN>(handle, implementation_) ||
+      take<I, nanovdb::Fp4>(handle, implementation_) || take<I, nanovdb::Fp8>(handle, implementation_) ||
+      take<I, nanovdb::Fp16>(handle, implementation_)) {
+    return;
+  }
+  throw std::runtime_error("the stock reader finds no grid of floats");
 }
 
 StockReader::~StockReader() = default;
 
-bool StockReader::valid() const { return nanovdb::isValid(*implementation_->grid, true); }
-std::string StockReader::name() const { return implementation_->grid->gridName(); }
-float StockReader::value(const Index3& i) const {
-  return implementation_->grid->tree().getValue(coord<nanovdb::Coord>(i));
-}
-bool StockReader::active(const Index3& i) const {
-  return implementation_->grid->tree().isActive(coord<nanovdb::Coord>(i));
-}
+bool StockReader::valid() const { return implementation_->valid(); }
+std::string StockReader::name() const { return implementation_->name(); }
+float StockReader::value(const Index3& i) const { return implementation_->value(coord<nanovdb::Coord>(i)); }
+bool StockReader::active(const Index3& i) const { return implementation_->active(coord<nanovdb::Coord>(i)); }
 Box StockReader::index_bbox() const {
-  const auto& box = implementation_->grid->indexBBox();
+  const auto box = implementation_->index_bbox();
   return {{box.min()[0], box.min()[1], box.min()[2]},
           {std::int64_t{box.max()[0]} + 1, std::int64_t{box.max()[1]} + 1, std::int64_t{box.max()[2]} + 1}};
 }
-std::uint64_t StockReader::active_voxels() const { return implementation_->grid->activeVoxelCount(); }
+std::uint64_t StockReader::active_voxels() const { return implementation_->active_voxels(); }
+std::vector<std::byte> StockReader::grid() const { return bytes_of(implementation_->handle); }
+std::vector<std::byte> StockReader::grid_with_stock_statistics() const {
+  nanovdb::GridHandle<nanovdb::HostBuffer> copy(nanovdb::HostBuffer::create(implementation_->handle.size()));
+  std::copy_n(implementation_->handle.data(), copy.size(), copy.data());
+  implementation_->set_statistics(copy);
+  return bytes_of(copy);
+}
 
 }  // namespace weir::test

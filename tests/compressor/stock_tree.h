@@ -35,7 +35,7 @@ class StockTree {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What nanovdb::io::readGrid finds in a file.
+/// What nanovdb::io::readGrid finds in a file, of whichever type its grid is: float, Fp4, Fp8, Fp16 or FpN.
 class StockReader {
  public:
   explicit StockReader(std::span<const std::byte> file);
@@ -47,6 +47,10 @@ class StockReader {
   bool active(const Index3& i) const;
   Box index_bbox() const;
   std::uint64_t active_voxels() const;
+  /// The bytes of the grid, from its header to the end of its padding.
+  std::vector<std::byte> grid() const;
+  /// The same after nanovdb::gridStats (StatsMode::All) has set all statistics and bounding boxes anew.
+  std::vector<std::byte> grid_with_stock_statistics() const;
 
  private:
   struct Implementation;
