@@ -1,10 +1,11 @@
-// A NanoVDB file mapped read-only, with its validated grid. Owns the mapping.
+// A NanoVDB file mapped read-only, with its validated first grid. Owns the mapping.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <string>
 
+#include "format/file_mapping.h"
 #include "format/nvdb_grid.h"
 
 namespace weir {
@@ -12,20 +13,17 @@ namespace weir {
 class NvdbFile {
  public:
   /// Maps and validates. Throws Error(input) for a missing, empty or invalid file.
-  explicit NvdbFile(const std::string& path);
-  ~NvdbFile();
-  NvdbFile(NvdbFile&& other) noexcept;
-  NvdbFile& operator=(NvdbFile&&) = delete;
-  NvdbFile(const NvdbFile&) = delete;
-  NvdbFile& operator=(const NvdbFile&) = delete;
+  explicit NvdbFile(const std::string& path)
+      : path_(path), mapping_(path, ".nvdb"), grid_(NvdbGrid::open(mapping_.bytes(), path)) {}
 
   const std::string& path() const { return path_; }
   const NvdbGrid& grid() const { return grid_; }
-  std::span<const std::byte> bytes() const { return mapping_; }
+  std::span<const std::byte> bytes() const { return mapping_.bytes(); }
+  const FileMapping& mapping() const { return mapping_; }
 
  private:
   std::string path_;
-  std::span<const std::byte> mapping_;
+  FileMapping mapping_;
   NvdbGrid grid_;
 };
 

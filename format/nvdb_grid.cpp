@@ -8,7 +8,6 @@
 #include "format/nanovdb_layout.h"
 #include "format/nvdb_blind.h"
 #include "format/nvdb_bytes.h"
-#include "format/nvdb_header.h"
 #include "format/nvdb_tree.h"
 
 namespace weir {
@@ -55,7 +54,11 @@ const std::byte* child_of(const std::byte* node, const InternalLayout& layout, u
 }  // namespace
 
 NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path) {
-  NvdbHeader header = read_nvdb_header(file, path);
+  return open(file, path, first_nvdb_segment(file, path).front());
+}
+
+NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record) {
+  NvdbHeader header = read_nvdb_header(file, path, record);
   const NvdbBytes bytes(file.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
   const NvdbTree tree = read_nvdb_tree(bytes, header.type);
   const NvdbBlindData blind = read_nvdb_blind_data(bytes, tree.end, tree.bbox);
@@ -71,6 +74,7 @@ NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path
   grid.value_min_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMin);
   grid.value_max_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMax);
   grid.voxel_size_ = header.voxel_size;
+  grid.matrix_ = header.matrix;
   grid.world_origin_ = header.world_origin;
   grid.grid_offset_ = header.grid_offset;
   grid.grid_bytes_ = header.grid_bytes;

@@ -1,4 +1,4 @@
-// A read-only view of the first grid of a NanoVDB file held in memory (mapped
+// A read-only view of one grid of a NanoVDB file held in memory (mapped
 // or not). `open` validates everything before any offset is trusted: after it
 // returned, no call reads outside the span, whatever the bytes are. It walks the
 // internal nodes only (some 8 MB of a 1 GB float file), so a file of any size
@@ -13,6 +13,7 @@
 #include <string>
 
 #include "format/index.h"
+#include "format/nvdb_header.h"
 #include "format/nvdb_type.h"
 
 namespace weir {
@@ -48,6 +49,8 @@ class NvdbGrid {
   /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
   /// NanoVDB file of a supported type.
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path);
+  /// The same for a grid that all_nvdb_segments found, where the above opens the first.
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record);
 
   GridType type() const { return type_; }
   const std::string& name() const { return name_; }
@@ -58,6 +61,7 @@ class NvdbGrid {
   float value_min() const { return value_min_; }  ///< of the decoded active values, as stored in the root
   float value_max() const { return value_max_; }
   std::array<double, 3> voxel_size() const { return voxel_size_; }
+  std::array<double, 9> matrix() const { return matrix_; }  ///< row-major: world = matrix * index + world_origin
   std::array<double, 3> world_origin() const { return world_origin_; }  ///< of index (0, 0, 0)
   std::uint64_t grid_offset() const { return grid_offset_; }            ///< bytes from the file's start
   std::uint64_t grid_bytes() const { return grid_bytes_; }              ///< gridSize
@@ -110,6 +114,7 @@ class NvdbGrid {
   float value_min_ = 0;
   float value_max_ = 0;
   std::array<double, 3> voxel_size_{};
+  std::array<double, 9> matrix_{};
   std::array<double, 3> world_origin_{};
   std::uint64_t grid_offset_ = 0;
   std::uint64_t grid_bytes_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "format/nanovdb_layout.h"
@@ -15,6 +16,9 @@ constexpr std::uint64_t kMagicGridNew = nvdb::kMagic + (std::uint64_t{1} << 56U)
 constexpr std::uint64_t kMagicFileNew = nvdb::kMagic + (std::uint64_t{2} << 56U);
 // The file's constants count from the file's start, the meta data of a grid from its record.
 constexpr std::uint64_t in_record(std::uint64_t field) { return field - nvdb::kFileHeaderBytes; }
+
+// So that the list of a hostile file stays small.
+constexpr std::size_t kMaxGrids = 4096;
 
 constexpr std::array<const char*, 23> kTypeNames{"unknown", "float", "double",  "int16",     "int32",      "int64",
                                                  "Vec3f",   "Vec3d", "Mask",    "Half",      "uint32",     "bool",
@@ -45,28 +49,33 @@ void check_codec(const NvdbBytes& file, std::uint64_t offset, std::uint16_t code
             "); write it uncompressed with nanovdb_convert (to .vdb and back, without --zip and --blosc)");
 }
 
-// Segment header and every meta record; returns the offset of the first grid.
-std::uint64_t skip_meta(const NvdbBytes& file) {
-  if (file.size() < nvdb::kFileHeaderBytes) {
-    file.fail(file.size(), "the file ends after ", file.size(), " bytes, inside the NanoVDB header of ",
+std::uint64_t stored_bytes(const NvdbBytes& file, const NvdbRecord& record) {
+  return file.get<std::uint64_t>(record.meta + in_record(nvdb::meta::kFileSize));
+}
+
+// The meta records of the segment at `segment`, and behind them its grids.
+std::vector<NvdbRecord> read_segment(const NvdbBytes& file, std::uint64_t segment) {
+  if (!file.holds(segment, nvdb::kFileHeaderBytes)) {
+    file.fail(file.size(), "the file ends after ", file.size() - segment, " bytes, inside the NanoVDB header of ",
               nvdb::kFileHeaderBytes, " bytes; is it complete?");
   }
-  const auto magic = file.get<std::uint64_t>(0);
+  const auto magic = file.get<std::uint64_t>(segment);
   if (magic == kMagicGridNew) {
-    file.fail(0, "a raw grid without file header (magic NanoVDB1); write it with nanovdb::io::writeGrid");
+    file.fail(segment, "a raw grid without file header (magic NanoVDB1); write it with nanovdb::io::writeGrid");
   }
   if (magic != nvdb::kMagic && magic != kMagicFileNew) {
-    file.fail(0, "magic number 0x", std::hex, magic, " is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
+    file.fail(segment, "magic number 0x", std::hex, magic, " is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
   }
-  check_version(file, 8, file.get<std::uint32_t>(8));
-  const auto grids = file.get<std::uint16_t>(12);
-  if (grids == 0) file.fail(12, "the file holds 0 grids");
-  check_codec(file, 14, file.get<std::uint16_t>(14));
-  std::uint64_t at = nvdb::kFileHeaderBytes;
+  check_version(file, segment + 8, file.get<std::uint32_t>(segment + 8));
+  const auto grids = file.get<std::uint16_t>(segment + 12);
+  if (grids == 0) file.fail(segment + 12, "the file holds 0 grids");
+  std::vector<NvdbRecord> records;
+  std::uint64_t at = segment + nvdb::kFileHeaderBytes;
   for (unsigned i = 0; i < grids; ++i) {
     if (!file.holds(at, nvdb::kFileMetaBytes)) {
       file.fail(file.size(), "the file ends inside the meta data of grid ", i, " of ", grids, "; is it complete?");
     }
+    records.push_back({segment, at, 0});
     const auto name_bytes = file.get<std::uint32_t>(at + in_record(nvdb::meta::kNameSize));
     if (!file.holds(at + nvdb::kFileMetaBytes, name_bytes)) {
       file.fail(at + in_record(nvdb::meta::kNameSize), "a grid name of ", name_bytes,
@@ -74,13 +83,11 @@ std::uint64_t skip_meta(const NvdbBytes& file) {
     }
     at += nvdb::kFileMetaBytes + name_bytes;
   }
-  return at;
-}
-
-std::string read_name(const NvdbBytes& file) {
-  const auto bytes = file.get<std::uint32_t>(nvdb::meta::kNameSize);
-  const std::string_view field(reinterpret_cast<const char*>(file.at(nvdb::kNameOffset)), bytes);
-  return std::string(field.substr(0, field.find('\0')));
+  for (NvdbRecord& record : records) {
+    record.grid = at;
+    if (__builtin_add_overflow(at, stored_bytes(file, record), &at)) at = std::numeric_limits<std::uint64_t>::max();
+  }
+  return records;
 }
 
 std::array<double, 3> load3(const NvdbBytes& grid, std::uint64_t offset) {
@@ -93,22 +100,50 @@ std::string nvdb_version_text(std::uint32_t version) {
   return cat(version >> 21U, '.', (version >> 10U) & 2047U, '.', version & 1023U);
 }
 
-NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string& path) {
+std::vector<NvdbRecord> first_nvdb_segment(std::span<const std::byte> file, const std::string& path) {
+  return read_segment(NvdbBytes(file, 0, path), 0);
+}
+
+std::vector<NvdbRecord> all_nvdb_segments(std::span<const std::byte> bytes, const std::string& path) {
   const NvdbBytes file(bytes, 0, path);
+  std::vector<NvdbRecord> all;
+  for (std::uint64_t end = 0; end < bytes.size();) {
+    const auto records = read_segment(file, end);
+    all.insert(all.end(), records.begin(), records.end());
+    if (all.size() > kMaxGrids) file.fail(end, "the file holds more than ", kMaxGrids, " grids; it is damaged");
+    const std::uint64_t last = stored_bytes(file, records.back());
+    // A grid that is cut is the last one; whoever opens it says so.
+    if (!file.holds(records.back().grid, last)) break;
+    end = records.back().grid + last;
+  }
+  return all;
+}
+
+std::string nvdb_grid_name(std::span<const std::byte> file, const NvdbRecord& record) {
+  const std::byte* const meta = file.data() + record.meta;
+  const auto bytes = load<std::uint32_t>(meta + in_record(nvdb::meta::kNameSize));
+  const std::string_view field(reinterpret_cast<const char*>(meta + nvdb::kFileMetaBytes), bytes);
+  return std::string(field.substr(0, field.find('\0')));
+}
+
+NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string& path, const NvdbRecord& record) {
+  const NvdbBytes file(bytes, 0, path);
+  const auto meta = [&](std::uint64_t field) { return record.meta + in_record(field); };
+  check_codec(file, record.segment + 14, file.get<std::uint16_t>(record.segment + 14));
+  check_codec(file, meta(nvdb::meta::kCodec), file.get<std::uint16_t>(meta(nvdb::meta::kCodec)));
   NvdbHeader header;
-  header.grid_offset = skip_meta(file);
-  check_codec(file, nvdb::meta::kCodec, file.get<std::uint16_t>(nvdb::meta::kCodec));
-  header.grid_bytes = file.get<std::uint64_t>(nvdb::meta::kGridSize);
-  const auto stored_bytes = file.get<std::uint64_t>(nvdb::meta::kFileSize);
+  header.grid_offset = record.grid;
+  header.grid_bytes = file.get<std::uint64_t>(meta(nvdb::meta::kGridSize));
+  const std::uint64_t stored = stored_bytes(file, record);
   if (header.grid_bytes < nvdb::kRootTilesOffset) {
-    file.fail(nvdb::meta::kGridSize, "a grid of ", header.grid_bytes, " bytes, smaller than its fixed head of ",
+    file.fail(meta(nvdb::meta::kGridSize), "a grid of ", header.grid_bytes, " bytes, smaller than its fixed head of ",
               nvdb::kRootTilesOffset);
   }
-  if (stored_bytes != header.grid_bytes) {
-    file.fail(nvdb::meta::kFileSize, "an uncompressed grid of ", header.grid_bytes, " bytes stored in ", stored_bytes);
+  if (stored != header.grid_bytes) {
+    file.fail(meta(nvdb::meta::kFileSize), "an uncompressed grid of ", header.grid_bytes, " bytes stored in ", stored);
   }
   if (!file.holds(header.grid_offset, header.grid_bytes)) {
-    file.fail(nvdb::meta::kGridSize, "a grid of ", header.grid_bytes, " bytes at byte ", header.grid_offset,
+    file.fail(meta(nvdb::meta::kGridSize), "a grid of ", header.grid_bytes, " bytes at byte ", header.grid_offset,
               " reaches beyond the file's ", bytes.size(), "; is it complete?");
   }
   const NvdbBytes grid(bytes.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
@@ -126,12 +161,14 @@ NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string&
     grid.fail(nvdb::grid::kGridType, "grid type ", type_text(type),
               " is not supported; use a float, Fp4, Fp8, Fp16 or FpN grid");
   }
-  if (const auto meta = file.get<std::uint32_t>(nvdb::meta::kGridType); meta != type) {
-    file.fail(nvdb::meta::kGridType, "the meta data says grid type ", type_text(meta), ", the grid ", type_text(type));
+  if (const auto said = file.get<std::uint32_t>(meta(nvdb::meta::kGridType)); said != type) {
+    file.fail(meta(nvdb::meta::kGridType), "the meta data says grid type ", type_text(said), ", the grid ",
+              type_text(type));
   }
   header.type = static_cast<GridType>(type);
-  header.name = read_name(file);
+  header.name = nvdb_grid_name(bytes, record);
   header.voxel_size = load3(grid, nvdb::grid::kVoxelSize);
+  for (std::size_t i = 0; i < 9; ++i) header.matrix[i] = grid.get<double>(nvdb::grid::kMap + 88 + 8 * i);
   header.world_origin = load3(grid, nvdb::grid::kMap + 232);  // the map's vec as double
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!(header.voxel_size[axis] > 0) || !std::isfinite(header.voxel_size[axis])) {

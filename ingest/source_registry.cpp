@@ -14,6 +14,8 @@
 #include "ingest/raw_source.h"
 #include "ingest/source_view.h"
 #include "ingest/stack_source.h"
+#include "ingest/vdb/nvdb_source.h"
+#include "ingest/vdb/vdb_source.h"
 
 namespace weir {
 namespace {
@@ -32,6 +34,10 @@ constexpr std::array kFormats{
                  .container = true},
     SourceFormat{
         .name = "nifti", .recognises = recognises_nifti, .open = open_nifti, .list = list_nifti, .container = true},
+    SourceFormat{
+        .name = "openvdb", .recognises = recognises_vdb, .open = open_vdb, .list = list_vdb, .container = true},
+    SourceFormat{
+        .name = "nanovdb", .recognises = recognises_nvdb, .open = open_nvdb, .list = list_nvdb, .container = true},
     // Asked late: its signature may lie anywhere behind a user block.
     SourceFormat{
         .name = "hdf5", .recognises = recognises_hdf5, .open = open_hdf5, .list = list_hdf5, .container = true},

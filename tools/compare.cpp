@@ -1,7 +1,5 @@
 // weir compare: the exact error of a NanoVDB file against its source.
 #include <spdlog/spdlog.h>
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -44,11 +42,6 @@ std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes) {
                                       ((fixed + 2 * kLeastBlockBytes) >> 20U) + 1, "MiB"));
   }
   return std::min((memory - fixed) / 2, kMostBlockBytes);
-}
-
-// Mapped pages count as the process's memory: those behind us are in the page cache still.
-void release_pages(std::span<const std::byte> mapping) {
-  ::madvise(const_cast<std::byte*>(mapping.data()), mapping.size(), MADV_DONTNEED);
 }
 
 nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c, double total_s) {
@@ -104,12 +97,12 @@ void compare(const CompareArguments& arguments) {
   source_options.memory = memory;
   const auto source = open_source(arguments.input, source_options);
   const NvdbFile file(arguments.volume);
-  release_pages(file.bytes());  // what its validation looked at
+  file.mapping().release_pages();  // what its validation looked at
 
   CompareOptions options;
   options.block_bytes = block_bytes(memory, source->working_bytes());
   options.cancel = &interrupt_flag();
-  options.release_pages = [&] { release_pages(file.bytes()); };
+  options.release_pages = [&] { file.mapping().release_pages(); };
   Progress progress(arguments.run.progress);
   progress.start("compare", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   options.progress = [&](std::uint64_t done) { progress.update(done); };

@@ -7,6 +7,7 @@
 
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
+#include "tests/ingest/vdb/openvdb_file.h"
 
 namespace weir {
 namespace {
@@ -19,6 +20,12 @@ std::string write_with_header(const Scratch& scratch, const std::string& name, c
   std::memcpy(bytes.data(), header.data(), header.size());
   for (std::size_t i = 0; i < 24; ++i) bytes[header.size() + i] = static_cast<std::byte>(i);
   return scratch.write(name, bytes);
+}
+
+test::OpenVdbGrid ramp_grid() {
+  test::OpenVdbGrid grid(test::GridKind::float32, "sample");
+  for (std::int64_t i = 0; i < 24; ++i) grid.set_on(index_at(i, kExtent), static_cast<double>(i));
+  return grid;
 }
 
 /// A file of each format, all with the values 0 ... 23 in 4 x 3 x 2 voxels.
@@ -43,6 +50,16 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
        put(108, {"\0\0\xB0\x43", 4});             // vox_offset 352
        put(344, {"n+1\0", 4});
        return write_with_header(scratch, "sample.nii", header);
+     }},
+    {"openvdb",
+     [](const Scratch& scratch) {
+       test::write_vdb(scratch.path("sample"), {ramp_grid()});
+       return scratch.path("sample");
+     }},
+    {"nanovdb",
+     [](const Scratch& scratch) {
+       test::write_nvdb(scratch.path("sample"), ramp_grid());
+       return scratch.path("sample");
      }},
     {"hdf5",
      [](const Scratch& scratch) {

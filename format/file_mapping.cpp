@@ -1,4 +1,4 @@
-#include "format/nvdb_file.h"
+#include "format/file_mapping.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "format/error.h"
+#include "format/text.h"
 
 namespace weir {
 namespace {
@@ -31,43 +32,31 @@ class Descriptor {
   throw Error(ErrorKind::input, io_error(path, action, errno_value).what());
 }
 
-std::span<const std::byte> map_file(const std::string& path) {
+}  // namespace
+
+FileMapping::FileMapping(const std::string& path, const std::string& suffix) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe must not block
   if (file.get() < 0) fail_input(path, "open", errno);
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail_input(path, "stat", errno);
   if (!S_ISREG(status.st_mode)) {
-    throw Error(ErrorKind::input, path + ": not a regular file; give a .nvdb file");
+    throw Error(ErrorKind::input, cat(path, ": not a regular file; give a ", suffix, " file"));
   }
-  if (status.st_size == 0) throw Error(ErrorKind::input, path + ": the file is empty; give a .nvdb file");
+  if (status.st_size == 0) throw Error(ErrorKind::input, cat(path, ": the file is empty; give a ", suffix, " file"));
   const auto bytes = static_cast<std::size_t>(status.st_size);
   void* address = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (address == MAP_FAILED) fail_input(path, "map", errno);
-  return {static_cast<const std::byte*>(address), bytes};
+  bytes_ = {static_cast<const std::byte*>(address), bytes};
 }
 
-void unmap(std::span<const std::byte> mapping) {
-  if (!mapping.empty()) ::munmap(const_cast<std::byte*>(mapping.data()), mapping.size());
+FileMapping::~FileMapping() {
+  if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
-// Validation may throw; the mapping must not outlive that.
-NvdbGrid open_mapped(std::span<const std::byte> mapping, const std::string& path) {
-  try {
-    return NvdbGrid::open(mapping, path);
-  } catch (...) {
-    unmap(mapping);
-    throw;
-  }
+FileMapping::FileMapping(FileMapping&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+
+void FileMapping::release_pages() const {
+  ::madvise(const_cast<std::byte*>(bytes_.data()), bytes_.size(), MADV_DONTNEED);
 }
-
-}  // namespace
-
-NvdbFile::NvdbFile(const std::string& path)
-    : path_(path), mapping_(map_file(path)), grid_(open_mapped(mapping_, path)) {}
-
-NvdbFile::~NvdbFile() { unmap(mapping_); }
-
-NvdbFile::NvdbFile(NvdbFile&& other) noexcept
-    : path_(std::move(other.path_)), mapping_(std::exchange(other.mapping_, {})), grid_(std::move(other.grid_)) {}
 
 }  // namespace weir

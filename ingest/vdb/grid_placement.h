@@ -1,0 +1,20 @@
+// Where a grid of either VDB format lies, in the words of a listing.
+#pragma once
+
+#include <array>
+
+#include "format/index.h"
+#include "ingest/axis_placement.h"
+#include "ingest/source_registry.h"
+
+namespace weir {
+
+/// Whether place_axes makes a spacing of these world steps: all finite, none zero.
+bool placeable(const std::array<Vector3, 3>& steps, const Vector3& first);
+
+/// Sets the extents, and says where the box begins; a grid without active voxels cannot be converted.
+void describe_box(const Box& active, DatasetInfo& info);
+/// Adds voxel size, origin and what of the transform is not kept.
+void describe_placement(const AxisPlacement& placement, DatasetInfo& info);
+
+}  // namespace weir

@@ -1,0 +1,37 @@
+// A volume kept as a sparse tree of 8^3 blocks: what OpenVDB and NanoVDB files
+// have in common.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "format/index.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+/// Reads blocks of one tree; for one thread, for it may remember where it was.
+class LeafReader {
+ public:
+  virtual ~LeafReader() = default;
+  /// The kLeafVoxels values, as stored, of the block at `origin` (multiples of kLeafDim), index x<<6 | y<<3 | z.
+  /// Where the tree has no leaf, that is the value of the tile there, or the background.
+  virtual void read(const Index3& origin, std::span<std::byte> values) = 0;
+};
+
+class LeafTree {
+ public:
+  virtual ~LeafTree() = default;
+  /// Readers of several threads may work at the same time; the tree outlives them.
+  virtual std::unique_ptr<LeafReader> reader() const = 0;
+  virtual bool in_memory() const = 0;               ///< as VolumeSource::in_memory
+  virtual std::uint64_t working_bytes() const = 0;  ///< as VolumeSource::working_bytes
+  virtual std::uint64_t bytes_read() const = 0;     ///< as VolumeSource::bytes_read
+};
+
+/// A source of `info`, all of whose fields the caller has filled in; `tree` holds values of info.type.
+std::unique_ptr<VolumeSource> make_leaf_source(std::unique_ptr<LeafTree> tree, SourceInfo info);
+
+}  // namespace weir

@@ -1,0 +1,136 @@
+#include "ingest/vdb/nvdb_source.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "format/error.h"
+#include "format/file_mapping.h"
+#include "format/nvdb_grid.h"
+#include "format/text.h"
+#include "ingest/axis_placement.h"
+#include "ingest/extent.h"
+#include "ingest/header_text.h"
+#include "ingest/input_file.h"
+#include "ingest/named_choice.h"
+#include "ingest/vdb/grid_placement.h"
+#include "ingest/vdb/nvdb_tree.h"
+
+namespace weir {
+namespace {
+
+std::array<Vector3, 3> steps_of(const NvdbGrid& grid) {
+  const auto m = grid.matrix();
+  return {{{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}}};
+}
+
+/// One of a file's grids; what stands in the way of opening it is in volume.obstacle.
+struct Candidate {
+  NamedVolume volume;
+  NvdbRecord record;
+  std::optional<NvdbGrid> grid;
+};
+
+Candidate open_candidate(const FileMapping& mapping, const std::string& path, const NvdbRecord& record) {
+  Candidate candidate{{nvdb_grid_name(mapping.bytes(), record), {}}, record, {}};
+  try {
+    candidate.grid = NvdbGrid::open(mapping.bytes(), path, record);
+    if (!placeable(steps_of(*candidate.grid), candidate.grid->world_origin())) {
+      candidate.volume.obstacle = "its map is not finite or has a voxel size of 0";
+    }
+  } catch (const Error& error) {
+    candidate.volume.obstacle = error.what();
+    const std::string prefix = path + ": ";
+    if (candidate.volume.obstacle.starts_with(prefix)) candidate.volume.obstacle.erase(0, prefix.size());
+  }
+  return candidate;
+}
+
+// Several grids of one name are numbered as OpenVDB's tools do it.
+void number_equal_names(std::vector<Candidate>& all) {
+  std::map<std::string, std::size_t> count;
+  for (const Candidate& candidate : all) ++count[candidate.volume.name];
+  std::map<std::string, std::size_t> next;
+  for (Candidate& candidate : all) {
+    std::string& name = candidate.volume.name;
+    if (count[name] > 1) name = cat(name, '[', next[name]++, ']');
+  }
+}
+
+std::vector<Candidate> candidates_of(const FileMapping& mapping, const std::string& path) {
+  std::vector<Candidate> all;
+  for (const NvdbRecord& record : all_nvdb_segments(mapping.bytes(), path)) {
+    all.push_back(open_candidate(mapping, path, record));
+  }
+  number_equal_names(all);
+  return all;
+}
+
+std::size_t choose(const std::vector<Candidate>& there, const std::string& path, const std::string& wanted) {
+  // The only grid of a file says itself what is wrong with it.
+  if (there.size() == 1 && wanted.empty() && !there[0].volume.obstacle.empty()) {
+    throw Error(ErrorKind::input, cat(path, ": ", there[0].volume.obstacle));
+  }
+  std::vector<NamedVolume> volumes;
+  for (const Candidate& candidate : there) volumes.push_back(candidate.volume);
+  return choose_volume(path, "grid", volumes, wanted);
+}
+
+}  // namespace
+
+bool recognises_nvdb(std::string_view path, std::span<const std::byte> head) {
+  const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
+  return begin.starts_with("NanoVDB") || lower_case(path).ends_with(".nvdb");
+}
+
+std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOptions& options) {
+  if (!options.index.empty()) {
+    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+  }
+  const InputFile file(path, DirectIo::off);
+  FileMapping mapping(path, ".nvdb");
+  auto candidates = candidates_of(mapping, path);
+  Candidate& chosen = candidates[choose(candidates, path, options.dataset)];
+  NvdbGrid grid = std::move(*chosen.grid);
+  const Box domain = grid.index_bbox();
+  const std::string where = cat(path, ": grid ", in_quotes(chosen.volume.name));
+  if (domain.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
+  checked_volume_bytes(domain.extent(), sizeof(float), where);
+
+  SourceInfo info;
+  info.path = path;
+  info.format = "nanovdb";
+  info.dataset = chosen.volume.name;
+  info.extent = domain.extent();
+  info.index_origin = domain.lo;
+  if (options.missing) info.mapping.missing.push_back(*options.missing);
+  const AxisPlacement placement = place_axes(steps_of(grid), grid.world_origin());
+  info.spacing = placement.spacing;
+  info.origin = placement.origin;
+  info.file_bytes = file.size();
+  info.mtime_ns = file.mtime_ns();
+  return make_leaf_source(make_nvdb_tree(std::move(mapping), std::move(grid), file.looks_cached()), std::move(info));
+}
+
+std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&) {
+  const FileMapping mapping(path, ".nvdb");
+  std::vector<DatasetInfo> list;
+  for (const Candidate& candidate : candidates_of(mapping, path)) {
+    DatasetInfo info;
+    info.name = candidate.volume.name;
+    info.obstacle = candidate.volume.obstacle;
+    info.layout = "NanoVDB grid";
+    if (candidate.grid) {
+      const NvdbGrid& grid = *candidate.grid;
+      info.type = grid_type_name(grid.type());
+      describe_box(grid.index_bbox(), info);
+      if (info.obstacle.empty()) describe_placement(place_axes(steps_of(grid), grid.world_origin()), info);
+      info.attributes.emplace_back("leaves", cat(grid.node_counts()[0]));
+      info.attributes.emplace_back("memory", format_bytes(grid.data_bytes()));
+    }
+    list.push_back(std::move(info));
+  }
+  return list;
+}
+
+}  // namespace weir

@@ -1,0 +1,150 @@
+#include "ingest/vdb/vdb_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "format/error.h"
+#include "format/process_memory.h"
+#include "format/text.h"
+#include "ingest/axis_placement.h"
+#include "ingest/extent.h"
+#include "ingest/file_stream.h"
+#include "ingest/header_text.h"
+#include "ingest/input_file.h"
+#include "ingest/named_choice.h"
+#include "ingest/vdb/grid_placement.h"
+#include "ingest/vdb/vdb_header.h"
+#include "ingest/vdb/vdb_topology.h"
+#include "ingest/vdb/vdb_tree.h"
+#include "ingest/vdb/vdb_type.h"
+
+namespace weir {
+namespace {
+
+/// What a small conversion takes besides the tree; a larger one says itself what it lacks.
+constexpr std::uint64_t kConversionBytes = std::uint64_t{64} << 20U;
+
+// The grid whose tree an instance shares, itself where it has its own; null where that is missing.
+const VdbGrid* tree_owner(const VdbHeader& header, const VdbGrid& grid) {
+  if (grid.parent.empty()) return &grid;
+  const auto found = std::find_if(header.grids.begin(), header.grids.end(), [&](const VdbGrid& other) {
+    return other.name == grid.parent && other.parent.empty() && other.tree == grid.tree;
+  });
+  return found == header.grids.end() ? nullptr : &*found;
+}
+
+std::string obstacle_of(const VdbHeader& header, const VdbGrid& grid) {
+  if (vdb_type(grid.tree) == nullptr) {
+    return cat("its type is ", in_quotes(grid.tree), ", and float, double, int32, int64, bool and mask trees of ",
+               "5_4_3 can be read");
+  }
+  if (!grid.linear) {
+    return cat("its transform is a ", in_quotes(grid.map), ", which has no voxel size; resample it to a linear one");
+  }
+  if (!placeable(grid.steps, grid.first)) return "its transform is not finite or has a voxel size of 0";
+  if (tree_owner(header, grid) == nullptr) {
+    return cat("it is an instance of ", in_quotes(grid.parent), ", which is not in the file");
+  }
+  return {};
+}
+
+std::vector<NamedVolume> named(const VdbHeader& header) {
+  std::vector<NamedVolume> volumes;
+  for (const VdbGrid& grid : header.grids) volumes.push_back({grid.name, obstacle_of(header, grid)});
+  return volumes;
+}
+
+std::string type_text(const VdbGrid& grid) {
+  const VdbType* const type = vdb_type(grid.tree);
+  if (type == nullptr) return grid.tree;
+  if (type->leaf == VdbLeaf::boolean) return "bool";
+  if (type->leaf == VdbLeaf::mask) return "mask";
+  return cat(scalar_name(type->scalar), grid.half && type->real ? " saved as float16" : "");
+}
+
+std::string compression_text(std::uint32_t flags) {
+  std::string text;
+  if ((flags & kVdbZip) != 0) text += ", zip";
+  if ((flags & kVdbBlosc) != 0) text += ", blosc";
+  if ((flags & kVdbActiveMask) != 0) text += ", active mask";
+  return text;
+}
+
+void require_memory(const std::string& where, std::uint64_t tree_bytes, const SourceOptions& options) {
+  const std::uint64_t resident = resident_bytes();
+  if (tree_bytes <= options.memory && resident + kConversionBytes <= options.memory - tree_bytes) return;
+  throw Error(ErrorKind::usage,
+              cat(where, ": its tree takes ", format_bytes(tree_bytes), " of memory, more than --memory ",
+                  format_bytes(options.memory), " leaves; give at least ",
+                  ((resident + kConversionBytes + tree_bytes) >> 20U) + 1, "MiB"));
+}
+
+}  // namespace
+
+bool recognises_vdb(std::string_view path, std::span<const std::byte> head) {
+  constexpr std::string_view kMagic(" BDV\0\0\0\0", 8);
+  const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
+  return begin.starts_with(kMagic) || lower_case(path).ends_with(".vdb");
+}
+
+std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOptions& options) {
+  if (!options.index.empty()) {
+    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+  }
+  InputFile file(path, DirectIo::off);
+  FileStream stream(file);
+  VdbReader reader(stream, file.size(), path);
+  const VdbHeader header = read_vdb_header(reader);
+  const VdbGrid& grid = header.grids[choose_volume(path, "grid", named(header), options.dataset)];
+  const VdbGrid& owner = *tree_owner(header, grid);
+  const VdbType& type = *vdb_type(owner.tree);
+  const VdbTopology topology = walk_vdb_tree(reader, owner, type);
+
+  const std::string where = cat(path, ": grid ", in_quotes(grid.name));
+  if (topology.active.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
+  checked_volume_bytes(topology.active.extent(), scalar_bytes(type.scalar), where);
+  require_memory(where, vdb_tree_bytes(type, topology), options);
+
+  SourceInfo info;
+  info.path = path;
+  info.format = "openvdb";
+  info.dataset = grid.name;
+  info.extent = topology.active.extent();
+  info.index_origin = topology.active.lo;
+  info.type = type.scalar;
+  if (options.missing) info.mapping.missing.push_back(*options.missing);
+  const AxisPlacement placement = place_axes(grid.steps, grid.first);
+  info.spacing = placement.spacing;
+  info.origin = placement.origin;
+  info.file_bytes = file.size();
+  info.mtime_ns = file.mtime_ns();
+  return make_leaf_source(load_vdb_tree(stream, header, owner, type, where), std::move(info));
+}
+
+std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&) {
+  InputFile file(path, DirectIo::off);
+  FileStream stream(file);
+  VdbReader reader(stream, file.size(), path);
+  const VdbHeader header = read_vdb_header(reader);
+  std::vector<DatasetInfo> list;
+  for (const VdbGrid& grid : header.grids) {
+    DatasetInfo info;
+    info.name = grid.name;
+    info.type = type_text(grid);
+    info.layout = cat("OpenVDB tree", compression_text(grid.compression));
+    info.obstacle = obstacle_of(header, grid);
+    if (!grid.grid_class.empty()) info.attributes.emplace_back("class", grid.grid_class);
+    if (info.obstacle.empty()) {
+      const VdbGrid& owner = *tree_owner(header, grid);
+      const VdbTopology topology = walk_vdb_tree(reader, owner, *vdb_type(owner.tree));
+      describe_box(topology.active, info);
+      describe_placement(place_axes(grid.steps, grid.first), info);
+      info.attributes.emplace_back("leaves", cat(topology.nodes[0]));
+      info.attributes.emplace_back("memory", format_bytes(vdb_tree_bytes(*vdb_type(owner.tree), topology)));
+    }
+    list.push_back(std::move(info));
+  }
+  return list;
+}
+
+}  // namespace weir

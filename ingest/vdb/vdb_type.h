@@ -1,0 +1,29 @@
+// The grid types of OpenVDB that weir reads.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "format/scalar_type.h"
+
+namespace weir {
+
+/// What a leaf holds behind its mask of active voxels.
+enum class VdbLeaf {
+  values,   ///< 512 values, perhaps compressed
+  boolean,  ///< one bit a voxel
+  mask      ///< nothing: a voxel's value is whether it is active
+};
+
+struct VdbType {
+  std::string_view tree;  ///< as the file names it
+  ScalarType scalar;      ///< how weir calls its values; uint8 0 and 1 for bool and mask
+  std::size_t bytes;      ///< of a value in tiles and unpacked leaves
+  VdbLeaf leaf;
+  bool real;  ///< may be saved as 16-bit floats
+};
+
+/// The type of trees called `name`; null where weir does not read them.
+const VdbType* vdb_type(std::string_view name);
+
+}  // namespace weir

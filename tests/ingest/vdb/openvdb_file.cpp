@@ -1,0 +1,194 @@
+#include "tests/ingest/vdb/openvdb_file.h"
+
+#include <nanovdb/util/IO.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <type_traits>
+
+namespace weir::test {
+namespace {
+
+openvdb::Coord coord(const Index3& i) { return {static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z)}; }
+
+template <typename Value>
+Value convert(double value) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return std::fmod(std::floor(value), 2.0) == 0;
+  } else {
+    return static_cast<Value>(value);
+  }
+}
+
+}  // namespace
+
+struct OpenVdbGrid::Implementation {
+  openvdb::GridBase::Ptr grid;
+  std::function<void(const openvdb::Coord&, double)> set_on;
+  std::function<void(const openvdb::Coord&, double)> set_off;
+  std::function<void(openvdb::Index, const openvdb::Coord&, double, bool)> tile;
+  std::function<double(const openvdb::Coord&)> value;
+
+  template <typename Grid>
+  void use() {
+    using Value = typename Grid::ValueType;
+    auto typed = Grid::create(convert<Value>(2));
+    grid = typed;
+    typename Grid::TreeType& tree = typed->tree();
+    set_on = [&tree](const openvdb::Coord& at, double v) {
+      if constexpr (std::is_same_v<Grid, openvdb::MaskGrid>) {
+        if (convert<bool>(v)) tree.setValueOn(at);
+      } else {
+        tree.setValueOn(at, convert<Value>(v));
+      }
+    };
+    set_off = [&tree](const openvdb::Coord& at, double v) { tree.setValueOff(at, convert<Value>(v)); };
+    tile = [&tree](openvdb::Index level, const openvdb::Coord& at, double v, bool active) {
+      tree.addTile(level, at, convert<Value>(v), active);
+    };
+    value = [&tree](const openvdb::Coord& at) { return static_cast<double>(tree.getValue(at)); };
+  }
+};
+
+OpenVdbGrid::OpenVdbGrid(GridKind kind, const std::string& name) : implementation_(std::make_shared<Implementation>()) {
+  openvdb::initialize();
+  switch (kind) {
+    case GridKind::float32:
+      implementation_->use<openvdb::FloatGrid>();
+      break;
+    case GridKind::float64:
+      implementation_->use<openvdb::DoubleGrid>();
+      break;
+    case GridKind::int32:
+      implementation_->use<openvdb::Int32Grid>();
+      break;
+    case GridKind::int64:
+      implementation_->use<openvdb::Int64Grid>();
+      break;
+    case GridKind::boolean:
+      implementation_->use<openvdb::BoolGrid>();
+      break;
+    case GridKind::mask:
+      implementation_->use<openvdb::MaskGrid>();
+      break;
+    case GridKind::vec3:
+      implementation_->grid = openvdb::Vec3fGrid::create(openvdb::Vec3f(0, 0, 1));
+      break;
+  }
+  implementation_->grid->setName(name);
+}
+
+OpenVdbGrid& OpenVdbGrid::fill(const Box& box, double scale) {
+  for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+        implementation_->set_on(coord({x, y, z}), scale * (static_cast<double>(x + 3 * y - 7 * z) + 0.125));
+      }
+    }
+  }
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::set_on(const Index3& i, double value) {
+  implementation_->set_on(coord(i), value);
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::set_off(const Index3& i, double value) {
+  implementation_->set_off(coord(i), value);
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::tile(unsigned level, const Index3& origin, double value, bool active) {
+  implementation_->tile(level, coord(origin), value, active);
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::save_as_half() {
+  implementation_->grid->setSaveFloatAsHalf(true);
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::place(const std::array<double, 3>& scale, const std::array<double, 3>& translate) {
+  using namespace openvdb::math;
+  const Vec3d s(scale[0], scale[1], scale[2]);
+  const Vec3d t(translate[0], translate[1], translate[2]);
+  implementation_->grid->setTransform(Transform::Ptr(new Transform(MapBase::Ptr(new ScaleTranslateMap(s, t)))));
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::rotate(double radians) {
+  implementation_->grid->transform().postRotate(radians, openvdb::math::Z_AXIS);
+  return *this;
+}
+
+OpenVdbGrid& OpenVdbGrid::frustum() {
+  const openvdb::BBoxd box(openvdb::Vec3d(0), openvdb::Vec3d(10));
+  implementation_->grid->setTransform(openvdb::math::Transform::createFrustumTransform(box, 0.5, 10));
+  return *this;
+}
+
+OpenVdbGrid OpenVdbGrid::instance(const std::string& name) const {
+  OpenVdbGrid copy;
+  copy.implementation_ = std::make_shared<Implementation>(*implementation_);
+  copy.implementation_->grid = implementation_->grid->copyGrid();  // shares the tree
+  copy.implementation_->grid->setName(name);
+  return copy;
+}
+
+double OpenVdbGrid::value(const Index3& i) const { return implementation_->value(coord(i)); }
+
+Box OpenVdbGrid::active() const {
+  const openvdb::CoordBBox b = implementation_->grid->evalActiveVoxelBoundingBox();
+  const auto index = [](const openvdb::Coord& c) { return Index3{c.x(), c.y(), c.z()}; };
+  return {index(b.min()), index(b.max()) + Index3{1, 1, 1}};
+}
+
+std::uint64_t OpenVdbGrid::memory_bytes() const { return implementation_->grid->memUsage(); }
+
+void write_vdb(const std::string& path, const std::vector<OpenVdbGrid>& grids, Compression compression,
+               bool as_stream) {
+  using namespace openvdb::io;
+  const auto flags = [&]() -> std::uint32_t {
+    switch (compression) {
+      case Compression::none:
+        return COMPRESS_NONE;
+      case Compression::active_mask:
+        return COMPRESS_ACTIVE_MASK;
+      case Compression::zip:
+        return COMPRESS_ZIP;
+      case Compression::zip_active_mask:
+        return COMPRESS_ZIP | COMPRESS_ACTIVE_MASK;
+      case Compression::blosc:
+        return COMPRESS_BLOSC;
+      case Compression::blosc_active_mask:
+        return COMPRESS_BLOSC | COMPRESS_ACTIVE_MASK;
+    }
+    throw std::logic_error("unknown compression");
+  }();
+  openvdb::GridCPtrVec written;
+  for (const OpenVdbGrid& grid : grids) written.push_back(grid.implementation().grid);
+  if (as_stream) {
+    std::ofstream out(path, std::ios::binary);
+    Stream stream(out);
+    stream.setCompression(flags);
+    stream.write(written);
+    return;
+  }
+  File file(path);
+  file.setCompression(flags);
+  file.write(written);
+  file.close();
+}
+
+void write_nvdb(const std::string& path, const OpenVdbGrid& grid) {
+  const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid.implementation().grid);
+  nanovdb::io::writeGrid(path, nanovdb::openToNanoVDB(*typed));
+}
+
+}  // namespace weir::test
