@@ -9,10 +9,9 @@
 #include "format/text.h"
 
 namespace weir {
-namespace {
 
-// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as: 2.3 in binary is a
-// little less than 2.3, and 92 bytes would become 41. In integers, because dense_bytes may exceed 2^53.
+// 2.3 in binary is a little less than 2.3, and 92 bytes would become 41. In integers, because dense_bytes may
+// exceed 2^53.
 std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
   std::array<char, 32> text{};
   std::to_chars(text.data(), text.data() + text.size(), rate, std::chars_format::scientific);  // "2.3e+00"
@@ -40,8 +39,6 @@ std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
   }
   return quotient + (remainder > 0 ? 1 : 0);
 }
-
-}  // namespace
 
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const SelectionBytes& bytes,
                        const std::string& path) {

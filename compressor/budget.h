@@ -27,6 +27,9 @@ struct FileSize {
   std::string notice;  ///< one line for the user where the size is not what was asked, or pads a lot; may be empty
 };
 
+/// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as.
+std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate);
+
 /// Exact file size for a budget. Throws Error(budget) naming the minimum where it is below that.
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_float32_bytes, const SelectionBytes& bytes,
                        const std::string& path);

@@ -17,6 +17,7 @@
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/conversion_options.h"
+#include "tools/given_options.h"
 #include "tools/input_options.h"
 #include "tools/progress.h"
 #include "tools/run_options.h"
@@ -37,18 +38,6 @@ struct ConvertArguments {
 };
 
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
-// Every option that was given, by its long name: the sidecar's weir.options.
-std::map<std::string, std::string> given_options(const CLI::App& command) {
-  std::map<std::string, std::string> given;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0 || option->get_lnames().empty()) continue;
-    const std::string& name = option->get_lnames().front();
-    if (name == "help" || name == "json" || name == "progress" || name == "log-level") continue;
-    given[name] = option->get_expected_max() == 0 ? "true" : option->results().back();
-  }
-  return given;
-}
 
 void report(const Sidecar& s, const std::string& output) {
   const std::string error =

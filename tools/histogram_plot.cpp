@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/text.h"
+#include "tools/plot_axis.h"
 #include "tools/plot_canvas.h"
 
 namespace weir {
@@ -23,6 +24,7 @@ constexpr std::int32_t kLeft = 48;
 constexpr std::int32_t kRight = 24;
 constexpr std::int32_t kTop = 24;
 constexpr std::int32_t kBottom = 40;
+constexpr int kMostSteps = 6;  // of the ticks along x
 constexpr Float3 kPaper{1, 1, 1};
 constexpr Float3 kInk{0.05F, 0.05F, 0.05F};
 constexpr Float3 kGridLine{0.78F, 0.78F, 0.78F};
@@ -62,15 +64,6 @@ Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
 // 0 for no voxel, above 0 for one, 1 for `most`.
 double log_height(std::uint64_t count, std::uint64_t most) {
   return std::log10(1.0 + static_cast<double>(count)) / std::log10(1.0 + static_cast<double>(most));
-}
-
-// 1, 2 or 5 times a power of ten, so that at most six ticks fit the range.
-double tick_step(double range) {
-  const double power = std::pow(10.0, std::floor(std::log10(range / 6)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (range / (factor * power) <= 6) return factor * power;
-  }
-  return 10 * power;
 }
 
 std::string padded(const std::string& label) {
@@ -146,7 +139,7 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
     canvas.text(std::clamp(x - width / 2, 0, kWidth - width), kFloor + 8, label, kInk);
   };
   if (range > 0 && std::isfinite(range)) {
-    const double step = tick_step(range);
+    const double step = tick_step(range, kMostSteps);
     const double first = std::ceil(shown.min / step);
     for (int i = 0; i < 8 && (first + i) * step <= shown.max; ++i) tick((first + i) * step, cat((first + i) * step));
   } else {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace weir {
@@ -11,9 +12,10 @@ namespace {
 struct Glyph {
   char character;
   std::array<const char*, 7> rows;
+  std::int32_t drop = 0;  // rows below the line that others begin on
 };
 
-constexpr std::array<Glyph, 44> kFont{{
+constexpr std::array<Glyph, 72> kFont{{
     {'0', {".###.", "#...#", "#..##", "#.#.#", "##..#", "#...#", ".###."}},
     {'1', {"..#..", ".##..", "..#..", "..#..", "..#..", "..#..", ".###."}},
     {'2', {".###.", "#...#", "....#", "...#.", "..#..", ".#...", "#####"}},
@@ -38,7 +40,7 @@ constexpr std::array<Glyph, 44> kFont{{
     {'d', {"....#", "....#", ".####", "#...#", "#...#", "#...#", ".####"}},
     {'e', {".....", ".....", ".###.", "#...#", "#####", "#....", ".###."}},
     {'f', {"..##.", ".#...", "####.", ".#...", ".#...", ".#...", ".#..."}},
-    {'g', {".....", ".####", "#...#", "#...#", ".####", "....#", ".###."}},
+    {'g', {".####", "#...#", "#...#", "#...#", ".####", "....#", ".###."}, 2},
     {'h', {"#....", "#....", "####.", "#...#", "#...#", "#...#", "#...#"}},
     {'i', {"..#..", ".....", ".##..", "..#..", "..#..", "..#..", ".###."}},
     {'j', {"...#.", ".....", "..##.", "...#.", "...#.", "#..#.", ".##.."}},
@@ -47,8 +49,8 @@ constexpr std::array<Glyph, 44> kFont{{
     {'m', {".....", ".....", "##.#.", "#.#.#", "#.#.#", "#.#.#", "#.#.#"}},
     {'n', {".....", ".....", "####.", "#...#", "#...#", "#...#", "#...#"}},
     {'o', {".....", ".....", ".###.", "#...#", "#...#", "#...#", ".###."}},
-    {'p', {".....", "####.", "#...#", "#...#", "####.", "#....", "#...."}},
-    {'q', {".....", ".####", "#...#", "#...#", ".####", "....#", "....#"}},
+    {'p', {"####.", "#...#", "#...#", "#...#", "####.", "#....", "#...."}, 2},
+    {'q', {".####", "#...#", "#...#", "#...#", ".####", "....#", "....#"}, 2},
     {'r', {".....", ".....", "#.##.", "##...", "#....", "#....", "#...."}},
     {'s', {".....", ".....", ".####", "#....", ".###.", "....#", "####."}},
     {'t', {".#...", ".#...", "####.", ".#...", ".#...", ".#...", "..##."}},
@@ -56,8 +58,36 @@ constexpr std::array<Glyph, 44> kFont{{
     {'v', {".....", ".....", "#...#", "#...#", "#...#", ".#.#.", "..#.."}},
     {'w', {".....", ".....", "#.#.#", "#.#.#", "#.#.#", "#.#.#", ".#.#."}},
     {'x', {".....", ".....", "#...#", ".#.#.", "..#..", ".#.#.", "#...#"}},
-    {'y', {".....", "#...#", "#...#", "#...#", ".####", "....#", ".###."}},
+    {'y', {"#...#", "#...#", "#...#", "#...#", ".####", "....#", ".###."}, 2},
     {'z', {".....", ".....", "#####", "...#.", "..#..", ".#...", "#####"}},
+    {'A', {".###.", "#...#", "#...#", "#####", "#...#", "#...#", "#...#"}},
+    {'B', {"####.", "#...#", "#...#", "####.", "#...#", "#...#", "####."}},
+    {'C', {".###.", "#...#", "#....", "#....", "#....", "#...#", ".###."}},
+    {'D', {"####.", "#...#", "#...#", "#...#", "#...#", "#...#", "####."}},
+    {'E', {"#####", "#....", "#....", "####.", "#....", "#....", "#####"}},
+    {'F', {"#####", "#....", "#....", "####.", "#....", "#....", "#...."}},
+    {'G', {".###.", "#...#", "#....", "#.###", "#...#", "#...#", ".###."}},
+    {'H', {"#...#", "#...#", "#...#", "#####", "#...#", "#...#", "#...#"}},
+    {'I', {".###.", "..#..", "..#..", "..#..", "..#..", "..#..", ".###."}},
+    {'J', {"..###", "...#.", "...#.", "...#.", "...#.", "#..#.", ".##.."}},
+    {'K', {"#...#", "#..#.", "#.#..", "##...", "#.#..", "#..#.", "#...#"}},
+    {'L', {"#....", "#....", "#....", "#....", "#....", "#....", "#####"}},
+    {'M', {"#...#", "##.##", "#.#.#", "#.#.#", "#...#", "#...#", "#...#"}},
+    {'N', {"#...#", "##..#", "#.#.#", "#..##", "#...#", "#...#", "#...#"}},
+    {'O', {".###.", "#...#", "#...#", "#...#", "#...#", "#...#", ".###."}},
+    {'P', {"####.", "#...#", "#...#", "####.", "#....", "#....", "#...."}},
+    {'Q', {".###.", "#...#", "#...#", "#...#", "#.#.#", "#..#.", ".##.#"}},
+    {'R', {"####.", "#...#", "#...#", "####.", "#.#..", "#..#.", "#...#"}},
+    {'S', {".####", "#....", "#....", ".###.", "....#", "....#", "####."}},
+    {'T', {"#####", "..#..", "..#..", "..#..", "..#..", "..#..", "..#.."}},
+    {'U', {"#...#", "#...#", "#...#", "#...#", "#...#", "#...#", ".###."}},
+    {'V', {"#...#", "#...#", "#...#", "#...#", "#...#", ".#.#.", "..#.."}},
+    {'W', {"#...#", "#...#", "#...#", "#.#.#", "#.#.#", "##.##", "#...#"}},
+    {'X', {"#...#", "#...#", ".#.#.", "..#..", ".#.#.", "#...#", "#...#"}},
+    {'Y', {"#...#", "#...#", ".#.#.", "..#..", "..#..", "..#..", "..#.."}},
+    {'Z', {"#####", "....#", "...#.", "..#..", ".#...", "#....", "#####"}},
+    {'_', {".....", ".....", ".....", ".....", ".....", ".....", "#####"}},
+    {':', {".....", ".##..", ".##..", ".....", ".##..", ".##..", "....."}},
 }};
 
 }  // namespace
@@ -72,24 +102,48 @@ void PlotCanvas::fill(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::in
   }
 }
 
-void PlotCanvas::text(std::int32_t x, std::int32_t y, std::string_view text, const Float3& ink) {
+void PlotCanvas::line(const PlotPoint& from, const PlotPoint& to, float width, const Float3& ink) {
+  const float dx = to.x - from.x;
+  const float dy = to.y - from.y;
+  const float squared_length = dx * dx + dy * dy;
+  const float reach = width / 2 + 1;
+  const auto first = [&](float a, float b) { return std::max(0, static_cast<std::int32_t>(std::min(a, b) - reach)); };
+  const auto last = [&](float a, float b, std::int32_t size) {
+    return std::min(size - 1, static_cast<std::int32_t>(std::max(a, b) + reach));
+  };
+  for (std::int32_t y = first(from.y, to.y); y <= last(from.y, to.y, image_.height); ++y) {
+    for (std::int32_t x = first(from.x, to.x); x <= last(from.x, to.x, image_.width); ++x) {
+      // From the pixel's centre to the nearest point of the line.
+      const float px = static_cast<float>(x) + 0.5F - from.x;
+      const float py = static_cast<float>(y) + 0.5F - from.y;
+      const float along = squared_length > 0 ? std::clamp((px * dx + py * dy) / squared_length, 0.0F, 1.0F) : 0.0F;
+      const float distance = std::hypot(px - along * dx, py - along * dy);
+      const float coverage = std::clamp(width / 2 + 0.5F - distance, 0.0F, 1.0F);
+      Float3& pixel = image_.pixels[image_.index(x, y)];
+      pixel = pixel * (1 - coverage) + ink * coverage;
+    }
+  }
+}
+
+void PlotCanvas::text(std::int32_t x, std::int32_t y, std::string_view text, const Float3& ink, std::int32_t scale) {
   for (const char c : text) {
     const auto glyph = std::find_if(kFont.begin(), kFont.end(), [c](const Glyph& g) { return g.character == c; });
     if (glyph != kFont.end()) {
       for (std::int32_t row = 0; row < 7; ++row) {
         for (std::int32_t column = 0; column < 5; ++column) {
-          if (glyph->rows[static_cast<std::size_t>(row)][column] == '#') {
-            fill(x + column, y + row, x + column + 1, y + row + 1, ink);
-          }
+          if (glyph->rows[static_cast<std::size_t>(row)][column] != '#') continue;
+          const std::int32_t left = x + column * scale;
+          const std::int32_t top = y + (row + glyph->drop) * scale;
+          fill(left, top, left + scale, top + scale, ink);
         }
       }
     }
-    x += kGlyphWidth;
+    x += kGlyphWidth * scale;
   }
 }
 
-std::int32_t PlotCanvas::text_width(std::string_view text) {
-  return static_cast<std::int32_t>(text.size()) * kGlyphWidth - 1;
+std::int32_t PlotCanvas::text_width(std::string_view text, std::int32_t scale) {
+  return (static_cast<std::int32_t>(text.size()) * kGlyphWidth - 1) * scale;
 }
 
 }  // namespace weir

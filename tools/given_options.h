@@ -1,0 +1,13 @@
+// What a command line said, for the sidecar's weir.options.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+namespace weir {
+
+/// Every option of `command` that was given and has a say in what is written, by its long name; a flag is "true".
+std::map<std::string, std::string> given_options(const CLI::App& command);
+
+}  // namespace weir
