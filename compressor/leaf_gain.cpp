@@ -47,12 +47,13 @@ LeafWidth widest(const LeafRow& row) {
   return width;
 }
 
-// Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`.
-void add_hull(const LeafRow& row, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
+// Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`; error_at(width).
+template <typename ErrorAt>
+void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
   while (from != last) {
     LeafStep best;
     for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
-      const LeafStep step = step_to(width_of(log2), from, error - quantised_error(row, width_of(log2)));
+      const LeafStep step = step_to(width_of(log2), from, error - error_at(width_of(log2)));
       if (step.gain > 0 && step.key > best.key) best = step;
     }
     if (best.width == LeafWidth::tile) return;
@@ -64,17 +65,24 @@ void add_hull(const LeafRow& row, LeafWidth from, double error, LeafWidth last, 
 
 }  // namespace
 
-double quantised_error(const LeafRow& row, LeafWidth width) {
+double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
   if (width == LeafWidth::float32) return 0;
   const unsigned log2 = bits_log2_of(width);
   const unsigned bits = 1U << log2;
-  if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
-  if (log2 < row.quantised.size()) return row.sse * static_cast<double>(row.quantised[log2]);
-  const auto quantum = static_cast<double>(range_quantiser({row.min, row.max, row.mean}, bits).quantum);
+  const bool all_finite = row.finite == voxels;
+  if (all_finite) {
+    if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
+    if (log2 < row.quantised.size()) return row.sse * static_cast<double>(row.quantised[log2]);
+  }
+  // The survey did not know what would take the place of NaN: it may lie far from the other values.
+  const float low = all_finite ? row.min : std::min(row.min, background);
+  const float high = all_finite ? row.max : std::max(row.max, background);
+  const auto quantum = static_cast<double>(range_quantiser({low, high, row.mean}, bits).quantum);
   if (!(quantum > 0)) return row.sse;  // float holds one level only
   // Errors uniform over a quantum, q^2 / 12 a value; the ends of the range are levels. Sparse data has most of its
   // values there: without them 8 bits would seem bad enough for 16 to be bought.
-  return std::min(row.sse, (row.finite - row.at_ends) * quantum * quantum / 12);
+  const int between = all_finite ? row.finite - row.at_ends : row.finite;
+  return std::min(row.sse, between * quantum * quantum / 12);
 }
 
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {
@@ -86,6 +94,7 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, Le
   leaf.lossless = leaf.exact;
   if (leaf.exact && !leaf.required) return;
   const double error = leaf.exact ? 0 : row.sse_about(tile);
+  const auto error_at = [&](LeafWidth width) { return quantised_error(row, voxels, fill.background, width); };
   switch (encoding) {
     case Encoding::automatic:
     case Encoding::float32:
@@ -97,7 +106,7 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, Le
       const LeafWidth width = encoding == Encoding::fp4   ? LeafWidth::bits4
                               : encoding == Encoding::fp8 ? LeafWidth::bits8
                                                           : LeafWidth::bits16;
-      const double gain = std::max(0.0, error - quantised_error(row, width));
+      const double gain = std::max(0.0, error - error_at(width));
       if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, width)) {
         leaf.add(step_to(width, LeafWidth::tile, gain));
       }
@@ -109,10 +118,10 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, Le
       double left = error;
       if (leaf.required) {
         from = LeafWidth::bits1;
-        left = std::min(error, quantised_error(row, from));
+        left = std::min(error, error_at(from));
         leaf.add(step_to(from, LeafWidth::tile, error - left));
       }
-      add_hull(row, from, left, last, leaf);
+      add_hull(error_at, from, left, last, leaf);
       // Saves nothing that can be measured, but without it not every bit is kept.
       const LeafWidth reached = leaf.step_count > 0 ? leaf.steps[leaf.step_count - 1].width : LeafWidth::tile;
       if (!leaf.exact && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));

@@ -57,9 +57,9 @@ struct GainRule {
   void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
 };
 
-/// Squared error over the finite values of a leaf kept at `width`: exact for float32 and where `exact_bits`
-/// says so, else an estimate.
-double quantised_error(const LeafRow& row, LeafWidth width);
+/// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
+/// by `background`: exact for float32 and where `exact_bits` says so, else an estimate.
+double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
 /// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit.
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width);
 

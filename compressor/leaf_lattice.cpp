@@ -51,7 +51,6 @@ std::optional<LeafLattice> find_lattice(std::span<const float> values, float min
   const auto lowest = static_cast<std::int32_t>(std::ldexp(min, -exponent));
   const auto highest = static_cast<std::int32_t>(std::ldexp(max, -exponent));
   const std::int32_t range = highest - lowest;
-  if (range >= 1 << 24) return std::nullopt;  // code * step would round
   std::int32_t step = range;
   for (const std::int32_t value : used) {
     const std::int32_t above = value - lowest;
@@ -60,6 +59,8 @@ std::optional<LeafLattice> find_lattice(std::span<const float> values, float min
     if (step == 1) break;
   }
   if (range / step > static_cast<std::int32_t>(kLargestCode)) return std::nullopt;
+  // code * step is a multiple of the power of two in step: beyond 2^24 of those it would round.
+  if (range / (step & -step) >= 1 << 24) return std::nullopt;
   return LeafLattice{std::ldexp(static_cast<float>(step), exponent), static_cast<std::uint32_t>(range / step)};
 }
 

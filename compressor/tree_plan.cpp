@@ -38,8 +38,9 @@ double add_leaves(const TreeRegions& tree, const Fill& fill, const LeafChoices& 
     const LeafWidth width = choices.width(tree.mask_position(leaf));
     if (width != LeafWidth::tile) {
       ++tally.leaves_by_width[bits_log2_of(width)];
-      expected.add(quantised_error(row, width));
-      tally.leaves_exact = tally.leaves_exact && keeps_every_bit(row, tree.leaves.voxels(leaf).voxels(), width);
+      const std::int64_t voxels = tree.leaves.voxels(leaf).voxels();
+      expected.add(quantised_error(row, voxels, fill.background, width));
+      tally.leaves_exact = tally.leaves_exact && keeps_every_bit(row, voxels, width);
       return;
     }
     const float value = fill.leaf_value(row);

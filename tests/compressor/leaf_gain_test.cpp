@@ -177,10 +177,24 @@ TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {
       EXPECT_EQ(row.at_ends, 513 - anywhere);
       for (const LeafWidth width : {LeafWidth::bits8, LeafWidth::bits16}) {
         const double error = fitted_error(values, row, width);
-        EXPECT_NEAR(quantised_error(row, width), error, error * 0.35) << anywhere;
+        EXPECT_NEAR(quantised_error(row, 512, 0, width), error, error * 0.35) << anywhere;
       }
     }
   }
+}
+
+TEST(LeafGain, WhatReplacesNaNWidensTheRangeOfALeaf) {
+  std::vector<float> values(500);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 16);
+  std::vector<float> with_nan = values;
+  with_nan.resize(512, kNaN);
+  LeafRow row = summarize_leaf(with_nan, 0);
+  summarize_widths(values, false, row);
+  // Sixteen values are exact at 4 bits, but not with 1000 beside them.
+  EXPECT_EQ(quantised_error(row, 500, 1000, LeafWidth::bits4), 0);
+  const double quantum = static_cast<double>(1000.0F / 65535.0F);
+  EXPECT_EQ(quantised_error(row, 512, 1000, LeafWidth::bits16), 500 * quantum * quantum / 12);
+  EXPECT_EQ(quantised_error(row, 512, 1000, LeafWidth::bits1), row.sse);
 }
 
 TEST(LeafGain, WidthsThatFloatCannotHoldGainNothing) {
@@ -188,8 +202,8 @@ TEST(LeafGain, WidthsThatFloatCannotHoldGainNothing) {
     std::vector<float> values(512, -most);
     for (std::size_t i = 0; i < 512; i += 3) values[i] = most / static_cast<float>(1 + i);
     const LeafRow row = summarized(values);
-    for (unsigned log2 = 0; log2 < 5; ++log2) EXPECT_EQ(quantised_error(row, width_of(log2)), row.sse);
-    EXPECT_EQ(quantised_error(row, LeafWidth::float32), 0);
+    for (unsigned log2 = 0; log2 < 5; ++log2) EXPECT_EQ(quantised_error(row, 512, 0, width_of(log2)), row.sse);
+    EXPECT_EQ(quantised_error(row, 512, 0, LeafWidth::float32), 0);
   }
 }
 

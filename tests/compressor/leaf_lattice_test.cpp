@@ -40,6 +40,10 @@ TEST(LeafLattice, WholeNumbers) {
   expect({7, 7, 10, 16}, 3, 3);
   expect({16777215, 16777000}, 215, 1);
   expect({-16777215, -16777214}, 1, 1);
+  expect({-100, -99, 156}, 1, 256);  // a range beyond the largest magnitude
+  expect({-2000, 1, 3000, 2999}, 1, 5000);
+  expect({-16777215, 16777215}, 33554430, 1);
+  EXPECT_FALSE(lattice_of({-16777215, 16777214}));  // their difference is odd and above 2^24
   EXPECT_FALSE(lattice_of({0, 1, 65536}));
 }
 
