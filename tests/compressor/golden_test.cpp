@@ -26,6 +26,7 @@ struct Golden {
   FillMode fill;
   NonFinitePolicy non_finite;
   const char* digest;
+  Encoding encoding = Encoding::float32;
 };
 
 std::string name_of(const ::testing::TestParamInfo<Golden>& info) {
@@ -58,6 +59,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
     options.output = directory_ / "out.nvdb";
     options.overwrite = true;
     options.budget = golden.budget;
+    options.encoding = golden.encoding;
     options.metric = golden.metric;
     options.fill = golden.fill;
     options.non_finite = golden.non_finite;
@@ -78,7 +80,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
 
 TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
   const std::string expected = GetParam().digest;
-  for (const std::size_t threads : {1, 2, 7}) {
+  for (const std::size_t threads : {1, 2, 3, 4, 7}) {
     EXPECT_EQ(convert(threads, 256 * kMiB, DirectIo::automatic), expected) << threads << " threads";
   }
   EXPECT_EQ(convert(2, 3072 * kMiB, DirectIo::automatic), expected);
@@ -145,7 +147,47 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::mean,
                                                   NonFinitePolicy::error,
-                                                  "02f48b189bdd0a7f62ee1fbe788a667b"}),
+                                                  "02f48b189bdd0a7f62ee1fbe788a667b"},
+                                           Golden{"cloud",
+                                                  {300, 200, 150},
+                                                  kRate8,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "d783409274bb353f055d65e42b6a8571",
+                                                  Encoding::automatic},
+                                           Golden{"turbulence",
+                                                  {131, 140, 135},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "b4094d53f20765e8314c81204034ded9",
+                                                  Encoding::fpn},
+                                           Golden{"some-nan",
+                                                  {100, 100, 100},
+                                                  kOdd,
+                                                  Metric::sse,
+                                                  FillMode::background,
+                                                  NonFinitePolicy::background,
+                                                  "1c56db2845b711fdf78fe4f6fd8951a5",
+                                                  Encoding::fpn},
+                                           Golden{"offset",
+                                                  {100, 101, 102},
+                                                  kLossless,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "6687003b90dd97a522c4ad4de17f7a9b",
+                                                  Encoding::automatic},
+                                           Golden{"noise",
+                                                  {131, 140, 17},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "4e87f4554bfca443e6631ae4ec8253be",
+                                                  Encoding::fp4}),
                          name_of);
 
 }  // namespace

@@ -1,16 +1,21 @@
 // The statistics of 2^30 voxels against integer arithmetic: sums of a billion
 // squares must not drift. The volume has a closed form and is never stored; only
-// its 7063 different leaves are summed value by value.
+// its 7063 different leaves are summed value by value, and quantised.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <string>
 #include <vector>
 
 #include "compressor/certificate.h"
+#include "compressor/leaf_record.h"
 #include "compressor/leaf_summary.h"
+#include "compressor/quantised_leaf.h"
 #include "compressor/selection.h"
 #include "compressor/tree_plan.h"
+#include "compressor/tree_writer.h"
 #include "tests/compressor/memory_file_system.h"
 
 namespace weir {
@@ -58,28 +63,47 @@ Exact exact_leaf(std::int64_t leaf) {
   return exact;
 }
 
-TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
-  const Box domain{{0, 0, 0}, {1024, 1024, 1024}};
-  TreeRegions tree(domain);
-  RowStore rows(test::MemoryFileSystem().create_unnamed("rows"), tree.leaves, 8);
-  std::vector<LeafRow> kinds(kBases * kPatterns);
-  std::vector<Exact> exact(kinds.size());
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    std::array<float, 512> values;
-    for (std::size_t j = 0; j < 512; ++j) {
-      values[j] =
-          static_cast<float>(scaled_value(static_cast<std::int64_t>(kind), static_cast<std::int64_t>(j))) / kScale;
+constexpr std::size_t kKinds = kBases * kPatterns;
+std::size_t kind_of(std::int64_t leaf) { return static_cast<std::size_t>(leaf) % kKinds; }
+
+LeafValues values_of(std::size_t kind) {
+  LeafValues values;
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    values[j] =
+        static_cast<float>(scaled_value(static_cast<std::int64_t>(kind), static_cast<std::int64_t>(j))) / kScale;
+  }
+  return values;
+}
+
+constexpr Box kDomain{{0, 0, 0}, {1024, 1024, 1024}};
+
+// The volume, surveyed.
+struct Billion {
+  Billion() : tree(kDomain), rows(test::MemoryFileSystem().create_unnamed("rows"), tree.leaves, 8), kinds(kKinds) {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+      const LeafValues values = values_of(kind);
+      kinds[kind] = summarize_leaf(values, 0);
+      summarize_widths(values, true, kinds[kind]);
     }
-    kinds[kind] = summarize_leaf(values, 0);
-    exact[kind] = exact_leaf(static_cast<std::int64_t>(kind));
+    // Leaf i is of kind i % kKinds: whole runs of kinds.
+    for (std::int64_t first = 0; first < tree.leaves.size(); first += std::ssize(kinds)) {
+      const auto count = std::min<std::int64_t>(std::ssize(kinds), tree.leaves.size() - first);
+      rows.write(first, std::span(kinds).first(static_cast<std::size_t>(count)));
+    }
   }
-  const auto kind_of = [&](std::int64_t leaf) { return static_cast<std::size_t>(leaf) % kinds.size(); };
-  std::vector<LeafRow> run(kinds.size());
-  for (std::int64_t first = 0; first < tree.leaves.size(); first += static_cast<std::int64_t>(run.size())) {
-    const auto count = std::min<std::int64_t>(std::ssize(run), tree.leaves.size() - first);
-    for (std::int64_t i = 0; i < count; ++i) run[static_cast<std::size_t>(i)] = kinds[kind_of(first + i)];
-    rows.write(first, std::span(run).first(static_cast<std::size_t>(count)));
-  }
+
+  TreeRegions tree;
+  RowStore rows;
+  std::vector<LeafRow> kinds;
+};
+
+TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
+  Billion billion;
+  TreeRegions& tree = billion.tree;
+  const RowStore& rows = billion.rows;
+  const std::vector<LeafRow>& kinds = billion.kinds;
+  std::vector<Exact> exact(kKinds);
+  for (std::size_t kind = 0; kind < kKinds; ++kind) exact[kind] = exact_leaf(static_cast<std::int64_t>(kind));
 
   Selection selection(GainRule{}, rows, tree);
   Exact whole;
@@ -123,6 +147,75 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
   const Certificate certificate = make_certificate(plan.squared_error, plan.max_abs, plan.lossless, sums.finite, 0, 1);
   const auto mse = static_cast<double>(expected / 0x1p30L);
   EXPECT_NEAR(certificate.mse, mse, mse * 1e-12);
+}
+
+// A file that is not there: what is written is dropped, and what is read are the records of leaves of known kinds.
+class RecordsOfKinds final : public File {
+ public:
+  explicit RecordsOfKinds(std::vector<LeafRecord> kinds) : kinds_(std::move(kinds)) {}
+
+  const std::string& path() const override { return path_; }
+  void write_at(std::uint64_t, std::span<const std::byte>) override {}
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(LeafRecord)) {
+      const LeafRecord& record = kinds_[(offset + at) / sizeof(LeafRecord) % kinds_.size()];
+      std::memcpy(bytes.data() + at, &record, sizeof record);
+    }
+  }
+  bool preallocate(std::uint64_t) override { return true; }
+  void start_writeback() override {}
+  void sync() override {}
+  std::uint64_t size() override { return 0; }
+
+ private:
+  std::string path_ = "records";
+  std::vector<LeafRecord> kinds_;
+};
+
+TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
+  Billion billion;
+  GainRule rule;
+  rule.encoding = Encoding::fp4;
+  Selection selection(rule, billion.rows, billion.tree);
+  selection.choose(selection.bytes().full.file_bytes);
+  ChoiceStore choices(test::MemoryFileSystem().create_unnamed("choices"), billion.tree.region_lattice.size());
+  const TreePlan plan = plan_tree(selection, billion.rows, billion.tree, choices);
+  const auto leaves = static_cast<std::uint64_t>(billion.tree.leaves.size());
+  ASSERT_EQ(plan.layout.counts.leaves, leaves);
+  EXPECT_EQ(plan.squared_error, 0);
+
+  // Differences of the decoded values, which have 24 bits, are exact in double, their squares in long double.
+  const Box node{{0, 0, 0}, {8, 8, 8}};
+  std::vector<LeafRecord> records(kKinds);
+  std::vector<long double> errors(kKinds);
+  double max_abs = 0;
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    const LeafValues values = values_of(kind);
+    const QuantisedLeaf leaf = quantise_leaf(values, values, node, node, 2);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double d = static_cast<double>(values[i]) - static_cast<double>(leaf.decoded[i]);
+      errors[kind] += static_cast<long double>(d) * static_cast<long double>(d);
+      max_abs = std::max(max_abs, std::abs(d));
+    }
+    records[kind].squared_error = leaf.squared_error;
+    records[kind].max_abs = leaf.max_abs;
+    records[kind].exact = leaf.exact ? 1 : 0;
+  }
+  long double expected = 0;
+  for (std::uint64_t ordinal = 0; ordinal < leaves; ++ordinal) expected += errors[ordinal % kKinds];
+
+  RecordsOfKinds out({});
+  GridHead head;
+  head.name = "density";
+  head.type = GridType::fp4;
+  const RecordStore store(std::make_unique<RecordsOfKinds>(records), leaves);
+  const WrittenTree written =
+      write_tree({billion.tree, billion.rows, choices, store, rule.fill, plan.layout}, head, out);
+  const auto squares = static_cast<double>(expected);
+  EXPECT_GT(squares, 0);
+  EXPECT_NEAR(written.leaf_squared_error, squares, squares * 1e-12);
+  EXPECT_EQ(static_cast<float>(written.leaf_max_abs), static_cast<float>(max_abs));
+  EXPECT_FALSE(written.leaves_exact);
 }
 
 }  // namespace
