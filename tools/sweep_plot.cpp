@@ -136,7 +136,7 @@ std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
     const auto middle = static_cast<float>(y);
     const auto left = static_cast<float>(x);
     canvas.line({left, middle}, {left + kSample, middle}, kLineWidth, series.style.ink);
-    draw_marker(canvas, {left + kSample / 2, middle}, series.style);
+    draw_marker(canvas, {left + kSample * 0.5F, middle}, series.style);
     canvas.text(x + kSample + 8, y - kTextRise, series.name, kInk, kText);
     x += width + kGap;
   }
@@ -151,7 +151,7 @@ struct Frame {
   bool band;
 
   PlotPoint at(const Point& p) const {
-    return {x.at(p.x), p.psnr_db ? psnr.at(*p.psnr_db) : static_cast<float>(top + kLosslessBand / 2)};
+    return {x.at(p.x), p.psnr_db ? psnr.at(*p.psnr_db) : static_cast<float>(top) + kLosslessBand * 0.5F};
   }
 };
 
