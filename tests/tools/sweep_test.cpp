@@ -5,7 +5,9 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -179,6 +181,19 @@ TEST_F(SweepCommand, NonFiniteVolumes) {
   EXPECT_EQ(found[0]["encoding"], "float32");
   EXPECT_EQ(found[3]["note"], "ZFP has no code for NaN and infinity, which 4800 voxels are");
   EXPECT_TRUE(found[3]["mse"].is_null());
+}
+
+TEST_F(SweepCommand, ZfpOverflowIsANote) {
+  const std::string input = directory_ / "max_32x32x32_float32.raw";
+  std::minstd_rand random;
+  std::vector<float> values(32 * 32 * 32);
+  for (float& value : values)
+    value = random() % 2 == 0 ? std::numeric_limits<float>::max() : -std::numeric_limits<float>::max();
+  write_file(input, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+  const Json found = rows(input, {"--rates", "10", "--methods", "zfp"});
+  const std::string note = found[0]["note"];
+  EXPECT_EQ(note.find("what ZFP gives back overflows float32 in "), 0U) << note;
+  EXPECT_TRUE(found[0]["max_abs"].is_null());
 }
 
 TEST_F(SweepCommand, InputOptionsApply) {
