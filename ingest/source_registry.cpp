@@ -16,6 +16,8 @@
 #include "ingest/stack_source.h"
 #include "ingest/vdb/nvdb_source.h"
 #include "ingest/vdb/vdb_source.h"
+#include "ingest/vtk/vtk_legacy_source.h"
+#include "ingest/vtk/vtk_xml_source.h"
 
 namespace weir {
 namespace {
@@ -38,6 +40,16 @@ constexpr std::array kFormats{
         .name = "openvdb", .recognises = recognises_vdb, .open = open_vdb, .list = list_vdb, .container = true},
     SourceFormat{
         .name = "nanovdb", .recognises = recognises_nvdb, .open = open_nvdb, .list = list_nvdb, .container = true},
+    SourceFormat{.name = "vtk-xml",
+                 .recognises = recognises_vtk_xml,
+                 .open = open_vtk_xml,
+                 .list = list_vtk_xml,
+                 .container = true},
+    SourceFormat{.name = "vtk-legacy",
+                 .recognises = recognises_vtk_legacy,
+                 .open = open_vtk_legacy,
+                 .list = list_vtk_legacy,
+                 .container = true},
     // Asked late: its signature may lie anywhere behind a user block.
     SourceFormat{
         .name = "hdf5", .recognises = recognises_hdf5, .open = open_hdf5, .list = list_hdf5, .container = true},

@@ -61,6 +61,20 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
        test::write_nvdb(scratch.path("sample"), ramp_grid());
        return scratch.path("sample");
      }},
+    {"vtk-xml",
+     [](const Scratch& scratch) {
+       const std::string header =
+           "<VTKFile type='ImageData' byte_order='LittleEndian'><ImageData WholeExtent='0 3 0 2 0 1'>"
+           "<Piece Extent='0 3 0 2 0 1'><PointData><DataArray type='UInt8' format='appended' offset='0'/>"
+           "</PointData></Piece></ImageData><AppendedData encoding='raw'>_";
+       return write_with_header(scratch, "sample", header + std::string("\x18\0\0\0", 4));
+     }},
+    {"vtk-legacy",
+     [](const Scratch& scratch) {
+       return write_with_header(scratch, "sample",
+                                "# vtk DataFile Version 3.0\n\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 2\n"
+                                "POINT_DATA 24\nSCALARS a unsigned_char\nLOOKUP_TABLE default\n");
+     }},
     {"hdf5",
      [](const Scratch& scratch) {
        std::vector<std::uint8_t> values(24);

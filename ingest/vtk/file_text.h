@@ -1,0 +1,40 @@
+// A range of a file's bytes, one after the other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "ingest/input_file.h"
+#include "ingest/page_buffer.h"
+
+namespace weir {
+
+/// Holds a buffer of kPieceBytes (ingest/staging.h). Not thread-safe.
+class FileText {
+ public:
+  /// Bytes [begin, end) of `file`, which outlives the object.
+  FileText(InputFile& file, std::uint64_t begin, std::uint64_t end);
+
+  /// The next bytes, valid until the next call; empty at the end. Throws as InputFile's reads.
+  std::string_view next_piece();
+  /// The next byte, -1 at the end.
+  int next() {
+    if (at_ == piece_.size()) {
+      piece_ = next_piece();
+      at_ = 0;
+      if (piece_.empty()) return -1;
+    }
+    return static_cast<unsigned char>(piece_[at_++]);
+  }
+
+ private:
+  InputFile& file_;
+  std::uint64_t position_;
+  std::uint64_t end_;
+  PageBuffer buffer_;
+  std::string_view piece_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace weir

@@ -1,0 +1,122 @@
+#include "ingest/vtk/text_values.h"
+
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "format/error.h"
+#include "format/text.h"
+#include "ingest/header_text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kValuesAtATime = 16384;
+
+bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/// The words of a text; no number is longer than kMaxWord.
+class Words {
+ public:
+  explicit Words(FileText& text) : text_(text) {}
+
+  /// The next word, cut after kMaxWord characters; empty at the end.
+  std::string_view next() {
+    int c = text_.next();
+    while (is_space(c)) c = text_.next();
+    std::size_t length = 0;
+    for (; c >= 0 && !is_space(c) && length < kMaxWord; c = text_.next()) word_[length++] = static_cast<char>(c);
+    return {word_.data(), length};
+  }
+
+ private:
+  static constexpr std::size_t kMaxWord = 400;  // a double written out in full has 327 digits
+
+  FileText& text_;
+  std::array<char, kMaxWord> word_{};
+};
+
+template <typename T>
+bool parse(std::string_view word, T& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  auto result = std::from_chars(word.data(), end, value);
+  if constexpr (std::is_same_v<T, float>) {
+    // Smaller or larger than any float: as the double that it is, rounded to 0 or infinity.
+    if (double wide = 0; result.ec == std::errc::result_out_of_range) {
+      result = std::from_chars(word.data(), end, wide);
+      value = static_cast<float>(wide);
+    }
+  }
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+template <typename T>
+void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std::string& where) {
+  std::vector<T> values;
+  values.reserve(kValuesAtATime);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::string_view word = words.next();
+    if (word.empty()) {
+      throw Error(ErrorKind::input, cat(where, ": has ", i, " values as text, and its header asks for ", count,
+                                        "; the file is cut or damaged"));
+    }
+    T value{};
+    if (!parse(word, value)) {
+      throw Error(ErrorKind::input,
+                  cat(where, ": value ", i, " of its text is ", in_quotes(word), ", no number of its type"));
+    }
+    values.push_back(value);
+    if (values.size() == kValuesAtATime || i + 1 == count) {
+      spool.write(std::as_bytes(std::span(values)));
+      values.clear();
+    }
+  }
+}
+
+void spool_values(Words& words, std::uint64_t count, ScalarType type, SpoolFile& spool, const std::string& where) {
+  switch (type) {
+    case ScalarType::uint8:
+      return spool_values<std::uint8_t>(words, count, spool, where);
+    case ScalarType::int8:
+      return spool_values<std::int8_t>(words, count, spool, where);
+    case ScalarType::uint16:
+      return spool_values<std::uint16_t>(words, count, spool, where);
+    case ScalarType::int16:
+      return spool_values<std::int16_t>(words, count, spool, where);
+    case ScalarType::uint32:
+      return spool_values<std::uint32_t>(words, count, spool, where);
+    case ScalarType::int32:
+      return spool_values<std::int32_t>(words, count, spool, where);
+    case ScalarType::uint64:
+      return spool_values<std::uint64_t>(words, count, spool, where);
+    case ScalarType::int64:
+      return spool_values<std::int64_t>(words, count, spool, where);
+    case ScalarType::float32:
+      return spool_values<float>(words, count, spool, where);
+    case ScalarType::float64:
+      return spool_values<double>(words, count, spool, where);
+    case ScalarType::float16:
+      break;
+  }
+  throw Error(ErrorKind::internal, "no text has values of this type");
+}
+
+}  // namespace
+
+void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, bool all, SpoolFile& spool,
+                       const std::string& where) {
+  Words words(text);
+  spool_values(words, count, type, spool, where);
+  if (!all) return;
+  if (const std::string_view more = words.next(); !more.empty()) {
+    throw Error(ErrorKind::input, cat(where, ": ", in_quotes(more), " follows the ", count,
+                                      " values that its header asks for; one of the two is damaged"));
+  }
+}
+
+}  // namespace weir

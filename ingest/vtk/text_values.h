@@ -1,0 +1,19 @@
+// Numbers written as text, as VTK's files in ASCII have them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "format/scalar_type.h"
+#include "ingest/spool_file.h"
+#include "ingest/vtk/file_text.h"
+
+namespace weir {
+
+/// Reads `count` numbers that white space separates and writes them to `spool` as values of `type` in this machine's
+/// byte order; floating-point types take nan and inf too. Where `all`, nothing else may follow. Throws Error(input),
+/// beginning with `where`, naming the position of a word that is no number of that type, or where there are too few.
+void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, bool all, SpoolFile& spool,
+                       const std::string& where);
+
+}  // namespace weir

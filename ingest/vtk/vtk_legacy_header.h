@@ -1,0 +1,36 @@
+// What a legacy VTK file says before and between its values:
+// https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, "Simple Legacy Formats".
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "format/scalar_type.h"
+#include "ingest/vtk/vtk_image.h"
+
+namespace weir {
+
+struct VtkLegacyArray {
+  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
+  bool cells = false;
+  ScalarType type = ScalarType::float32;
+  std::string type_name;     ///< as written
+  std::uint64_t offset = 0;  ///< of the first value or, in text, of the first word, in the file
+  std::string obstacle;      ///< why it cannot be converted; empty where it can
+};
+
+struct VtkLegacyHeader {
+  bool binary = false;  ///< big-endian values; else text
+  VtkImage image;
+  std::vector<VtkLegacyArray> arrays;
+};
+
+/// Reads structured points from `in`, which stands at the first of `size` bytes, to its end; values are skipped, those
+/// in text by their words. Throws Error(input), beginning with `path`, naming position, line or value, for other data
+/// sets, what is no such file and what reaches beyond its end. Of an array that weir does not read, that is in its
+/// `obstacle`.
+VtkLegacyHeader parse_vtk_legacy_header(std::istream& in, std::uint64_t size, const std::string& path);
+
+}  // namespace weir

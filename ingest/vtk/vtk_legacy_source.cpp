@@ -1,0 +1,85 @@
+#include "ingest/vtk/vtk_legacy_source.h"
+
+#include <utility>
+
+#include "format/error.h"
+#include "format/file_system.h"
+#include "format/text.h"
+#include "ingest/extent.h"
+#include "ingest/file_stream.h"
+#include "ingest/header_text.h"
+#include "ingest/named_choice.h"
+#include "ingest/raw_values.h"
+#include "ingest/spool_file.h"
+#include "ingest/vtk/text_values.h"
+#include "ingest/vtk/vtk_legacy_header.h"
+
+namespace weir {
+namespace {
+
+VtkLegacyHeader read_header(InputFile& file) {
+  FileStream stream(file);
+  return parse_vtk_legacy_header(stream, file.size(), file.path());
+}
+
+std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& array, const Index3& extent,
+                                      const SourceOptions& options, const std::string& where) {
+  const auto count = static_cast<std::uint64_t>(volume(extent));
+  const auto files = make_posix_file_system();
+  SpoolFile spool(*files, options, file.path(), count * scalar_bytes(array.type));
+  FileText text(file, array.offset, file.size());
+  spool_text_values(text, count, array.type, false, spool, where);
+  return spool.finish();
+}
+
+}  // namespace
+
+bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> head) {
+  const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
+  return lower_case(begin).starts_with("# vtk datafile") || lower_case(path).ends_with(".vtk");
+}
+
+std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options) {
+  if (!options.index.empty()) {
+    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+  }
+  auto file = std::make_unique<InputFile>(path, options.direct_io);
+  const VtkLegacyHeader header = read_header(*file);
+  std::vector<NamedVolume> volumes;
+  for (const VtkLegacyArray& array : header.arrays) volumes.push_back({array.name, array.obstacle});
+  const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
+  const std::string where = cat(path, ": array ", in_quotes(array.name));
+  SourceInfo info;
+  info.path = path;
+  info.format = "vtk-legacy";
+  info.dataset = array.name;
+  info.file_bytes = file->size();
+  info.mtime_ns = file->mtime_ns();
+  place_vtk_image(header.image, array.cells, info);
+  checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
+  RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}};
+  if (options.missing) layout.mapping.missing.push_back(*options.missing);
+  if (!header.binary) file = spool_text(*file, array, info.extent, options, where);
+  return make_raw_values(std::move(file), layout, std::move(info));
+}
+
+std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOptions&) {
+  InputFile file(path, DirectIo::off);
+  const VtkLegacyHeader header = read_header(file);
+  std::vector<DatasetInfo> list;
+  for (const VtkLegacyArray& array : header.arrays) {
+    DatasetInfo info;
+    info.name = array.name;
+    info.type = array.type_name;
+    info.layout = header.binary ? "contiguous" : "text";
+    info.obstacle = array.obstacle;
+    if (info.obstacle.empty()) {
+      info.type = cat(header.binary && scalar_bytes(array.type) > 1 ? "big-endian " : "", scalar_name(array.type));
+    }
+    describe_vtk_image(header.image, array.cells, path, info);
+    list.push_back(std::move(info));
+  }
+  return list;
+}
+
+}  // namespace weir

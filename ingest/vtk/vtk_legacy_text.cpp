@@ -1,0 +1,65 @@
+#include "ingest/vtk/vtk_legacy_text.h"
+
+#include "format/error.h"
+#include "format/text.h"
+#include "ingest/header_text.h"
+
+namespace weir {
+namespace {
+
+bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+}  // namespace
+
+int VtkLegacyText::next() {
+  if (position_ == size_) return -1;
+  const auto c = bytes_.sbumpc();
+  if (c == std::char_traits<char>::eof()) fail("the file ends early; was it cut?");
+  ++position_;
+  return c;
+}
+
+std::optional<std::string_view> VtkLegacyText::line() {
+  line_.clear();
+  int c = next();
+  if (c < 0) return std::nullopt;
+  for (; c >= 0 && c != '\n'; c = next()) {
+    if (line_.size() == kMaxLineBytes) fail(cat("a line is longer than ", kMaxLineBytes, " bytes"));
+    line_ += static_cast<char>(c);
+  }
+  if (line_.ends_with('\r')) line_.pop_back();
+  return line_;
+}
+
+std::string VtkLegacyText::first_word() const {
+  const auto all = words(line_);
+  return all.empty() ? std::string() : std::string(all.front());
+}
+
+void VtkLegacyText::skip_paragraph() {
+  for (auto text = line(); text && !trimmed(*text).empty(); text = line()) continue;
+}
+
+void VtkLegacyText::skip_bytes(std::uint64_t count) {
+  if (count > size_ - position_) {
+    fail(cat(count, " bytes of values belong behind it, and the file ends after ", size_ - position_,
+             "; is it complete?"));
+  }
+  position_ += count;
+  bytes_.pubseekpos(static_cast<std::streamoff>(position_));
+}
+
+void VtkLegacyText::skip_words(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    int c = next();
+    while (is_space(c)) c = next();
+    if (c < 0) fail(cat(count, " values belong before it, and there are ", i, "; is the file complete?"));
+    while (c >= 0 && !is_space(c)) c = next();
+  }
+}
+
+void VtkLegacyText::fail(std::string_view what) const {
+  throw Error(ErrorKind::input, cat(path_, ": before byte ", position_, ": ", what));
+}
+
+}  // namespace weir

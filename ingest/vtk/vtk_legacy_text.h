@@ -1,0 +1,48 @@
+// A legacy VTK file as its parser reads it: lines, and between them values that
+// are bytes or words.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace weir {
+
+class VtkLegacyText {
+ public:
+  /// No line that people or VTK write is longer.
+  static constexpr std::size_t kMaxLineBytes = 4096;
+
+  /// `in` stands at the first of `size` bytes and outlives the object.
+  VtkLegacyText(std::istream& in, std::uint64_t size, const std::string& path)
+      : bytes_(*in.rdbuf()), size_(size), path_(path) {}
+
+  const std::string& path() const { return path_; }
+  std::uint64_t position() const { return position_; }  ///< of the next byte
+
+  /// The next line without its end, LF or CRLF; valid until the next call. nullopt at the end of the file.
+  std::optional<std::string_view> line();
+  /// The first word of the last line; valid until the next call.
+  std::string first_word() const;
+  /// Skips lines up to an empty one, and that.
+  void skip_paragraph();
+  void skip_bytes(std::uint64_t count);
+  void skip_words(std::uint64_t count);
+
+  /// Throws Error(input): "PATH: before byte N: WHAT".
+  [[noreturn]] void fail(std::string_view what) const;
+
+ private:
+  int next();
+
+  std::streambuf& bytes_;
+  std::uint64_t size_;
+  const std::string& path_;
+  std::uint64_t position_ = 0;
+  std::string line_;
+};
+
+}  // namespace weir

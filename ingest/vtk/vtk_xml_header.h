@@ -1,0 +1,46 @@
+// What a VTK XML image file (.vti) says about itself:
+// https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "format/scalar_type.h"
+#include "ingest/vtk/vtk_image.h"
+#include "ingest/vtk/vtk_xml_skeleton.h"
+
+namespace weir {
+
+struct VtkXmlArray {
+  enum class Format { ascii, binary, appended };
+
+  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
+  bool cells = false;
+  ScalarType type = ScalarType::float32;
+  std::string type_name;  ///< as written
+  std::int64_t components = 1;
+  Format format = Format::ascii;
+  std::uint64_t begin = 0;  ///< of the text in the file, or in the appended data
+  std::uint64_t end = 0;    ///< of the text in the file; 0 for appended data
+  std::string obstacle;     ///< why it cannot be converted; empty where it can
+};
+
+struct VtkXmlHeader {
+  bool big_endian = false;
+  std::size_t word_bytes = 4;  ///< of the sizes before the data: 4 or 8
+  bool zlib = false;
+  std::optional<std::uint64_t> appended;  ///< first byte of the appended data in the file
+  bool appended_base64 = false;
+  VtkImage image;
+  std::vector<VtkXmlArray> arrays;
+  std::string scalars;  ///< name of the array that the file marks as its scalars; empty where none
+};
+
+/// Reads the markup of one piece of image data. Pure. Throws Error(input), beginning with `path`, naming element and
+/// value, for what is no such file or describes what weir does not read: other kinds of data, several pieces, other
+/// compressors. Of an array that weir does not read, that is in its `obstacle`.
+VtkXmlHeader parse_vtk_xml_header(const VtkXmlSkeleton& skeleton, const std::string& path);
+
+}  // namespace weir

@@ -1,0 +1,102 @@
+#include "ingest/vtk/vtk_xml_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "format/error.h"
+#include "format/text.h"
+#include "ingest/extent.h"
+#include "ingest/header_text.h"
+#include "ingest/named_choice.h"
+#include "ingest/raw_values.h"
+#include "ingest/vtk/file_text.h"
+#include "ingest/vtk/vtk_xml_data.h"
+#include "ingest/vtk/vtk_xml_header.h"
+#include "ingest/vtk/vtk_xml_skeleton.h"
+
+namespace weir {
+namespace {
+
+VtkXmlHeader read_header(InputFile& file) {
+  VtkXmlSkeleton skeleton(file.path());
+  FileText text(file, 0, file.size());
+  for (auto piece = text.next_piece(); !piece.empty() && skeleton.push(piece); piece = text.next_piece()) continue;
+  return parse_vtk_xml_header(skeleton, file.path());
+}
+
+const VtkXmlArray& choose_array(const VtkXmlHeader& header, const std::string& path, const std::string& wanted) {
+  std::vector<NamedVolume> volumes;
+  for (const VtkXmlArray& array : header.arrays) volumes.push_back({array.name, array.obstacle});
+  const auto usable = [](const VtkXmlArray& array) { return array.obstacle.empty(); };
+  const bool marked = std::any_of(header.arrays.begin(), header.arrays.end(), [&](const VtkXmlArray& array) {
+    return usable(array) && array.name == header.scalars;
+  });
+  const bool several = std::count_if(header.arrays.begin(), header.arrays.end(), usable) > 1;
+  const std::string& name = wanted.empty() && several && marked ? header.scalars : wanted;
+  return header.arrays[choose_volume(path, "array", volumes, name)];
+}
+
+std::string layout_text(const VtkXmlHeader& header, const VtkXmlArray& array) {
+  switch (array.format) {
+    case VtkXmlArray::Format::ascii:
+      return "text";
+    case VtkXmlArray::Format::binary:
+      return header.zlib ? "base64, zlib blocks" : "base64";
+    case VtkXmlArray::Format::appended:
+      break;
+  }
+  return cat(header.appended_base64 ? "appended base64" : "appended", header.zlib ? ", zlib blocks" : "");
+}
+
+}  // namespace
+
+bool recognises_vtk_xml(std::string_view path, std::span<const std::byte> head) {
+  const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
+  return begin.starts_with("<VTKFile") || lower_case(path).ends_with(".vti");
+}
+
+std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const SourceOptions& options) {
+  if (!options.index.empty()) {
+    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+  }
+  auto file = std::make_unique<InputFile>(path, options.direct_io);
+  const VtkXmlHeader header = read_header(*file);
+  const VtkXmlArray& array = choose_array(header, path, options.dataset);
+  const std::string where = cat(path, ": array ", in_quotes(array.name));
+  SourceInfo info;
+  info.path = path;
+  info.format = "vtk-xml";
+  info.dataset = array.name;
+  info.file_bytes = file->size();
+  info.mtime_ns = file->mtime_ns();
+  place_vtk_image(header.image, array.cells, info);
+  const std::uint64_t bytes = checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
+  PlainValues plain = plain_vtk_values(std::move(file), header, array, bytes, options, where);
+  RawLayout layout{plain.offset, array.type, plain.big_endian, {}};
+  if (options.missing) layout.mapping.missing.push_back(*options.missing);
+  return make_raw_values(std::move(plain.file), layout, std::move(info));
+}
+
+std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptions&) {
+  InputFile file(path, DirectIo::off);
+  const VtkXmlHeader header = read_header(file);
+  std::vector<DatasetInfo> list;
+  for (const VtkXmlArray& array : header.arrays) {
+    DatasetInfo info;
+    info.name = array.name;
+    info.type = array.type_name;
+    info.layout = layout_text(header, array);
+    info.obstacle = array.obstacle;
+    if (info.obstacle.empty()) {
+      const bool swapped =
+          header.big_endian && scalar_bytes(array.type) > 1 && array.format != VtkXmlArray::Format::ascii;
+      info.type = cat(swapped ? "big-endian " : "", scalar_name(array.type));
+    }
+    describe_vtk_image(header.image, array.cells, path, info);
+    if (array.name == header.scalars) info.attributes.emplace_back("marked as", "scalars");
+    list.push_back(std::move(info));
+  }
+  return list;
+}
+
+}  // namespace weir

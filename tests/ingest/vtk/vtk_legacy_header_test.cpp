@@ -1,0 +1,74 @@
+#include "ingest/vtk/vtk_legacy_header.h"
+
+#include <sstream>
+
+#include "tests/ingest/scratch.h"
+
+namespace weir {
+namespace {
+
+VtkLegacyHeader parse(const std::string& text) {
+  std::istringstream in(text);
+  return parse_vtk_legacy_header(in, text.size(), "a.vtk");
+}
+
+std::string refusal(const std::string& text) {
+  return message_of_error(ErrorKind::input, [&] { parse(text); });
+}
+
+const std::string kHead = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET STRUCTURED_POINTS\n";
+const std::string kImage = kHead + "DIMENSIONS 2 2 1\nPOINT_DATA 4\n";
+
+TEST(VtkLegacyHeader, SaysWhatTheFileSays) {
+  const VtkLegacyHeader header = parse(kHead +
+                                       "DIMENSIONS 2 2 1\nSPACING 1 2 3\nORIGIN 4 5 6\nPOINT_DATA 4\n"
+                                       "SCALARS a unsigned_char 1\nLOOKUP_TABLE default\nabcd\n"
+                                       "CELL_DATA 1\nSCALARS a char\nlookup_table default\ne");
+  EXPECT_TRUE(header.binary);
+  EXPECT_EQ(header.image.points, (Index3{2, 2, 1}));
+  EXPECT_EQ(header.image.spacing, (Vector3{1, 2, 3}));
+  EXPECT_EQ(header.image.origin, (Vector3{4, 5, 6}));
+  ASSERT_EQ(header.arrays.size(), 2U);
+  EXPECT_EQ(header.arrays[0].name, "PointData/a");
+  EXPECT_EQ(header.arrays[0].type, ScalarType::uint8);
+  EXPECT_EQ(header.arrays[0].offset, kHead.size() + 17 + 14 + 13 + 13 + 26 + 21);
+  EXPECT_EQ(header.arrays[1].name, "CellData/a");
+  EXPECT_EQ(header.arrays[1].type, ScalarType::int8);
+}
+
+TEST(VtkLegacyHeader, RefusesWhatIsNotRead) {
+  EXPECT_EQ(refusal("x"), "a.vtk: before byte 1: the file does not begin with '# vtk DataFile Version'");
+  EXPECT_EQ(refusal("# vtk DataFile Version 2.0\n\nHEX\n"),
+            "a.vtk: before byte 32: 'hex'; BINARY or ASCII belongs there");
+  EXPECT_EQ(refusal("# vtk DataFile Version 2.0\n\nASCII\nDATASET POLYDATA\n"),
+            "a.vtk: before byte 51: 'dataset POLYDATA'; STRUCTURED_POINTS can be read; resample other data sets to it");
+  EXPECT_EQ(refusal(kHead + "COLOUR 1\n"),
+            "a.vtk: before byte 75: 'colour 1'; DIMENSIONS, SPACING, ORIGIN or POINT_DATA belongs there");
+  EXPECT_EQ(refusal(kHead),
+            "a.vtk: before byte 66: the file has no DIMENSIONS before its values; it is cut or damaged");
+}
+
+TEST(VtkLegacyHeader, RefusesWhatDoesNotFit) {
+  const auto refuse = [](const std::string& more) {
+    const std::string message = refusal(kImage + more);
+    return message.substr(message.find(": ", message.find("byte")) + 2);
+  };
+  EXPECT_EQ(refusal(kHead + "DIMENSIONS 2 2 1\nPOINT_DATA 5\n"),
+            "a.vtk: before byte 96: 'point_data 5'; DIMENSIONS make 4");
+  EXPECT_EQ(refuse("SCALARS a float\nLOOKUP_TABLE default\n0123456789"),
+            "16 bytes of values belong behind it, and the file ends after 10; is it complete?");
+  EXPECT_EQ(refuse("SCALARS a float\nabcd"), "'abcd'; LOOKUP_TABLE belongs behind SCALARS");
+  EXPECT_EQ(refuse("SCALARS a string\nLOOKUP_TABLE default\n"),
+            "'lookup_table default'; the type 'string' is not known, nor how long its values are");
+  EXPECT_EQ(refuse("LOOKUP_TABLE l 9223372036854775807\n"),
+            "'lookup_table l 9223372036854775807'; 9223372036854775807 tuples of 4 values are impossible");
+  EXPECT_EQ(refuse("FIELD f 1\na 1 5 float\n"), "'a 1 5 float'; DIMENSIONS make 4 tuples");
+  EXPECT_EQ(refuse("FIELD f 2\n"), "'field f 2'; the field has 2 arrays; the file is cut");
+  EXPECT_EQ(refuse("SCALARS a float -1\nLOOKUP_TABLE"), "'scalars a float -1'; a count belongs at word 4");
+  EXPECT_EQ(refuse(std::string(5000, 'x')), "a line is longer than 4096 bytes");
+  EXPECT_EQ(refusal(kHead + "DIMENSIONS 4000000000 1 1\n"),
+            "a.vtk: extent 4000000000x1x1 has 4000000000 voxels along x; each axis must be 1 to 2147483647");
+}
+
+}  // namespace
+}  // namespace weir
