@@ -86,7 +86,7 @@ void read_plainly(const std::string& path) {
   while (::read(file.get(), buffer.data(), buffer.size()) > 0) benchmark::DoNotOptimize(buffer.data());
 }
 
-void convert(const std::string& kind, benchmark::State& state) {
+void convert(const std::string& kind, Encoding encoding, benchmark::State& state) {
   const RawVolume volume(kind, bench_dim());
   const auto files = make_posix_file_system();
   read_plainly(volume.path());
@@ -101,6 +101,7 @@ void convert(const std::string& kind, benchmark::State& state) {
     const auto source = open_source(volume.path(), {});
     ConversionOptions options;
     options.output = volume.output();
+    options.encoding = encoding;
     const Sidecar sidecar = convert_volume(*source, options, {}, *files);
     const double seconds = seconds_since(start);
     converting_s += seconds;
@@ -113,11 +114,17 @@ void convert(const std::string& kind, benchmark::State& state) {
   state.counters["ratio"] = converting_s / reading_s;
 }
 
-void convert_cloud(benchmark::State& state) { convert("cloud", state); }
+void convert_cloud(benchmark::State& state) { convert("cloud", Encoding::float32, state); }
 BENCHMARK(convert_cloud)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 
-void convert_turbulence(benchmark::State& state) { convert("turbulence", state); }
+void convert_turbulence(benchmark::State& state) { convert("turbulence", Encoding::float32, state); }
 BENCHMARK(convert_turbulence)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+
+void quantise_cloud(benchmark::State& state) { convert("cloud", Encoding::fpn, state); }
+BENCHMARK(quantise_cloud)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+
+void quantise_turbulence(benchmark::State& state) { convert("turbulence", Encoding::fpn, state); }
+BENCHMARK(quantise_turbulence)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 
 /// The figure that the command's sidecar gives for its own process.
 double peak_of_command(const RawVolume& volume) {

@@ -48,6 +48,9 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
   switch (budget.kind) {
     case Budget::Kind::lossless:
       return {full, "lossless", ""};
+    case Budget::Kind::psnr:
+    case Budget::Kind::max_error:
+      throw Error(ErrorKind::internal, "an error target has no size of its own");
     case Budget::Kind::automatic:
       size = {bytes_at_rate(dense_bytes, budget.rate), "rate", ""};
       if (size.bytes < minimum) {

@@ -14,6 +14,7 @@
 #include "compressor/background.h"
 #include "compressor/encode.h"
 #include "compressor/encoding_choice.h"
+#include "compressor/leaf_errors.h"
 #include "compressor/memory_plan.h"
 #include "compressor/selection.h"
 #include "compressor/survey.h"
@@ -162,10 +163,9 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   return sidecar;
 }
 
-Sidecar::CertifiedError describe_error(const TreePlan& plan, const WrittenTree& written, const Survey& survey) {
-  const Certificate c =
-      make_certificate(plan.squared_error + written.leaf_squared_error, std::max(plan.max_abs, written.leaf_max_abs),
-                       plan.lossless && written.leaves_exact, survey.finite, survey.min, survey.max);
+Sidecar::CertifiedError describe_error(const TreePlan& plan, const LeafErrors& leaves, const Survey& survey) {
+  const Certificate c = make_certificate(plan.squared_error + leaves.squared, std::max(plan.max_abs, leaves.max_abs),
+                                         plan.lossless && leaves.exact, survey.finite, survey.min, survey.max);
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
 }
 
@@ -179,7 +179,72 @@ FileRequest request_for(const ConversionOptions& options, const Survey& survey, 
   request.domain = domain;
   request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
   request.path = options.output;
+  const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
+  request.squared_error = range * range * static_cast<double>(survey.finite) / std::pow(10, options.budget.target / 10);
   return request;
+}
+
+// A file whose leaves are written, and what they lose.
+struct EncodedFile {
+  FilePlan file;
+  std::unique_ptr<RecordStore> records;
+  LeafErrors errors;
+
+  double squared_error() const { return file.plan.squared_error + errors.squared; }
+};
+
+// Plans and encodes once.
+EncodedFile encode_once(VolumeSource& source, const ReadingPlan& reading, const FileRequest& request,
+                        const RowStore& rows, WorkDirectory& work, const StreamOptions& stream,
+                        const ConversionControl& control, OutputFiles& output) {
+  EncodedFile encoded{plan_file(request, rows, work), nullptr, {}};
+  check_cancel(control);
+  const FilePlan& file = encoded.file;
+  if (!output.reserve(file.size.bytes) && control.notice) {
+    control.notice(
+        cat(output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+  }
+  encoded.records = std::make_unique<RecordStore>(work.spill(), file.plan.layout.counts.leaves);
+  start_pass(control, "encode", static_cast<std::uint64_t>(request.domain.voxels()));
+  const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
+  encode_leaves(source, reading.encode,
+                {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
+                 output.volume(), *encoded.records},
+                stream, reading.reading);
+  encoded.errors = sum_leaf_errors(*file.tree, *encoded.records);
+  return encoded;
+}
+
+// Whether another attempt should be made at an error target, and with which expected error. Expectations come from
+// the survey's estimates; decoded values decide. A file within 2 % of the error asked is small enough.
+bool adjust_target(const EncodedFile& encoded, double target, int attempt, FileRequest& request) {
+  if (encoded.file.encoding == Encoding::float32) return false;  // exact
+  constexpr int kMostAttempts = 6;
+  if (request.budget.kind == Budget::Kind::max_error) {
+    if (encoded.errors.max_abs <= request.budget.target) return false;
+    request.encoding = Encoding::float32;
+    return true;
+  }
+  const double error = encoded.squared_error();
+  const bool met = error <= target;
+  if (met && (attempt >= 2 || error >= 0.98 * target || !(error > 0))) return false;
+  if (attempt + 1 >= kMostAttempts) {
+    request.encoding = Encoding::float32;
+    return !met;
+  }
+  request.squared_error *= target / error * (met ? 0.995 : 0.998);
+  return true;
+}
+
+EncodedFile encode_file(VolumeSource& source, const ReadingPlan& reading, FileRequest request, const RowStore& rows,
+                        WorkDirectory& work, const StreamOptions& stream, const ConversionControl& control,
+                        OutputFiles& output) {
+  const double target = request.squared_error;
+  for (int attempt = 0;; ++attempt) {
+    EncodedFile encoded = encode_once(source, reading, request, rows, work, stream, control, output);
+    if (!request.budget.by_error() || !adjust_target(encoded, target, attempt, request)) return encoded;
+    output.volume().clear();
+  }
 }
 
 }  // namespace
@@ -242,25 +307,17 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
                        [&] { sidecar.source.digest = source_digest(rows); });
   sidecar.timing.survey_s = seconds_since(started);
 
-  // Selection.
+  // Selection and encoding.
   check_cancel(control);
+  const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const FilePlan file = plan_file(request_for(options, survey, background.value, domain), rows, work);
+  const EncodedFile encoded = encode_file(source, reading, request_for(options, survey, background.value, domain), rows,
+                                          work, stream, control, output);
+  const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
   const TreeLayout& layout = file.plan.layout;
   const GridType type = grid_type_of(file.encoding);
-
-  // Encode.
-  const Clock::time_point encoding = Clock::now();
-  if (!output.reserve(size.bytes) && control.notice) {
-    control.notice(
-        cat(output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
-  }
-  RecordStore records(work.spill(), layout.counts.leaves);
-  start_pass(control, "encode", voxels);
-  encode_leaves(source, reading.encode, {*file.tree, *file.choices, layout, file.fill, type, output.volume(), records},
-                stream, reading.reading);
   // Most of the file goes to the device while the rest is made.
   const std::jthread writeback([&output] { output.volume().start_writeback(); });
   check_cancel(control);
@@ -270,8 +327,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
   head.voxel_size = info.spacing;
   head.origin = info.origin;
-  const WrittenTree written =
-      write_tree({*file.tree, rows, *file.choices, records, file.fill, layout}, head, output.volume());
+  const std::uint32_t checksum =
+      write_tree({*file.tree, rows, *file.choices, *encoded.records, file.fill, layout}, head, output.volume());
   check_cancel(control);
 
   // Finish.
@@ -279,6 +336,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   sidecar.background = {static_cast<double>(background.value), background.method, background.share};
   sidecar.budget.kind = size.kind;
   if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
+  if (options.budget.by_error()) sidecar.budget.requested = options.budget.target;
   if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
   sidecar.budget.file_bytes = size.bytes;
   sidecar.budget.dense_float32_bytes = dense_bytes;
@@ -289,9 +347,9 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
                        static_cast<std::uint64_t>(file.tree->leaves.size()),
                        layout.counts.leaves,
                        file.plan.leaves_by_width};
-  sidecar.error = describe_error(file.plan, written, survey);
+  sidecar.error = describe_error(file.plan, encoded.errors, survey);
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, written.head_checksum, digest_of_file(output.volume(), size.bytes).hex()};
+  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
   sidecar.timing.encode_s = seconds_since(encoding);
   sidecar.timing.total_s = seconds_since(started);
   sidecar.timing.bytes_read = source.bytes_read();

@@ -11,6 +11,7 @@
 #include "compressor/quantised_leaf.h"
 #include "format/leaf_codec.h"
 #include "format/quantised_codec.h"
+#include "format/simd.h"
 
 namespace weir {
 namespace {
@@ -50,6 +51,12 @@ Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& b
   kept.lo.x = block.lo.x;
   kept.hi.x = block.hi.x;
   return kept;
+}
+
+WEIR_SIMD bool all_finite(const LeafValues& values) {
+  std::uint32_t others = 0;
+  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // NaN for what is not finite
+  return others == 0;
 }
 
 // Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
@@ -111,7 +118,7 @@ class LeafEncoder {
     const Box inside = target.tree.leaves.voxels(leaf);
     LeafValues& values = values_[batch_];
     gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values);
-    finite_[batch_] = std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+    finite_[batch_] = all_finite(values);
     if (!finite_[batch_] && target.fill.non_finite != NonFinitePolicy::keep) {
       sources_[batch_] = values;
       for (float& v : values) v = std::isfinite(v) ? v : target.fill.background;
@@ -128,8 +135,8 @@ class LeafEncoder {
     if (target.type != GridType::float32) {
       for (std::size_t i = 0; i < batch_; ++i) {
         const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
-        quantised_[i] =
-            quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaves_[first + i].width));
+        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i],
+                                      bits_log2_of(leaves_[first + i].width), target.fit);
         values_[i] = quantised_[i].decoded;
       }
     }

@@ -7,6 +7,7 @@
 #include "compressor/fill.h"
 #include "compressor/leaf_choice.h"
 #include "compressor/leaf_record.h"
+#include "compressor/quantised_leaf.h"
 #include "compressor/tree_regions.h"
 #include "format/file_system.h"
 #include "format/nvdb_type.h"
@@ -22,6 +23,7 @@ struct EncodeTarget {
   const TreeLayout& layout;
   Fill fill;
   GridType type;  ///< float32 or quantised
+  Fit fit;        ///< of quantised leaves
   File& out;
   RecordStore& records;
 };

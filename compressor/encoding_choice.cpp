@@ -1,5 +1,6 @@
 #include "compressor/encoding_choice.h"
 
+#include <cmath>
 #include <utility>
 
 #include "format/error.h"
@@ -28,21 +29,37 @@ class Candidate {
 
   FilePlan plan(const FileSize& size) {
     selection_.choose(size.bytes);
+    return planned(size);
+  }
+
+  /// The smallest file whose error is expected to meet the budget's target.
+  FilePlan plan_for_error() {
+    if (request_.budget.kind == Budget::Kind::psnr) {
+      selection_.choose_error(request_.squared_error);
+      return planned({0, "psnr", ""});
+    }
+    selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
+    return planned({0, "max_error", ""});
+  }
+
+ private:
+  FilePlan planned(const FileSize& size) {
     FilePlan file;
     file.encoding = encoding_;
     file.fill = request_.rule.fill;
     file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
-    file.plan.layout = padded_to(file.plan.layout, size.bytes);
     file.size = size;
+    if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
+    file.plan.layout = padded_to(file.plan.layout, file.size.bytes);
     file.tree = std::move(tree_);
     return file;
   }
 
- private:
   static GainRule rule_of(const FileRequest& request, Encoding encoding) {
     GainRule rule = request.rule;
     rule.encoding = encoding;
+    if (request.budget.kind == Budget::Kind::max_error) rule.max_error = request.budget.target;
     return rule;
   }
 
@@ -68,6 +85,25 @@ std::string lossy_leaves_text(const Candidate& quantised) {
 
 double expected_error(const FilePlan& file) { return file.plan.squared_error + file.plan.expected_leaf_error; }
 
+bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
+  return request.budget.kind == Budget::Kind::psnr ? expected_error(file) <= request.squared_error
+                                                   : candidate.lossless();
+}
+
+Error unmet(const FileRequest& request, Encoding encoding, const FilePlan& file) {
+  const bool psnr = request.budget.kind == Budget::Kind::psnr;
+  std::string best;
+  if (psnr && expected_error(file) > 0) {
+    const double short_by = 10 * std::log10(expected_error(file) / request.squared_error);
+    best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
+  } else {
+    best = " has leaves whose range 16 bits do not divide that finely";
+  }
+  return {ErrorKind::budget,
+          cat(request.path, ": --", psnr ? "psnr " : "max-error ", request.budget.target, " cannot be met: --encoding ",
+              encoding_name(encoding), best, "; use --encoding auto or float")};
+}
+
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
   if (encoding != Encoding::float32 && !can_quantise(request)) {
     throw Error(ErrorKind::usage,
@@ -77,6 +113,11 @@ FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore&
                     "; use --encoding float"));
   }
   Candidate candidate(request, encoding, rows, work);
+  if (request.budget.by_error()) {
+    FilePlan file = candidate.plan_for_error();
+    if (!meets(request, candidate, file)) throw unmet(request, encoding, file);
+    return file;
+  }
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
     throw Error(ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding), " cannot be lossless: ",
                                        lossy_leaves_text(candidate), "; use --encoding auto or float"));
@@ -108,11 +149,20 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   return expected_error(plain) <= expected_error(quantised) ? std::move(plain) : std::move(quantised);
 }
 
+FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate quantised(request, Encoding::fpn, rows, work);
+  FilePlan small = quantised.plan_for_error();
+  Candidate plain(request, Encoding::float32, rows, work);
+  FilePlan file = plain.plan_for_error();
+  return meets(request, quantised, small) && small.size.bytes <= file.size.bytes ? std::move(small) : std::move(file);
+}
+
 }  // namespace
 
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);
   if (!can_quantise(request)) return plan_one(request, Encoding::float32, rows, work);
+  if (request.budget.by_error()) return plan_smallest(request, rows, work);
   if (request.budget.kind == Budget::Kind::lossless) return plan_lossless(request, rows, work);
   return plan_best(request, rows, work);
 }

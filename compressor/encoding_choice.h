@@ -30,13 +30,15 @@ struct FileRequest {
   Encoding encoding = Encoding::float32;  ///< automatic: whichever of float32 and fpn has less error
   GainRule rule;                          ///< but for its encoding
   Budget budget;
+  double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels may come to
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
   std::string path;               ///< of the output, for messages
 };
 
-/// Plans the file for a surveyed volume. Throws Error(budget) where the asked size or exactness cannot be met,
-/// Error(usage) where the encoding cannot hold the volume.
+/// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
+/// asked error. Throws Error(budget) where size, error or exactness cannot be met, naming what can, Error(usage)
+/// where the encoding cannot hold the volume.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 #include "compressor/leaf_gain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -50,10 +51,12 @@ LeafWidth widest(const LeafRow& row) {
 // Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`; error_at(width).
 template <typename ErrorAt>
 void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
+  std::array<double, 5> errors{};
+  for (unsigned log2 = 0; log2 <= bits_log2_of(last); ++log2) errors[log2] = error_at(width_of(log2));
   while (from != last) {
     LeafStep best;
     for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
-      const LeafStep step = step_to(width_of(log2), from, error - error_at(width_of(log2)));
+      const LeafStep step = step_to(width_of(log2), from, error - errors[log2]);
       if (step.gain > 0 && step.key > best.key) best = step;
     }
     if (best.width == LeafWidth::tile) return;
@@ -90,7 +93,58 @@ bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {
   return row.finite == voxels && row.exact_bits != 0 && (1U << bits_log2_of(width)) >= row.exact_bits;
 }
 
+double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
+  if (keeps_every_bit(row, voxels, width)) return 0;
+  ValueRange range{row.min, row.max, row.mean};
+  if (row.finite < voxels) {
+    range.min = row.finite == 0 ? background : std::min(range.min, background);
+    range.max = row.finite == 0 ? background : std::max(range.max, background);
+  }
+  if (range.min == range.max) return 0;
+  const unsigned bits = 1U << bits_log2_of(width);
+  const auto quantum = static_cast<double>(range_quantiser(range, bits).quantum);
+  if (quantum == 0) return std::numeric_limits<double>::infinity();
+  const auto magnitude = static_cast<double>(std::max(std::fabs(range.min), std::fabs(range.max)));
+  // A code is found in single precision: near the middle between two levels either may be taken. The product and
+  // the sum round, half an ulp each, and the levels' quantum did: half an ulp of it a level.
+  const double half = 0.5 + std::ldexp(1.0, static_cast<int>(bits) - 22);
+  return quantum * half + magnitude * std::ldexp(1.0, -21);
+}
+
+// The widths a rule's encoding may use for a leaf, narrowest first.
+std::vector<LeafWidth> widths_of(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::fpn:
+      return {LeafWidth::bits1, LeafWidth::bits2, LeafWidth::bits4, LeafWidth::bits8, LeafWidth::bits16};
+    case Encoding::fp4:
+      return {LeafWidth::bits4};
+    case Encoding::fp8:
+      return {LeafWidth::bits8};
+    case Encoding::fp16:
+      return {LeafWidth::bits16};
+    case Encoding::automatic:
+    case Encoding::float32:
+      break;
+  }
+  return {LeafWidth::float32};
+}
+
+void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const {
+  leaf.required = leaf.required || row.max_abs_about(tile) > *max_error;
+  leaf.lossless = !leaf.required;  // met by the tile
+  if (!leaf.required) return;
+  LeafWidth width = LeafWidth::tile;
+  for (const LeafWidth candidate : widths_of(encoding)) {
+    width = candidate;
+    leaf.lossless =
+        candidate == LeafWidth::float32 || bounded_error(row, voxels, fill.background, candidate) <= *max_error;
+    if (leaf.lossless) break;
+  }
+  leaf.add(step_to(width, LeafWidth::tile, row.sse_about(tile)));
+}
+
 void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const {
+  if (max_error) return add_bounded_step(row, voxels, tile, leaf);
   leaf.lossless = leaf.exact;
   if (leaf.exact && !leaf.required) return;
   const double error = leaf.exact ? 0 : row.sse_about(tile);

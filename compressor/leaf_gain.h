@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compressor/encoding.h"
@@ -35,7 +36,7 @@ struct LeafGain {
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
   bool exact = false;          ///< its tile reads the same bits: never worth a leaf
   bool required = false;       ///< always a leaf: its first step is taken whatever it saves
-  bool lossless = false;       ///< the last step, or the tile, reads the same bits
+  bool lossless = false;       ///< the last step, or the tile, reads the same bits (or within max_error)
 
   void add(const LeafStep& step) { steps[step_count++] = step; }
 };
@@ -46,12 +47,17 @@ struct GainRule {
   std::int64_t brick_leaves = 1;  ///< leaves along a brick of the paper's metrics: 1, 2 or 4
   Fill fill;
   Encoding encoding = Encoding::float32;  ///< not automatic
+  /// Every voxel must read within this of its value: a leaf whose tile does not is required, at the first
+  /// width that does (quantised over its whole range), and nothing else is worth a byte. What no width can do
+  /// counts as lossy.
+  std::optional<double> max_error = std::nullopt;
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
   /// hold non-finite values to keep, are required.
   void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
 
  private:
+  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const;
   void add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const;
   // The paper's metrics: gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
@@ -60,6 +66,9 @@ struct GainRule {
 /// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
 /// by `background`: exact for float32 and where `exact_bits` says so, else an estimate.
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
+/// Bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half a
+/// quantum, and what the decoder rounds, fused or not. `background` takes the place of non-finite values.
+double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
 /// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit.
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width);
 

@@ -35,12 +35,10 @@ struct Levels {
   float scale;
 };
 
-// Two vectors of eight are the sixteen lanes, whatever the machine.
-using Lane = std::array<Floats8, 2>;
-
-float sum(const Lane& lanes) {
+// Pairwise, whatever the machine.
+float sum(const Floats16& lanes) {
   std::array<float, kLanes> all;
-  std::memcpy(all.data(), lanes.data(), sizeof all);
+  std::memcpy(all.data(), &lanes, sizeof all);
   for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
   }
@@ -49,12 +47,12 @@ float sum(const Lane& lanes) {
 
 WEIR_SIMD Sums assign(const float* values, std::size_t count, const Levels& levels) {
   const Levels l = levels;
-  const Floats8 zero{};
-  const Floats8 top = l.top - zero;
-  Lane squares{};
-  Lane codes{};
-  Lane code_squares{};
-  Lane code_values{};
+  const Floats16 zero{};
+  const Floats16 top = l.top - zero;
+  Floats16 squares{};
+  Floats16 codes{};
+  Floats16 code_squares{};
+  Floats16 code_values{};
   for (std::size_t i = 0; i < count; i += kLanes) {
     const float* from = values + i;
     std::array<float, kLanes> rest;
@@ -63,36 +61,19 @@ WEIR_SIMD Sums assign(const float* values, std::size_t count, const Levels& leve
       std::memcpy(rest.data(), from, (count - i) * sizeof(float));
       from = rest.data();
     }
-    for (std::size_t half = 0; half < 2; ++half) {
-      Floats8 v;
-      std::memcpy(&v, from + half * 8, sizeof v);
-      Floats8 t = (v - l.minimum) * l.reciprocal;
-      t = t > zero ? t : zero;
-      t = t < top ? t : top;
-      const Floats8 code = (t + kRounder) - kRounder;
-      const Floats8 error = (v - (code * l.quantum + l.minimum)) * l.scale;
-      squares[half] += error * error;
-      codes[half] += code;
-      code_squares[half] += code * code;
-      code_values[half] += code * ((v - l.mean) * l.scale);
-    }
+    Floats16 v;
+    std::memcpy(&v, from, sizeof v);
+    Floats16 t = (v - l.minimum) * l.reciprocal;
+    t = t > zero ? t : zero;
+    t = t < top ? t : top;
+    const Floats16 code = (t + kRounder) - kRounder;
+    const Floats16 error = (v - (code * l.quantum + l.minimum)) * l.scale;
+    squares += error * error;
+    codes += code;
+    code_squares += code * code;
+    code_values += code * ((v - l.mean) * l.scale);
   }
   return {sum(squares), sum(codes), sum(code_squares), sum(code_values)};
-}
-
-WEIR_SIMD float sum_of_deviations(const float* values, std::size_t count, float mean, float scale) {
-  Lane lanes{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    std::array<float, kLanes> some;
-    some.fill(mean);
-    std::memcpy(some.data(), values + i, (count - i < kLanes ? count - i : kLanes) * sizeof(float));
-    for (std::size_t half = 0; half < 2; ++half) {
-      Floats8 v;
-      std::memcpy(&v, some.data() + half * 8, sizeof v);
-      lanes[half] += (v - mean) * scale;
-    }
-  }
-  return sum(lanes);
 }
 
 WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const Levels& levels, std::uint16_t* codes) {
@@ -120,7 +101,7 @@ class Fitter {
     const float half = range.max / 2 - range.min / 2;
     scale_exponent_ = -std::ilogb(half);
     scale_ = std::ldexp(1.0F, scale_exponent_);
-    deviation_ = static_cast<double>(sum_of_deviations(values.data(), values.size(), range.mean, scale_));
+    deviation_ = std::ldexp(range.deviation, scale_exponent_);
   }
 
   // Refits from levels over `share` of the range; keeps what is better than before.
@@ -194,8 +175,8 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
 QuantiserFit fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
   if (range_quantiser(range, bits).quantum > 0) {
     Fitter fitter(values, range, bits);
-    fitter.start(1, bits <= 4 ? 4 : 2);
-    if (bits <= 2) fitter.start(0.45, 4);
+    fitter.start(1, bits <= 4 ? 3 : 2);
+    if (bits <= 2) fitter.start(0.45, 3);
     if (fitter.found()) return fitter.result();
   }
   return {{range.mean, 0}, squares_about(values, range.mean)};

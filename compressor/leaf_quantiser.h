@@ -22,7 +22,8 @@ struct QuantiserFit {
 struct ValueRange {
   float min = 0;
   float max = 0;
-  float mean = 0;
+  float mean = 0;        ///< rounded
+  double deviation = 0;  ///< sum of (value - mean): what the rounding left
 };
 
 /// Fits `bits` (1, 2, 4, 8 or 16) to `values`, 1 to 512 finite ones of range.min != range.max: levels over

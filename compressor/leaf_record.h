@@ -34,10 +34,10 @@ struct LeafRecord {
   std::array<MinMax, 7> outward{kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds};
   // Of a quantised leaf, decoded, over the finite in-domain values.
   double squared_error = 0;
-  float max_abs = 0;        ///< rounded up
-  std::uint32_t exact = 1;  ///< 0: some voxel reads other bits than it should
+  double max_abs = 0;
+  std::uint64_t exact = 1;  ///< 0: some voxel reads other bits than it should
 };
-static_assert(sizeof(LeafRecord) == 96, "records are spilled as they are");
+static_assert(sizeof(LeafRecord) == 104, "records are spilled as they are");
 
 /// Record of a leaf as it will be decoded; `inside` are its in-domain voxels.
 LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box& inside,

@@ -178,6 +178,13 @@ LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, Uni
   return row;
 }
 
+ValueRange leaf_range(std::span<const float> values) {
+  const Moments moments = first_moments(values.data(), values.size());
+  const auto count = static_cast<double>(values.size());
+  const auto mean = static_cast<float>(moments.sum / count);
+  return {moments.min, moments.max, mean, moments.sum - count * static_cast<double>(mean)};
+}
+
 void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
   // What takes the place of a value that is not finite need not lie on the others' lattice.
   if (row.uniform()) row.exact_bits = all ? 1 : 0;
@@ -188,12 +195,13 @@ void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
   if (row.exact_bits == 0 || row.exact_bits > 8) {
     row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));
   }
+  const ValueRange range{row.min, row.max, row.mean, static_cast<double>(row.residual)};
   for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
     const unsigned bits = 1U << log2;
     if (row.exact_bits != 0 && bits >= row.exact_bits) {
       row.quantised[log2] = 0;
     } else if (row.sse > 0) {
-      row.quantised[log2] = static_cast<float>(estimated_error(values, {row.min, row.max, row.mean}, bits, row.sse));
+      row.quantised[log2] = static_cast<float>(estimated_error(values, range, bits, row.sse));
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "compressor/leaf_quantiser.h"
 #include "compressor/leaf_row.h"
 
 namespace weir {
@@ -23,6 +24,9 @@ inline LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_
   UniformDigest none;
   return summarize_leaf(values, sample_at, none);
 }
+
+/// Extrema and rounded mean of 1 to 512 finite values.
+ValueRange leaf_range(std::span<const float> values);
 
 /// Fills `quantised`, `exact_bits` and `at_ends` of a row that summarize_leaf made: `values` are the leaf's finite
 /// in-domain values, row.finite of them, `all` that there are no others.

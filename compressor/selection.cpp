@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -148,6 +149,7 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows, con
   });
   region.sums = builder.sums;
   region.sums.exact = exact;
+  region.opening_gain = std::max(0.0, region.sums.sse_about(tile) - dropped_leaves);
 
   std::vector<LeafStep> steps;
   bool required = false;
@@ -157,12 +159,12 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows, con
     highest = std::max(highest, leaf.steps[0].gain);
     steps.insert(steps.end(), leaf.steps.begin(), leaf.steps.begin() + leaf.step_count);
   }
-  if (required) {
+  if (required || (rule_.max_error && region.sums.max_abs_about(tile) > *rule_.max_error)) {
     region.key = kRequired;
-  } else if (exact) {
+  } else if (exact || rule_.max_error) {
     region.key = 0;
   } else if (rule_.metric == Metric::sse) {
-    region.key = std::max(kLast, hull_step(std::max(0.0, region.sums.sse_about(tile) - dropped_leaves), steps));
+    region.key = std::max(kLast, hull_step(region.opening_gain, steps));
   } else {
     region.key = std::max(kLast, highest);
   }
@@ -198,99 +200,123 @@ void Selection::summarize_uppers() {
     upper.sums = builder.sums;
     upper.sums.exact = exact;
     if (exact) continue;
-    const double saved = std::max(0.0, upper.sums.sse_about(tile) - tiles);
-    upper.key = std::max({upper.key, kLast, rule_.metric == Metric::sse ? saved / kUpperCost : 0.0});
+    if (rule_.max_error) {
+      if (upper.sums.max_abs_about(tile) > *rule_.max_error) upper.key = kRequired;
+      continue;
+    }
+    upper.opening_gain = std::max(0.0, upper.sums.sse_about(tile) - tiles);
+    upper.key = std::max({upper.key, kLast, rule_.metric == Metric::sse ? upper.opening_gain / kUpperCost : 0.0});
   }
 }
 
-// Calls visit(key, bytes) for everything below the upper nodes that can be bought.
+// Calls visit(key, bytes, gain) for everything below the upper nodes that can be bought.
 template <typename Visit>
 void Selection::for_each_key(const Visit& visit) const {
   for_each_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
-    visit(region.key, nvdb::kLowerBytes);
+    visit(region.key, nvdb::kLowerBytes, region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
     std::vector<LeafGain> gains;
     rule_.gains(tree_, rows, gains);
     for (const LeafGain& leaf : gains) {
-      for (std::uint32_t i = 0; i < leaf.step_count; ++i) visit(step_key(leaf, i, region.key), leaf.steps[i].bytes);
+      for (std::uint32_t i = 0; i < leaf.step_count; ++i) {
+        visit(step_key(leaf, i, region.key), leaf.steps[i].bytes, leaf.steps[i].gain);
+      }
     }
   });
 }
 
-double Selection::find_threshold(std::uint64_t budget, std::uint64_t& bytes_above) const {
-  // Radix selection from the top: 16 bits of the keys a pass, bytes counted per bucket, until the bucket
-  // that the budget ends in is small enough to be sorted.
+Selection::Goal::Weight Selection::Goal::weight(std::uint64_t bytes, double gain) const {
+  return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
+}
+
+double Selection::find_threshold(const Goal& goal, Goal::Weight& above) const {
+  // Radix selection from the top: 16 bits of the keys a pass, weights counted per bucket, until the bucket
+  // that the goal is reached in is small enough to be sorted.
   constexpr int kDigit = 16;
   constexpr std::size_t kBuckets = std::size_t{1} << kDigit;
-  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 16U;  // of 16 bytes
+  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
   struct Bucket {
-    std::uint64_t bytes = 0;
+    Goal::Weight weight = 0;
     std::uint64_t items = 0;
   };
   using Buckets = std::vector<Bucket>;
   std::uint64_t prefix = 0;
-  bytes_above = 0;
+  above = 0;
   for (int shift = 64 - kDigit; shift >= 0; shift -= kDigit) {
+    // What is required is bought whatever the goal.
     const auto matches = [&](double key, int bits) {
-      return key > 0 && (bits == 64 || bits_of(key) >> bits == prefix);
+      return key > 0 && key != kRequired && (bits == 64 || bits_of(key) >> bits == prefix);
     };
     tbb::enumerable_thread_specific<Buckets> local(kBuckets);
-    const auto count = [&](Buckets& buckets, double key, std::uint64_t bytes) {
+    tbb::enumerable_thread_specific<Goal::Weight> required(0);
+    const auto count = [&](Buckets& buckets, double key, Goal::Weight weight) {
+      if (key == kRequired) required.local() += weight;
       if (!matches(key, shift + kDigit)) return;
       Bucket& bucket = buckets[bits_of(key) >> shift & (kBuckets - 1)];
-      bucket.bytes += bytes;
+      bucket.weight += weight;
       ++bucket.items;
     };
-    for_each_key([&](double key, std::uint64_t bytes) { count(local.local(), key, bytes); });
+    for_each_key(
+        [&](double key, std::uint64_t bytes, double gain) { count(local.local(), key, goal.weight(bytes, gain)); });
     Buckets total(kBuckets);
     for (const Buckets& buckets : local) {
       for (std::size_t i = 0; i < kBuckets; ++i) {
-        total[i].bytes += buckets[i].bytes;
+        total[i].weight += buckets[i].weight;
         total[i].items += buckets[i].items;
       }
     }
-    for (const Upper& upper : tree_.uppers) count(total, upper.key, nvdb::kUpperBytes);
+    for (const Upper& upper : tree_.uppers) {
+      count(total, upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain));
+    }
+    if (prefix == 0 && shift == 64 - kDigit) {
+      for (const Goal::Weight weight : required) above += weight;
+      if (goal.unit != 0 && above >= goal.limit) return std::numeric_limits<double>::max();
+    }
     std::size_t bucket = kBuckets;
-    while (bucket > 0 && bytes_above + total[bucket - 1].bytes <= budget) bytes_above += total[--bucket].bytes;
-    if (bucket == 0) return 0;  // everything fits
+    while (bucket > 0 && goal.admits_all(above, total[bucket - 1].weight)) above += total[--bucket].weight;
+    if (bucket == 0) return 0;  // everything may be bought
     prefix = prefix << kDigit | (bucket - 1);
     if (shift == 0) break;
     if (total[bucket - 1].items <= kSortedItems) {
-      return sorted_threshold(budget, bytes_above, [&](double key) { return matches(key, shift); });
+      return sorted_threshold(goal, above, [&](double key) { return matches(key, shift); });
     }
   }
   return std::bit_cast<double>(prefix);
 }
 
-double Selection::sorted_threshold(std::uint64_t budget, std::uint64_t& bytes_above,
+double Selection::sorted_threshold(const Goal& goal, Goal::Weight& above,
                                    const std::function<bool(double)>& matches) const {
-  using Purchase = std::pair<double, std::uint64_t>;  // key, bytes
+  struct Purchase {
+    double key;
+    Goal::Weight weight;
+  };
   tbb::enumerable_thread_specific<std::vector<Purchase>> local;
-  for_each_key([&](double key, std::uint64_t bytes) {
-    if (matches(key)) local.local().emplace_back(key, bytes);
+  for_each_key([&](double key, std::uint64_t bytes, double gain) {
+    if (matches(key)) local.local().push_back({key, goal.weight(bytes, gain)});
   });
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   for (const Upper& upper : tree_.uppers) {
-    if (matches(upper.key)) items.emplace_back(upper.key, nvdb::kUpperBytes);
+    if (matches(upper.key)) items.push_back({upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain)});
   }
-  std::sort(items.begin(), items.end(), std::greater<>());
+  std::sort(items.begin(), items.end(), [](const Purchase& a, const Purchase& b) { return a.key > b.key; });
   for (std::size_t i = 0; i < items.size();) {
-    const double key = items[i].first;
-    std::uint64_t bytes = 0;
-    for (; i < items.size() && items[i].first == key; ++i) bytes += items[i].second;
-    if (bytes_above + bytes > budget) return key;
-    bytes_above += bytes;
+    const double key = items[i].key;
+    Goal::Weight weight = 0;
+    for (; i < items.size() && items[i].key == key; ++i) weight += items[i].weight;
+    if (!goal.admits_all(above, weight)) return key;
+    above += weight;
   }
   throw Error(ErrorKind::internal, "the selection's cut lies in no bucket");
 }
 
-void Selection::resolve_ties(std::uint64_t left) {
+void Selection::resolve_ties(const Goal& goal, Goal::Weight bought) {
   cut_.tie_region = static_cast<std::int64_t>(tree_.regions.size());
-  const auto buy = [&](std::uint64_t bytes) {
-    if (bytes > left) return false;
-    left -= bytes;
+  const auto buy = [&](std::uint64_t bytes, double gain) {
+    const Goal::Weight weight = goal.weight(bytes, gain);
+    if (!goal.admits(bought, weight)) return false;
+    bought += weight;
     return true;
   };
   std::vector<LeafRow> row_buffer;
@@ -304,11 +330,11 @@ void Selection::resolve_ties(std::uint64_t left) {
       cut_.tie_steps = static_cast<std::uint32_t>(steps);
     };
     if (!upper.open) {
-      if (!buy(nvdb::kUpperBytes)) return stop(0);
+      if (!buy(nvdb::kUpperBytes, upper.opening_gain)) return stop(0);
       upper.open = true;
     }
     if (!region.open) {
-      if (!buy(nvdb::kLowerBytes)) return stop(0);
+      if (!buy(nvdb::kLowerBytes, region.opening_gain)) return stop(0);
       region.open = true;
     }
     const Box box = tree_.leaf_box(index);
@@ -319,15 +345,18 @@ void Selection::resolve_ties(std::uint64_t left) {
       std::size_t end = first + 1;  // a brick goes as one
       while (rule_.metric != Metric::sse && end < ties.size() && ties[end].leaf->brick == ties[first].leaf->brick)
         ++end;
-      std::uint64_t bytes = 0;
-      for (std::size_t i = first; i < end; ++i) bytes += ties[i].leaf->steps[ties[i].step].bytes;
-      if (!buy(bytes)) return stop(first);
+      LeafStep all;
+      for (std::size_t i = first; i < end; ++i) {
+        all.bytes += ties[i].leaf->steps[ties[i].step].bytes;
+        all.gain += ties[i].leaf->steps[ties[i].step].gain;
+      }
+      if (!buy(all.bytes, all.gain)) return stop(first);
       first = end;
     }
   }
   // What is left are upper nodes that save error by themselves, with one tile per region.
   for (Upper& upper : tree_.uppers) {
-    if (upper.key == cut_.threshold && !upper.open) upper.open = buy(nvdb::kUpperBytes);
+    if (upper.key == cut_.threshold && !upper.open) upper.open = buy(nvdb::kUpperBytes, upper.opening_gain);
     if (upper.key == cut_.threshold && !upper.open) return;
   }
 }
@@ -347,12 +376,29 @@ void Selection::choose(std::uint64_t file_bytes) {
   const std::uint64_t nodes =
       minimum.uppers * nvdb::kUpperBytes + minimum.lowers * nvdb::kLowerBytes + minimum.leaf_bytes;
   const std::uint64_t fixed = bytes_.minimum.content_end - nodes;
-  const std::uint64_t budget = file_bytes - fixed;
-  std::uint64_t above = 0;
-  cut_.threshold = find_threshold(budget, above);
+  buy_for({0, file_bytes - fixed});
+}
+
+void Selection::choose_error(double squared_error) {
+  CompensatedSum all_tiles;
+  for (const Upper& upper : tree_.uppers) all_tiles.add(upper.sums.sse_about(tile_value(rule_.fill, upper.sums)));
+  const double error = all_tiles.value();
+  cut_ = Cut{};
+  // Every gain is at most the error of nothing bought, which becomes 2^90: sums of 2^37 gains fit, and each is
+  // counted to 2^-90 of it.
+  Goal goal;
+  goal.unit = std::ldexp(error, -90);
+  if (!(goal.unit > 0)) return choose(error > squared_error ? bytes_.full.file_bytes : bytes_.minimum.file_bytes);
+  goal.limit = goal.weight(0, error - squared_error);
+  buy_for(goal);
+}
+
+void Selection::buy_for(const Goal& goal) {
+  Goal::Weight above = 0;
+  cut_.threshold = find_threshold(goal, above);
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
   for (Upper& upper : tree_.uppers) upper.open = upper.key > cut_.threshold;
-  resolve_ties(budget - above);
+  resolve_ties(goal, above);
 }
 
 LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows) const {

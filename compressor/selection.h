@@ -8,7 +8,8 @@
 // steps of its leaves saves to what they cost (its step on the convex hull), and no
 // step in it has a higher one. The budget then buys in
 // the order of keys, so that any larger budget buys a superset: error never grows
-// with size. The cut is found by radix selection over the keys' bits, in passes
+// with size. An error to be met instead of a size ends the same way, with the error
+// saved counted in place of the bytes. The cut is found by radix selection over the keys' bits, in passes
 // over the spilled rows; ties go by region index, then by gain, then by leaf
 // index. Memory is that of TreeRegions, for any number of leaves.
 #pragma once
@@ -51,6 +52,10 @@ class Selection {
   /// and upper nodes in the tree.
   void choose(std::uint64_t file_bytes);
 
+  /// Buys as little as brings the squared error expected of the finite voxels down to `squared_error`; all
+  /// there is where that is not enough. For Metric::sse.
+  void choose_error(double squared_error);
+
   /// What becomes of the leaves of a region, after choose().
   LeafChoices choices(std::int64_t region, const RegionRows& rows) const;
 
@@ -60,12 +65,29 @@ class Selection {
  private:
   void summarize_region(std::int64_t region, const RegionRows& rows, const std::vector<LeafGain>& gains);
   void summarize_uppers();
+  /// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
+  struct Goal {
+    double unit = 0;  ///< squared error; 0: bytes count
+    // Whole numbers, so that sums do not depend on the order of the threads.
+    using Weight = unsigned __int128;
+    Weight limit = 0;
+
+    Weight weight(std::uint64_t bytes, double gain) const;
+    /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
+    /// brought down until the limit is reached.
+    bool admits(Weight bought, Weight weight) const { return unit == 0 ? bought + weight <= limit : bought < limit; }
+    /// Whether a whole class of keys can be bought without looking at its members.
+    bool admits_all(Weight bought, Weight weight) const {
+      return unit == 0 ? bought + weight <= limit : bought + weight < limit;
+    }
+  };
+
   template <typename Visit>
   void for_each_key(const Visit& visit) const;
-  double find_threshold(std::uint64_t budget, std::uint64_t& bytes_above) const;
-  double sorted_threshold(std::uint64_t budget, std::uint64_t& bytes_above,
-                          const std::function<bool(double)>& matches) const;
-  void resolve_ties(std::uint64_t left);
+  void buy_for(const Goal& goal);
+  double find_threshold(const Goal& goal, Goal::Weight& above) const;
+  double sorted_threshold(const Goal& goal, Goal::Weight& above, const std::function<bool(double)>& matches) const;
+  void resolve_ties(const Goal& goal, Goal::Weight bought);
 
   GainRule rule_;
   const RowStore& rows_;

@@ -36,6 +36,7 @@ inline float tile_value(const Fill& fill, const TileSums& sums) {
 struct Region {
   TileSums sums;
   double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
+  double opening_gain = 0;       ///< squared error saved by its leaves' tiles
   bool open = false;             ///< a lower node; otherwise one tile of the upper node
   std::uint32_t leaves = 0;      ///< kept ones
   std::uint64_t node = 0;        ///< ordinal of the lower node in the file
@@ -48,8 +49,9 @@ struct Region {
 struct Upper {
   TileSums sums;
   double key = 0;
-  bool open = false;       ///< an upper node; otherwise one root tile
-  std::uint64_t node = 0;  ///< ordinal of the upper node in the file
+  double opening_gain = 0;  ///< squared error saved by its regions' tiles
+  bool open = false;        ///< an upper node; otherwise one root tile
+  std::uint64_t node = 0;   ///< ordinal of the upper node in the file
 };
 
 struct TreeRegions {

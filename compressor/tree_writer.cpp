@@ -43,7 +43,6 @@ class LowerWriter {
       : parts_(parts),
         out_(out),
         statistics(parts.tree.regions.size()),
-        errors_(parts.tree.regions.size()),
         macrocells_(parts.tree.leaves.domain, parts.fill.background),
         images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {}
 
@@ -63,24 +62,8 @@ class LowerWriter {
   }
 
   std::uint64_t active_tiles() const { return active_tiles_; }
-  // Error of the kept leaves: sums in the order of the regions, whatever the threads.
-  void add_errors(WrittenTree& written) const {
-    CompensatedSum squares;
-    for (const LeafErrors& region : errors_) {
-      squares.add(region.squares);
-      written.leaf_max_abs = std::max(written.leaf_max_abs, static_cast<double>(region.max_abs));
-      written.leaves_exact = written.leaves_exact && region.exact;
-    }
-    written.leaf_squared_error = squares.value();
-  }
 
  private:
-  struct LeafErrors {
-    double squares = 0;
-    float max_abs = 0;
-    bool exact = true;
-  };
-
   void write_region(std::int64_t index, const RegionRows& rows) {
     const TreeRegions& tree = parts_.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(index)];
@@ -104,8 +87,6 @@ class LowerWriter {
     NodeImage& image = images_.local();
     image.reset();
     TableStatistics table;
-    CompensatedSum squares;
-    LeafErrors& errors = errors_[static_cast<std::size_t>(index)];
     std::size_t next = 0;
     std::uint64_t offset = parts_.layout.leaves + region.first_byte;
     for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
@@ -131,13 +112,9 @@ class LowerWriter {
           offset += leaf_bytes(width);
           table.add_child(record_statistics(record, voxels));
           cells.add_leaf(leaf_node, record);
-          squares.add(record.squared_error);
-          errors.max_abs = std::max(errors.max_abs, record.max_abs);
-          errors.exact = errors.exact && record.exact != 0;
         }
       }
     }
-    errors.squares = squares.value();
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());
@@ -163,7 +140,6 @@ class LowerWriter {
   std::vector<NodeStatistics> statistics;  // of the lower nodes, by region
 
  private:
-  std::vector<LeafErrors> errors_;  // by region
   MacrocellBuilder macrocells_;
   tbb::enumerable_thread_specific<NodeImage> images_;
   std::atomic<std::uint64_t> active_tiles_{0};
@@ -199,7 +175,7 @@ NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std
 
 }  // namespace
 
-WrittenTree write_tree(const TreeParts& parts, GridHead head, File& out) {
+std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
   LowerWriter lowers(parts, out);
   lowers.run();
   head.active_tiles = {lowers.active_tiles(), 0, 0};
@@ -231,10 +207,7 @@ WrittenTree write_tree(const TreeParts& parts, GridHead head, File& out) {
   out.write_at(parts.layout.blind_meta, encode_macrocell_record(parts.layout));
   const std::vector<std::byte> bytes = encode_head(head, parts.layout);
   out.write_at(0, bytes);
-  WrittenTree written;
-  written.head_checksum = load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
-  lowers.add_errors(written);
-  return written;
+  return load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
 }
 
 }  // namespace weir

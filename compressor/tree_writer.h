@@ -26,17 +26,9 @@ struct TreeParts {
   TreeLayout layout;  ///< padded to the file's size
 };
 
-/// What is known once all is written.
-struct WrittenTree {
-  std::uint32_t head_checksum = 0;
-  // Of the kept leaves, decoded; nothing for float ones.
-  double leaf_squared_error = 0;
-  double leaf_max_abs = 0;
-  bool leaves_exact = true;
-};
-
 /// Writes everything but the leaves to `out`, which has the file's size and reads zero where nothing
 /// was written. `head` carries name, type, voxel size and origin; the rest of it is filled in.
-WrittenTree write_tree(const TreeParts& parts, GridHead head, File& out);
+/// Returns the head's checksum.
+std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out);
 
 }  // namespace weir

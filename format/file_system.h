@@ -21,6 +21,8 @@ class File {
   /// Sets the size and reserves the blocks. Returns false where the file system cannot reserve (the
   /// size is set all the same, and a full disk shows later); a full disk throws.
   virtual bool preallocate(std::uint64_t bytes) = 0;
+  /// Gives back all that was written and reserved: size 0.
+  virtual void clear() = 0;
   /// Asks the system to begin writing what it holds to the device, so that sync has less to wait for; a
   /// hint, no error.
   virtual void start_writeback() = 0;

@@ -62,6 +62,10 @@ class PosixFile final : public File {
     return false;
   }
 
+  void clear() override {
+    if (::ftruncate(descriptor_, 0) != 0) throw io_error(path_, "set the size to 0", errno);
+  }
+
   void start_writeback() override { ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
 
   void sync() override {

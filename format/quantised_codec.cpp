@@ -10,18 +10,30 @@
 namespace weir {
 namespace {
 
-// Codes packed from the lowest bit up; 16-bit ones little-endian.
-void pack_codes(std::span<const std::uint16_t, kLeafVoxels> codes, unsigned bits_log2, std::span<std::byte> out) {
-  if (bits_log2 == 4) {
-    for (std::size_t i = 0; i < codes.size(); ++i) store(out, 2 * i, codes[i]);
-    return;
-  }
-  const unsigned bits = 1U << bits_log2;
-  const std::size_t per_byte = 8 / bits;
-  for (std::size_t byte = 0; byte < codes.size() / per_byte; ++byte) {
+// Codes of `Bits` bits, 8 / Bits to a byte, from the lowest bit up.
+template <unsigned Bits>
+void pack(std::span<const std::uint16_t, kLeafVoxels> codes, std::byte* out) {
+  constexpr std::size_t kPerByte = 8 / Bits;
+  for (std::size_t byte = 0; byte < kLeafVoxels / kPerByte; ++byte) {
     unsigned packed = 0;
-    for (std::size_t k = 0; k < per_byte; ++k) packed |= codes[byte * per_byte + k] << (k * bits);
+    for (std::size_t k = 0; k < kPerByte; ++k)
+      packed |= static_cast<unsigned>(codes[byte * kPerByte + k]) << (k * Bits);
     out[byte] = static_cast<std::byte>(packed);
+  }
+}
+
+void pack_codes(std::span<const std::uint16_t, kLeafVoxels> codes, unsigned bits_log2, std::span<std::byte> out) {
+  switch (bits_log2) {
+    case 0:
+      return pack<1>(codes, out.data());
+    case 1:
+      return pack<2>(codes, out.data());
+    case 2:
+      return pack<4>(codes, out.data());
+    case 3:
+      return pack<8>(codes, out.data());
+    default:
+      for (std::size_t i = 0; i < codes.size(); ++i) store(out, 2 * i, codes[i]);
   }
 }
 

@@ -16,6 +16,7 @@ namespace weir {
 
 // Lanes that the compiler keeps in registers of whatever width the clone has; arrays of lanes end up as
 // scalars. Elementwise + - * / and comparisons mean what they mean for the elements.
+using Floats16 = float __attribute__((vector_size(64)));
 using Floats8 = float __attribute__((vector_size(32)));
 using Ints8 = std::int32_t __attribute__((vector_size(32)));
 using Doubles8 = double __attribute__((vector_size(64)));

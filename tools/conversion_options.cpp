@@ -12,9 +12,9 @@ namespace {
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
 
 Budget parse_budget(const ConversionArguments& a) {
-  if ((a.size.empty() ? 0 : 1) + (a.rate.empty() ? 0 : 1) + (a.lossless ? 1 : 0) > 1) {
-    throw usage("--size, --rate and --lossless exclude each other; give one");
-  }
+  const int given = (a.size.empty() ? 0 : 1) + (a.rate.empty() ? 0 : 1) + (a.psnr.empty() ? 0 : 1) +
+                    (a.max_error.empty() ? 0 : 1) + (a.lossless ? 1 : 0);
+  if (given > 1) throw usage("--size, --rate, --psnr, --max-error and --lossless exclude each other; give one");
   Budget budget;
   if (a.lossless) budget.kind = Budget::Kind::lossless;
   if (!a.size.empty()) {
@@ -33,6 +33,22 @@ Budget parse_budget(const ConversionArguments& a) {
     }
     budget.kind = Budget::Kind::rate;
     budget.rate = *rate;
+  }
+  if (!a.psnr.empty()) {
+    const auto target = parse_double(a.psnr);
+    if (!target || !(*target >= -1000 && *target <= 1000)) {
+      throw usage(cat("--psnr is \"", a.psnr, "\", it must be a number of dB, 60 for instance"));
+    }
+    budget.kind = Budget::Kind::psnr;
+    budget.target = *target;
+  }
+  if (!a.max_error.empty()) {
+    const auto target = parse_double(a.max_error);
+    if (!target || !(*target >= 0 && *target <= 1e300)) {
+      throw usage(cat("--max-error is \"", a.max_error, "\", it must be a number from 0 on, in the values' own unit"));
+    }
+    budget.kind = Budget::Kind::max_error;
+    budget.target = *target;
   }
   return budget;
 }
@@ -91,6 +107,9 @@ void parse_method(const ConversionArguments& a, ConversionOptions& options) {
     options.fill = FillMode::background;
     options.paper_background = true;
   }
+  if (options.metric != Metric::sse && options.budget.by_error()) {
+    throw usage(cat("--metric ", a.metric, " has no error target; --psnr and --max-error select by sse"));
+  }
   if (options.metric == Metric::sse && options.brick != 8) {
     throw usage(
         cat("--brick ", options.brick, " is for --metric farthest, closest or median; sse chooses single leaves"));
@@ -111,6 +130,9 @@ void add_conversion_options(CLI::App& command, ConversionArguments& a) {
   command.add_option("--nonfinite", a.non_finite, "NaN and infinite voxels: error, background or keep; default error");
   command.add_option("--size", a.size, "the file is exactly that long, 64MiB for instance");
   command.add_option("--rate", a.rate, "the file is exactly ceil(float32 bytes of the volume / RATE) long; default 8");
+  command.add_option("--psnr", a.psnr, "the smallest file of at least that many dB, checked on decoded values");
+  command.add_option("--max-error", a.max_error,
+                     "the smallest file in which every voxel is within that of its value, checked on decoded values");
   command.add_flag("--lossless", a.lossless, "as long as every bit of every voxel needs");
   command.add_option("--encoding", a.encoding,
                      "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, "

@@ -14,8 +14,10 @@ struct ConversionArguments {
   std::string non_finite;  ///< error, background or keep
   std::string size;        ///< a size: the file is exactly that long
   std::string rate;        ///< dense float32 bytes / file bytes
+  std::string psnr;        ///< dB
+  std::string max_error;   ///< in the values' own unit
   bool lossless = false;
-  std::string encoding;    ///< auto or float
+  std::string encoding;    ///< auto, float, fpn, fp4, fp8 or fp16
   std::string metric;      ///< sse, farthest, closest or median
   std::string fill;        ///< mean or background
   std::string background;  ///< auto or a finite float32
@@ -23,7 +25,8 @@ struct ConversionArguments {
   std::string preset;      ///< paper
 };
 
-/// Adds --nonfinite, --size, --rate, --lossless, --encoding, --metric, --fill, --background, --brick and
+/// Adds --nonfinite, --size, --rate, --psnr, --max-error, --lossless, --encoding, --metric, --fill, --background,
+/// --brick and
 /// --preset, stored in `arguments`, which must live as long as the command.
 void add_conversion_options(CLI::App& command, ConversionArguments& arguments);
 

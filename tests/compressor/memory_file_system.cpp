@@ -33,6 +33,10 @@ class MemoryFile final : public File {
     if (bytes_->size() < bytes) bytes_->resize(bytes);
     return true;
   }
+  void clear() override {
+    const std::scoped_lock lock(mutex_);
+    bytes_->clear();
+  }
   void start_writeback() override {}
   void sync() override {}
   std::uint64_t size() override {

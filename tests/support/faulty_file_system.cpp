@@ -24,6 +24,10 @@ class FaultyFile final : public File {
     files_.count("preallocate", path());
     return real_->preallocate(bytes);
   }
+  void clear() override {
+    files_.count("clear", path());
+    real_->clear();
+  }
   void start_writeback() override { real_->start_writeback(); }
   void sync() override {
     files_.count("sync", path());

@@ -235,7 +235,7 @@ TEST_F(BadInput, CommandLine) {
   expect_refused({"convert"}, 2, "input is required; see weir --help");
   expect_convert_refused(path, {"--speed"}, 2, "The following argument was not expected: --speed; see weir --help");
   expect_convert_refused(path, {"--rate", "8", "--size", "1MB"}, 2,
-                         "--size, --rate and --lossless exclude each other; give one");
+                         "--size, --rate, --psnr, --max-error and --lossless exclude each other; give one");
   for (const char* size : {"0", "-5", "12parsecs", "9223372036854775808", "1.5"}) {
     expect_convert_refused(
         path, {"--size", size}, 2,

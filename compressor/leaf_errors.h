@@ -1,0 +1,19 @@
+// The error of all kept leaves together, as they decode.
+#pragma once
+
+#include "compressor/leaf_record.h"
+#include "compressor/tree_regions.h"
+
+namespace weir {
+
+struct LeafErrors {
+  double squared = 0;  ///< sum over the finite in-domain values
+  double max_abs = 0;
+  bool exact = true;  ///< every voxel reads the bits it should
+};
+
+/// Sums the records of all kept leaves: leaf by leaf in a region, region by region in the tree's order,
+/// compensated, so that neither threads nor blocks matter.
+LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records);
+
+}  // namespace weir
