@@ -3,14 +3,17 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "format/nvdb_file.h"
+#include "gpu/cpu_renderer.h"
 #include "gpu/render_scene.h"
 #include "tests/tools/run_command.h"
 
@@ -149,6 +152,57 @@ TEST_F(Render, InterruptLeavesNothing) {
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_EQ(result.err, "weir: interrupted; no image was written\n");
     EXPECT_TRUE(list_directory(out_).empty());
+  }
+}
+
+// Whole numbers are exact in 8 bits: a quantised file is the same picture, in its macrocells and in every tap.
+TEST_F(Render, QuantisedFilesOfTheSameValuesGiveTheSamePicture) {
+  const std::string raw = directory_ / "c_70x60x50_uint8.raw";
+  ASSERT_EQ(run_weir({"sample", "cloud", "-o", raw}).exit_code, 0);
+  const auto image = [&](const std::string& mode, const std::string& filter) {
+    EXPECT_EQ(run_weir(arguments("a.exr", {"--mode", mode, "--filter", filter})).exit_code, 0);
+    return read_file(out_ + "/a.exr");
+  };
+  std::map<std::pair<std::string, std::string>, std::string> expected;
+  for (const std::string encoding : {"float", "fpn", "fp8", "fp16"}) {
+    const CommandResult converted =
+        run_weir({"convert", raw, "--lossless", "--encoding", encoding, "-o", volume_, "--overwrite"});
+    ASSERT_EQ(converted.exit_code, 0) << converted.err;
+    for (const std::string mode : {"path", "dvr", "iso", "mip"}) {
+      for (const std::string filter : {"trilinear", "stochastic", "nearest"}) {
+        std::string& of_float = expected[{mode, filter}];
+        if (encoding == "float") of_float = image(mode, filter);
+        EXPECT_TRUE(image(mode, filter) == of_float) << encoding << ' ' << mode << ' ' << filter;
+      }
+    }
+  }
+}
+
+TEST_F(Render, QuantisedFilesAtAHighRateGiveNearlyThePicture) {
+  const auto picture = [&](RenderMode mode) {
+    const NvdbFile file(volume_);
+    Scene scene;
+    scene.mode = mode;
+    const RenderScene prepared(file.grid(), scene, {.width = 60, .height = 45});
+    return render_cpu(prepared.task(), {.samples = 2});
+  };
+  for (const RenderMode mode : {RenderMode::dvr, RenderMode::mip}) {
+    ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--lossless", "-o", volume_, "--overwrite"})
+                  .exit_code,
+              0);
+    const Image exact = picture(mode);
+    ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--rate", "1.6", "--encoding", "fpn", "-o",
+                        volume_, "--overwrite"})
+                  .exit_code,
+              0);
+    const Image near = picture(mode);
+    float worst = 0;
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+      const Float3 d = exact.pixels[i] - near.pixels[i];
+      worst = std::max({worst, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    }
+    EXPECT_GT(worst, 0.0F);
+    EXPECT_LT(worst, 0.004F);  // one step of an 8-bit picture
   }
 }
 

@@ -2,8 +2,14 @@
 // find a fault, so it is what they print that counts.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <regex>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "format/nvdb_file.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -16,7 +22,7 @@ bool is_installed(const std::string& program) {
 class StockTools : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* program : {"nanovdb_validate", "nanovdb_print"})
+    for (const char* program : {"nanovdb_validate", "nanovdb_print", "nanovdb_convert"})
       if (!is_installed(program)) GTEST_SKIP() << program << " is not installed (package libnanovdb-tools)";
   }
 
@@ -65,7 +71,10 @@ TEST_F(StockTools, ValidateEveryKindOfTree) {
       {"noise", "130,60,61", {"--rate", "4", "--encoding", "fp4"}},
       {"cloud", "70,90,131", {"--rate", "3", "--encoding", "fp8"}},
       {"signed", "96,20,130", {"--rate", "2", "--encoding", "fp16"}},
-      {"huge", "64,64,64", {"--rate", "2"}},  // statistics that overflow float32
+      {"cloud", "150,100,40", {"--size", "700001", "--encoding", "auto"}},
+      {"noise", "9,3,1", {"--size", "999999", "--encoding", "fpn"}},  // quantised leaves that overhang, and padding
+      {"offset", "100,20,40", {"--lossless"}},                        // a lattice at 1e8
+      {"huge", "64,64,64", {"--rate", "2"}},                          // statistics that overflow float32
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(std::string(c.kind) + ' ' + c.dims);
@@ -95,6 +104,53 @@ TEST_F(StockTools, PrintShowsTheGrid) {
       R"(\n1  density  float  \S+ +32\.4\.2 +NONE +1\.14\d MB +1\.14\d MB +\(0\.5,0\.5,0\.5\) +\d+ +150 x 100 x 40 )"
       R"(+1->2->\d+ +0->0->\d+ +\(0,0,0\) -> \(149,99,39\) +\(1,2,3\) -> \(76,52,23\))");
   EXPECT_TRUE(std::regex_search(result.out, row)) << result.out;
+}
+
+TEST_F(StockTools, PrintShowsQuantisedGrids) {
+  for (const auto& [encoding, type] :
+       {std::pair{"fpn", "FloatN"}, {"fp4", "Float4"}, {"fp8", "Float8"}, {"fp16", "Float16"}}) {
+    const std::string nvdb = convert("turbulence", "150,100,40", {"--rate", "1.9", "--encoding", encoding});
+    const CommandResult result = run_command({"nanovdb_print", "-l", nvdb});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "");
+    const std::regex row(std::string(R"(\n1  density  )") + type +
+                         R"(  \S+ +32\.4\.2 +NONE +1\.2\d MB +1\.2\d MB +\(1,1,1\) +\d+ +150 x 100 x 40 )"
+                         R"(+1->2->\d+ +\d+->\d+->\d+ +\(0,0,0\) -> \(149,99,39\) +\(0,0,0\) -> \(150,100,40\))");
+    EXPECT_TRUE(std::regex_search(result.out, row)) << result.out;
+  }
+}
+
+// To OpenVDB and back, which makes a float grid of what the stock reader decodes: every voxel keeps its bits.
+TEST_F(StockTools, ConvertToVdbAndBack) {
+  for (const char* encoding : {"float", "fpn", "fp4", "fp8", "fp16"}) {
+    for (const char* kind : {"turbulence", "signed", "offset"}) {
+      SCOPED_TRACE(std::string(encoding) + ", " + kind);
+      const std::string nvdb = convert(kind, "140,61,43", {"--rate", "2.2", "--encoding", encoding});
+      const std::string vdb = directory_ / "volume.vdb";
+      const std::string back = directory_ / "back.nvdb";
+      for (const auto& [from, to] : {std::pair{nvdb, vdb}, {vdb, back}}) {
+        const CommandResult result = run_command({"nanovdb_convert", "-f", from, to});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+      }
+      expect_valid(back);
+      const NvdbFile ours(nvdb);
+      const NvdbFile theirs(back);
+      EXPECT_EQ(theirs.grid().type(), GridType::float32);
+      const Box domain{{0, 0, 0}, {140, 61, 43}};
+      EXPECT_EQ(theirs.grid().index_bbox(), domain);
+      EXPECT_EQ(theirs.grid().active_voxels(), ours.grid().active_voxels());
+      std::int64_t differing = 0;
+      for (std::int64_t n = 0; n < domain.voxels(); ++n) {
+        const Index3 i = index_at(n, domain.extent());
+        differing +=
+            std::bit_cast<std::uint32_t>(ours.grid().value(i)) != std::bit_cast<std::uint32_t>(theirs.grid().value(i))
+                ? 1
+                : 0;
+      }
+      EXPECT_EQ(differing, 0);
+    }
+  }
 }
 
 }  // namespace
