@@ -114,7 +114,7 @@ TEST_F(StockTools, PrintShowsQuantisedGrids) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.err, "");
     const std::regex row(std::string(R"(\n1  density  )") + type +
-                         R"(  \S+ +32\.4\.2 +NONE +1\.2\d MB +1\.2\d MB +\(1,1,1\) +\d+ +150 x 100 x 40 )"
+                         R"(  \S+ +32\.4\.2 +NONE +1\.2\d+ MB +1\.2\d+ MB +\(1,1,1\) +\d+ +150 x 100 x 40 )"
                          R"(+1->2->\d+ +\d+->\d+->\d+ +\(0,0,0\) -> \(149,99,39\) +\(0,0,0\) -> \(150,100,40\))");
     EXPECT_TRUE(std::regex_search(result.out, row)) << result.out;
   }

@@ -2,6 +2,7 @@
 // Skipped where the data is not there.
 #include <algorithm>
 
+#include "format/text.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
 namespace weir {
@@ -29,8 +30,8 @@ for t in range(4): expect("t%d" % t, f["QCLOUD"][t])
 )");
   float largest = 0;
   for (std::int64_t t = 0; t < 4; ++t) {
-    expect_reads(scratch, "wrf_katrina_ci_test_file.nc", dataset_options("QCLOUD", {t}), "t" + std::to_string(t));
-    const std::vector<float> values = expected(scratch, "t" + std::to_string(t));
+    expect_reads(scratch, "wrf_katrina_ci_test_file.nc", dataset_options("QCLOUD", {t}), cat("t", t));
+    const std::vector<float> values = expected(scratch, cat("t", t));
     largest = std::max(largest, *std::max_element(values.begin(), values.end()));
   }
   EXPECT_NEAR(largest, 1.81e-3, 0.005e-3);  // as the data's manifest has it
