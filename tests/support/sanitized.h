@@ -1,5 +1,10 @@
-// Whether this build counts a sanitizer's memory as its own: no test of a memory ceiling can hold then.
+// What tests do differently in a build with a sanitizer: its memory counts as the process's own, so that no test
+// of a memory ceiling can hold, and it reports what foreign libraries never free.
 #pragma once
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
 
 namespace weir {
 
@@ -7,6 +12,15 @@ namespace weir {
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
+#endif
+
+/// While one lives, nothing that this thread allocates is reported as a leak.
+#if defined(__SANITIZE_ADDRESS__)
+using LeaksOfLibraries = __lsan::ScopedDisabler;
+#else
+struct LeaksOfLibraries {
+  LeaksOfLibraries() {}  // so that one is never an unused variable
+};
 #endif
 
 inline constexpr const char* kSanitizedSkip = "a sanitizer's own memory counts as the process's";

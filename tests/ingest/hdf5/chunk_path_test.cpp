@@ -12,6 +12,7 @@
 #include "ingest/source_registry.h"
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 namespace {
@@ -77,6 +78,7 @@ TEST(ChunkPath, GzipAndShuffleUseMoreThanOneThread) {
       write(scratch, {{128, 256, 256}, {32, 64, 64}, {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}, false, H5T_STD_I32LE});
   const auto source = open_source(file.path, {});
   std::vector<float> values(file.values.size());
+  const LeaksOfLibraries of_tbb;
   const Observer observer;
   source->read(source->info().domain(), values);
   EXPECT_GT(observer.threads, 1);

@@ -8,6 +8,7 @@
 
 #include "ingest/hdf5/hdf5_lock.h"
 #include "tests/ingest/hdf5/h5py_file.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 namespace {
@@ -303,6 +304,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, ReadsFiltersThatPluginsUndo) {
+  const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch, R"(
 v = values("f4"); expect("v", v)
 with h5py.File("a.h5", "w") as f:
@@ -325,6 +327,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, NamesTheFilterThatIsMissing) {
+  const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch, R"(
 with h5py.File("a.h5", "w") as f:
     for name, id in [("sperr", 32028), ("own", 65000)]:

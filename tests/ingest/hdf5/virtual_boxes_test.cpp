@@ -6,6 +6,7 @@
 
 #include "ingest/hdf5/virtual_mappings.h"
 #include "tests/ingest/hdf5/h5py_file.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 namespace {
@@ -122,6 +123,7 @@ make("numbered.h5", numbered)
 }
 
 TEST_F(VirtualDataset, NamesTheSourceOrTheElementThatIsMissing) {
+  const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch, R"(
 def whole(name, pieces):
     layout = h5py.VirtualLayout((4, 4, 4), "f4")
