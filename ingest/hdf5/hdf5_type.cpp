@@ -70,7 +70,9 @@ std::string type_text(hid_t type) {
     case H5T_FLOAT:
       return cat(number_text(type, "float"), H5Tget_size(type) == 2 ? ", not IEEE 754" : "");
     case H5T_STRING:
-      return H5Tis_variable_str(type) > 0 ? "text of any length" : cat("text of ", H5Tget_size(type), H5Tget_size(type) == 1 ? " byte" : " bytes");
+      return H5Tis_variable_str(type) > 0
+                 ? "text of any length"
+                 : cat("text of ", H5Tget_size(type), H5Tget_size(type) == 1 ? " byte" : " bytes");
     case H5T_BITFIELD:
       return number_text(type, "bit field");
     case H5T_OPAQUE:

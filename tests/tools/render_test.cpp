@@ -184,7 +184,9 @@ TEST_F(Render, QuantisedFilesAtAHighRateGiveNearlyThePicture) {
     Scene scene;
     scene.mode = mode;
     const RenderScene prepared(file.grid(), scene, {.width = 60, .height = 45});
-    return render_cpu(prepared.task(), {.samples = 2});
+    CpuRenderOptions options;
+    options.samples = 2;
+    return render_cpu(prepared.task(), options);
   };
   for (const RenderMode mode : {RenderMode::dvr, RenderMode::mip}) {
     ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--lossless", "-o", volume_, "--overwrite"})
