@@ -86,7 +86,7 @@ TEST(Compare, EqualsTheCertificate) {
 
 TEST(Compare, SameResultWhateverMemoryAndThreads) {
   const Converted volume("turbulence", "200x150x130_float32", {"--rate", "8"});
-  nlohmann::json first = volume.compare({"--threads", "1", "--memory", "100MiB"});
+  nlohmann::json first = volume.compare({"--threads", "1", "--memory", "128MiB"});
   nlohmann::json second = volume.compare({"--threads", "5", "--memory", "2GiB", "--direct-io", "off"});
   for (const char* varies : {"total_s", "peak_rss_bytes"}) {
     first.erase(varies);
