@@ -188,8 +188,7 @@ TEST_P(QuantisedConversionTest, WithTheBackgroundInDroppedBlocks) {
   }
 }
 
-// A larger file buys more of the same steps. What they save is estimated at first, so that a little may be lost where
-// the estimate of a leaf's next width was too good.
+// A larger file buys more of the same steps. Their gains are estimates, so that this is measured, not proven.
 TEST_P(QuantisedConversionTest, ErrorGrowsWithNoSize) {
   MemoryVolume volume = GetParam().make();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {
@@ -202,7 +201,7 @@ TEST_P(QuantisedConversionTest, ErrorGrowsWithNoSize) {
       double last = std::numeric_limits<double>::infinity();
       for (std::uint64_t part = 0; part <= 16; ++part) {
         const Converted converted = test::convert_to(volume, options, minimum + (full - minimum) * part / 16);
-        EXPECT_LE(converted.sidecar.error.mse, last * 1.05) << encoding_name(encoding) << ' ' << part;
+        EXPECT_LE(converted.sidecar.error.mse, last) << encoding_name(encoding) << ' ' << part;
         last = converted.sidecar.error.mse;
       }
     }
@@ -228,12 +227,12 @@ TEST_P(QuantisedConversionTest, AutoIsAsGoodAsTheBetterOfFloatAndFpn) {
       const Converted best = test::convert_to(volume, options, size);
       options.encoding = Encoding::fpn;
       const Converted quantised = test::convert_to(volume, options, size);
-      EXPECT_LE(best.sidecar.error.mse, quantised.sidecar.error.mse * 1.05);
+      EXPECT_LE(best.sidecar.error.mse, quantised.sidecar.error.mse * 1.001);
       EXPECT_TRUE(best.sidecar.error.lossless || !quantised.sidecar.error.lossless);
       if (size < float_minimum) continue;
       options.encoding = Encoding::float32;
       const Converted floats = test::convert_to(volume, options, size);
-      EXPECT_LE(best.sidecar.error.mse, floats.sidecar.error.mse * 1.05);
+      EXPECT_LE(best.sidecar.error.mse, floats.sidecar.error.mse * 1.001);
       EXPECT_TRUE(best.sidecar.error.lossless || !floats.sidecar.error.lossless);
     }
   }
