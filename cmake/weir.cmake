@@ -50,7 +50,7 @@ function(weir_tests name)
   file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
   add_executable(weir_tests_${name} ${sources} ${support})
   set(library weir_${name})
-  if(name STREQUAL "tools")
+  if(name STREQUAL "tools" OR name STREQUAL "daemon")  # they run the command
     set(library weir_tools)
     add_dependencies(weir_tests_${name} weir)
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")

@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build git ca-certificates
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
-  libzfp-dev
+  libzfp-dev libsqlite3-dev
   # to test
   libgtest-dev libbenchmark-dev libnanovdb-tools python3-jsonschema xz-utils
   python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
