@@ -1,0 +1,127 @@
+// Every job there is, in one SQLite file that outlives the daemon: a kill -9 or
+// a power failure between any two statements loses no job, a call that returned
+// is on disk. One thread; one process, which keeps the file locked while the
+// store lives.
+//
+//   discovered --enqueue--> waiting --start--> running --finish--> done
+//        ^                    ^  ^                |--fail--> waiting (later), failed, quarantined
+//        |                    |  |---postpone-----|
+//   observe (changed)       open (was running)
+//   retry (failed, quarantined, cancelled)         cancel: discovered, waiting, running --> cancelled
+//
+// Every step names the state it starts from and answers false where the job is in
+// another one (or gone), so that a late report of a job that was cancelled, or
+// whose source was rewritten meanwhile, changes nothing.
+//
+// All functions throw Error(io) where the file cannot be read or written (disk
+// full among them); the store stays usable and unchanged, and the call may be repeated.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/job.h"
+#include "daemon/sqlite.h"
+
+namespace weir {
+
+/// Delay before the next attempt after `attempts` failed ones: 5 s, doubling, 10 min at most.
+std::int64_t backoff_ms(int attempts);
+inline constexpr int kMaxAttempts = 5;
+
+/// Which jobs to list; empty: any.
+struct JobFilter {
+  std::optional<JobState> state;
+  std::string watch;
+  std::string source;  ///< a part of the path, letter case aside where it is ASCII
+};
+
+/// What jobs did since the state file was made.
+struct JobTotals {
+  std::uint64_t conversions = 0;  ///< that ended well
+  std::uint64_t bytes_read = 0;   ///< by those
+  std::uint64_t bytes_written = 0;
+  double seconds = 0;
+  std::map<int, std::uint64_t> failures;  ///< failed attempts by exit code
+};
+
+using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
+
+class JobStore {
+ public:
+  /// Milliseconds since the epoch.
+  using Clock = std::function<std::int64_t()>;
+  static std::int64_t wall_clock_ms();
+
+  /// Opens `path`, made if missing. Jobs that were running are waiting again, at no cost. A corrupt file is moved
+  /// aside to PATH.corrupt-N and an empty one made. Throws Error(input) for a database of a newer weir or of
+  /// another program, Error(io) where it cannot be opened or another process has it open.
+  explicit JobStore(const std::string& path, Clock clock = wall_clock_ms);
+
+  /// What opening had to say for the log, one line; empty: nothing.
+  const std::string& notice() const { return notice_; }
+
+  /// Runs `steps` as one transaction: all of them or, where one throws, none are kept. A thousand calls so
+  /// grouped cost one fsync. May be nested.
+  void together(const std::function<void()>& steps);
+
+  enum class Change { none, created, changed };
+  struct Observation {
+    Change change;
+    std::optional<JobState> before;  ///< absent where it was created
+    Job job;                         ///< as it is now
+  };
+  /// The source was seen with that identity. A job whose identity or `options` changed (any text that says how
+  /// it is converted) is discovered again, from any state, with its attempts and result forgotten.
+  Observation observe(const std::string& watch, const std::string& source, const FileIdentity& identity,
+                      const std::string& options);
+
+  bool enqueue(std::int64_t id);                          ///< discovered -> waiting
+  bool start(std::int64_t id);                            ///< waiting -> running
+  bool finish(std::int64_t id, const JobResult& result);  ///< running -> done
+  /// running -> quarantined for exit code 3; failed for 2 and 4, which another attempt cannot change; else
+  /// waiting for backoff_ms, and failed at the kMaxAttempts-th time.
+  bool fail(std::int64_t id, const JobResult& result);
+  /// running -> waiting with `reason` and nothing counted: the disk is full, or the service goes down.
+  bool postpone(std::int64_t id, const std::string& reason);
+  /// discovered, waiting or running -> quarantined: the source can never be complete.
+  bool quarantine(std::int64_t id, const std::string& reason);
+  bool cancel(std::int64_t id);  ///< discovered, waiting or running -> cancelled
+  /// failed, quarantined or cancelled -> discovered, as if just seen; waiting -> due at once. No attempts counted.
+  bool retry(std::int64_t id);
+  bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
+
+  std::optional<Job> job(std::int64_t id) const;
+  std::optional<Job> find(const std::string& watch, const std::string& source) const;
+  /// The job whose last result lists that output.
+  std::optional<Job> find_output(const std::string& path) const;
+  /// Last changed first.
+  std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const;
+  std::uint64_t count(const JobFilter& filter) const;
+  /// By watch; watches without jobs are absent.
+  std::map<std::string, JobCounts> counts() const;
+  /// The first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
+  std::vector<Job> candidates(const std::string& watch, Priority priority, std::size_t limit) const;
+  /// Milliseconds until a waiting job that is not due yet becomes so; nullopt: there is none.
+  std::optional<std::int64_t> next_due_ms() const;
+  /// Milliseconds since the job longest in the queue became complete; nullopt: none is waiting.
+  std::optional<std::int64_t> queue_age_ms() const;
+  JobTotals totals() const;
+
+ private:
+  Database open();
+  bool move(std::int64_t id, std::string_view from, JobState to, const std::string& reason);
+
+  std::string path_;
+  Clock clock_;
+  std::string notice_;
+  mutable Database database_;
+};
+
+}  // namespace weir
