@@ -47,6 +47,9 @@ function(weir_tests name)
   if(name STREQUAL "ingest")  # NanoVDB files are an input too
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/format/stock_nvdb.cpp)
   endif()
+  if(name STREQUAL "daemon")  # tested from outside too
+    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/tools/run_command.cpp ${PROJECT_SOURCE_DIR}/tests/tools/scoped_mount.cpp)
+  endif()
   file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
   add_executable(weir_tests_${name} ${sources} ${support})
   set(library weir_${name})

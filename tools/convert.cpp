@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/conversion_options.h"
+#include "tools/finished_output.h"
 #include "tools/given_options.h"
 #include "tools/input_options.h"
 #include "tools/progress.h"
@@ -34,6 +37,7 @@ struct ConvertArguments {
   RunArguments run;
   std::string work_dir;
   bool overwrite = false;
+  bool skip_done = false;
   bool json = false;
 };
 
@@ -48,7 +52,7 @@ void report(const Sidecar& s, const std::string& output) {
 }
 
 // What would be refused after minutes of work is refused before it.
-void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool overwrite) {
+void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool may_exist) {
   std::error_code ignored;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (std::filesystem::equivalent(steps[i].path, outputs[i], ignored)) {
@@ -57,7 +61,7 @@ void check_outputs(std::span<const SeriesStep> steps, std::span<const std::strin
     if (std::filesystem::is_directory(outputs[i], ignored)) {
       throw usage(cat(outputs[i], ": is a directory; name a file in it with -o"));
     }
-    if (steps.size() > 1 && !overwrite && std::filesystem::exists(outputs[i], ignored)) {
+    if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
       throw usage(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
     }
   }
@@ -72,13 +76,54 @@ void check_alike(const Sidecar& first, const SourceInfo& info, const Budget& bud
                   " of ", first.source.path, ", so that a rate gives files of two sizes; give --size"));
 }
 
-Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, const ConversionOptions& options,
-                     const Sidecar* first, ProgressMode mode) {
+// The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
+std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions& options) {
+  FinishedOutput found = find_output(options.output, info, options.provenance.options);
+  switch (found.state) {
+    case FinishedOutput::State::absent:
+      return std::nullopt;
+    case FinishedOutput::State::done:
+      spdlog::info("{}: done already", options.output);
+      return std::move(found.sidecar);
+    case FinishedOutput::State::stale:
+      spdlog::info("{}: converted again: {}", options.output, found.reason);
+      options.overwrite = true;
+      return std::nullopt;
+    case FinishedOutput::State::foreign:
+      if (options.overwrite) return std::nullopt;
+      throw usage(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
+                      "); choose another output with -o or pass --overwrite"));
+  }
+  throw Error(ErrorKind::internal, "unknown state of an output");
+}
+
+// For the program that started this one.
+void announce_output(const ProgressOptions& progress, const std::string& output, bool skipped, const Sidecar& s) {
+  nlohmann::ordered_json line{{"output", output},
+                              {"skipped", skipped},
+                              {"bytes", s.file.bytes},
+                              {"rate", s.budget.rate},
+                              {"lossless", s.error.lossless},
+                              {"psnr_db", nullptr},
+                              {"bytes_read", skipped ? 0 : s.timing.bytes_read},
+                              {"peak_rss_bytes", skipped ? 0 : s.timing.peak_rss_bytes}};
+  if (s.error.psnr_db) line["psnr_db"] = *s.error.psnr_db;
+  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
+                     const Sidecar* first, bool skip_done, const ProgressOptions& shown) {
   source_options.dataset = step.dataset;
   source_options.index = step.index;
   const std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
   if (first != nullptr) check_alike(*first, source->info(), options.budget);
-  Progress progress(mode);
+  if (skip_done) {
+    if (auto record = skip_or_replace(source->info(), options)) {
+      announce_output(shown, options.output, true, *record);
+      return *std::move(record);
+    }
+  }
+  Progress progress(shown);
   ConversionControl control;
   control.cancel = &interrupt_flag();
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
@@ -88,6 +133,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, const
   Sidecar sidecar = convert_volume(*source, options, control, *files);
   progress.finish();
   report(sidecar, options.output);
+  announce_output(shown, options.output, false, sidecar);
   return sidecar;
 }
 
@@ -116,7 +162,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
 
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options);
   const std::vector<std::string> outputs = series_outputs(steps, a.output);
-  check_outputs(steps, outputs, a.overwrite);
+  check_outputs(steps, outputs, a.overwrite || a.skip_done);
   if (steps.size() > 1 && options.budget.kind == Budget::Kind::lossless) {
     spdlog::warn("--lossless: each of the {} files is as long as it needs; give --size for files of one size",
                  steps.size());
@@ -125,8 +171,8 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
-    sidecars.push_back(
-        convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(), a.run.progress));
+    sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(),
+                                    a.skip_done, a.run.progress));
   }
   if (a.json) print_json(sidecars);
 }
@@ -151,6 +197,9 @@ void add_convert(CLI::App& app) {
   command->add_option("--work-dir", a->work_dir,
                       "for spill files, on a disk; default: a hidden directory beside the output");
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");
+  command->add_flag("--skip-done", a->skip_done,
+                    "leave an output that this very conversion made of the same source; convert it again where the "
+                    "source or an option has changed or the output is not whole");
   command->add_flag("--json", a->json, "print the sidecar on stdout");
   add_log_level(*command);
   command->callback([command, a] { convert(*command, *a); });

@@ -1,13 +1,23 @@
 #include "tools/given_options.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace weir {
+namespace {
+
+// They say how a command reports, or whether it runs at all.
+constexpr std::array<std::string_view, 6> kSilent{"help", "json", "progress", "progress-fd", "log-level", "skip-done"};
+
+}  // namespace
 
 std::map<std::string, std::string> given_options(const CLI::App& command) {
   std::map<std::string, std::string> given;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->get_lnames().empty()) continue;
     const std::string& name = option->get_lnames().front();
-    if (name == "help" || name == "json" || name == "progress" || name == "log-level") continue;
+    if (std::find(kSilent.begin(), kSilent.end(), name) != kSilent.end()) continue;
     given[name] = option->get_expected_max() == 0 ? "true" : option->results().back();
   }
   return given;

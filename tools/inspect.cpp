@@ -38,7 +38,7 @@ struct InspectArguments {
   InputArguments source;
   std::string plot;
   bool json = false;
-  ProgressMode progress = ProgressMode::automatic;
+  ProgressOptions progress;
 };
 
 struct Inspection {
@@ -70,12 +70,12 @@ const char* checksum_state(const NvdbGrid& grid) {
   return grid.head_checksum() == grid.computed_head_checksum() ? "ok" : "wrong";
 }
 
-Sidecar::Histogram counted_histogram(const NvdbGrid& grid, ProgressMode mode) {
+Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions& shown) {
   const float lo = grid.value_min();
   const float hi = grid.value_max();
   Sidecar::Histogram histogram{lo, hi, {}};
   if (!std::isfinite(lo) || !std::isfinite(hi) || !(lo < hi)) return histogram;
-  Progress progress(mode);
+  Progress progress(shown);
   progress.start("histogram", grid.data_bytes());
   const auto leaf_bytes = grid.data_bytes() / std::max<std::uint64_t>(grid.node_counts()[0], 1);
   histogram.counts = count_values(grid, lo, hi, kBins, [&](std::uint64_t leaves) {
@@ -231,7 +231,7 @@ void add_inspect(CLI::App& app) {
   command->add_option("--plot", arguments->plot, "also draws the histogram as FILE.png");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_input_options(*command, arguments->source);
-  add_progress_option(*command, arguments->progress);
+  add_progress_options(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { run(*arguments); });
 }

@@ -1,12 +1,17 @@
 #include "tools/progress.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <climits>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "format/text.h"
@@ -55,8 +60,8 @@ std::string progress_text(const std::string& pass, std::uint64_t done, std::uint
   return text;
 }
 
-Progress::Progress(ProgressMode mode, std::FILE* out, std::function<double()> clock_s)
-    : mode_(mode),
+Progress::Progress(ProgressOptions options, std::FILE* out, std::function<double()> clock_s)
+    : options_(options),
       out_(out),
       clock_s_(clock_s ? std::move(clock_s) : steady_seconds),
       terminal_(isatty(fileno(out)) == 1) {}
@@ -65,25 +70,30 @@ Progress::~Progress() { end_bar(); }
 
 void Progress::start(const std::string& pass, std::uint64_t total, ProgressUnit unit) {
   finish();
-  if (mode_ == ProgressMode::never) return;
+  if (options_.mode == ProgressMode::never && options_.descriptor < 0) return;
   running_ = true;
   pass_ = pass;
   unit_ = unit;
   total_ = total;
   done_ = 0;
   started_s_ = drawn_s_ = clock_s_();
+  tell();
 }
 
 void Progress::update(std::uint64_t done) {
   if (!running_) return;
   done_ = done;
-  if (clock_s_() - drawn_s_ >= (terminal_ ? kBarInterval_s : kLineInterval_s)) draw();
+  const double now_s = clock_s_();
+  if (options_.descriptor >= 0 && now_s - told_s_ >= kBarInterval_s) tell();
+  if (options_.mode == ProgressMode::never) return;
+  if (now_s - drawn_s_ >= (terminal_ ? kBarInterval_s : kLineInterval_s)) draw();
 }
 
 void Progress::finish() {
   if (!running_) return;
   done_ = total_;
-  if (terminal_ || mode_ == ProgressMode::always) draw();
+  tell();
+  if (options_.mode == ProgressMode::always || (terminal_ && options_.mode != ProgressMode::never)) draw();
   end_bar();
   running_ = false;
 }
@@ -102,6 +112,16 @@ void Progress::draw() {
   std::fflush(out_);
 }
 
+void Progress::tell() {
+  if (options_.descriptor < 0) return;
+  told_s_ = clock_s_();
+  announce(options_, nlohmann::ordered_json{{"pass", pass_},
+                                            {"done", std::min(done_, total_)},
+                                            {"total", total_},
+                                            {"unit", unit_ == ProgressUnit::bytes ? "bytes" : "samples"}}
+                         .dump());
+}
+
 void Progress::end_bar() {
   if (!bar_on_screen_) return;
   std::fputc('\n', out_);
@@ -109,15 +129,37 @@ void Progress::end_bar() {
   bar_on_screen_ = false;
 }
 
-void add_progress_option(CLI::App& command, ProgressMode& mode) {
+void announce(const ProgressOptions& options, std::string line) {
+  if (options.descriptor < 0) return;
+  line += '\n';
+  std::string_view rest = line;
+  while (!rest.empty()) {
+    const ssize_t written = ::write(options.descriptor, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return;  // nobody reads any more: the work goes on
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void add_progress_options(CLI::App& command, ProgressOptions& options) {
   const std::map<std::string, ProgressMode> modes{
       {"auto", ProgressMode::automatic}, {"always", ProgressMode::always}, {"never", ProgressMode::never}};
   command
       .add_option_function<std::string>(
-          "--progress", [&mode, modes](const std::string& name) { mode = modes.at(name); },
+          "--progress", [&options, modes](const std::string& name) { options.mode = modes.at(name); },
           "auto: a bar on a terminal, elsewhere a line every 5 s; always: a line for every pass too; never")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->default_str("auto");
+  const auto is_open = [](const std::string& text) -> std::string {
+    const auto descriptor = parse_int(text);
+    if (descriptor && *descriptor >= 0 && *descriptor <= INT_MAX &&
+        ::fcntl(static_cast<int>(*descriptor), F_GETFD) >= 0)
+      return {};
+    return cat("\"", text, "\" is not the number of an open descriptor");
+  };
+  command.add_option("--progress-fd", options.descriptor, "also as JSON lines, to this open descriptor")
+      ->type_name("N")
+      ->check(CLI::Validator(is_open, ""));
 }
 
 }  // namespace weir

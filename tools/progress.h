@@ -1,6 +1,7 @@
-// Progress of a long command on stderr: a bar with pass, share, rate and time
-// left on a terminal, one line every few seconds elsewhere. One thread at a
-// time may call it. stdout is never written.
+// Progress of a long command: for people on stderr, a bar with pass, share, rate
+// and time left on a terminal, one line every few seconds elsewhere; for programs
+// JSON lines on a descriptor of their choice. One thread at a time may call it.
+// stdout is never written.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,15 @@ enum class ProgressMode {
   automatic,  ///< a bar on a terminal, elsewhere a line every kLineInterval_s
   always,     ///< the same, and elsewhere a line at the end of every pass however short
   never
+};
+
+/// Where progress is shown.
+struct ProgressOptions {
+  ProgressOptions(ProgressMode shown = ProgressMode::automatic) : mode(shown) {}
+  ProgressMode mode;
+  /// An open descriptor of the caller's, or -1. At the begin and end of a pass and every kBarInterval_s
+  /// {"pass": "survey", "done": 1048576, "total": 8388608, "unit": "bytes"} and what is announced.
+  int descriptor = -1;
 };
 
 /// What a pass counts.
@@ -33,7 +43,7 @@ std::string progress_text(const std::string& pass, std::uint64_t done, std::uint
 class Progress {
  public:
   /// `clock_s` returns monotonic seconds; tests pass their own.
-  explicit Progress(ProgressMode mode, std::FILE* out = stderr, std::function<double()> clock_s = {});
+  explicit Progress(ProgressOptions options, std::FILE* out = stderr, std::function<double()> clock_s = {});
   /// Ends a bar that an exception left standing, so that the message starts on a line of its own.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -48,9 +58,10 @@ class Progress {
 
  private:
   void draw();
+  void tell();
   void end_bar();
 
-  ProgressMode mode_;
+  ProgressOptions options_;
   std::FILE* out_;
   std::function<double()> clock_s_;
   bool terminal_;
@@ -62,9 +73,13 @@ class Progress {
   std::uint64_t done_ = 0;
   double started_s_ = 0;
   double drawn_s_ = 0;
+  double told_s_ = 0;
 };
 
-/// Adds --progress auto|always|never, stored in `mode`.
-void add_progress_option(CLI::App& command, ProgressMode& mode);
+/// Writes `line` and a newline to the descriptor of `options`, if it has one. A reader that has gone is no error.
+void announce(const ProgressOptions& options, std::string line);
+
+/// Adds --progress auto|always|never and --progress-fd N, stored in `options`.
+void add_progress_options(CLI::App& command, ProgressOptions& options);
 
 }  // namespace weir

@@ -46,7 +46,7 @@ struct RenderArguments {
   std::string samples;
   std::string seed = "0";
   std::string threads = "0";
-  ProgressMode progress = ProgressMode::automatic;
+  ProgressOptions progress;
   bool json = false;
 };
 
@@ -202,7 +202,7 @@ void add_render(CLI::App& app) {
   command->add_option("--iso", arguments->iso, "value of the surface; default: 35 % of the way from the background");
   command->add_option("--camera", arguments->camera, "AZIMUTH,ELEVATION[,ZOOM] in degrees; default 35,20,1");
   command->add_option("--threads", arguments->threads, "0: all of the machine's")->capture_default_str();
-  add_progress_option(*command, arguments->progress);
+  add_progress_options(*command, arguments->progress);
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
   add_log_level(*command);
   command->callback([arguments] { render(*arguments); });

@@ -14,7 +14,7 @@ void add_run_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("N")
       ->group("Run")
       ->capture_default_str();
-  add_progress_option(command, arguments.progress);
+  add_progress_options(command, arguments.progress);
 }
 
 std::uint64_t parse_memory(const RunArguments& arguments) {

@@ -20,10 +20,10 @@ inline constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20U;
 struct RunArguments {
   std::string memory;  ///< a size, of the whole process; empty: kDefaultMemory
   int threads = 0;     ///< 0: all of the machine's
-  ProgressMode progress = ProgressMode::automatic;
+  ProgressOptions progress;
 };
 
-/// Adds --memory, --threads and --progress, stored in `arguments`, which must live as long as the command.
+/// Adds --memory, --threads, --progress and --progress-fd, stored in `arguments`, which must live as long as the command.
 void add_run_options(CLI::App& command, RunArguments& arguments);
 
 /// Bytes. Throws Error(usage) where the text is no size or below kLeastMemory.

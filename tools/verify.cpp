@@ -27,7 +27,7 @@ namespace {
 struct VerifyArguments {
   std::string path;
   bool json = false;
-  ProgressMode progress = ProgressMode::automatic;
+  ProgressOptions progress;
 };
 
 void stop_if_interrupted() {
@@ -120,7 +120,7 @@ void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand("verify", "Checks structure, checksum, digest and sidecar of a volume");
   command->add_option("volume", arguments->path, "the .nvdb file; its sidecar lies beside it")->required();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  add_progress_option(*command, arguments->progress);
+  add_progress_options(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { run(*arguments); });
 }

@@ -113,14 +113,39 @@ TEST(Progress, BarOnATerminalEndsItsLineWhenWorkThrows) {
   EXPECT_EQ(shown, "\r\x1b[K[######..................] survey 25 % of 1000 B, 0.00 GB/s, 0:03 left\r\n");
 }
 
+TEST(Progress, TellsAProgramAtItsDescriptor) {
+  Stage stage;
+  Stage pipe;
+  ProgressOptions options(ProgressMode::never);
+  options.descriptor = fileno(pipe.out.get());
+  {
+    Progress progress(options, stage.out.get(), stage.clock());
+    progress.start("survey", 1000);
+    stage.now_s += 0.09;
+    progress.update(100);  // too soon
+    stage.now_s += 0.02;
+    progress.update(300);
+    progress.start("encode", 20, ProgressUnit::samples);
+    progress.update(40);
+  }
+  announce(options, "{}");
+  EXPECT_EQ(pipe.text(),
+            "{\"pass\":\"survey\",\"done\":0,\"total\":1000,\"unit\":\"bytes\"}\n"
+            "{\"pass\":\"survey\",\"done\":300,\"total\":1000,\"unit\":\"bytes\"}\n"
+            "{\"pass\":\"survey\",\"done\":1000,\"total\":1000,\"unit\":\"bytes\"}\n"
+            "{\"pass\":\"encode\",\"done\":0,\"total\":20,\"unit\":\"samples\"}\n"
+            "{}\n");
+  EXPECT_EQ(stage.text(), "");
+}
+
 TEST(Progress, OptionNamesAreTheModes) {
-  ProgressMode mode = ProgressMode::automatic;
+  ProgressOptions options;
   CLI::App app;
-  add_progress_option(app, mode);
+  add_progress_options(app, options);
   app.parse("--progress never");
-  EXPECT_EQ(mode, ProgressMode::never);
+  EXPECT_EQ(options.mode, ProgressMode::never);
   app.parse("--progress always");
-  EXPECT_EQ(mode, ProgressMode::always);
+  EXPECT_EQ(options.mode, ProgressMode::always);
   EXPECT_THROW(app.parse("--progress often"), CLI::ValidationError);
 }
 

@@ -19,7 +19,7 @@ TEST(RunOptions, Defaults) {
   const RunArguments arguments = parse("");
   EXPECT_EQ(parse_memory(arguments), 536870912U);
   EXPECT_EQ(limit_threads(arguments), nullptr);
-  EXPECT_EQ(arguments.progress, ProgressMode::automatic);
+  EXPECT_EQ(arguments.progress.mode, ProgressMode::automatic);
 }
 
 TEST(RunOptions, MemoryIsASize) {

@@ -1,0 +1,154 @@
+// `weir convert --skip-done`: what it leaves alone, what it makes anew, what it refuses.
+#include "tools/finished_output.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SkipDone : public testing::Test {
+ protected:
+  SkipDone() { write_source('\3'); }
+
+  void write_source(char seed) const {
+    std::string bytes(40 * 32 * 24, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * static_cast<unsigned char>(seed));
+    write_file(source_, bytes);
+  }
+
+  CommandResult convert(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"convert", source_, "-o", output_, "--skip-done", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weir(arguments);
+  }
+
+  /// Whether the run left the very file that was there.
+  bool leaves_it(const std::vector<std::string>& more = {}) const {
+    const auto before = fs::last_write_time(output_);
+    const CommandResult result = convert(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const bool left = fs::last_write_time(output_) == before;
+    EXPECT_EQ(left, result.err.find("done already") != std::string::npos) << result.err;
+    EXPECT_EQ(result.out, read_file(output_ + ".json"));
+    EXPECT_EQ(run_weir({"verify", output_}).exit_code, 0);
+    EXPECT_EQ(list_directory(directory_.path()).size(), 3U);
+    return left;
+  }
+
+  TemporaryDirectory directory_;
+  std::string source_ = directory_ / "v_40x32x24_uint8.raw";
+  std::string output_ = directory_ / "v.nvdb";
+};
+
+TEST_F(SkipDone, ConvertsOnceAndReportsTheSame) {
+  const CommandResult first = convert();
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_TRUE(leaves_it());
+  EXPECT_TRUE(leaves_it({"--memory", "256MiB", "--threads", "1", "--overwrite"})) << "the bytes would be the same";
+}
+
+TEST_F(SkipDone, ConvertsAgainWhatChanged) {
+  ASSERT_EQ(convert().exit_code, 0);
+  EXPECT_FALSE(leaves_it({"--size", "400000"})) << "an option";
+  EXPECT_FALSE(leaves_it()) << "the option again";
+  write_source('\5');
+  EXPECT_FALSE(leaves_it()) << "the source";
+  fs::last_write_time(source_, fs::last_write_time(source_) + std::chrono::nanoseconds(1));
+  EXPECT_FALSE(leaves_it()) << "a nanosecond";
+}
+
+TEST_F(SkipDone, ConvertsAgainWhatIsNotWhole) {
+  ASSERT_EQ(convert().exit_code, 0);
+  fs::resize_file(output_, fs::file_size(output_) - 1);
+  EXPECT_FALSE(leaves_it()) << "short";
+  fs::remove(output_);
+  ASSERT_EQ(convert().exit_code, 0) << "a sidecar alone, as a crash between the two renames leaves it";
+  {
+    std::fstream file(output_, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(4096 + 100).put('x');  // in the grid's head
+  }
+  EXPECT_FALSE(leaves_it()) << "damaged head";
+}
+
+TEST_F(SkipDone, RefusesWhatIsNotItsOwn) {
+  write_file(output_, "precious");
+  const CommandResult unknown = convert();
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_EQ(unknown.err, "weir: " + output_ + ": exists and is not of " + source_ +
+                             " (has no sidecar, so that weir cannot say what it is); choose another output with -o or "
+                             "pass --overwrite\n");
+  EXPECT_EQ(read_file(output_), "precious");
+  EXPECT_EQ(convert({"--overwrite"}).exit_code, 0);
+
+  const std::string other = directory_ / "w_40x32x24_uint8.raw";
+  fs::copy_file(source_, other);
+  const CommandResult taken = run_weir({"convert", other, "-o", output_, "--skip-done"});
+  EXPECT_EQ(taken.exit_code, 2);
+  EXPECT_NE(taken.err.find("(was made of " + source_ + ")"), std::string::npos) << taken.err;
+  EXPECT_TRUE(fs::remove(other));
+  EXPECT_TRUE(leaves_it());
+}
+
+TEST_F(SkipDone, APathThatIsNoTextIsStillRecognised) {
+  const std::string odd = directory_ / "\xff_40x32x24_uint8.raw";
+  fs::rename(source_, odd);
+  const std::vector<std::string> command{"convert", odd, "-o", output_, "--skip-done"};
+  ASSERT_EQ(run_weir(command).exit_code, 0);
+  const CommandResult again = run_weir(command);
+  EXPECT_NE(again.err.find("done already"), std::string::npos) << again.err;
+}
+
+TEST_F(SkipDone, OfASeriesMakesTheMissingSteps) {
+  fs::copy_file(source_, directory_ / "s_1_40x32x24_uint8.raw");
+  fs::copy_file(source_, directory_ / "s_2_40x32x24_uint8.raw");
+  fs::create_directory(directory_ / "out");
+  const std::vector<std::string> command{"convert", directory_ / "s_%d_40x32x24_uint8.raw", "-o", directory_ / "out/",
+                                         "--skip-done"};
+  ASSERT_EQ(run_weir(command).exit_code, 0);
+  fs::remove(directory_ / "out/s_2_40x32x24_uint8.nvdb");
+  const auto kept = fs::last_write_time(directory_ / "out/s_1_40x32x24_uint8.nvdb");
+  const CommandResult again = run_weir(command);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(fs::exists(directory_ / "out/s_2_40x32x24_uint8.nvdb"));
+  EXPECT_EQ(fs::last_write_time(directory_ / "out/s_1_40x32x24_uint8.nvdb"), kept);
+}
+
+// The lines for the program that started convert, on a descriptor of its choice.
+TEST_F(SkipDone, AnnouncesOutputsToItsCaller) {
+  const std::string lines = directory_ / "lines";
+  for (const bool skipped : {false, true}) {
+    const std::string shell = "exec \"$0\" convert \"$1\" -o \"$2\" --skip-done --progress-fd 9 9>\"$3\"";
+    ASSERT_EQ(run_command({"sh", "-c", shell, WEIR_COMMAND, source_, output_, lines}).exit_code, 0);
+    std::ifstream in(lines);
+    std::vector<nlohmann::json> told;
+    for (std::string line; std::getline(in, line);) told.push_back(nlohmann::json::parse(line));
+    ASSERT_FALSE(told.empty());
+    const nlohmann::json& last = told.back();
+    EXPECT_EQ(last["output"], output_);
+    EXPECT_EQ(last["skipped"], skipped);
+    EXPECT_EQ(last["bytes"], fs::file_size(output_));
+    EXPECT_EQ(last["bytes_read"].get<std::uint64_t>() > 0, !skipped);
+    EXPECT_EQ(told.size() > 1, !skipped);
+    if (skipped) continue;
+    EXPECT_EQ(told.front(),
+              (nlohmann::json{{"pass", "survey"}, {"done", 0}, {"total", 40 * 32 * 24 * 4}, {"unit", "bytes"}}));
+  }
+}
+
+TEST_F(SkipDone, RefusesAClosedDescriptor) {
+  const CommandResult result = convert({"--progress-fd", "77"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err, "weir: --progress-fd: \"77\" is not the number of an open descriptor; see weir --help\n");
+}
+
+}  // namespace
+}  // namespace weir

@@ -1,0 +1,83 @@
+#include "tools/finished_output.h"
+
+#include <filesystem>
+
+#include "format/error.h"
+#include "format/nvdb_file.h"
+#include "format/text.h"
+#include "tools/read_sidecar.h"
+
+namespace weir {
+namespace {
+
+using Options = std::map<std::string, std::string>;
+
+Options deciding(Options options) {
+  for (const char* name : {"output", "memory", "threads", "work-dir", "direct-io", "overwrite"}) options.erase(name);
+  return options;
+}
+
+// `source` and `options` as a sidecar gives them back: JSON does not hold every byte that a path may.
+Sidecar expected_record(const SourceInfo& source, const Options& options) {
+  Sidecar record;
+  record.source.path = source.path;
+  record.source.dataset = source.dataset;
+  record.source.mtime = utc_text(source.mtime_ns);
+  record.weir.options = deciding(options);
+  return parse_sidecar(to_json_text(record), source.path);
+}
+
+std::string difference(const Sidecar& found, const Sidecar& expected, const SourceInfo& source) {
+  if (found.source.bytes != source.file_bytes) {
+    return cat("made when ", source.path, " had ", found.source.bytes, " bytes, now ", source.file_bytes);
+  }
+  if (found.source.mtime != expected.source.mtime) {
+    return cat("made of ", source.path, " as of ", found.source.mtime, ", now ", expected.source.mtime);
+  }
+  if (found.source.dataset != expected.source.dataset || found.source.index != source.index ||
+      found.source.format != source.format || found.source.extent != source.extent) {
+    return cat("made of another volume of ", source.path);
+  }
+  if (deciding(found.weir.options) != expected.weir.options) return "made with other options";
+  return {};
+}
+
+// Empty where the volume is the one that the sidecar describes.
+std::string broken(const std::string& output, const Sidecar& sidecar) {
+  try {
+    const NvdbFile file(output);
+    const NvdbGrid& grid = file.grid();
+    const bool whole = file.bytes().size() == sidecar.file.bytes &&
+                       grid.head_checksum() == sidecar.file.head_checksum &&
+                       grid.computed_head_checksum() == sidecar.file.head_checksum;
+    return whole ? "" : cat(output, ": does not agree with its sidecar");
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+FinishedOutput find_output(const std::string& output, const SourceInfo& source, const Options& options) {
+  const std::string record_path = sidecar_path(output);
+  if (!std::filesystem::exists(record_path)) {
+    if (!std::filesystem::exists(output)) return {};
+    return {FinishedOutput::State::foreign, {}, "has no sidecar, so that weir cannot say what it is"};
+  }
+  Sidecar found;
+  try {
+    found = read_sidecar(record_path);
+  } catch (const Error& error) {
+    return {FinishedOutput::State::foreign, {}, error.what()};
+  }
+  const Sidecar expected = expected_record(source, options);
+  if (found.source.path != expected.source.path) {
+    return {FinishedOutput::State::foreign, {}, cat("was made of ", found.source.path)};
+  }
+  std::string reason = difference(found, expected, source);
+  if (reason.empty()) reason = broken(output, found);
+  const auto state = reason.empty() ? FinishedOutput::State::done : FinishedOutput::State::stale;
+  return {state, std::move(found), std::move(reason)};
+}
+
+}  // namespace weir
