@@ -1,31 +1,14 @@
 // One source file of one watch and what became of it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "daemon/job_state.h"
+
 namespace weir {
-
-enum class JobState {
-  discovered,   ///< seen, not known to be complete
-  waiting,      ///< complete; in the queue, or due again after a failed attempt
-  running,      ///< a child process works on it
-  done,         ///< outputs are in place and verified
-  failed,       ///< no attempt is left; until the source or the options change, or a retry
-  quarantined,  ///< the source itself is bad; until it changes, or a retry
-  cancelled     ///< by a user; until the source changes, or a retry
-};
-inline constexpr std::size_t kJobStates = 7;
-inline constexpr std::array<JobState, kJobStates> kAllJobStates{
-    JobState::discovered, JobState::waiting,     JobState::running,  JobState::done,
-    JobState::failed,     JobState::quarantined, JobState::cancelled};
-
-std::string_view job_state_name(JobState state);  ///< "discovered", ...
-std::optional<JobState> parse_job_state(std::string_view name);
 
 /// Which content a path had. Two equal ones are the same content to weir.
 struct FileIdentity {

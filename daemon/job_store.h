@@ -7,7 +7,7 @@
 //        ^                    ^  ^                |--fail--> waiting (later), failed, quarantined
 //        |                    |  |---postpone-----|
 //   observe (changed)       open (was running)
-//   retry (failed, quarantined, cancelled)         cancel: discovered, waiting, running --> cancelled
+//   retry (what is over)                           cancel: discovered, waiting, running --> cancelled
 //
 // Every step names the state it starts from and answers false where the job is in
 // another one (or gone), so that a late report of a job that was cancelled, or
@@ -17,16 +17,18 @@
 // full among them); the store stays usable and unchanged, and the call may be repeated.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "daemon/config.h"
 #include "daemon/job.h"
+#include "daemon/priority.h"
 #include "daemon/sqlite.h"
 
 namespace weir {
@@ -78,7 +80,8 @@ class JobStore {
     Job job;                         ///< as it is now
   };
   /// The source was seen with that identity. A job whose identity or `options` changed (any text that says how
-  /// it is converted) is discovered again, from any state, with its attempts and result forgotten.
+  /// it is converted) is discovered again, from any state, with its attempts and result forgotten. Each change is
+  /// a write to disk: for a file that is still growing, observe its beginning and its end.
   Observation observe(const std::string& watch, const std::string& source, const FileIdentity& identity,
                       const std::string& options);
 
@@ -93,7 +96,8 @@ class JobStore {
   /// discovered, waiting or running -> quarantined: the source can never be complete.
   bool quarantine(std::int64_t id, const std::string& reason);
   bool cancel(std::int64_t id);  ///< discovered, waiting or running -> cancelled
-  /// failed, quarantined or cancelled -> discovered, as if just seen; waiting -> due at once. No attempts counted.
+  /// done, failed, quarantined or cancelled -> discovered, as if just seen; waiting after a failure -> due at once.
+  /// Either way no attempt counts any more.
   bool retry(std::int64_t id);
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
 
@@ -101,7 +105,7 @@ class JobStore {
   std::optional<Job> find(const std::string& watch, const std::string& source) const;
   /// The job whose last result lists that output.
   std::optional<Job> find_output(const std::string& path) const;
-  /// Last changed first.
+  /// Last changed first; where only waiting ones are asked for, the one longest in the queue first.
   std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const;
   std::uint64_t count(const JobFilter& filter) const;
   /// By watch; watches without jobs are absent.
@@ -115,13 +119,12 @@ class JobStore {
   JobTotals totals() const;
 
  private:
-  Database open();
-  bool move(std::int64_t id, std::string_view from, JobState to, const std::string& reason);
+  bool move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason);
+  bool end_attempt(std::int64_t id, const JobResult& result, JobState to, int attempts, std::int64_t delay_ms);
 
-  std::string path_;
   Clock clock_;
   std::string notice_;
-  mutable Database database_;
+  Database database_;
 };
 
 }  // namespace weir

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,7 +30,7 @@ class Statement {
   Statement& bind(std::uint64_t value) { return bind(static_cast<std::int64_t>(value)); }  ///< two's complement
   Statement& bind(double value);
   Statement& bind(std::string_view value);
-  Statement& bind_null();
+  Statement& bind(const std::optional<double>& value);  ///< absent: NULL
 
   /// Whether there is a (further) row.
   bool step();
@@ -44,7 +45,7 @@ class Statement {
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
   };
-  void check(int status, const char* action) const;
+  void check(int status) const;
 
   sqlite3* database_;
   const std::string* path_;
@@ -74,7 +75,8 @@ class Database {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// Rolls back what was not committed.
+/// All statements between its making and commit(), or none. Transactions may be nested: the inner one takes back
+/// its own statements, the outermost one writes to disk.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -85,7 +87,7 @@ class Transaction {
 
  private:
   Database& database_;
-  bool open_;
+  bool committed_ = false;
 };
 
 }  // namespace weir

@@ -1,0 +1,128 @@
+#include "daemon/sqlite.h"
+
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr int kBusyTimeout_ms = 1000;  // a daemon that was just killed may not be gone yet
+
+const char* remedy(int status) {
+  switch (status) {
+    case SQLITE_BUSY:
+      return "; another process has it open, and only one weir watch may use a state file";
+    case SQLITE_FULL:
+      return "; make room";
+    case SQLITE_READONLY:
+      return "; make the file and its directory writable";
+    default:
+      return "";
+  }
+}
+
+[[noreturn]] void fail(sqlite3* database, const std::string& path, int status, const std::string& action) {
+  const int primary = status & 0xff;  // the rest is SQLite's extended code
+  const std::string message = cat(path, ": cannot ", action, ": ", sqlite3_errmsg(database), remedy(primary));
+  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw CorruptDatabase(ErrorKind::io, message);
+  throw Error(ErrorKind::io, message);
+}
+
+}  // namespace
+
+Statement::Statement(sqlite3* database, const std::string& path, std::string_view sql)
+    : database_(database), path_(&path) {
+  sqlite3_stmt* statement = nullptr;
+  const int status = sqlite3_prepare_v2(database, sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
+  statement_.reset(statement);
+  if (status != SQLITE_OK) fail(database_, *path_, status, "read the state");
+}
+
+void Statement::check(int status) const {
+  if (status != SQLITE_OK) fail(database_, *path_, status, "bind a value");
+}
+
+Statement& Statement::bind(std::int64_t value) {
+  check(sqlite3_bind_int64(statement_.get(), ++bound_, value));
+  return *this;
+}
+
+Statement& Statement::bind(double value) {
+  check(sqlite3_bind_double(statement_.get(), ++bound_, value));
+  return *this;
+}
+
+Statement& Statement::bind(std::string_view value) {
+  // An empty view may hold a null pointer, which SQLite would take for NULL.
+  const char* text = value.empty() ? "" : value.data();
+  check(sqlite3_bind_text(statement_.get(), ++bound_, text, static_cast<int>(value.size()), SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind(const std::optional<double>& value) {
+  if (value) return bind(*value);
+  check(sqlite3_bind_null(statement_.get(), ++bound_));
+  return *this;
+}
+
+bool Statement::step() {
+  const int status = sqlite3_step(statement_.get());
+  if (status == SQLITE_ROW) return true;
+  if (status == SQLITE_DONE) return false;
+  fail(database_, *path_, status, sqlite3_stmt_readonly(statement_.get()) != 0 ? "read the state" : "write the state");
+}
+
+bool Statement::is_null(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+double Statement::real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+std::string Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  if (text == nullptr) return {};
+  return {text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+}
+
+Database::Database(const std::string& path) : path_(std::make_unique<const std::string>(path)) {
+  sqlite3* database = nullptr;
+  const int status = sqlite3_open_v2(path.c_str(), &database,
+                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+  database_.reset(database);
+  if (database == nullptr) throw Error(ErrorKind::io, cat(path, ": cannot open the state: out of memory"));
+  if (status != SQLITE_OK) {
+    const int reason = sqlite3_system_errno(database);
+    if (reason != 0) throw io_error(path, "open the state", reason);
+    fail(database, path, status, "open the state");
+  }
+  // SQLite opens what it may not write for reading.
+  if (sqlite3_db_readonly(database, "main") == 1) {
+    throw Error(ErrorKind::io, cat(path, ": cannot write the state: it is read-only", remedy(SQLITE_READONLY)));
+  }
+  sqlite3_busy_timeout(database, kBusyTimeout_ms);
+}
+
+void Database::run(std::string_view sql) const {
+  Statement statement = prepare(sql);
+  while (statement.step()) {
+  }
+}
+
+Transaction::Transaction(Database& database) : database_(database) { database_.run("SAVEPOINT weir"); }
+
+Transaction::~Transaction() {
+  // After some failures, a full disk among them, SQLite has rolled back by itself.
+  if (committed_ || !database_.in_transaction()) return;
+  try {
+    database_.run("ROLLBACK TO weir");
+    database_.run("RELEASE weir");
+  } catch (const Error&) {
+    // Nothing was committed, and what failed before is being reported.
+  }
+}
+
+void Transaction::commit() {
+  database_.run("RELEASE weir");
+  committed_ = true;
+}
+
+}  // namespace weir
