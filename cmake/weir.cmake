@@ -38,6 +38,17 @@ function(weir_library name)
   target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
 endfunction()
 
+# weir_embed_page(TARGET FOLDER): the files of FOLDER, compiled into TARGET as page_files() (daemon/page_files.h).
+function(weir_embed_page target folder)
+  set(page ${PROJECT_SOURCE_DIR}/${folder})
+  set(source ${CMAKE_BINARY_DIR}/page_files.cpp)
+  file(GLOB files CONFIGURE_DEPENDS ${page}/*)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/embed_page.cmake)
+  add_custom_command(OUTPUT ${source} COMMAND ${CMAKE_COMMAND} -D PAGE=${page} -D OUTPUT=${source} -P ${script}
+                     DEPENDS ${files} ${script} COMMENT "Embedding ${folder}" VERBATIM)
+  target_sources(${target} PRIVATE ${source})
+endfunction()
+
 # weir_tests(NAME): every .cpp in tests/NAME/, and what tests share in tests/support/, as the program weir_tests_NAME.
 function(weir_tests name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)

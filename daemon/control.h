@@ -32,7 +32,7 @@ struct OutputView {
 
 struct JobView {
   std::int64_t id = 0;
-  std::string watch;   ///< the watched directory
+  std::string watch;   ///< WatchView::label
   std::string source;  ///< absolute path
   JobState state = JobState::discovered;
   std::uint64_t source_bytes = 0;
@@ -75,6 +75,7 @@ struct RunningView {
 };
 
 struct WatchView {
+  std::string label;  ///< unique; what the configuration calls it, else its directory
   std::string directory;
   std::string output;
   std::string method;  ///< "inotify" or "poll"

@@ -1,0 +1,42 @@
+// What the control server answers: the table of routes over Control.
+//
+//   GET  /                                the page; its other files are /page/NAME
+//   GET  /healthz                         200 while the process answers
+//   GET  /readyz                          200 while every watch is up and the state file can be written, else 503
+//   GET  /metrics                         metrics.h
+//   GET  /api/status                      StatusView
+//   GET  /api/jobs?state=S&watch=DIR&limit=N&offset=N      JobPage; limit 100 unless said, at most 1000
+//   GET  /api/jobs/ID                     JobView with its log tail
+//   GET  /api/jobs/ID/thumbnails/N        PNG of the job's output N
+//   POST /api/jobs/ID/retry, /api/jobs/ID/cancel           the JobView as it is then; 409 in the wrong state
+//   POST /api/retry-failed                {"retried": N}
+//   POST /api/pause, /api/resume          StatusView as it is then
+//
+// HEAD goes wherever GET does. Errors are {"error": "..."}. No path of the file
+// system is ever taken from a request.
+#pragma once
+
+#include <cstddef>
+
+#include "daemon/access.h"
+#include "daemon/control.h"
+#include "daemon/http_message.h"
+
+namespace weir {
+
+inline constexpr std::size_t kMaxJobsPerPage = 1000;
+
+class Api {
+ public:
+  /// `control` must outlive the object.
+  Api(Control& control, AccessRules rules) : control_(control), rules_(std::move(rules)) {}
+
+  /// Throws what `control` throws.
+  HttpResponse answer(const HttpRequest& request) const;
+
+ private:
+  Control& control_;
+  AccessRules rules_;
+};
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// The control server: transport (http_server.h), who may ask (access.h) and
+// what is answered (api.h) put together. Lives on the io_context's thread.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <string>
+
+#include "daemon/control.h"
+#include "daemon/http_limits.h"
+#include "daemon/http_server.h"
+#include "daemon/listen_address.h"
+
+namespace weir {
+
+struct ControlServerSettings {
+  ListenAddress address{"127.0.0.1", 8470};
+  std::string token;  ///< bearer token that every request for data must bring; empty: none, loopback only
+  HttpLimits limits;
+};
+
+class ControlServer {
+ public:
+  /// Listens from here on. `control` must outlive the server. Throws Error(usage) for an address that others can
+  /// reach without a token, Error(io) where the address cannot be had.
+  ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control);
+
+  std::uint16_t port() const { return http_.port(); }
+
+ private:
+  HttpServer http_;
+};
+
+}  // namespace weir

@@ -1,0 +1,135 @@
+#include "daemon/http_server.h"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "daemon/http_session.h"
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr std::chrono::milliseconds kAcceptAgain{100};  // after a failure, as of no descriptor left
+
+tcp::endpoint endpoint_of(const ListenAddress& address) {
+  error_code error;
+  const auto ip = boost::asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
+  if (error) {
+    throw Error(ErrorKind::usage,
+                cat(address.text(), ": cannot listen on a name; write this machine's address, or 0.0.0.0 for all"));
+  }
+  return {ip, address.port};
+}
+
+// Conversions are child processes: they inherit none of the server's sockets.
+template <typename Socket>
+void close_on_exec(Socket& socket) {
+  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+}
+
+}  // namespace
+
+class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
+ public:
+  Listener(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler)
+      : acceptor_(io), retry_(io), limits_(limits), handler_(std::move(handler)) {
+    const tcp::endpoint endpoint = endpoint_of(address);
+    error_code error;
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) {
+      close_on_exec(acceptor_);
+      acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+    }
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
+    if (error) {
+      throw Error(ErrorKind::io, cat(address.text(), ": cannot listen: ", error.message(),
+                                     "; is another weir watch running? choose another service.listen"));
+    }
+  }
+
+  void accept() {
+    acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+      if (self->closed_) return;
+      if (error) return self->accept_later();
+      self->add(std::move(socket));
+      self->accept();
+    });
+  }
+
+  void close() {
+    closed_ = true;
+    error_code ignored;
+    acceptor_.close(ignored);
+    retry_.cancel(ignored);
+    for (const auto& session : sessions_) session->close();
+    sessions_.clear();
+  }
+
+  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  std::size_t connections() const { return sessions_.size(); }
+
+ private:
+  void add(tcp::socket socket) {
+    while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) close_longest_waiting();
+    close_on_exec(socket);
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), limits_, handler_,
+                                                      [this](HttpSession& ended) { remove(ended); }));
+    sessions_.back()->start();
+  }
+
+  // The oldest idle connection; where none is idle, the one that has been sending its request for longest, and so on:
+  // whoever holds connections open without using them must not keep the others out.
+  void close_longest_waiting() {
+    const auto longest = std::min_element(sessions_.begin(), sessions_.end(), [](const auto& a, const auto& b) {
+      return std::tuple(a->phase(), a->since()) < std::tuple(b->phase(), b->since());
+    });
+    (*longest)->close();
+    sessions_.erase(longest);
+  }
+
+  void remove(HttpSession& ended) {
+    std::erase_if(sessions_, [&](const auto& session) { return session.get() == &ended; });
+  }
+
+  void accept_later() {
+    if (!sessions_.empty()) close_longest_waiting();
+    retry_.expires_after(kAcceptAgain);
+    retry_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error && !self->closed_) self->accept();
+    });
+  }
+
+  tcp::acceptor acceptor_;
+  boost::asio::steady_timer retry_;
+  const HttpLimits limits_;
+  HttpHandler handler_;
+  std::vector<std::shared_ptr<HttpSession>> sessions_;
+  bool closed_ = false;
+};
+
+HttpServer::HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits,
+                       HttpHandler handler)
+    : listener_(std::make_shared<Listener>(io, address, limits, std::move(handler))) {
+  listener_->accept();
+}
+
+HttpServer::~HttpServer() { listener_->close(); }
+
+std::uint16_t HttpServer::port() const { return listener_->port(); }
+
+std::size_t HttpServer::connections() const { return listener_->connections(); }
+
+}  // namespace weir
