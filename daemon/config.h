@@ -4,11 +4,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "daemon/convert_syntax.h"
+#include "daemon/listen_address.h"
+#include "daemon/priority.h"
 
 namespace weir {
 
@@ -17,8 +20,7 @@ enum class IoClass { none, best_effort, idle };  ///< none: as the daemon itself
 /// [service]. Paths are absolute.
 struct ServiceConfig {
   std::string state;                              ///< SQLite file; default: weir.db beside the configuration
-  std::string listen_address = "127.0.0.1";       ///< numeric, IPv4 or IPv6 without brackets
-  std::uint16_t listen_port = 8470;               ///< 0: any free one, see port_file
+  ListenAddress listen{"127.0.0.1", 8470};        ///< port 0: any free one, see port_file
   std::string port_file;                          ///< the port that was bound is written there; empty: nowhere
   std::string token;                              ///< bearer token; never empty where others than loopback may connect
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon and all jobs together
@@ -43,11 +45,13 @@ std::uint64_t job_memory(const ServiceConfig& service);
 
 enum class Completion { automatic, close, rename, marker, size, stable };
 enum class WatchMethod { automatic, inotify, poll };
-enum class Priority { newest, oldest };  ///< by modification time
 enum class AfterDone { keep, delete_after_verify };
 
 std::string_view completion_name(Completion completion);  ///< "auto", "close", ...
 std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
+std::string_view priority_name(Priority priority);        ///< "newest", "oldest"
+std::string_view after_done_name(AfterDone source);       ///< "keep", "delete-after-verify"
+std::string_view io_class_name(IoClass io_class);         ///< "none", "best-effort", "idle"
 
 /// One [[watch]]. Directories are absolute and lexically normal, without a trailing slash.
 struct WatchConfig {
@@ -69,7 +73,7 @@ struct WatchConfig {
   Priority priority = Priority::oldest;
   AfterDone source = AfterDone::keep;
   bool thumbnails = true;
-  std::vector<std::string> convert_options;  ///< arguments of `weir convert`: {"--rate=8", "--lossless"}
+  std::vector<std::string> convert_options;  ///< arguments of `weir convert`, in the form of ConvertSyntax::check
 
   /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
   std::optional<std::string> convert_option(std::string_view option) const;
@@ -79,18 +83,6 @@ struct DaemonConfig {
   std::string path;  ///< absolute
   ServiceConfig service;
   std::vector<WatchConfig> watches;
-};
-
-/// What the daemon must know of `weir convert`, handed in by tools/, on which the daemon does not depend.
-struct ConvertSyntax {
-  struct Option {
-    std::string name;  ///< without dashes: "max-error"
-    bool flag;         ///< takes no value
-  };
-  std::vector<Option> options;  ///< those that a watch may set
-  /// Throws Error(usage) where `arguments` (as in WatchConfig::convert_options) would be refused.
-  std::function<void(const std::vector<std::string>& arguments)> check;
-  std::uint64_t least_memory;  ///< bytes below which a conversion refuses to run
 };
 
 /// Reads and checks `path`. Relative paths in it are relative to its directory. Throws Error(input) with

@@ -53,11 +53,31 @@ bool TomlReader::read(std::string_view key, int& value, Bounds bounds) {
   return true;
 }
 
+bool TomlReader::read(std::string_view key, bool& value) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return false;
+  if (!node->is_boolean()) fail(*node, cat(key, " must be true or false"));
+  value = node->as_boolean()->get();
+  return true;
+}
+
 bool TomlReader::read(std::string_view key, std::string& value) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
   if (!node->is_string()) fail(*node, cat(key, " must be a string"));
   value = *node->value<std::string>();
+  return true;
+}
+
+bool TomlReader::read(std::string_view key, std::vector<std::string>& value) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return false;
+  if (!node->is_array()) fail(*node, cat(key, " must be an array of strings"));
+  value.clear();
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) fail(element, cat(key, " must be an array of strings"));
+    value.push_back(element.as_string()->get());
+  }
   return true;
 }
 

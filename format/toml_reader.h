@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "format/error.h"
 #include "format/text.h"
@@ -39,7 +40,10 @@ class TomlReader {
   bool read(std::string_view key, double& value, Bounds bounds = {});
   bool read(std::string_view key, std::optional<double>& value, Bounds bounds = {});
   bool read(std::string_view key, int& value, Bounds bounds);
+  bool read(std::string_view key, bool& value);
   bool read(std::string_view key, std::string& value);
+  /// An array of strings.
+  bool read(std::string_view key, std::vector<std::string>& value);
   /// An array of exactly N numbers.
   template <std::size_t N>
   bool read(std::string_view key, std::array<double, N>& value, Bounds bounds = {}) {

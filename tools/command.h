@@ -24,6 +24,7 @@ void add_verify(CLI::App& app);
 void add_render(CLI::App& app);
 void add_sample(CLI::App& app);
 void add_sweep(CLI::App& app);
+void add_watch(CLI::App& app);
 
 /// Thrown by a subcommand that has already said what it found (verify, compare).
 struct ExitStatus {

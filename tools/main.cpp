@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     weir::add_sample(app);
     weir::add_compare(app);
     weir::add_sweep(app);
+    weir::add_watch(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) {
       return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
