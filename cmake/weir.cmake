@@ -58,9 +58,6 @@ function(weir_tests name)
   if(name STREQUAL "ingest")  # NanoVDB files are an input too
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/format/stock_nvdb.cpp)
   elseif(name STREQUAL "daemon")  # it is the command that watches
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/tools/run_command.cpp)
-  endif()
-  if(name STREQUAL "daemon")  # tested from outside too
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/tools/run_command.cpp ${PROJECT_SOURCE_DIR}/tests/tools/scoped_mount.cpp)
   endif()
   file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
