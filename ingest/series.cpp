@@ -154,7 +154,7 @@ std::string step_name(std::string_view name, const SeriesStep& step) {
 }
 
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output) {
-  const bool directory = steps.size() > 1 && (output.ends_with('/') || std::filesystem::is_directory(output));
+  const bool directory = output.ends_with('/') || (steps.size() > 1 && std::filesystem::is_directory(output));
   std::map<std::string, const SeriesStep*> taken;
   std::vector<std::string> paths;
   for (const SeriesStep& step : steps) {

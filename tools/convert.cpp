@@ -189,8 +189,8 @@ void add_convert(CLI::App& app) {
                    "the steps of a series: one file each, all of one size")
       ->required();
   command->add_option("-o,--output", a->output,
-                      "OUT.nvdb; default: the input's stem + .nvdb, beside it. For a series a directory, or a name "
-                      "with {stem}, {dataset} or {step}");
+                      "OUT.nvdb, or DIRECTORY/; default: the input's stem + .nvdb, beside it. For a series a "
+                      "directory, or a name with {stem}, {dataset} or {step}");
   add_input_options(*command, a->source);
   add_conversion_options(*command, a->conversion);
   add_run_options(*command, a->run);

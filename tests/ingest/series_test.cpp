@@ -32,6 +32,8 @@ TEST(Series, APatternIsAllItsFiles) {
   ASSERT_EQ(steps.size(), 3U);
   EXPECT_EQ(steps[0].step, "08");
   EXPECT_EQ(series_outputs(steps, "out/")[2], "out/run_10.nvdb");
+  EXPECT_EQ(series_outputs(std::span(steps).first(1), "out/"),
+            std::vector<std::string>{series_outputs(steps, "out/").front()});
   EXPECT_EQ(steps[2].step, "10");
   EXPECT_EQ(steps[2].path, scratch.path("run_10.raw"));
   EXPECT_EQ(series_outputs(steps, ""), (std::vector<std::string>{scratch.path("run_8.nvdb"), scratch.path("run_9.nvdb"),

@@ -1,0 +1,114 @@
+// One job while it runs: convert, verify each output, a thumbnail of each, and
+// what is done with the source afterwards. Every step is a process of its own
+// (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken
+// file, a fault of a library or a lack of memory ends that process and not the
+// daemon; which bytes come out is decided there, as on the command line.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/job.h"
+#include "daemon/worker_process.h"
+
+namespace weir {
+
+struct ConversionTask {
+  std::string program;                       ///< path of `weir`
+  std::string source;                        ///< absolute path
+  FileIdentity identity;                     ///< of the source as it was found complete
+  std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
+  std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
+  std::uint64_t memory = 0;                  ///< bytes, of each process
+  int threads = 0;
+  int nice = 0;
+  IoClass io_class = IoClass::none;
+  std::string work_dir;  ///< spill files; empty: beside the output
+  bool thumbnails = true;
+  std::vector<std::string> delete_after;  ///< removed once all outputs are verified: the source, its marker
+};
+
+/// How a run ended.
+enum class TaskEnd {
+  done,
+  failed,          ///< by itself: JobResult::exit_code and reason say why
+  disk_full,       ///< nothing wrong with source or options
+  source_changed,  ///< rewritten meanwhile: what was made of it is worth nothing
+  source_gone,     ///< deleted before it was converted
+  stopped          ///< as asked
+};
+
+struct TaskReport {
+  TaskEnd end = TaskEnd::done;
+  JobResult result;
+  bool converted = false;            ///< false where all outputs had been made before
+  std::vector<std::string> notices;  ///< what went wrong and does not matter to the result; one line each
+};
+
+class ConversionJob {
+ public:
+  using Ended = std::function<void(const TaskReport& report)>;  ///< once; may destroy the job
+
+  /// Runs `task` on `io`. `ended` is never called from within the constructor.
+  ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended);
+  ConversionJob(const ConversionJob&) = delete;
+  ConversionJob& operator=(const ConversionJob&) = delete;
+  /// Kills what runs; `ended` is not called.
+  ~ConversionJob() = default;
+
+  /// Ends the work within `grace`, by force if need be.
+  void stop(std::chrono::milliseconds grace);
+
+  const ConversionTask& task() const { return task_; }
+  std::string_view step() const { return step_; }               ///< "convert", "verify" or "render"
+  std::optional<double> fraction() const { return fraction_; }  ///< of the step, 0..1; none before the first report
+  double seconds() const;                                       ///< since the start
+  std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
+
+ private:
+  struct Output {
+    JobOutput job;
+    bool skipped = false;
+  };
+
+  void run(std::string_view step, std::vector<std::string> arguments, void (ConversionJob::*then)(const WorkerEnd&));
+  void convert();
+  void converted(const WorkerEnd& end);
+  void verify_next();
+  void verified(const WorkerEnd& end);
+  void render_next();
+  void rendered(const WorkerEnd& end);
+  void finish();
+  void fail(int exit_code, const std::string& reason);
+  void end(TaskEnd how);
+  void heard(std::string_view line);
+
+  boost::asio::io_context& io_;
+  ConversionTask task_;
+  Ended ended_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  std::unique_ptr<WorkerProcess> worker_;
+  std::string_view step_ = "convert";
+  std::optional<double> fraction_;
+  bool stopping_ = false;
+  std::vector<Output> outputs_;
+  std::size_t next_ = 0;  ///< of outputs_, in the present step
+  TaskReport report_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< for what was posted and comes too late
+};
+
+/// The identity of `path`; none where there is no such file.
+std::optional<FileIdentity> identify(const std::string& path);
+
+/// "OUT.nvdb.png" for "OUT.nvdb".
+std::string thumbnail_path_of(const std::string& output);
+
+}  // namespace weir

@@ -1,0 +1,185 @@
+// One job with the real `weir`: what it reports for every way it can end.
+#include "daemon/conversion_job.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "format/error.h"
+#include "format/text.h"
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+class ConversionJobTest : public testing::Test {
+ protected:
+  std::string write_source(const std::string& name, std::size_t voxels) const {
+    std::string bytes(voxels, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+    write_file(directory_ / name, bytes);
+    return directory_ / name;
+  }
+
+  ConversionTask task(const std::string& source) const {
+    ConversionTask task;
+    task.program = WEIR_COMMAND;
+    task.source = source;
+    task.identity = identify(source).value_or(FileIdentity{});
+    task.output = directory_ / "out/";
+    task.memory = std::uint64_t{256} << 20U;
+    task.threads = 1;
+    return task;
+  }
+
+  TaskReport run(const ConversionTask& task, const std::function<void(ConversionJob&)>& meanwhile = {}) {
+    boost::asio::io_context io;
+    std::optional<TaskReport> report;
+    std::unique_ptr<ConversionJob> job = std::make_unique<ConversionJob>(io, task, [&](const TaskReport& ended) {
+      EXPECT_FALSE(report);
+      report = ended;
+      job.reset();
+    });
+    while (!report && io.run_one() > 0) {
+      if (job && meanwhile) meanwhile(*job);
+    }
+    EXPECT_TRUE(report);
+    return report.value_or(TaskReport{});
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";
+  std::string steps;
+  const TaskReport first = run(task(source), [&](ConversionJob& job) {
+    if (!steps.ends_with(cat(job.step(), ' '))) steps += cat(job.step(), ' ');
+    EXPECT_LE(job.fraction().value_or(0), 1);
+  });
+  EXPECT_EQ(first.end, TaskEnd::done) << first.result.reason;
+  EXPECT_EQ(steps, "convert verify render ");
+  EXPECT_TRUE(first.converted);
+  ASSERT_EQ(first.result.outputs.size(), 1U);
+  EXPECT_EQ(first.result.outputs[0].path, output);
+  EXPECT_EQ(first.result.outputs[0].bytes, fs::file_size(output));
+  EXPECT_EQ(first.result.outputs[0].thumbnail, output + ".png");
+  EXPECT_GT(first.result.outputs[0].psnr_db, 0.0);
+  EXPECT_EQ(first.result.bytes_written, fs::file_size(output));
+  EXPECT_GE(first.result.bytes_read, std::uint64_t{48 * 40 * 32});
+  EXPECT_GT(first.result.peak_rss_bytes, 0U);
+  EXPECT_EQ(first.notices, Names{});
+  EXPECT_EQ(list_directory(directory_ / "out"),
+            (Names{"a_48x40x32_uint8.nvdb", "a_48x40x32_uint8.nvdb.json", "a_48x40x32_uint8.nvdb.png"}));
+
+  const auto written = fs::last_write_time(output + ".png");
+  const TaskReport second = run(task(source));
+  EXPECT_EQ(second.end, TaskEnd::done);
+  EXPECT_FALSE(second.converted);
+  EXPECT_EQ(second.result.bytes_written, 0U);
+  EXPECT_EQ(second.result.outputs, first.result.outputs);
+  EXPECT_EQ(fs::last_write_time(output + ".png"), written);
+}
+
+TEST_F(ConversionJobTest, SaysWhatConvertSays) {
+  const std::string source = write_source("short_48x40x32_uint8.raw", 1000);
+  const TaskReport report = run(task(source));
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 3);
+  EXPECT_TRUE(report.result.reason.starts_with(source + ": ")) << report.result.reason;
+  EXPECT_NE(report.result.log_tail.find("weir: " + report.result.reason), std::string::npos);
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  ConversionTask stale = task(source);
+  ++stale.identity.mtime_ns;
+  stale.delete_after = {source};
+  EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
+  EXPECT_TRUE(fs::exists(source));
+  fs::resize_file(source, 10);  // and one that fails for it costs no attempt
+  EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
+}
+
+TEST_F(ConversionJobTest, ASourceThatVanishedIsGone) {
+  EXPECT_EQ(run(task(directory_ / "a_48x40x32_uint8.raw")).end, TaskEnd::source_gone);
+}
+
+TEST_F(ConversionJobTest, DeletesTheSourceOnlyAfterVerification) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  write_file(source + ".done", "");
+  ConversionTask deleting = task(source);
+  deleting.delete_after = {source, source + ".done"};
+  const TaskReport report =
+      run(deleting, [&](ConversionJob& job) { EXPECT_TRUE(fs::exists(source) || job.step() == "render"); });
+  EXPECT_EQ(report.end, TaskEnd::done);
+  EXPECT_FALSE(fs::exists(source));
+  EXPECT_FALSE(fs::exists(source + ".done"));
+}
+
+TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";
+  ASSERT_EQ(run(task(source)).end, TaskEnd::done);
+  {
+    std::fstream file(output, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(-1, std::ios::end).put('x');  // in the padding: only the digest tells
+  }
+  const TaskReport damaged = run(task(source));
+  EXPECT_EQ(damaged.end, TaskEnd::failed);
+  EXPECT_EQ(damaged.result.exit_code, 5);
+  EXPECT_TRUE(damaged.result.reason.starts_with("verify: " + output + ": sidecar file.digest: found "))
+      << damaged.result.reason;
+  EXPECT_FALSE(fs::exists(output));
+  const TaskReport again = run(task(source));
+  EXPECT_EQ(again.end, TaskEnd::done);
+  EXPECT_TRUE(again.converted);
+}
+
+TEST_F(ConversionJobTest, StopsWhenAsked) {
+  const std::string source = directory_ / "zeros_1024x1024x512_uint8.raw";
+  write_file(source, "");
+  fs::resize_file(source, std::uintmax_t{1} << 29U);
+  bool asked = false;
+  const TaskReport report = run(task(source), [&](ConversionJob& job) {
+    if (!job.fraction() || asked) return;
+    EXPECT_GT(job.resident_bytes(), 0U);
+    asked = true;
+    job.stop(std::chrono::seconds(20));
+  });
+  EXPECT_EQ(report.end, TaskEnd::stopped);
+  EXPECT_EQ(report.result.exit_code, 130);
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, AKilledProcessIsAFailureThatSaysSo) {
+  ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  killed.program = directory_ / "weir";
+  write_file(killed.program, "#!/bin/sh\nkill -9 $$\n");
+  fs::permissions(killed.program, fs::perms::owner_all);
+  const TaskReport report = run(killed);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 137);
+  EXPECT_EQ(report.result.reason, "convert was ended by signal 9 (Killed); the system may have been out of memory");
+}
+
+TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  write_file(directory_ / "file", "");
+  ConversionTask below = task(source);
+  below.output = directory_ / "file/out/";
+  const TaskReport report = run(below);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 5);
+  EXPECT_EQ(report.result.reason, (directory_ / "file/out") + ": make the directory: Not a directory");
+}
+
+}  // namespace
+}  // namespace weir

@@ -1,0 +1,63 @@
+#include "daemon/notify.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "format/text.h"
+#include "ingest/descriptor.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir {
+namespace {
+
+/// The manager's end.
+struct Manager {
+  TemporaryDirectory directory;
+  std::string path = directory / "notify";
+  Descriptor socket{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+
+  Manager() {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  }
+  std::string received() const {
+    std::array<char, 256> text{};
+    const ssize_t bytes = ::recv(socket.get(), text.data(), text.size(), MSG_DONTWAIT);
+    return bytes < 0 ? "nothing" : std::string(text.data(), static_cast<std::size_t>(bytes));
+  }
+};
+
+TEST(ServiceNotifier, SendsToTheSocketOfTheEnvironmentAndHidesItFromChildren) {
+  const Manager manager;
+  ::setenv("NOTIFY_SOCKET", manager.path.c_str(), 1);
+  ::setenv("WATCHDOG_USEC", "3000000", 1);
+  ::setenv("WATCHDOG_PID", cat(::getpid()).c_str(), 1);
+  const ServiceNotifier notifier = ServiceNotifier::from_environment();
+  EXPECT_EQ(notifier.watchdog(), std::chrono::seconds(3));
+  for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) EXPECT_EQ(std::getenv(name), nullptr);
+  notifier.send("READY=1\nSTATUS=watching");
+  EXPECT_EQ(manager.received(), "READY=1\nSTATUS=watching");
+}
+
+TEST(ServiceNotifier, AWatchdogOfAnotherProcessIsNotOurs) {
+  ::setenv("WATCHDOG_USEC", "3000000", 1);
+  ::setenv("WATCHDOG_PID", "1", 1);
+  EXPECT_EQ(ServiceNotifier::from_environment().watchdog(), std::nullopt);
+}
+
+TEST(ServiceNotifier, DoesNothingWhereNobodyListens) {
+  ::unsetenv("NOTIFY_SOCKET");
+  ServiceNotifier::from_environment().send("READY=1");
+  ServiceNotifier("/nowhere/notify", std::nullopt).send("READY=1");
+  ServiceNotifier(std::string(300, 'x'), std::nullopt).send("READY=1");
+}
+
+}  // namespace
+}  // namespace weir
