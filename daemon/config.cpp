@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "daemon/watch_conflicts.h"
@@ -103,12 +102,15 @@ class ConfigReader {
 
 std::string read_whole(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  std::string text;
+  std::array<char, 4096> piece{};
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
   if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).what());
   return text;
 }
 
-/// The first word of the file; what others may read is no secret.
+/// The text of the file without white space at its end. What everybody may read is no secret.
 std::string read_token_file(ConfigReader& reader, const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
@@ -246,6 +248,8 @@ void exclude_own_files(DaemonConfig& config) {
   std::vector<std::string> own{config.path, service.work_dir, service.log_file, service.port_file, service.state};
   for (const char* journal : {"-wal", "-shm", "-journal"}) own.push_back(service.state + journal);
   for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
+  std::sort(own.begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
   for (WatchConfig& watch : config.watches) {
     for (const std::string& path : own) {
       if (!path.empty() && is_within(path, watch.directory)) watch.excluded_paths.push_back(path);

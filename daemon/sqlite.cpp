@@ -1,5 +1,10 @@
 #include "daemon/sqlite.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
 #include "format/text.h"
 
 namespace weir {
@@ -20,9 +25,9 @@ const char* remedy(int status) {
   }
 }
 
-[[noreturn]] void fail(sqlite3* database, const std::string& path, int status, const std::string& action) {
+[[noreturn]] void fail(sqlite3* database, const std::string& path, int status) {
   const int primary = status & 0xff;  // the rest is SQLite's extended code
-  const std::string message = cat(path, ": cannot ", action, ": ", sqlite3_errmsg(database), remedy(primary));
+  const std::string message = cat(path, ": cannot use the state: ", sqlite3_errmsg(database), remedy(primary));
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw CorruptDatabase(ErrorKind::io, message);
   throw Error(ErrorKind::io, message);
 }
@@ -34,11 +39,11 @@ Statement::Statement(sqlite3* database, const std::string& path, std::string_vie
   sqlite3_stmt* statement = nullptr;
   const int status = sqlite3_prepare_v2(database, sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
   statement_.reset(statement);
-  if (status != SQLITE_OK) fail(database_, *path_, status, "read the state");
+  if (status != SQLITE_OK) fail(database_, *path_, status);
 }
 
 void Statement::check(int status) const {
-  if (status != SQLITE_OK) fail(database_, *path_, status, "bind a value");
+  if (status != SQLITE_OK) fail(database_, *path_, status);
 }
 
 Statement& Statement::bind(std::int64_t value) {
@@ -68,7 +73,7 @@ bool Statement::step() {
   const int status = sqlite3_step(statement_.get());
   if (status == SQLITE_ROW) return true;
   if (status == SQLITE_DONE) return false;
-  fail(database_, *path_, status, sqlite3_stmt_readonly(statement_.get()) != 0 ? "read the state" : "write the state");
+  fail(database_, *path_, status);
 }
 
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
@@ -88,15 +93,17 @@ Database::Database(const std::string& path) : path_(std::make_unique<const std::
   const int status = sqlite3_open_v2(path.c_str(), &database,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(database);
-  if (database == nullptr) throw Error(ErrorKind::io, cat(path, ": cannot open the state: out of memory"));
+  if (database == nullptr) throw Error(ErrorKind::io, cat(path, ": cannot use the state: out of memory"));
   if (status != SQLITE_OK) {
-    const int reason = sqlite3_system_errno(database);
-    if (reason != 0) throw io_error(path, "open the state", reason);
-    fail(database, path, status, "open the state");
+    // SQLite keeps the reason of its last try alone, which is to open for reading.
+    const int again = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (again < 0) throw io_error(path, "use the state", errno);
+    close(again);
+    fail(database, path, status);
   }
   // SQLite opens what it may not write for reading.
   if (sqlite3_db_readonly(database, "main") == 1) {
-    throw Error(ErrorKind::io, cat(path, ": cannot write the state: it is read-only", remedy(SQLITE_READONLY)));
+    throw Error(ErrorKind::io, cat(path, ": cannot use the state: it is read-only", remedy(SQLITE_READONLY)));
   }
   sqlite3_busy_timeout(database, kBusyTimeout_ms);
 }

@@ -1,5 +1,6 @@
 // weir watch: the daemon in the foreground, or what it would do.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -44,8 +45,11 @@ void describe(std::ostream& out, const ServiceConfig& service) {
 }
 
 void describe(std::ostream& out, const WatchConfig& watch) {
+  std::error_code ignored;
   out << "watch \"" << watch.label << "\"\n";
-  say(out, "directory", cat(watch.directory, watch.recursive ? ", and below" : ""));
+  say(out, "directory",
+      cat(watch.directory, watch.recursive ? ", and below" : "",
+          std::filesystem::is_directory(watch.directory, ignored) ? "" : ", which is not there yet"));
   say(out, "include", joined(watch.include, " ", "everything that can be converted"));
   if (!watch.exclude.empty()) say(out, "exclude", joined(watch.exclude, " ", ""));
   for (const std::string& path : watch.excluded_paths) say(out, "never", path);

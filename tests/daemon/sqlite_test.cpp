@@ -1,0 +1,101 @@
+#include "daemon/sqlite.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/temporary_directory.h"
+
+namespace weir {
+namespace {
+
+std::int64_t count(const Database& database) {
+  Statement row = database.prepare("SELECT count(*) FROM t");
+  row.step();
+  return row.integer(0);
+}
+
+class Sqlite : public testing::Test {
+ protected:
+  TemporaryDirectory directory_;
+  std::string path_ = directory_ / "t.db";
+};
+
+TEST_F(Sqlite, ValuesComeBackAsTheyWent) {
+  const Database database(path_);
+  database.run("CREATE TABLE t (a, b, c, d, e, f)");
+  Statement insert = database.prepare("INSERT INTO t VALUES (?, ?, ?, ?, ?, ?)");
+  const std::string latin1("\xe9 \x01 ' \"", 7);
+  insert.bind(std::numeric_limits<std::int64_t>::min()).bind(std::numeric_limits<std::uint64_t>::max()).bind(0.1);
+  insert.bind(latin1).bind(std::string_view()).bind(std::optional<double>()).step();
+  Statement row = database.prepare("SELECT * FROM t");
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.integer(0), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(row.whole(1), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(row.real(2), 0.1);
+  EXPECT_EQ(row.text(3), latin1);
+  EXPECT_EQ(row.text(4), "");
+  EXPECT_FALSE(row.is_null(4));
+  EXPECT_TRUE(row.is_null(5));
+  EXPECT_FALSE(row.step());
+}
+
+TEST_F(Sqlite, ATransactionThatIsNotCommittedLeavesNothing) {
+  Database database(path_);
+  database.run("CREATE TABLE t (a)");
+  {
+    const Transaction abandoned(database);
+    database.run("INSERT INTO t VALUES (1)");
+    EXPECT_TRUE(database.in_transaction());
+  }
+  EXPECT_FALSE(database.in_transaction());
+  EXPECT_EQ(count(database), 0);
+}
+
+TEST_F(Sqlite, AnInnerTransactionTakesBackItsOwnStatementsAlone) {
+  Database database(path_);
+  database.run("CREATE TABLE t (a)");
+  Transaction outer(database);
+  database.run("INSERT INTO t VALUES (1)");
+  {
+    const Transaction abandoned(database);
+    database.run("INSERT INTO t VALUES (2)");
+  }
+  {
+    Transaction kept(database);
+    database.run("INSERT INTO t VALUES (3)");
+    kept.commit();
+  }
+  outer.commit();
+  Statement sum = database.prepare("SELECT sum(a) FROM t");
+  sum.step();
+  EXPECT_EQ(sum.integer(0), 4);
+}
+
+TEST_F(Sqlite, ErrorsNameTheFileAndTheReason) {
+  try {
+    const Database database(directory_ / "missing/t.db");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), (directory_ / "missing/t.db") + ": cannot use the state: No such file or directory");
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+  }
+  const Database database(path_);
+  try {
+    database.run("SELECT * FROM t");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), path_ + ": cannot use the state: no such table: t");
+  }
+  database.run("CREATE TABLE t (a UNIQUE)");
+  database.run("INSERT INTO t VALUES (1)");
+  try {
+    database.run("INSERT INTO t VALUES (1)");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), path_ + ": cannot use the state: UNIQUE constraint failed: t.a");
+  }
+}
+
+}  // namespace
+}  // namespace weir

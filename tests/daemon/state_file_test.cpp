@@ -1,0 +1,131 @@
+#include "daemon/state_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_directory.h"
+#include "tests/tools/run_command.h"
+#include "tests/tools/scoped_mount.h"
+
+namespace weir {
+namespace {
+
+class StateFile : public testing::Test {
+ protected:
+  /// The message of opening; empty: it went well.
+  std::string refusal() {
+    try {
+      open_state_file(path_, notice_);
+      return "";
+    } catch (const Error& error) {
+      kind_ = error.kind();
+      return error.what();
+    }
+  }
+  /// A state file with a row.
+  void make() {
+    const Database database = open_state_file(path_, notice_);
+    database.run("INSERT INTO failures VALUES (5, 42)");
+  }
+  std::int64_t failures() {
+    const Database database = open_state_file(path_, notice_);
+    Statement sum = database.prepare("SELECT coalesce(sum(attempts), 0) FROM failures");
+    sum.step();
+    return sum.integer(0);
+  }
+
+  TemporaryDirectory directory_;
+  std::string path_ = directory_ / "weir.db";
+  std::string notice_;
+  ErrorKind kind_ = ErrorKind::internal;
+};
+
+TEST_F(StateFile, IsMadeOnceAndFoundAgain) {
+  make();
+  EXPECT_EQ(failures(), 42);
+  EXPECT_EQ(notice_, "");
+  EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
+}
+
+TEST_F(StateFile, IsForOneProcess) {
+  const Database first = open_state_file(path_, notice_);
+  EXPECT_EQ(refusal(), path_ +
+                           ": cannot use the state: database is locked; another process has it open, and only one "
+                           "weir watch may use a state file");
+  EXPECT_EQ(kind_, ErrorKind::io);
+}
+
+TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
+  make();
+  Database(path_).run("PRAGMA user_version=7");
+  EXPECT_EQ(refusal(), path_ +
+                           ": has version 7, this weir knows versions up to 1; run the newer weir or name another "
+                           "file as state in [service]");
+  EXPECT_EQ(kind_, ErrorKind::input);
+  Database(path_).run("PRAGMA user_version=1");
+  EXPECT_EQ(failures(), 42);
+}
+
+TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {
+  const std::string message = path_ + ": is a database of another program; name another file as state in [service]";
+  Database(path_).run("CREATE TABLE theirs (a)");
+  EXPECT_EQ(refusal(), message);
+  EXPECT_EQ(kind_, ErrorKind::input);
+  Database(path_).run("DROP TABLE theirs");
+  Database(path_).run("PRAGMA application_id=1");
+  EXPECT_EQ(refusal(), message);
+  EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
+}
+
+TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
+  const std::string text(5000, 'x');
+  for (const std::string n : {"1", "2"}) {
+    write_file(path_, text);
+    write_file(path_ + "-wal", "its journal");
+    EXPECT_EQ(failures(), 0);
+    EXPECT_EQ(notice_, path_ + ": cannot use the state: file is not a database; moved to " + path_ + ".corrupt-" + n +
+                           ", jobs are found anew");
+    EXPECT_EQ(read_file(path_ + ".corrupt-" + n), text);
+  }
+}
+
+TEST_F(StateFile, ThatIsCutOffIsMovedAside) {
+  make();
+  std::filesystem::resize_file(path_, 5 * 4096 + 100);
+  EXPECT_EQ(failures(), 0);
+  EXPECT_EQ(notice_, path_ + ": cannot use the state: database disk image is malformed; moved to " + path_ +
+                         ".corrupt-1, jobs are found anew");
+}
+
+TEST_F(StateFile, WithADamagedPageIsMovedAside) {
+  make();
+  std::string bytes = read_file(path_);
+  // The second page is a table's; its first byte says what kind of page it is.
+  bytes.replace(4096, 512, 512, '\x7f');
+  write_file(path_, bytes);
+  EXPECT_EQ(failures(), 0);
+  EXPECT_TRUE(notice_.ends_with("; moved to " + path_ + ".corrupt-1, jobs are found anew")) << notice_;
+  EXPECT_EQ(read_file(path_ + ".corrupt-1"), bytes);
+}
+
+TEST_F(StateFile, EmptyIsNew) {
+  write_file(path_, "");
+  EXPECT_EQ(failures(), 0);
+  EXPECT_EQ(notice_, "");
+}
+
+TEST_F(StateFile, OnAReadOnlyFileSystemIsRefused) {
+  ScopedMount mount(directory_.path(), 1 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  make();
+  mount.make_read_only();
+  EXPECT_EQ(refusal(), path_ + ": cannot use the state: it is read-only; make the file and its directory writable");
+  EXPECT_EQ(kind_, ErrorKind::io);
+  path_ = directory_ / "other.db";
+  EXPECT_EQ(refusal(), path_ +
+                           ": cannot use the state: Read-only file system; check the permissions or choose another "
+                           "place");
+  EXPECT_EQ(kind_, ErrorKind::io);
+}
+
+}  // namespace
+}  // namespace weir
