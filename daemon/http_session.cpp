@@ -3,8 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/buffer.hpp>
-#include <boost/beast/core/buffer_traits.hpp>
-#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/error.hpp>
 #include <boost/beast/http/write.hpp>
 #include <exception>
 #include <utility>
@@ -15,22 +14,9 @@ namespace {
 namespace http = boost::beast::http;
 using boost::system::error_code;
 
-// Beyond the longest header, so that its limit is met before the buffer's; a body moves on into its string.
-constexpr std::size_t kBufferBytes = 16 << 10;
-
-struct Refusal {
-  unsigned status;
-  const char* message;
-};
-
-// What a request that the parser refused is told.
-Refusal refusal(const error_code& error) {
-  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return {431, "the request's header is too large"};
-  }
-  if (error == http::error::body_limit) return {413, "the request's body is too large"};
-  return {400, "this is no HTTP/1.1 request"};
-}
+// At most what is not parsed yet is in the buffer: a part of a header, or of a chunk's; a body moves on.
+constexpr std::size_t kReadBytes = 4 << 10;
+constexpr std::size_t kSpareBytes = 8 << 10;
 
 std::string text_of(boost::beast::string_view view) { return {view.data(), view.size()}; }
 
@@ -43,7 +29,7 @@ HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, const HttpLimits& 
       limits_(limits),
       handler_(std::move(handler)),
       ended_(std::move(ended)),
-      buffer_(kBufferBytes) {}
+      buffer_(limits.header_bytes + kSpareBytes) {}
 
 void HttpSession::start() { await_request(); }
 
@@ -74,45 +60,70 @@ void HttpSession::enter(Phase phase, std::chrono::milliseconds limit) {
 
 void HttpSession::on_timeout() {
   if (phase_ != Phase::receiving) return end();
-  timed_out_ = true;  // on_request tells the client
+  timed_out_ = true;  // receive() tells the client
   error_code ignored;
   socket_.cancel(ignored);
 }
 
 void HttpSession::await_request() {
-  if (buffer_.size() > 0) return read_request();  // pipelined
+  if (buffer_.size() > 0) return begin_request();  // pipelined
   enter(Phase::idle, limits_.idle);
-  socket_.async_read_some(buffer_.prepare(512),
-                          [self = shared_from_this()](const error_code& error, std::size_t bytes) {
+  receive(&HttpSession::begin_request);
+}
+
+// Appends what comes to the buffer and goes on with `next`.
+void HttpSession::receive(void (HttpSession::*next)()) {
+  socket_.async_read_some(buffer_.prepare(kReadBytes),
+                          [self = shared_from_this(), next](const error_code& error, std::size_t bytes) {
                             if (self->closed_) return;
+                            if (self->timed_out_) return self->refuse(408, "the request took too long to arrive");
                             if (error) return self->end();
                             self->buffer_.commit(bytes);
-                            self->read_request();
+                            ((*self).*next)();
                           });
 }
 
-void HttpSession::read_request() {
-  timed_out_ = false;
+void HttpSession::begin_request() {
   enter(Phase::receiving, limits_.request);
+  header_bytes_ = 0;
   parser_.emplace();
   parser_->header_limit(limits_.header_bytes);
   parser_->body_limit(limits_.body_bytes);
-  http::async_read(socket_, buffer_, *parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
-    if (!self->closed_) self->on_request(error);
-  });
+  parse();
 }
 
-void HttpSession::on_request(const error_code& error) {
-  if (!error) return answer();
-  head_ = false;
-  if (timed_out_) return respond(error_response(408, "the request took too long to arrive"), false);
-  // Only what the parser said is worth an answer; otherwise the client is gone.
-  if (error.category() != make_error_code(http::error::bad_method).category() || error == http::error::end_of_stream ||
-      error == http::error::partial_message) {
-    return end();
+// Not http::async_read: the parser's own limit is of each piece of a header that it is handed, so that many short
+// fields could fill the memory.
+void HttpSession::parse() {
+  while (!parser_->is_done()) {
+    const bool in_header = !parser_->is_header_done();
+    error_code error;
+    const std::size_t used = parser_->put(boost::asio::const_buffer(buffer_.data()), error);
+    buffer_.consume(used);
+    if (in_header) header_bytes_ += used;
+    if (header_bytes_ > limits_.header_bytes) error = http::error::header_limit;
+    if (error && error != http::error::need_more) return refuse(error);
+    if (error || (buffer_.size() == 0 && !parser_->is_done())) {
+      if (buffer_.size() + kReadBytes > buffer_.max_size()) return refuse(http::error::header_limit);
+      return receive(&HttpSession::parse);
+    }
   }
-  const Refusal refused = refusal(error);
-  respond(error_response(refused.status, refused.message), false);
+  answer();
+}
+
+void HttpSession::refuse(const error_code& error) {
+  if (error == http::error::header_limit) {
+    refuse(431, "the request's header is too large");
+  } else if (error == http::error::body_limit) {
+    refuse(413, "the request's body is too large");
+  } else {
+    refuse(400, "this is no HTTP/1.1 request");
+  }
+}
+
+void HttpSession::refuse(unsigned status, const char* message) {
+  head_ = false;
+  respond(error_response(status, message), false);
 }
 
 void HttpSession::answer() {
@@ -120,7 +131,7 @@ void HttpSession::answer() {
   head_ = message.method() == http::verb::head;
   const auto hosts = message.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && message.version() >= 11)) {
-    return respond(error_response(400, "a request needs one Host header"), false);
+    return refuse(400, "a request needs one Host header");
   }
   HttpRequest request;
   request.method = text_of(message.method_string());
@@ -170,7 +181,7 @@ void HttpSession::drain() {
 }
 
 void HttpSession::discard_more() {
-  socket_.async_read_some(buffer_.prepare(kBufferBytes),
+  socket_.async_read_some(buffer_.prepare(kReadBytes),
                           [self = shared_from_this()](const error_code& error, std::size_t) {
                             if (self->closed_) return;
                             if (error) return self->end();

@@ -39,8 +39,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
  private:
   void enter(Phase phase, std::chrono::milliseconds limit);
   void await_request();
-  void read_request();
-  void on_request(const boost::system::error_code& error);
+  void receive(void (HttpSession::*next)());
+  void begin_request();
+  void parse();
+  void refuse(const boost::system::error_code& error);
+  void refuse(unsigned status, const char* message);
   void answer();
   void respond(HttpResponse response, bool keep_alive);
   void drain();
@@ -58,8 +61,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<boost::beast::http::response<boost::beast::http::string_body>> response_;
   Phase phase_ = Phase::idle;
   Clock::time_point since_ = Clock::now();
-  bool head_ = false;       ///< the request is HEAD: its response has no body
-  bool timed_out_ = false;  ///< the read was given up by on_timeout
+  std::size_t header_bytes_ = 0;  ///< of the request so far, its first line included
+  bool head_ = false;             ///< the request is HEAD: its response has no body
+  bool timed_out_ = false;        ///< on_timeout gave the request up
   bool closed_ = false;
 };
 
