@@ -178,9 +178,9 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
   if (job_memory(service) < convert.least_memory) {
     const toml::node* place = table.get("memory") != nullptr ? table.get("memory") : table.get("jobs");
     const std::uint64_t least = kDaemonMemory + static_cast<std::uint64_t>(service.jobs) * convert.least_memory;
-    reader.toml.fail(place != nullptr ? *place : table,
-                     cat("memory is ", format_bytes(service.memory), ", too little for ", service.jobs,
-                         " jobs beside the daemon; it must be at least ", format_bytes(least)));
+    reader.toml.fail(place != nullptr ? *place : table, cat("memory is ", format_bytes(service.memory),
+                                                            ", too little for the daemon and jobs = ", service.jobs,
+                                                            "; it must be at least ", format_bytes(least)));
   }
   for (const std::string* file : {&service.log_file, &service.port_file}) {
     if (*file == service.state) reader.toml.fail(table, cat("state, log and port_file are one file, ", *file));

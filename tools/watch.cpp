@@ -1,15 +1,12 @@
 // weir watch: the daemon in the foreground, or what it would do.
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "daemon/config.h"
-#include "format/text.h"
 #include "tools/command.h"
 #include "tools/convert_syntax.h"
+#include "tools/describe_config.h"
 
 namespace weir {
 namespace {
@@ -19,58 +16,9 @@ struct WatchArguments {
   bool check = false;
 };
 
-void say(std::ostream& out, const char* name, const std::string& value) {
-  out << "  " << name << std::string(12 - std::string_view(name).size(), ' ') << value << '\n';
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator, const char* none) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-  return text.empty() ? none : text;
-}
-
-void describe(std::ostream& out, const ServiceConfig& service) {
-  out << "service\n";
-  say(out, "state", service.state);
-  say(out, "listen", cat(service.listen.text(), service.token.empty() ? "" : ", with a token"));
-  say(out, "memory",
-      cat(format_bytes(service.memory), ", ", format_bytes(job_memory(service)), " for each of ", service.jobs,
-          service.jobs == 1 ? " job" : " jobs"));
-  say(out, "jobs",
-      cat(service.threads == 0 ? "all" : std::to_string(service.threads), " threads each, nice ", service.nice,
-          ", I/O class ", io_class_name(service.io_class)));
-  if (service.bandwidth != 0) say(out, "bandwidth", cat(format_bytes(service.bandwidth), "/s"));
-  say(out, "work_dir", service.work_dir.empty() ? "a hidden directory beside each output" : service.work_dir);
-  say(out, "log", cat(service.log_file.empty() ? "stderr" : service.log_file, ", level ", service.log_level));
-}
-
-void describe(std::ostream& out, const WatchConfig& watch) {
-  std::error_code ignored;
-  out << "watch \"" << watch.label << "\"\n";
-  say(out, "directory",
-      cat(watch.directory, watch.recursive ? ", and below" : "",
-          std::filesystem::is_directory(watch.directory, ignored) ? "" : ", which is not there yet"));
-  say(out, "include", joined(watch.include, " ", "everything that can be converted"));
-  if (!watch.exclude.empty()) say(out, "exclude", joined(watch.exclude, " ", ""));
-  for (const std::string& path : watch.excluded_paths) say(out, "never", path);
-  say(out, "output", cat(watch.output, '/', watch.name.empty() ? "{stem}.nvdb" : watch.name));
-  say(out, "thumbnails", watch.thumbnails ? "yes" : "no");
-  say(out, "watch", cat(watch_method_name(watch.watch), ", polling every ", watch.poll_interval_s, " s"));
-  say(out, "complete",
-      watch.complete == Completion::marker
-          ? cat("marker ", watch.marker)
-          : cat(completion_name(watch.complete), ", settled after ", watch.settle_s, " s"));
-  say(out, "priority", std::string(priority_name(watch.priority)));
-  say(out, "source", std::string(after_done_name(watch.source)));
-  say(out, "convert", joined(watch.convert_options, " ", "as weir convert does by default"));
-}
-
 void watch_directories(const WatchArguments& a) {
   const DaemonConfig config = load_config(a.config, convert_syntax());
-  std::ostringstream out;
-  describe(out, config.service);
-  for (const WatchConfig& watch : config.watches) describe(out, watch);
-  std::fputs(out.str().c_str(), stdout);
+  std::fputs(describe_config(config).c_str(), stdout);
 }
 
 }  // namespace
