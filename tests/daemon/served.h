@@ -46,6 +46,10 @@ class Served {
   void close() {
     run([this] { server_.reset(); });
   }
+  /// The same, from the server's own thread: after what it does now.
+  void close_soon() {
+    boost::asio::post(io_, [this] { server_.reset(); });
+  }
 
  private:
   boost::asio::io_context io_;

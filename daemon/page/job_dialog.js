@@ -1,0 +1,64 @@
+// One job in full, with what can be done about it.
+
+import {get, post} from "./api.js";
+import {by_id, element, set_text} from "./dom.js";
+import * as format from "./format.js";
+
+const dialog = by_id("job");
+let shown = 0;  // id
+let changed = () => {};
+
+function facts_of(job) {
+  const facts = [["Source", job.source], ["State", job.state], ["Size", format.bytes(job.source_bytes)]];
+  if (job.reason) facts.push(["Reason", job.reason]);
+  facts.push(["Since", `${format.date(job.changed_at)} (${format.ago(job.changed_at)})`]);
+  if (job.attempts > 0) facts.push(["Failed attempts", String(job.attempts)]);
+  if (job.exit_code !== null) facts.push(["Exit code", String(job.exit_code)]);
+  if (job.seconds !== null) facts.push(["Time taken", format.seconds(job.seconds)]);
+  if (job.peak_rss_bytes > 0) facts.push(["Peak memory", format.bytes(job.peak_rss_bytes)]);
+  for (const output of job.outputs) {
+    facts.push(["Output", `${output.path}: ${format.bytes(output.bytes)}, ${format.rate(output)}, ${format.quality(output)}`]);
+  }
+  return facts;
+}
+
+function show(job) {
+  set_text(by_id("job-title"), `Job ${job.id}: ${format.base_name(job.source)}`);
+  by_id("job-facts").replaceChildren(
+      ...facts_of(job).flatMap(([name, value]) => [element("dt", "", name), element("dd", "", value)]));
+  by_id("job-log").hidden = !job.log_tail;
+  set_text(by_id("job-log"), job.log_tail ?? "");
+  set_text(by_id("job-error"), "");
+  by_id("job-retry").hidden = !["failed", "quarantined", "cancelled", "done"].includes(job.state) &&
+      job.next_attempt_at === null;
+  by_id("job-cancel").hidden = !["discovered", "waiting", "running"].includes(job.state);
+}
+
+async function act(action) {
+  try {
+    show(await post(`/api/jobs/${shown}/${action}`));
+    changed();
+  } catch (error) {
+    set_text(by_id("job-error"), error.message);
+  }
+}
+
+/** `on_change` is called after a job was retried or cancelled. */
+export function prepare_dialog(on_change) {
+  changed = on_change;
+  by_id("job-retry").addEventListener("click", () => act("retry"));
+  by_id("job-cancel").addEventListener("click", () => act("cancel"));
+  by_id("job-close").addEventListener("click", () => dialog.close());
+}
+
+export async function open_job(id) {
+  shown = id;
+  try {
+    const job = await get(`/api/jobs/${id}`);
+    if (shown !== id) return;
+    show(job);
+    if (!dialog.open) dialog.showModal();
+  } catch {
+    changed();  // the page's own round says what is wrong
+  }
+}

@@ -1,0 +1,116 @@
+"""A browser driven by chromedriver's plain WebDriver protocol (https://www.w3.org/TR/webdriver2/), with nothing but the
+standard library."""
+
+import base64
+import json
+import re
+import subprocess
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the key that the protocol gives an element's id
+
+KEYS = {"TAB": "\ue004", "ENTER": "\ue007", "ESCAPE": "\ue00c", "SPACE": " ", "END": "\ue010", "HOME": "\ue011",
+        "LEFT": "\ue012", "UP": "\ue013", "RIGHT": "\ue014", "DOWN": "\ue015"}
+
+
+class Browser:
+    """Headless Chromium with a profile of its own; a context manager."""
+
+    def __init__(self, width=1200, height=900):
+        self.profile = tempfile.TemporaryDirectory()
+        self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                       text=True)
+        for line in self.driver.stdout:
+            if found := re.search(r"started successfully on port (\d+)", line):
+                break
+        else:
+            raise RuntimeError("chromedriver did not start")
+        self.base = f"http://127.0.0.1:{found[1]}"
+        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+                     "--hide-scrollbars", "--lang=en", f"--window-size={width},{height}",
+                     f"--user-data-dir={self.profile.name}"]
+        capabilities = {"browserName": "chrome", "goog:chromeOptions": {"args": arguments},
+                        "goog:loggingPrefs": {"browser": "ALL"}}
+        session = self.ask("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
+        self.base += f"/session/{session['sessionId']}"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        try:
+            self.ask("DELETE", "", None)
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+            self.profile.cleanup()
+
+    def ask(self, method, path, body):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as response:
+                return json.load(response)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(json.load(error)["value"]["message"]) from None
+
+    def open(self, url):
+        self.ask("POST", "/url", {"url": url})
+
+    def script(self, text, *arguments):
+        """The value of a function body run in the page."""
+        return self.ask("POST", "/execute/sync", {"script": text, "args": list(arguments)})
+
+    def text(self, selector):
+        return self.script("return document.querySelector(arguments[0])?.innerText ?? null", selector)
+
+    def texts(self, selector):
+        return self.script("return [...document.querySelectorAll(arguments[0])].map(e => e.innerText)", selector)
+
+    def visible(self, selector):
+        return self.script("return document.querySelector(arguments[0])?.checkVisibility() ?? false", selector)
+
+    def click(self, selector):
+        found = self.ask("POST", "/element", {"using": "css selector", "value": selector})
+        self.ask("POST", f"/element/{found[ELEMENT]}/click", {})
+
+    def press(self, *keys):
+        """Keys by their name in KEYS, or text."""
+        actions = []
+        for key in keys:
+            for value in [KEYS[key]] if key in KEYS else key:
+                actions += [{"type": "keyDown", "value": value}, {"type": "keyUp", "value": value}]
+        self.ask("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
+
+    def devtools(self, command, **parameters):
+        return self.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def prefer(self, scheme):
+        self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def set_width(self, width, height=900):
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                      mobile=False)
+
+    def screenshot(self, path):
+        """The whole page, beyond what the window shows."""
+        image = self.devtools("Page.captureScreenshot", captureBeyondViewport=True)
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(image["data"]))
+
+    def complaints(self):
+        """What the browser's console has said since the last call: errors, refusals of the content policy."""
+        return [entry["message"] for entry in self.ask("POST", "/se/log", {"type": "browser"})
+                if entry["level"] in ("SEVERE", "WARNING")]
+
+    def wait(self, what, condition, seconds=10):
+        """Until condition() is true; its value."""
+        end = time.monotonic() + seconds
+        while not (value := condition()):
+            if time.monotonic() > end:
+                raise AssertionError(f"{what}: not within {seconds} s")
+            time.sleep(0.05)
+        return value

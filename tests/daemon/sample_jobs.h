@@ -1,0 +1,15 @@
+// A service in the middle of its work, for looking at: a series of 24 results with thumbnails, a queue, two running
+// jobs, some that went wrong.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tests/daemon/fake_control.h"
+
+namespace weir {
+
+/// Fills `control`; thumbnails are written into `directory`.
+void show_sample_jobs(FakeControl& control, const std::filesystem::path& directory);
+
+}  // namespace weir
