@@ -334,15 +334,15 @@ std::vector<Job> JobStore::candidates(const std::string& watch, Priority priorit
 
 std::optional<std::int64_t> JobStore::next_due_ms() const {
   const std::int64_t now = clock_();
-  Statement row =
-      database_.prepare("SELECT min(due_ms) FROM jobs WHERE state = 'waiting' AND due_ms > ? AND due_ms <= ?");
+  Statement row = database_.prepare(
+      "SELECT min(due_ms) FROM jobs INDEXED BY jobs_due WHERE state = 'waiting' AND due_ms > ? AND due_ms <= ?");
   row.bind(now).bind(now + kLongestDelay_ms).step();
   if (row.is_null(0)) return std::nullopt;
   return row.integer(0) - now;
 }
 
 std::optional<std::int64_t> JobStore::queue_age_ms() const {
-  Statement row = database_.prepare("SELECT min(queued_ms) FROM jobs WHERE state = 'waiting'");
+  Statement row = database_.prepare("SELECT min(queued_ms) FROM jobs INDEXED BY jobs_age WHERE state = 'waiting'");
   row.step();
   if (row.is_null(0)) return std::nullopt;
   return std::max<std::int64_t>(0, clock_() - row.integer(0));

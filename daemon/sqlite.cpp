@@ -25,25 +25,39 @@ const char* remedy(int status) {
   }
 }
 
-[[noreturn]] void fail(sqlite3* database, const std::string& path, int status) {
+[[noreturn]] void fail(const Connection& connection, int status) {
   const int primary = status & 0xff;  // the rest is SQLite's extended code
-  const std::string message = cat(path, ": cannot use the state: ", sqlite3_errmsg(database), remedy(primary));
+  const std::string message =
+      cat(connection.path, ": cannot use the state: ", sqlite3_errmsg(connection.database.get()), remedy(primary));
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw CorruptDatabase(ErrorKind::io, message);
   throw Error(ErrorKind::io, message);
 }
 
 }  // namespace
 
-Statement::Statement(sqlite3* database, const std::string& path, std::string_view sql)
-    : database_(database), path_(&path) {
+Statement::Statement(Connection& connection, std::string_view sql) : connection_(&connection) {
+  const auto idle = connection.idle.find(sql);
+  if (idle != connection.idle.end()) {
+    statement_ = std::move(connection.idle.extract(idle).mapped());
+    return;
+  }
   sqlite3_stmt* statement = nullptr;
-  const int status = sqlite3_prepare_v2(database, sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
+  const int status =
+      sqlite3_prepare_v2(connection.database.get(), sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
   statement_.reset(statement);
-  if (status != SQLITE_OK) fail(database_, *path_, status);
+  if (status != SQLITE_OK) fail(connection, status);
+}
+
+Statement::~Statement() {
+  if (!statement_) return;
+  sqlite3_reset(statement_.get());  // its result is the error that step() has thrown
+  sqlite3_clear_bindings(statement_.get());
+  const char* sql = sqlite3_sql(statement_.get());
+  connection_->idle.emplace(sql, std::move(statement_));
 }
 
 void Statement::check(int status) const {
-  if (status != SQLITE_OK) fail(database_, *path_, status);
+  if (status != SQLITE_OK) fail(*connection_, status);
 }
 
 Statement& Statement::bind(std::int64_t value) {
@@ -73,7 +87,7 @@ bool Statement::step() {
   const int status = sqlite3_step(statement_.get());
   if (status == SQLITE_ROW) return true;
   if (status == SQLITE_DONE) return false;
-  fail(database_, *path_, status);
+  fail(*connection_, status);
 }
 
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
@@ -88,18 +102,19 @@ std::string Statement::text(int column) const {
   return {text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
 
-Database::Database(const std::string& path) : path_(std::make_unique<const std::string>(path)) {
+Database::Database(const std::string& path) : connection_(std::make_unique<Connection>()) {
+  connection_->path = path;
   sqlite3* database = nullptr;
   const int status = sqlite3_open_v2(path.c_str(), &database,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
-  database_.reset(database);
+  connection_->database.reset(database);
   if (database == nullptr) throw Error(ErrorKind::io, cat(path, ": cannot use the state: out of memory"));
   if (status != SQLITE_OK) {
     // SQLite keeps the reason of its last try alone, which is to open for reading.
     const int again = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (again < 0) throw io_error(path, "use the state", errno);
     close(again);
-    fail(database, path, status);
+    fail(*connection_, status);
   }
   // SQLite opens what it may not write for reading.
   if (sqlite3_db_readonly(database, "main") == 1) {

@@ -5,6 +5,8 @@
 #include <sqlite3.h>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,10 +22,30 @@ class CorruptDatabase : public Error {
   using Error::Error;
 };
 
-/// One prepared statement, run once: bind the parameters in order, then step through rows.
+/// What a Database and its statements share: the connection, and statements that wait to be used again, because to
+/// prepare one takes longer than most take to run.
+struct Connection {
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+  };
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
+
+  std::string path;
+  std::unique_ptr<sqlite3, Close> database;
+  std::multimap<std::string, Prepared, std::less<>> idle;  ///< by their SQL
+};
+
+/// One run of a prepared statement: bind the parameters in order, then step through the rows. Must not outlive its
+/// database.
 class Statement {
  public:
-  Statement(sqlite3* database, const std::string& path, std::string_view sql);
+  Statement(Connection& connection, std::string_view sql);
+  ~Statement();
+  Statement(Statement&&) noexcept = default;
+  Statement& operator=(Statement&&) = delete;
 
   Statement& bind(std::int64_t value);
   Statement& bind(int value) { return bind(std::int64_t{value}); }
@@ -42,14 +64,10 @@ class Statement {
   std::string text(int column) const;
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-  };
   void check(int status) const;
 
-  sqlite3* database_;
-  const std::string* path_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  Connection* connection_;
+  Connection::Prepared statement_;
   int bound_ = 0;
 };
 
@@ -58,21 +76,16 @@ class Database {
   /// Opens or makes the file. Throws Error(io); CorruptDatabase appears with the first statement.
   explicit Database(const std::string& path);
 
-  Statement prepare(std::string_view sql) const { return {database_.get(), *path_, sql}; }
+  Statement prepare(std::string_view sql) const { return {*connection_, sql}; }
   /// Runs a statement without parameters to its end.
   void run(std::string_view sql) const;
   /// Rows changed by the last statement.
-  int changes() const { return sqlite3_changes(database_.get()); }
-  std::int64_t last_id() const { return sqlite3_last_insert_rowid(database_.get()); }
+  int changes() const { return sqlite3_changes(connection_->database.get()); }
   /// Whether a transaction is open.
-  bool in_transaction() const { return sqlite3_get_autocommit(database_.get()) == 0; }
+  bool in_transaction() const { return sqlite3_get_autocommit(connection_->database.get()) == 0; }
 
  private:
-  struct Close {
-    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-  };
-  std::unique_ptr<const std::string> path_;  ///< at an address that statements may keep
-  std::unique_ptr<sqlite3, Close> database_;
+  std::unique_ptr<Connection> connection_;  ///< at an address that statements may keep
 };
 
 /// All statements between its making and commit(), or none. Transactions may be nested: the inner one takes back

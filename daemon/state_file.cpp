@@ -34,8 +34,12 @@ constexpr const char* kTables[] = {
          reason TEXT NOT NULL DEFAULT '',
          log_tail TEXT NOT NULL DEFAULT '',
          UNIQUE (watch, source)) STRICT)",
-    "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)", "CREATE INDEX jobs_latest ON jobs (changed_ms)",
-    "CREATE INDEX jobs_latest_of_state ON jobs (state, changed_ms)",
+    // What the scheduler and /metrics ask for.
+    "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
+    "CREATE INDEX jobs_age ON jobs (queued_ms) WHERE state = 'waiting'",
+    "CREATE INDEX jobs_due ON jobs (due_ms) WHERE state = 'waiting'",
+    // What people list.
+    "CREATE INDEX jobs_latest ON jobs (changed_ms)", "CREATE INDEX jobs_latest_of_state ON jobs (state, changed_ms)",
     R"(CREATE TABLE outputs (
          job INTEGER NOT NULL,
          place INTEGER NOT NULL,

@@ -40,6 +40,27 @@ TEST_F(Sqlite, ValuesComeBackAsTheyWent) {
   EXPECT_FALSE(row.step());
 }
 
+TEST_F(Sqlite, AStatementIsUsedAgainAndForgetsWhatWasBound) {
+  const Database database(path_);
+  database.run("CREATE TABLE t (a)");
+  const char* insert = "INSERT INTO t VALUES (?)";
+  database.prepare(insert).bind(7).step();
+  database.prepare(insert).step();
+  const char* select = "SELECT a FROM t ORDER BY rowid";
+  Statement outer = database.prepare(select);
+  ASSERT_TRUE(outer.step());
+  {
+    Statement inner = database.prepare(select);  // while the same text runs
+    ASSERT_TRUE(inner.step());
+    EXPECT_EQ(inner.integer(0), 7);
+  }
+  Statement again = database.prepare(select);
+  ASSERT_TRUE(again.step()) << "it starts at the first row";
+  EXPECT_EQ(again.integer(0), 7);
+  ASSERT_TRUE(outer.step());
+  EXPECT_TRUE(outer.is_null(0));
+}
+
 TEST_F(Sqlite, ATransactionThatIsNotCommittedLeavesNothing) {
   Database database(path_);
   database.run("CREATE TABLE t (a)");
