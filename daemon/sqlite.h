@@ -26,7 +26,7 @@ class CorruptDatabase : public Error {
 /// prepare one takes longer than most take to run.
 struct Connection {
   struct Close {
-    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+    void operator()(sqlite3* open) const { sqlite3_close_v2(open); }
   };
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
