@@ -25,6 +25,9 @@ void add_render(CLI::App& app);
 void add_sample(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_jobs(CLI::App& app);
+void add_status(CLI::App& app);
+void add_retry(CLI::App& app);
 
 /// Thrown by a subcommand that has already said what it found (verify, compare).
 struct ExitStatus {

@@ -1,11 +1,11 @@
 #include "tools/input_listing.h"
 
-#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "format/text.h"
+#include "tools/printable.h"
 
 namespace weir {
 namespace {
@@ -25,13 +25,6 @@ std::string quoted(const std::string& text) {
     }
   }
   return word + "'";
-}
-
-// Names and attributes come from the file: they must not steer the terminal.
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
-  return text;
 }
 
 std::string extents_text(const std::vector<std::int64_t>& extents) {

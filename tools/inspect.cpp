@@ -22,6 +22,7 @@
 #include "tools/histogram_plot.h"
 #include "tools/input_listing.h"
 #include "tools/input_options.h"
+#include "tools/printable.h"
 #include "tools/progress.h"
 #include "tools/read_sidecar.h"
 #include "tools/tree_census.h"
@@ -56,13 +57,6 @@ std::string hex(std::uint32_t value) {
   std::array<char, 9> text{};
   std::snprintf(text.data(), text.size(), "%08x", value);
   return text.data();
-}
-
-// A name from a foreign file must not steer the terminal.
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
-  return text;
 }
 
 const char* checksum_state(const NvdbGrid& grid) {

@@ -66,6 +66,9 @@ int main(int argc, char** argv) {
     weir::add_compare(app);
     weir::add_sweep(app);
     weir::add_watch(app);
+    weir::add_jobs(app);
+    weir::add_status(app);
+    weir::add_retry(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) {
       return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
