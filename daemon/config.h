@@ -77,6 +77,7 @@ struct WatchConfig {
 
   /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
   std::optional<std::string> convert_option(std::string_view option) const;
+  bool operator==(const WatchConfig&) const = default;
 };
 
 struct DaemonConfig {

@@ -1,7 +1,5 @@
 #include "daemon/conversion_job.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <cerrno>
@@ -12,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/file_identity.h"
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/sidecar.h"
@@ -58,14 +57,6 @@ bool newer(const std::string& thumbnail, const std::string& volume) {
 
 }  // namespace
 
-std::optional<FileIdentity> identify(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  return FileIdentity{static_cast<std::uint64_t>(status.st_size),
-                      std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec,
-                      static_cast<std::uint64_t>(status.st_ino)};
-}
-
 std::string thumbnail_path_of(const std::string& output) { return output + ".png"; }
 
 ConversionJob::ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended)
@@ -90,7 +81,7 @@ void ConversionJob::run(std::string_view step, std::vector<std::string> argument
   }
   step_ = step;
   fraction_.reset();
-  WorkerCommand command{{task_.program, std::string(step)}, task_.nice, task_.io_class};
+  WorkerCommand command{task_.program, {"weir", std::string(step)}, task_.nice, task_.io_class};
   for (std::string& argument : arguments) command.arguments.push_back(std::move(argument));
   command.arguments.insert(command.arguments.end(), {"--progress=never", "--log-level=info"});
   command.arguments.push_back(cat("--progress-fd=", kAnnounceDescriptor));

@@ -7,7 +7,6 @@
 
 #include <boost/asio/io_context.hpp>
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,26 +14,11 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/config.h"
+#include "daemon/conversion_task.h"
 #include "daemon/job.h"
 #include "daemon/worker_process.h"
 
 namespace weir {
-
-struct ConversionTask {
-  std::string program;                       ///< path of `weir`
-  std::string source;                        ///< absolute path
-  FileIdentity identity;                     ///< of the source as it was found complete
-  std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
-  std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
-  std::uint64_t memory = 0;                  ///< bytes, of each process
-  int threads = 0;
-  int nice = 0;
-  IoClass io_class = IoClass::none;
-  std::string work_dir;  ///< spill files; empty: beside the output
-  bool thumbnails = true;
-  std::vector<std::string> delete_after;  ///< removed once all outputs are verified: the source, its marker
-};
 
 /// How a run ended.
 enum class TaskEnd {
@@ -104,9 +88,6 @@ class ConversionJob {
   TaskReport report_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< for what was posted and comes too late
 };
-
-/// The identity of `path`; none where there is no such file.
-std::optional<FileIdentity> identify(const std::string& path);
 
 /// "OUT.nvdb.png" for "OUT.nvdb".
 std::string thumbnail_path_of(const std::string& output);

@@ -43,6 +43,7 @@ Pipe make_pipe(const std::string& program) {
 
 // Everything the child needs, made before the fork: after it only system calls are safe.
 struct Launch {
+  const char* program;
   std::vector<char*> arguments;
   pid_t daemon;
   int nice;
@@ -87,7 +88,7 @@ struct Launch {
   }
   // All of the daemon's are close-on-exec; this is for what a library opened without.
   ::syscall(SYS_close_range, kAnnounceDescriptor + 1, ~0U, 1U << 2U);  // CLOSE_RANGE_CLOEXEC
-  ::execv(launch.arguments.front(), launch.arguments.data());
+  ::execv(launch.program, launch.arguments.data());
   const int reason = errno;
   [[maybe_unused]] const ssize_t told = ::write(failure, &reason, sizeof reason);
   ::_exit(127);
@@ -107,15 +108,16 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
         ended_(std::move(ended)) {}
 
   void start(const WorkerCommand& command) {
-    const std::string& program = command.arguments.front();
+    const std::string& program = command.program;
     Pipe log = make_pipe(program);
     Pipe announce = make_pipe(program);
     Pipe failure = make_pipe(program);
     const Descriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC));
     if (!null) throw io_error("/dev/null", "open", errno);
     std::vector<std::string> texts = command.arguments;
-    Launch launch{{},         ::getpid(),      command.nice,         command.io_class,
-                  null.get(), log.write.get(), announce.write.get(), failure.write.get()};
+    Launch launch{program.c_str(),    {},         ::getpid(),      command.nice,
+                  command.io_class,   null.get(), log.write.get(), announce.write.get(),
+                  failure.write.get()};
     for (std::string& text : texts) launch.arguments.push_back(text.data());
     launch.arguments.push_back(nullptr);
 

@@ -23,7 +23,8 @@
 namespace weir {
 
 struct WorkerCommand {
-  std::vector<std::string> arguments;  ///< arguments[0] is the program's path
+  std::string program;                 ///< path
+  std::vector<std::string> arguments;  ///< the first is the name it goes by
   int nice = 0;
   IoClass io_class = IoClass::none;
 };

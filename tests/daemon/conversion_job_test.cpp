@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "daemon/file_identity.h"
 #include "format/error.h"
 #include "format/text.h"
 #include "tests/tools/run_command.h"

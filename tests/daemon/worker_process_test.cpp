@@ -28,7 +28,7 @@ struct ShellRun {
 
   explicit ShellRun(const std::string& script, int nice = 0) {
     worker = std::make_unique<WorkerProcess>(
-        io, WorkerCommand{{"/bin/sh", "-c", script}, nice, IoClass::none},
+        io, WorkerCommand{"/bin/sh", {"sh", "-c", script}, nice, IoClass::none},
         [this](std::string_view line) { lines.emplace_back(line); },
         [this](const WorkerEnd& ended) {
           end = ended;
@@ -131,7 +131,7 @@ TEST(WorkerProcess, SaysWhyAProgramDoesNotStart) {
   std::vector<std::size_t> open;
   for (int attempt = 0; attempt < 3; ++attempt) {
     try {
-      const WorkerProcess worker(io, {{"/nowhere/weir", "convert"}, 0, IoClass::none}, {}, {});
+      const WorkerProcess worker(io, {"/nowhere/weir", {"weir", "convert"}, 0, IoClass::none}, {}, {});
       FAIL() << "started";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::io);
@@ -150,7 +150,7 @@ TEST(WorkerProcess, DiesWithTheDaemon) {
   const pid_t daemon = ::fork();
   if (daemon == 0) {
     boost::asio::io_context io;
-    WorkerProcess worker(io, {{"/bin/sh", "-c", "echo $$ >&3; exec sleep 60"}, 0, IoClass::none},
+    WorkerProcess worker(io, {"/bin/sh", {"sh", "-c", "echo $$ >&3; exec sleep 60"}, 0, IoClass::none},
                          [&](std::string_view line) {
                            const auto pid = static_cast<pid_t>(std::stoi(std::string(line)));
                            [[maybe_unused]] const auto told = ::write(ends[1], &pid, sizeof pid);

@@ -1,0 +1,45 @@
+#include "daemon/conversion_task.h"
+
+#include <filesystem>
+
+#include "format/text.h"
+
+namespace weir {
+
+namespace fs = std::filesystem;
+
+std::string output_directory(const WatchConfig& watch, const std::string& source) {
+  const fs::path place = fs::path(source).parent_path().lexically_relative(watch.directory);
+  if (place.empty() || place == ".") return watch.output;
+  return (fs::path(watch.output) / place).string();
+}
+
+std::string options_text(const WatchConfig& watch) {
+  std::string text = cat("output=", watch.output, "/", watch.name);
+  for (const std::string& option : watch.convert_options) text += cat(' ', option);
+  return text;
+}
+
+ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
+                         const Job& job) {
+  ConversionTask task;
+  task.program = program;
+  task.source = job.source;
+  task.identity = job.identity;
+  task.output = cat(output_directory(watch, job.source), '/', watch.name);
+  task.convert_options = watch.convert_options;
+  task.memory = job_memory(service);
+  task.threads = service.threads;
+  task.nice = service.nice;
+  task.io_class = service.io_class;
+  task.work_dir = service.work_dir;
+  task.thumbnails = watch.thumbnails;
+  if (watch.source == AfterDone::delete_after_verify) {
+    task.delete_after = {job.source};
+    // A marker left behind would call the next file of that name complete before it is.
+    if (watch.complete == Completion::marker) task.delete_after.push_back(job.source + watch.marker);
+  }
+  return task;
+}
+
+}  // namespace weir

@@ -1,0 +1,39 @@
+// What one job asks of the commands that do it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/job.h"
+
+namespace weir {
+
+struct ConversionTask {
+  std::string program;                       ///< path of `weir`
+  std::string source;                        ///< absolute path
+  FileIdentity identity;                     ///< of the source as it was found complete
+  std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
+  std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
+  std::uint64_t memory = 0;                  ///< bytes, of each process
+  int threads = 0;
+  int nice = 0;
+  IoClass io_class = IoClass::none;
+  std::string work_dir;  ///< spill files; empty: beside the output
+  bool thumbnails = true;
+  std::vector<std::string> delete_after;  ///< removed once all outputs are verified: the source, its marker
+};
+
+/// The task of `job`, which is of `watch`.
+ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
+                         const Job& job);
+
+/// Where the outputs of `source` go: the watch's output directory and below it the source's own place in the tree.
+/// Ends without a slash.
+std::string output_directory(const WatchConfig& watch, const std::string& source);
+
+/// All of `watch` that decides what an output holds and where it lies, as text: JobStore::observe's `options`.
+std::string options_text(const WatchConfig& watch);
+
+}  // namespace weir

@@ -1,0 +1,319 @@
+#include "daemon/job_runner.h"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <filesystem>
+#include <utility>
+
+#include "daemon/available_memory.h"
+#include "daemon/file_identity.h"
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::chrono::seconds kRecent{60};
+/// How often a full disk, a state file that cannot be written and short memory are looked at again.
+constexpr milliseconds kLook{1000};
+/// A process that was asked to end and does not.
+constexpr milliseconds kAbandon{5000};
+
+// Of the file system of the nearest directory there is.
+std::uint64_t free_bytes(const std::string& directory) {
+  namespace fs = std::filesystem;
+  struct statvfs status {};
+  for (fs::path at = directory;; at = at.parent_path()) {
+    if (::statvfs(at.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
+    if (at == at.parent_path()) return 0;
+  }
+}
+
+std::string error_kind(int exit_code) {
+  switch (exit_code) {
+    case static_cast<int>(ErrorKind::usage):
+      return "usage";
+    case static_cast<int>(ErrorKind::input):
+      return "input";
+    case static_cast<int>(ErrorKind::budget):
+      return "budget";
+    case static_cast<int>(ErrorKind::io):
+      return "io";
+    default:
+      return exit_code > 128 ? "killed" : "internal";
+  }
+}
+
+std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
+
+}  // namespace
+
+JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
+                     LookAgain look_again)
+    : io_(io),
+      store_(store),
+      log_(log),
+      program_(std::move(program)),
+      look_again_(std::move(look_again)),
+      scheduler_(SchedulerLimits{}),
+      timer_(io),
+      grace_timer_(io) {}
+
+void JobRunner::configure(const DaemonConfig& config) {
+  config_ = config;
+  const ServiceConfig& service = config.service;
+  scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
+}
+
+const WatchConfig* JobRunner::watch_of(const std::string& label) const {
+  const auto at = std::find_if(config_.watches.begin(), config_.watches.end(),
+                               [&](const WatchConfig& watch) { return watch.label == label; });
+  return at == config_.watches.end() ? nullptr : &*at;
+}
+
+void JobRunner::wake() {
+  try {
+    while (start_next()) {
+    }
+  } catch (const Error& error) {  // the state file: nothing was changed
+    store_fault_ = error.what();
+    log_.error("state-file-fault", {{"reason", error.what()}});
+  }
+  arm_timer();
+}
+
+bool JobRunner::start_next() {
+  if (stopping_ || !pending_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
+  std::vector<WatchLoad> loads;
+  std::map<std::string, Job> first;
+  for (const WatchConfig& watch : config_.watches) {
+    WatchLoad load{watch.label, false, 0};
+    for (const auto& [id, run] : running_) load.running += run.job.watch == watch.label ? 1 : 0;
+    // A job may wait again while the processes of its last attempt still end.
+    for (const Job& job : store_.candidates(watch.label, watch.priority, running_.size() + 1)) {
+      if (running_.contains(job.id)) continue;
+      first.emplace(watch.label, job);
+      load.waiting = true;
+      break;
+    }
+    loads.push_back(std::move(load));
+  }
+  store_fault_.clear();
+  const auto label = scheduler_.next(loads, available_memory(), Clock::now());
+  if (!label) return false;
+  start(*watch_of(*label), first.at(*label));
+  return true;
+}
+
+void JobRunner::start(const WatchConfig& watch, const Job& job) {
+  scheduler_.started(watch.label);
+  if (identify(job.source) != job.identity) {
+    source_changed(job);
+    return;
+  }
+  if (!store_.start(job.id)) return;
+  log_.info("start", {{"job", job.id}, {"source", job.source}, {"bytes", job.identity.bytes}});
+  const std::int64_t id = job.id;
+  RunningJob& run = running_[id];
+  run.job = job;
+  run.begin = Clock::now();
+  run.work = std::make_unique<ConversionJob>(io_, make_task(program_, config_.service, watch, job),
+                                             [this, id](const TaskReport& report) { ended(id, report); });
+}
+
+void JobRunner::ended(std::int64_t id, const TaskReport& report) {
+  const RunningJob run = std::move(running_.extract(id).mapped());
+  for (const std::string& notice : report.notices) log_.warn("notice", {{"job", id}, {"reason", notice}});
+  scheduler_.finished(report.result.bytes_read, run.begin);
+  switch (report.end) {
+    case TaskEnd::done:
+      done(run, report);
+      break;
+    case TaskEnd::failed:
+      failed(run, report);
+      break;
+    case TaskEnd::disk_full:
+      disk_full(run, report);
+      break;
+    case TaskEnd::source_changed:
+      ++figures_.errors["source-changed"];
+      [[fallthrough]];
+    case TaskEnd::source_gone:
+      log_.info(report.end == TaskEnd::source_gone ? "source-gone" : "source-changed",
+                {{"job", id}, {"source", run.job.source}});
+      record([this, job = run.job] {
+        store_.postpone(job.id, "the source changed");
+        source_changed(job);
+      });
+      break;
+    case TaskEnd::stopped:
+      log_.info("stopped", {{"job", id}, {"source", run.job.source}});
+      record([this, id] { store_.postpone(id, "stopped with the service"); });
+      break;
+  }
+  if (stopping_ && running_.empty() && stopped_) {
+    grace_timer_.cancel();
+    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+  }
+  wake();
+}
+
+// The job waits; from here on it is discovered with what is there now, or forgotten where nothing is.
+void JobRunner::source_changed(const Job& job) {
+  if (const auto now = identify(job.source)) {
+    store_.observe(job.watch, job.source, *now, job.options);
+  } else {
+    store_.remove(job.id);
+  }
+  look_again_(job);
+}
+
+void JobRunner::done(const RunningJob& run, const TaskReport& report) {
+  const JobResult& result = report.result;
+  record([this, id = run.job.id, result] { store_.finish(id, result); });
+  std::uint64_t bytes_out = 0;
+  for (const JobOutput& output : result.outputs) bytes_out += output.bytes;
+  log_.info("done", {{"job", run.job.id},
+                     {"source", run.job.source},
+                     {"seconds", seconds_text(result.seconds)},
+                     {"outputs", result.outputs.size()},
+                     {"bytes", bytes_out},
+                     {"converted", report.converted ? "yes" : "no, done already"}});
+  if (!report.converted) return;
+  figures_.seconds.observe(result.seconds);
+  ++figures_.done;
+  figures_.bytes_in += run.job.identity.bytes;
+  figures_.bytes_out += result.bytes_written;
+  recent_.emplace_back(Clock::now(), run.job.identity.bytes);
+}
+
+void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
+  ++figures_.errors[error_kind(report.result.exit_code)];
+  log_.error("failed", {{"job", run.job.id},
+                        {"source", run.job.source},
+                        {"exit_code", report.result.exit_code},
+                        {"reason", report.result.reason}});
+  record([this, id = run.job.id, result = report.result] { store_.fail(id, result); });
+}
+
+void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
+  ++figures_.errors["disk-full"];
+  const WatchConfig* watch = watch_of(run.job.watch);
+  const std::string directory = watch == nullptr ? run.job.source : output_directory(*watch, run.job.source);
+  scheduler_.disk_full(directory, free_bytes(directory), Clock::now());
+  log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
+  record([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
+}
+
+// A state file on a full disk takes no report: it is kept until there is room, and nothing starts meanwhile.
+void JobRunner::record(std::function<void()> step) {
+  pending_.push_back(std::move(step));
+  write_pending();
+}
+
+void JobRunner::write_pending() {
+  try {
+    while (!pending_.empty()) {
+      pending_.front()();
+      pending_.pop_front();
+    }
+    store_fault_.clear();
+  } catch (const Error& error) {
+    if (store_fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
+    store_fault_ = error.what();
+  }
+}
+
+void JobRunner::look_at_disk() {
+  const auto directory = scheduler_.full_directory();
+  if (!directory || !scheduler_.disk_has(free_bytes(*directory), Clock::now())) return;
+  log_.info("disk-has-room", {{"directory", *directory}, {"free", format_bytes(free_bytes(*directory))}});
+}
+
+void JobRunner::arm_timer() {
+  if (stopping_ && pending_.empty()) {
+    timer_.cancel();
+    return;
+  }
+  auto delay = milliseconds::max();
+  const Clock::time_point now = Clock::now();
+  if (!pending_.empty() || !store_fault_.empty() || scheduler_.full_directory() || !running_.empty()) delay = kLook;
+  if (const auto until = scheduler_.bandwidth_until(now)) {
+    delay = std::min(delay, std::chrono::ceil<milliseconds>(*until - now));
+  }
+  try {
+    if (const auto due = store_.next_due_ms()) delay = std::min(delay, milliseconds(std::max<std::int64_t>(*due, 1)));
+  } catch (const Error&) {
+    delay = kLook;
+  }
+  if (delay == milliseconds::max()) {
+    timer_.cancel();
+    return;
+  }
+  timer_.expires_after(delay);
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (error) return;
+    look_at_disk();
+    write_pending();
+    wake();
+  });
+}
+
+void JobRunner::pause() {
+  if (!scheduler_.paused()) log_.info("pause", {});
+  scheduler_.pause();
+}
+
+void JobRunner::resume() {
+  if (scheduler_.paused()) log_.info("resume", {});
+  scheduler_.resume();
+  wake();
+}
+
+std::string JobRunner::hold() const {
+  if (!store_fault_.empty()) return store_fault_;
+  if (const auto directory = scheduler_.full_directory()) {
+    return cat("no room in ", *directory, ", where ", format_bytes(free_bytes(*directory)),
+               " are free; goes on when there is more");
+  }
+  return scheduler_.paused() ? "paused by request" : "";
+}
+
+void JobRunner::abandon(std::int64_t id) {
+  const auto at = running_.find(id);
+  if (at != running_.end()) at->second.work->stop(kAbandon);
+}
+
+void JobRunner::shut_down(milliseconds grace, std::function<void()> stopped) {
+  stopping_ = true;
+  stopped_ = std::move(stopped);
+  if (running_.empty()) {
+    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+    return;
+  }
+  grace_timer_.expires_after(grace);
+  grace_timer_.async_wait([this](boost::system::error_code error) {
+    if (error) return;
+    for (auto& [id, run] : running_) run.work->stop(kAbandon);
+  });
+}
+
+void JobRunner::kill() {
+  grace_timer_.cancel();
+  for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
+}
+
+double JobRunner::bytes_per_s() {
+  const Clock::time_point now = Clock::now();
+  while (!recent_.empty() && now - recent_.front().first > kRecent) recent_.pop_front();
+  double bytes = 0;
+  for (const auto& [when, size] : recent_) bytes += static_cast<double>(size);
+  return bytes / std::chrono::duration<double>(kRecent).count();
+}
+
+}  // namespace weir

@@ -1,0 +1,110 @@
+// Runs the waiting jobs: takes them from the state file in the scheduler's
+// order, gives each its processes, and writes down what became of it. One thread,
+// that of the io_context.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/conversion_job.h"
+#include "daemon/event_log.h"
+#include "daemon/job_store.h"
+#include "daemon/scheduler.h"
+#include "daemon/seconds_histogram.h"
+
+namespace weir {
+
+/// Since the start of the process.
+struct RunnerFigures {
+  SecondsHistogram seconds;  ///< of conversions that ended well
+  std::uint64_t done = 0;
+  std::uint64_t bytes_in = 0;                   ///< of the sources of those
+  std::uint64_t bytes_out = 0;                  ///< of their outputs
+  std::map<std::string, std::uint64_t> errors;  ///< failed attempts: "input", "io", "budget", "usage", "internal",
+                                                ///< "killed", "disk-full", "source-changed"
+};
+
+struct RunningJob {
+  Job job;
+  std::chrono::steady_clock::time_point begin;
+  std::unique_ptr<ConversionJob> work;
+};
+
+class JobRunner {
+ public:
+  /// The source of `job` was rewritten, and the job is discovered again; or it is gone, and so is the job.
+  using LookAgain = std::function<void(const Job& job)>;
+
+  /// `store` and `log` must outlive the runner. Nothing starts before configure().
+  JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
+            LookAgain look_again);
+
+  /// From now on as `config` says; running jobs end as they began. Jobs of watches that are no more wait.
+  void configure(const DaemonConfig& config);
+  /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
+  void wake();
+
+  void pause();
+  void resume();
+  /// What nothing starts for, in words; empty: nothing stands against it.
+  std::string hold() const;
+  bool paused() const { return scheduler_.paused(); }
+  /// Why the state file cannot be written; empty: it can.
+  const std::string& store_fault() const { return store_fault_; }
+
+  /// Ends the job's work, if it runs: it was cancelled, or its source was rewritten.
+  void abandon(std::int64_t id);
+  /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
+  /// and waits for the next start of the service.
+  void shut_down(std::chrono::milliseconds grace, std::function<void()> stopped);
+  /// shut_down's grace is over now, and nobody is asked.
+  void kill();
+
+  const std::map<std::int64_t, RunningJob>& running() const { return running_; }
+  const RunnerFigures& figures() const { return figures_; }
+  /// Source bytes a second, over the last minute.
+  double bytes_per_s();
+
+ private:
+  bool start_next();
+  void start(const WatchConfig& watch, const Job& job);
+  void ended(std::int64_t id, const TaskReport& report);
+  void source_changed(const Job& job);
+  void done(const RunningJob& run, const TaskReport& report);
+  void failed(const RunningJob& run, const TaskReport& report);
+  void disk_full(const RunningJob& run, const TaskReport& report);
+  void record(std::function<void()> step);
+  void write_pending();
+  void arm_timer();
+  void look_at_disk();
+  const WatchConfig* watch_of(const std::string& label) const;
+
+  boost::asio::io_context& io_;
+  JobStore& store_;
+  const EventLog& log_;
+  std::string program_;
+  LookAgain look_again_;
+  DaemonConfig config_;
+  Scheduler scheduler_;
+  std::map<std::int64_t, RunningJob> running_;
+  std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
+  std::string store_fault_;
+  RunnerFigures figures_;
+  std::deque<std::pair<std::chrono::steady_clock::time_point, std::uint64_t>> recent_;  ///< end and source bytes
+  boost::asio::steady_timer timer_;
+  boost::asio::steady_timer grace_timer_;
+  std::function<void()> stopped_;
+  bool stopping_ = false;
+};
+
+}  // namespace weir
