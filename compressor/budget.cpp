@@ -71,8 +71,11 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
                                        minimum, "; ask for --size ", minimum, " or more"));
   }
   if (size.bytes > full) {
-    size.notice = cat(path, bytes.lossy_leaves == 0 ? ": lossless takes " : ": the best this encoding can takes ", full,
-                      " bytes; the other ", size.bytes - full, " of the ", size.bytes, " asked are padding");
+    const char* all = bytes.by_scene            ? ": what the scene shows takes no more than "
+                      : bytes.lossy_leaves == 0 ? ": lossless takes "
+                                                : ": the best this encoding can takes ";
+    size.notice =
+        cat(path, all, full, " bytes; the other ", size.bytes - full, " of the ", size.bytes, " asked are padding");
   }
   return size;
 }

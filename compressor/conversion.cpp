@@ -15,11 +15,13 @@
 #include "compressor/encode.h"
 #include "compressor/encoding_choice.h"
 #include "compressor/leaf_errors.h"
+#include "compressor/leaf_reach.h"
 #include "compressor/memory_plan.h"
 #include "compressor/selection.h"
 #include "compressor/survey.h"
 #include "compressor/tree_plan.h"
 #include "compressor/tree_writer.h"
+#include "compressor/visibility.h"
 #include "compressor/work_directory.h"
 #include "format/digest.h"
 #include "format/error.h"
@@ -163,9 +165,10 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   return sidecar;
 }
 
-Sidecar::CertifiedError describe_error(const TreePlan& plan, const LeafErrors& leaves, const Survey& survey) {
-  const Certificate c = make_certificate(plan.squared_error + leaves.squared, std::max(plan.max_abs, leaves.max_abs),
-                                         plan.lossless && leaves.exact, survey.finite, survey.min, survey.max);
+Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors& leaves, std::uint64_t finite,
+                                       const Survey& survey) {
+  const Certificate c = make_certificate(tiles.squared + leaves.squared, std::max(tiles.max_abs, leaves.max_abs),
+                                         tiles.exact && leaves.exact, finite, survey.min, survey.max);
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
 }
 
@@ -179,9 +182,24 @@ FileRequest request_for(const ConversionOptions& options, const Survey& survey, 
   request.domain = domain;
   request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
   request.path = options.output;
-  const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
-  request.squared_error = range * range * static_cast<double>(survey.finite) / std::pow(10, options.budget.target / 10);
   return request;
+}
+
+// What the squares over `finite` voxels may sum up to for a PSNR.
+double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
+  const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
+  return range * range * static_cast<double>(finite) / std::pow(10, budget.target / 10);
+}
+
+std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain) {
+  if (!options.scene) return std::nullopt;
+  if (options.metric != Metric::sse) {
+    throw Error(ErrorKind::usage, cat("--scene weighs squared errors, --metric ", metric_name(options.metric),
+                                      " has none; use --metric sse"));
+  }
+  const bool promise = options.budget.by_error() || options.budget.kind == Budget::Kind::lossless;
+  return Visibility(options.scene->scene, options.scene->path, domain,
+                    promise ? Visibility::Weighing::alike : Visibility::Weighing::by_picture);
 }
 
 // A file whose leaves are written, and what they lose.
@@ -189,15 +207,14 @@ struct EncodedFile {
   FilePlan file;
   std::unique_ptr<RecordStore> records;
   LeafErrors errors;
-
-  double squared_error() const { return file.plan.squared_error + errors.squared; }
+  LeafErrors seen_errors;  // of those that can be seen
 };
 
 // Plans and encodes once.
 EncodedFile encode_once(VolumeSource& source, const ReadingPlan& reading, const FileRequest& request,
                         const RowStore& rows, WorkDirectory& work, const StreamOptions& stream,
                         const ConversionControl& control, OutputFiles& output) {
-  EncodedFile encoded{plan_file(request, rows, work), nullptr, {}};
+  EncodedFile encoded{plan_file(request, rows, work), nullptr, {}, {}};
   check_cancel(control);
   const FilePlan& file = encoded.file;
   if (!output.reserve(file.size.bytes) && control.notice) {
@@ -212,6 +229,9 @@ EncodedFile encode_once(VolumeSource& source, const ReadingPlan& reading, const 
                  output.volume(), *encoded.records},
                 stream, reading.reading);
   encoded.errors = sum_leaf_errors(*file.tree, *encoded.records);
+  encoded.seen_errors = request.rule.visibility == nullptr
+                            ? encoded.errors
+                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get());
   return encoded;
 }
 
@@ -221,18 +241,19 @@ bool adjust_target(const EncodedFile& encoded, double target, int attempt, FileR
   if (encoded.file.encoding == Encoding::float32) return false;  // exact
   constexpr int kMostAttempts = 6;
   if (request.budget.kind == Budget::Kind::max_error) {
-    if (encoded.errors.max_abs <= request.budget.target) return false;
+    if (encoded.seen_errors.max_abs <= request.budget.target) return false;
     request.encoding = Encoding::float32;
     return true;
   }
-  const double error = encoded.squared_error();
+  const double error = encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
   const bool met = error <= target;
   if (met && (attempt >= 2 || error >= 0.98 * target || !(error > 0))) return false;
   if (attempt + 1 >= kMostAttempts) {
     request.encoding = Encoding::float32;
     return !met;
   }
-  request.squared_error *= target / error * (met ? 0.995 : 0.998);
+  // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
+  request.squared_error *= target / error * (met ? 0.995 : 1 - std::ldexp(0.002, 2 * attempt));
   return true;
 }
 
@@ -297,22 +318,33 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   // Survey.
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());
   start_pass(control, "survey", voxels);
+  const std::optional<Visibility> visibility = visibility_of(options, domain);
   RowStore rows(work.spill(), reading.survey.lattice, memory.segment_regions);
+  std::optional<LeafStore<LeafFaces>> faces;
+  if (visibility) faces.emplace(work.spill(), reading.survey.lattice);
   const bool widths = options.encoding != Encoding::float32 && options.metric == Metric::sse;
-  const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading, widths);
+  const Survey survey =
+      survey_volume(source, reading.survey, rows, stream, reading.reading, widths, faces ? &*faces : nullptr);
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   Background background;
   Sidecar sidecar = describe_source(info, survey, options);
   tbb::parallel_invoke([&] { background = choose_background(options, survey, rows, source, reading.survey, stream); },
                        [&] { sidecar.source.digest = source_digest(rows); });
+  FileRequest request = request_for(options, survey, background.value, domain);
+  Shown shown;
+  if (visibility) {
+    shown = find_reaches(*faces, *visibility, request.rule.fill, work, rows);
+    faces.reset();
+    request.rule.visibility = &*visibility;
+  }
+  request.squared_error = allowed_error(options.budget, survey, visibility ? shown.finite : survey.finite);
   sidecar.timing.survey_s = seconds_since(started);
 
   // Selection and encoding.
   check_cancel(control);
   const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded = encode_file(source, reading, request_for(options, survey, background.value, domain), rows,
-                                          work, stream, control, output);
+  const EncodedFile encoded = encode_file(source, reading, std::move(request), rows, work, stream, control, output);
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
@@ -347,7 +379,11 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
                        static_cast<std::uint64_t>(file.tree->leaves.size()),
                        layout.counts.leaves,
                        file.plan.leaves_by_width};
-  sidecar.error = describe_error(file.plan, encoded.errors, survey);
+  sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
+  if (visibility) {
+    sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
+                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey)};
+  }
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
   sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
   sidecar.timing.encode_s = seconds_since(encoding);

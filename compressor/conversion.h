@@ -14,10 +14,17 @@
 #include "compressor/fill.h"
 #include "compressor/leaf_gain.h"
 #include "format/file_system.h"
+#include "format/scene.h"
 #include "format/sidecar.h"
 #include "ingest/volume_source.h"
 
 namespace weir {
+
+/// A scene and where it came from.
+struct SceneFile {
+  Scene scene;
+  std::string path;
+};
 
 struct ConversionOptions {
   std::string output;      ///< path of the .nvdb
@@ -27,6 +34,7 @@ struct ConversionOptions {
   Metric metric = Metric::sse;            ///< what the budget is spent on
   FillMode fill = FillMode::mean;
   std::int64_t brick = 8;           ///< voxels; granularity of the paper's metrics: 8, 16 or 32
+  std::optional<SceneFile> scene;   ///< decides what matters; for Metric::sse
   std::optional<float> background;  ///< found in the data where absent
   bool paper_background = false;    ///< the paper's histogram; one more pass over most types
   NonFinitePolicy non_finite = NonFinitePolicy::error;

@@ -83,18 +83,16 @@ std::string lossy_leaves_text(const Candidate& quantised) {
              " values that no lattice of 16 bits gives back bit for bit");
 }
 
-double expected_error(const FilePlan& file) { return file.plan.squared_error + file.plan.expected_leaf_error; }
-
 bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
-  return request.budget.kind == Budget::Kind::psnr ? expected_error(file) <= request.squared_error
+  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.squared_error
                                                    : candidate.lossless();
 }
 
 Error unmet(const FileRequest& request, Encoding encoding, const FilePlan& file) {
   const bool psnr = request.budget.kind == Budget::Kind::psnr;
   std::string best;
-  if (psnr && expected_error(file) > 0) {
-    const double short_by = 10 * std::log10(expected_error(file) / request.squared_error);
+  if (psnr && file.plan.expected_error > 0) {
+    const double short_by = 10 * std::log10(file.plan.expected_error / request.squared_error);
     best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
   } else {
     best = " has leaves whose range 16 bits do not divide that finely";
@@ -142,11 +140,11 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   Candidate candidate(request, Encoding::fpn, rows, work);
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
-  if (quantised.plan.lossless && quantised.plan.leaves_lossless) return quantised;
+  if (quantised.plan.loses_nothing) return quantised;
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
   FilePlan plain = other.plan(size.kind == "minimum" ? size : other.size_for(request.budget));
-  return expected_error(plain) <= expected_error(quantised) ? std::move(plain) : std::move(quantised);
+  return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
 }
 
 FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {

@@ -30,7 +30,7 @@ struct FileRequest {
   Encoding encoding = Encoding::float32;  ///< automatic: whichever of float32 and fpn has less error
   GainRule rule;                          ///< but for its encoding
   Budget budget;
-  double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels may come to
+  double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels that can be seen may come to
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
   std::string path;               ///< of the output, for messages

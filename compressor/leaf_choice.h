@@ -26,21 +26,31 @@ constexpr std::uint32_t leaf_bytes(LeafWidth width) {
 }
 static_assert(leaf_bytes(LeafWidth::float32) == nvdb::kFloatLeafBytes);
 
+/// Besides a leaf's width, whether anything of it can be seen: by a scene, if one decides what matters.
 class LeafChoices {
  public:
   static constexpr std::size_t kLeaves = 4096;
 
   void set(std::size_t position, LeafWidth width) {
-    const unsigned shift = 4 * (position & 1U);
+    const unsigned shift = shift_of(position);
     std::uint8_t& pair = pairs_[position / 2];
-    pair = static_cast<std::uint8_t>((pair & (0xF0U >> shift)) | static_cast<unsigned>(width) << shift);
+    pair = static_cast<std::uint8_t>((pair & ~(kWidthBits << shift)) | static_cast<unsigned>(width) << shift);
   }
   LeafWidth width(std::size_t position) const {
-    return static_cast<LeafWidth>(pairs_[position / 2] >> (4 * (position & 1U)) & 0xFU);
+    return static_cast<LeafWidth>(pairs_[position / 2] >> shift_of(position) & kWidthBits);
   }
+  void set_seen(std::size_t position) {
+    std::uint8_t& pair = pairs_[position / 2];
+    pair = static_cast<std::uint8_t>(pair | kSeenBit << shift_of(position));
+  }
+  bool seen(std::size_t position) const { return (pairs_[position / 2] >> shift_of(position) & kSeenBit) != 0; }
   bool kept(std::size_t position) const { return width(position) != LeafWidth::tile; }
 
  private:
+  static constexpr unsigned kWidthBits = 7;
+  static constexpr unsigned kSeenBit = 8;
+  static constexpr unsigned shift_of(std::size_t position) { return 4 * (position & 1U); }
+
   std::array<std::uint8_t, kLeaves / 2> pairs_{};
 };
 static_assert(sizeof(LeafChoices) == 2048, "choices are spilled as they are");

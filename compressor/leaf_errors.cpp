@@ -9,14 +9,32 @@
 
 namespace weir {
 
-LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records) {
+namespace {
+
+// Of each kept leaf of a region, in file order, which is that of the masks: whether it can be seen.
+std::vector<bool> seen_leaves(const LeafChoices& choices) {
+  std::vector<bool> seen;
+  for (std::size_t i = 0; i < LeafChoices::kLeaves; ++i) {
+    if (choices.kept(i)) seen.push_back(choices.seen(i));
+  }
+  return seen;
+}
+
+}  // namespace
+
+LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by) {
   std::vector<LeafErrors> by_region(tree.regions.size());
   tbb::parallel_for(std::size_t{0}, by_region.size(), [&](std::size_t i) {
     const Region& region = tree.regions[i];
     if (region.leaves == 0) return;
     LeafErrors& errors = by_region[i];
     CompensatedSum squares;
-    for (const LeafRecord& record : records.read(region.first_leaf, region.leaves)) {
+    const std::vector<LeafRecord> kept = records.read(region.first_leaf, region.leaves);
+    const std::vector<bool> seen = seen_by == nullptr ? std::vector<bool>(kept.size(), true)
+                                                      : seen_leaves(seen_by->read(static_cast<std::int64_t>(i)));
+    for (std::size_t leaf = 0; leaf < kept.size(); ++leaf) {
+      if (!seen[leaf]) continue;
+      const LeafRecord& record = kept[leaf];
       squares.add(record.squared_error);
       errors.max_abs = std::max(errors.max_abs, record.max_abs);
       errors.exact = errors.exact && record.exact != 0;

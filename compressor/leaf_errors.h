@@ -1,6 +1,7 @@
 // The error of all kept leaves together, as they decode.
 #pragma once
 
+#include "compressor/leaf_choice.h"
 #include "compressor/leaf_record.h"
 #include "compressor/tree_regions.h"
 
@@ -12,8 +13,8 @@ struct LeafErrors {
   bool exact = true;  ///< every voxel reads the bits it should
 };
 
-/// Sums the records of all kept leaves: leaf by leaf in a region, region by region in the tree's order,
-/// compensated, so that neither threads nor blocks matter.
-LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records);
+/// Sums the records of all kept leaves, or of those that can be seen by the choices `seen_by`: leaf by leaf in a
+/// region, region by region in the tree's order, compensated, so that neither threads nor blocks matter.
+LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by = nullptr);
 
 }  // namespace weir

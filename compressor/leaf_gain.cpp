@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compressor/bounds.h"
 #include "compressor/leaf_quantiser.h"
 
 namespace weir {
@@ -129,26 +130,38 @@ std::vector<LeafWidth> widths_of(Encoding encoding) {
   return {LeafWidth::float32};
 }
 
-void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const {
-  leaf.required = leaf.required || row.max_abs_about(tile) > *max_error;
+double GainRule::tile_weight(const MinMax& reach, float tile) const {
+  MinMax with_tile = reach;
+  if (reach.min <= reach.max) widen(with_tile, {tile, tile});
+  return visibility->weight(with_tile);
+}
+
+void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                                LeafGain& leaf) const {
+  const bool seen = weights.tile > 0;
+  leaf.required = leaf.required || (seen && row.max_abs_about(tile) > *max_error);
   leaf.lossless = !leaf.required;  // met by the tile
   if (!leaf.required) return;
   LeafWidth width = LeafWidth::tile;
   for (const LeafWidth candidate : widths_of(encoding)) {
     width = candidate;
-    leaf.lossless =
-        candidate == LeafWidth::float32 || bounded_error(row, voxels, fill.background, candidate) <= *max_error;
+    leaf.lossless = candidate == LeafWidth::float32 || !seen ||
+                    bounded_error(row, voxels, fill.background, candidate) <= *max_error;
     if (leaf.lossless) break;
   }
   leaf.add(step_to(width, LeafWidth::tile, row.sse_about(tile)));
 }
 
-void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const {
-  if (max_error) return add_bounded_step(row, voxels, tile, leaf);
-  leaf.lossless = leaf.exact;
-  if (leaf.exact && !leaf.required) return;
-  const double error = leaf.exact ? 0 : row.sse_about(tile);
-  const auto error_at = [&](LeafWidth width) { return quantised_error(row, voxels, fill.background, width); };
+void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                         LeafGain& leaf) const {
+  if (max_error) return add_bounded_step(row, voxels, tile, weights, leaf);
+  const bool tile_does = leaf.exact || !(weights.tile > 0);
+  leaf.lossless = tile_does;
+  if (tile_does && !leaf.required) return;
+  const double error = leaf.exact ? 0 : weights.tile * row.sse_about(tile);
+  const auto error_at = [&](LeafWidth width) {
+    return weights.kept * quantised_error(row, voxels, fill.background, width);
+  };
   switch (encoding) {
     case Encoding::automatic:
     case Encoding::float32:
@@ -178,7 +191,7 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, Le
       add_hull(error_at, from, left, last, leaf);
       // Saves nothing that can be measured, but without it not every bit is kept.
       const LeafWidth reached = leaf.step_count > 0 ? leaf.steps[leaf.step_count - 1].width : LeafWidth::tile;
-      if (!leaf.exact && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));
+      if (!tile_does && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));
       break;
     }
   }
@@ -208,7 +221,12 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
     const float tile = fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);
-    add_steps(row, voxels, tile, gain);
+    Weights weights;
+    if (visibility != nullptr) {
+      const MinMax& reach = rows.reach(leaf);
+      weights = {tile_weight(reach, tile), visibility->weight(reach)};
+    }
+    add_steps(row, voxels, tile, weights, gain);
     out.push_back(gain);
   });
   if (metric != Metric::sse) rank_bricks(rows, out);

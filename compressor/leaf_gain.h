@@ -11,6 +11,7 @@
 #include "compressor/fill.h"
 #include "compressor/leaf_choice.h"
 #include "compressor/region_rows.h"
+#include "compressor/visibility.h"
 
 namespace weir {
 
@@ -36,7 +37,7 @@ struct LeafGain {
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
   bool exact = false;          ///< its tile reads the same bits: never worth a leaf
   bool required = false;       ///< always a leaf: its first step is taken whatever it saves
-  bool lossless = false;       ///< the last step, or the tile, reads the same bits (or within max_error)
+  bool lossless = false;  ///< the last step, or the tile, reads the same bits (within max_error, or cannot be seen)
 
   void add(const LeafStep& step) { steps[step_count++] = step; }
 };
@@ -51,14 +52,26 @@ struct GainRule {
   /// width that does (quantised over its whole range), and nothing else is worth a byte. What no width can do
   /// counts as lossy.
   std::optional<double> max_error = std::nullopt;
+  /// Where a scene decides what matters: errors are weighted by what it shows of them, and what it cannot show is
+  /// never worth a byte. For Metric::sse, over rows with reaches.
+  const Visibility* visibility = nullptr;
+
+  /// Weight of the error where a block of that reach reads `tile`.
+  double tile_weight(const MinMax& reach, float tile) const;
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
   /// hold non-finite values to keep, are required.
   void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
 
  private:
-  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const;
-  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, LeafGain& leaf) const;
+  // What a squared error counts where the leaf reads its tile, and where it is kept.
+  struct Weights {
+    double tile = 1;
+    double kept = 1;
+  };
+  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                        LeafGain& leaf) const;
+  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf) const;
   // The paper's metrics: gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
 };

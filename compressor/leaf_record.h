@@ -5,25 +5,17 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "compressor/bounds.h"
 #include "format/file_system.h"
 #include "format/index.h"
 #include "format/leaf_codec.h"
 #include "format/nvdb_grid.h"
 
 namespace weir {
-
-/// Bounds of nothing: any value widens them.
-inline constexpr MinMax kNoBounds{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-
-inline void widen(MinMax& bounds, const MinMax& by) {
-  if (by.min < bounds.min) bounds.min = by.min;
-  if (by.max > bounds.max) bounds.max = by.max;
-}
 
 struct LeafRecord {
   double mean = 0;

@@ -7,13 +7,28 @@
 
 namespace weir {
 
+namespace {
+
+void read_box(const RowStore& store, const Box& box, RowBuffers& buffers) {
+  store.read_box(box, buffers.rows);
+  if (store.reaches() != nullptr) store.reaches()->read_box(box, buffers.reaches);
+}
+
+}  // namespace
+
+RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers) {
+  read_box(store, leaf_box, buffers);
+  return {buffers.rows.data(), leaf_box.extent(), leaf_box,
+          store.reaches() == nullptr ? nullptr : buffers.reaches.data()};
+}
+
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit) {
   // One task: a segment of regions along x, whose rows are read in long runs.
   const std::int64_t segment = store.segment_regions();
   const Index3 extent = regions.extent();
   const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
-  tbb::enumerable_thread_specific<std::vector<LeafRow>> buffers;
+  tbb::enumerable_thread_specific<RowBuffers> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
     const Index3 at = index_at(task, tasks);
     const Index3 first = regions.lo + Index3{at.x * segment, at.y, at.z};
@@ -21,11 +36,13 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
     const std::int64_t begin = tree.region_lattice.linear(first);
     const std::int64_t last = tree.region_lattice.linear({end_x - 1, first.y, first.z});
     const Box box{tree.leaf_box(begin).lo, tree.leaf_box(last).hi};
-    std::vector<LeafRow>& rows = buffers.local();
-    store.read_box(box, rows);
+    RowBuffers& local = buffers.local();
+    read_box(store, box, local);
     for (std::int64_t region = begin; region <= last; ++region) {
       const Box leaf_box = tree.leaf_box(region);
-      visit(region, RegionRows(rows.data() + (leaf_box.lo.x - box.lo.x), box.extent(), leaf_box));
+      const std::int64_t first_row = leaf_box.lo.x - box.lo.x;
+      visit(region, RegionRows(local.rows.data() + first_row, box.extent(), leaf_box,
+                               store.reaches() == nullptr ? nullptr : local.reaches.data() + first_row));
     }
   });
 }

@@ -127,6 +127,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   }
   bytes_.minimum = make_layout(minimum);
   bytes_.full = make_layout(full);
+  bytes_.by_scene = rule_.visibility != nullptr;
 }
 
 void Selection::summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains) {
@@ -149,7 +150,9 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows, con
   });
   region.sums = builder.sums;
   region.sums.exact = exact;
-  region.opening_gain = std::max(0.0, region.sums.sse_about(tile) - dropped_leaves);
+  region.tile_error = region.sums.sse_about(tile);
+  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile);
+  region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
   std::vector<LeafStep> steps;
   bool required = false;
@@ -159,15 +162,38 @@ void Selection::summarize_region(std::int64_t index, const RegionRows& rows, con
     highest = std::max(highest, leaf.steps[0].gain);
     steps.insert(steps.end(), leaf.steps.begin(), leaf.steps.begin() + leaf.step_count);
   }
-  if (required || (rule_.max_error && region.sums.max_abs_about(tile) > *rule_.max_error)) {
+  if (required || (rule_.max_error && exceeds(*rule_.max_error, region, tile))) {
     region.key = kRequired;
-  } else if (exact || rule_.max_error) {
+  } else if (exact || rule_.max_error || !sees(region, tile)) {
     region.key = 0;
   } else if (rule_.metric == Metric::sse) {
     region.key = std::max(kLast, hull_step(region.opening_gain, steps));
   } else {
     region.key = std::max(kLast, highest);
   }
+}
+
+// The weighted errors of a region: sets that of its one tile, returns that of its leaves' tiles.
+double Selection::weigh_region(Region& region, const RegionRows& rows, float tile) const {
+  region.tile_error = 0;
+  double dropped_leaves = 0;
+  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+    const MinMax& reach = rows.reach(leaf);
+    widen(region.reach, reach);
+    region.tile_error += rule_.tile_weight(reach, tile) * row.sse_about(tile);
+    const float leaf_tile = rule_.fill.leaf_value(row);
+    dropped_leaves += rule_.tile_weight(reach, leaf_tile) * row.sse_about(leaf_tile);
+  });
+  return dropped_leaves;
+}
+
+// Whether anything of a region that reads `tile` can be seen.
+bool Selection::sees(const Region& region, float tile) const {
+  return rule_.visibility == nullptr || rule_.tile_weight(region.reach, tile) > 0;
+}
+
+bool Selection::exceeds(double max_error, const Region& region, float tile) const {
+  return sees(region, tile) && region.sums.max_abs_about(tile) > max_error;
 }
 
 void Selection::summarize_uppers() {
@@ -187,24 +213,31 @@ void Selection::summarize_uppers() {
     if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;
     const float tile = tile_value(rule_.fill, builder.sums);
     bool exact = true;
-    double tiles = 0;  // squared error with one tile per region
+    double tiles = 0;     // squared error with one tile per region
+    double weighted = 0;  // and with one for all, where a scene weighs
+    bool seen = false;
+    bool exceeded = false;
     tree_.for_each_region_of(i, [&](std::int64_t r) {
       const Region& region = tree_.regions[static_cast<std::size_t>(r)];
       const TileSums& sums = region.sums;
       const float region_tile = tile_value(rule_.fill, sums);
       builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
       exact = exact && sums.exact && bits_of(static_cast<double>(region_tile)) == bits_of(static_cast<double>(tile));
-      tiles += sums.sse_about(region_tile);
+      tiles += rule_.visibility == nullptr ? sums.sse_about(region_tile) : region.tile_error;
       upper.key = std::max(upper.key, region.key);
+      seen = seen || sees(region, tile);
+      exceeded = exceeded || (rule_.max_error && exceeds(*rule_.max_error, region, tile));
+      if (rule_.visibility != nullptr) weighted += rule_.tile_weight(region.reach, tile) * sums.sse_about(tile);
     });
     upper.sums = builder.sums;
     upper.sums.exact = exact;
-    if (exact) continue;
+    upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
+    if (exact || !seen) continue;
     if (rule_.max_error) {
-      if (upper.sums.max_abs_about(tile) > *rule_.max_error) upper.key = kRequired;
+      if (exceeded) upper.key = kRequired;
       continue;
     }
-    upper.opening_gain = std::max(0.0, upper.sums.sse_about(tile) - tiles);
+    upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
     upper.key = std::max({upper.key, kLast, rule_.metric == Metric::sse ? upper.opening_gain / kUpperCost : 0.0});
   }
 }
@@ -319,7 +352,7 @@ void Selection::resolve_ties(const Goal& goal, Goal::Weight bought) {
     bought += weight;
     return true;
   };
-  std::vector<LeafRow> row_buffer;
+  RowBuffers buffers;
   std::vector<LeafGain> gains;
   for (std::int64_t index = 0; index < static_cast<std::int64_t>(tree_.regions.size()); ++index) {
     Region& region = tree_.regions[static_cast<std::size_t>(index)];
@@ -337,9 +370,7 @@ void Selection::resolve_ties(const Goal& goal, Goal::Weight bought) {
       if (!buy(nvdb::kLowerBytes, region.opening_gain)) return stop(0);
       region.open = true;
     }
-    const Box box = tree_.leaf_box(index);
-    rows_.read_box(box, row_buffer);
-    rule_.gains(tree_, RegionRows(row_buffer.data(), box.extent(), box), gains);
+    rule_.gains(tree_, read_region(rows_, tree_.leaf_box(index), buffers), gains);
     const std::vector<Item> ties = tied_steps(gains, region.key, cut_.threshold);
     for (std::size_t first = 0; first < ties.size();) {
       std::size_t end = first + 1;  // a brick goes as one
@@ -381,7 +412,7 @@ void Selection::choose(std::uint64_t file_bytes) {
 
 void Selection::choose_error(double squared_error) {
   CompensatedSum all_tiles;
-  for (const Upper& upper : tree_.uppers) all_tiles.add(upper.sums.sse_about(tile_value(rule_.fill, upper.sums)));
+  for (const Upper& upper : tree_.uppers) all_tiles.add(upper.tile_error);
   const double error = all_tiles.value();
   cut_ = Cut{};
   // Every gain is at most the error of nothing bought, which becomes 2^90: sums of 2^37 gains fit, and each is

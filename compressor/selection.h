@@ -39,6 +39,7 @@ struct SelectionBytes {
   TreeLayout minimum;              ///< the smallest file these rules allow
   TreeLayout full;                 ///< every step of every leaf: more bytes buy nothing
   std::uint64_t lossy_leaves = 0;  ///< leaves that lose something even then; 0 for float leaves
+  bool by_scene = false;           ///< what a scene cannot show is left out of all this
 };
 
 class Selection {
@@ -52,8 +53,8 @@ class Selection {
   /// and upper nodes in the tree.
   void choose(std::uint64_t file_bytes);
 
-  /// Buys as little as brings the squared error expected of the finite voxels down to `squared_error`; all
-  /// there is where that is not enough. For Metric::sse.
+  /// Buys as little as brings the squared error expected of the finite voxels, weighted where the rule weighs, down
+  /// to `squared_error`; all there is where that is not enough. For Metric::sse.
   void choose_error(double squared_error);
 
   /// What becomes of the leaves of a region, after choose().
@@ -64,6 +65,9 @@ class Selection {
 
  private:
   void summarize_region(std::int64_t region, const RegionRows& rows, const std::vector<LeafGain>& gains);
+  double weigh_region(Region& region, const RegionRows& rows, float tile) const;
+  bool sees(const Region& region, float tile) const;
+  bool exceeds(double max_error, const Region& region, float tile) const;
   void summarize_uppers();
   /// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
   struct Goal {

@@ -72,21 +72,29 @@ struct Tally {
 // Surveys the leaves of one block.
 class BlockSurvey {
  public:
+  // `faces` is empty where they are not asked for.
   BlockSurvey(const NodeLattice& leaves, const ValueTable& table, bool widths, const Block& block, const Box& leaf_box,
-              std::vector<LeafRow>& rows)
-      : leaves_(leaves), table_(table), widths_(widths), block_(block), leaf_box_(leaf_box), rows_(rows) {}
+              std::span<LeafRow> rows, std::span<LeafFaces> faces)
+      : leaves_(leaves),
+        table_(table),
+        widths_(widths),
+        block_(block),
+        leaf_box_(leaf_box),
+        rows_(rows),
+        faces_(faces) {}
 
   // All leaves of one row along x; `row` is relative to the block.
   void leaf_row(std::int64_t y, std::int64_t z, Tally& tally) const {
     const Index3 extent = leaf_box_.extent();
     for (std::int64_t x = 0; x < extent.x; ++x) {
       const Index3 leaf = leaf_box_.lo + Index3{x, y, z};
-      rows_[static_cast<std::size_t>(linear_index({x, y, z}, extent))] = survey_leaf(leaf, tally);
+      const auto at = static_cast<std::size_t>(linear_index({x, y, z}, extent));
+      rows_[at] = survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], tally);
     }
   }
 
  private:
-  LeafRow survey_leaf(const Index3& leaf, Tally& tally) const {
+  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, Tally& tally) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
     const Index3 block_extent = block_.voxels.extent();
@@ -107,6 +115,7 @@ class BlockSurvey {
     const auto count = static_cast<std::size_t>(volume(extent));
     const std::span<const float> seen(values.data(), count);
     LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
+    if (faces != nullptr) *faces = faces_of(seen, extent);
     tally.finite += row.finite;
     if (row.finite == count) {
       count_values(seen, row, tally);
@@ -167,26 +176,14 @@ class BlockSurvey {
   bool widths_;
   const Block& block_;
   const Box& leaf_box_;
-  std::vector<LeafRow>& rows_;
+  std::span<LeafRow> rows_;
+  std::span<LeafFaces> faces_;
 };
-
-// Rows of a block to their places: consecutive where the block has whole rows or whole planes.
-void spill(RowStore& store, const Box& leaf_box, std::span<const LeafRow> rows) {
-  const Index3 extent = leaf_box.extent();
-  const std::int64_t run_rows = extent.x == store.leaves().count.x ? extent.y : 1;
-  const auto run = static_cast<std::size_t>(extent.x * run_rows);
-  for (std::int64_t z = 0; z < extent.z; ++z) {
-    for (std::int64_t y = 0; y < extent.y; y += run_rows) {
-      store.write(store.leaves().linear(leaf_box.lo + Index3{0, y, z}), rows.first(run));
-      rows = rows.subspan(run);
-    }
-  }
-}
 
 }  // namespace
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading, bool widths) {
+                     Reading reading, bool widths, LeafStore<LeafFaces>* faces) {
   const NodeLattice& leaves = plan.lattice;
   const ValueTable table = value_table(source.info());
   Tally fresh;
@@ -201,10 +198,12 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
     const Box leaf_box = plan.leaf_box(static_cast<std::int64_t>(block.index));
     const Index3 extent = leaf_box.extent();
     std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
-    const BlockSurvey work(leaves, table, widths, block, leaf_box, block_rows);
+    std::vector<LeafFaces> block_faces(faces == nullptr ? 0 : block_rows.size());
+    const BlockSurvey work(leaves, table, widths, block, leaf_box, block_rows, block_faces);
     for_rows(extent.y * extent.z,
              [&](std::int64_t row, Tally& tally) { work.leaf_row(row % extent.y, row / extent.y, tally); });
-    spill(rows, leaf_box, block_rows);
+    rows.write_box(leaf_box, block_rows);
+    if (faces != nullptr) faces->write_box(leaf_box, block_faces);
   };
   Survey survey;
   if (reading == Reading::in_place) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "compressor/leaf_faces.h"
+#include "compressor/leaf_store.h"
 #include "compressor/range_histogram.h"
 #include "compressor/row_store.h"
 #include "ingest/block_plan.h"
@@ -34,9 +36,10 @@ struct Survey {
 
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
 /// number of threads, nor on the way of reading. `widths` asks for what each
-/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again.
+/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `faces`, where
+/// given, gets the outer layers of each leaf (leaf_reach.h).
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading = Reading::ahead, bool widths = false);
+                     Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr);
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

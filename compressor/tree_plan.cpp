@@ -14,42 +14,100 @@ namespace {
 // What merges without regard to order.
 struct Tally {
   double max_abs = 0;
+  double seen_max_abs = 0;
   bool exact = true;         // the tiles
-  bool leaves_exact = true;  // at their widths
+  bool seen_exact = true;    // those that can be seen
+  bool leaves_exact = true;  // at their widths, where they can be seen
   std::array<std::uint64_t, 6> leaves_by_width{};
 
-  void add_tile(double tile_max_abs, bool tile_exact) {
-    max_abs = std::max(max_abs, tile_max_abs);
-    exact = exact && tile_exact;
-  }
   void add(const Tally& other) {
-    add_tile(other.max_abs, other.exact);
+    max_abs = std::max(max_abs, other.max_abs);
+    seen_max_abs = std::max(seen_max_abs, other.seen_max_abs);
+    exact = exact && other.exact;
+    seen_exact = seen_exact && other.seen_exact;
     leaves_exact = leaves_exact && other.leaves_exact;
     for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
   }
 };
 
-// The leaves of an open region: the error of those that became tiles, and, returned, the one expected of the others.
-double add_leaves(const TreeRegions& tree, const Fill& fill, const LeafChoices& choices, const RegionRows& rows,
-                  Region& region, Tally& tally) {
-  CompensatedSum squares;
-  CompensatedSum expected;
-  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
-    const LeafWidth width = choices.width(tree.mask_position(leaf));
-    if (width != LeafWidth::tile) {
-      ++tally.leaves_by_width[bits_log2_of(width)];
-      const std::int64_t voxels = tree.leaves.voxels(leaf).voxels();
-      expected.add(quantised_error(row, voxels, fill.background, width));
-      tally.leaves_exact = tally.leaves_exact && keeps_every_bit(row, voxels, width);
-      return;
-    }
-    const float value = fill.leaf_value(row);
+// Squared errors of a region.
+struct RegionErrors {
+  double seen = 0;      // of what reads a tile and can be seen
+  double expected = 0;  // of kept leaves and, where a scene weighs, tiles; weighted
+};
+
+// Plans one region after the other; different regions on different threads.
+class RegionPlanner {
+ public:
+  RegionPlanner(const GainRule& rule, const TreeRegions& tree) : rule_(rule), tree_(tree) {}
+
+  // Marks what can be seen.
+  void mark(const RegionRows& rows, LeafChoices& choices) const {
+    rows.for_each([&](const Index3& leaf, const LeafRow&) {
+      if (seen(rows, leaf)) choices.set_seen(tree_.mask_position(leaf));
+    });
+  }
+
+  // The leaves of an open region: `region.squared_error` is of those that became tiles.
+  RegionErrors add_leaves(const LeafChoices& choices, const RegionRows& rows, Region& region, Tally& tally) const {
+    CompensatedSum squares;
+    CompensatedSum seen_squares;
+    CompensatedSum expected;
+    rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+      const std::size_t position = tree_.mask_position(leaf);
+      const LeafWidth width = choices.width(position);
+      const std::int64_t voxels = tree_.leaves.voxels(leaf).voxels();
+      if (width != LeafWidth::tile) {
+        ++tally.leaves_by_width[bits_log2_of(width)];
+        const double weight = rule_.visibility == nullptr ? 1 : rule_.visibility->weight(rows.reach(leaf));
+        expected.add(weight * quantised_error(row, voxels, rule_.fill.background, width));
+        tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || keeps_every_bit(row, voxels, width));
+        return;
+      }
+      const float value = rule_.fill.leaf_value(row);
+      const bool exact = rule_.fill.exact(row, voxels, value);
+      squares.add(row.sse_about(value));
+      tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
+      tally.exact = tally.exact && exact;
+      if (rule_.visibility == nullptr) return;
+      add_seen_tile(rows, leaf, value, exact, seen_squares, expected, tally);
+    });
+    region.squared_error = squares.value();
+    return {seen_squares.value(), expected.value()};
+  }
+
+  // A region that reads `value` all over, as bits where `exact`.
+  RegionErrors add_tile(const RegionRows& rows, float value, bool exact, Region& region, Tally& tally) const {
+    region.squared_error = region.sums.sse_about(value);
+    tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
+    tally.exact = tally.exact && exact;
+    if (rule_.visibility == nullptr) return {};
+    CompensatedSum seen_squares;
+    CompensatedSum expected;
+    rows.for_each([&](const Index3& leaf, const LeafRow&) {
+      add_seen_tile(rows, leaf, value, exact, seen_squares, expected, tally);
+    });
+    return {seen_squares.value(), expected.value()};
+  }
+
+ private:
+  bool seen(const RegionRows& rows, const Index3& leaf) const {
+    return rule_.visibility == nullptr || rule_.visibility->shows(rows.reach(leaf));
+  }
+
+  void add_seen_tile(const RegionRows& rows, const Index3& leaf, float value, bool exact, CompensatedSum& squares,
+                     CompensatedSum& expected, Tally& tally) const {
+    const LeafRow& row = rows.at(leaf);
+    expected.add(rule_.tile_weight(rows.reach(leaf), value) * row.sse_about(value));
+    if (!seen(rows, leaf)) return;
     squares.add(row.sse_about(value));
-    tally.add_tile(row.max_abs_about(value), fill.exact(row, tree.leaves.voxels(leaf).voxels(), value));
-  });
-  region.squared_error = squares.value();
-  return expected.value();
-}
+    tally.seen_max_abs = std::max(tally.seen_max_abs, row.max_abs_about(value));
+    tally.seen_exact = tally.seen_exact && exact;
+  }
+
+  const GainRule& rule_;
+  const TreeRegions& tree_;
+};
 
 void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
   tree.for_each_upper([&](std::int64_t u) {
@@ -71,24 +129,26 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
 }  // namespace
 
 TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store) {
-  const Fill& fill = selection.rule().fill;
+  const GainRule& rule = selection.rule();
+  const RegionPlanner planner(rule, tree);
   tbb::enumerable_thread_specific<Tally> tallies;
-  std::vector<double> expected(tree.regions.size());
+  std::vector<RegionErrors> errors(tree.regions.size());
   for_each_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
     Region& region = tree.regions[static_cast<std::size_t>(index)];
-    const LeafChoices choices = selection.choices(index, region_rows);
+    LeafChoices choices = selection.choices(index, region_rows);
+    planner.mark(region_rows, choices);
     const LeafPlaces::Place total = LeafPlaces(choices).total();
     region.leaves = total.leaves;
     region.leaf_bytes = total.bytes;
     store.write(index, choices);
+    RegionErrors& of_region = errors[static_cast<std::size_t>(index)];
     if (region.open) {
-      expected[static_cast<std::size_t>(index)] = add_leaves(tree, fill, choices, region_rows, region, tallies.local());
+      of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
     } else {
       // One tile, of this region or of the whole upper node.
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
-      const float value = tile_value(fill, upper.open ? region.sums : upper.sums);
-      region.squared_error = region.sums.sse_about(value);
-      tallies.local().add_tile(region.sums.max_abs_about(value), upper.open ? region.sums.exact : upper.sums.exact);
+      const TileSums& sums = upper.open ? region.sums : upper.sums;
+      of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), sums.exact, region, tallies.local());
     }
   });
 
@@ -97,13 +157,17 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   for (const Tally& other : tallies) total.add(other);
   CompensatedSum squares;
   for (const Region& region : tree.regions) squares.add(region.squared_error);
-  CompensatedSum expected_squares;
-  for (const double error : expected) expected_squares.add(error);
-  plan.squared_error = squares.value();
-  plan.expected_leaf_error = expected_squares.value();
-  plan.max_abs = total.max_abs;
-  plan.lossless = total.exact;
-  plan.leaves_lossless = total.leaves_exact;
+  CompensatedSum seen;
+  CompensatedSum expected;
+  for (const RegionErrors& of_region : errors) {
+    seen.add(of_region.seen);
+    expected.add(of_region.expected);
+  }
+  plan.tiles = {squares.value(), total.max_abs, total.exact};
+  const bool weighed = rule.visibility != nullptr;
+  plan.seen_tiles = weighed ? TileErrors{seen.value(), total.seen_max_abs, total.seen_exact} : plan.tiles;
+  plan.expected_error = weighed ? expected.value() : plan.tiles.squared + expected.value();
+  plan.loses_nothing = plan.seen_tiles.exact && total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;
 
   NodeCounts counts;

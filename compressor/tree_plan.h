@@ -14,14 +14,19 @@
 
 namespace weir {
 
+struct TileErrors {
+  double squared = 0;
+  double max_abs = 0;
+  bool exact = true;  ///< every voxel reads the bits it should
+};
+
 struct TreePlan {
   TreeLayout layout;  ///< without padding
-  // Of what reads a tile: exact. Leaves add theirs when they are encoded (leaf_record.h); float ones add none.
-  double squared_error = 0;
-  double max_abs = 0;
-  bool lossless = false;
-  double expected_leaf_error = 0;  ///< squared, of the kept leaves, estimated
-  bool leaves_lossless = false;    ///< each is kept at a width that reads every bit of it
+  // Exact. Leaves add theirs when they are encoded (leaf_record.h); float ones add none.
+  TileErrors tiles;            ///< of what reads a tile
+  TileErrors seen_tiles;       ///< of what of that can be seen: all, unless a scene says otherwise
+  double expected_error = 0;   ///< squared, of tiles and kept leaves, estimated; weighted where the rule weighs
+  bool loses_nothing = false;  ///< every bit that can be seen is read
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
 };

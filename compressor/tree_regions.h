@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compressor/bounds.h"
 #include "compressor/certificate.h"
 #include "compressor/fill.h"
 #include "format/index.h"
@@ -36,7 +37,9 @@ inline float tile_value(const Fill& fill, const TileSums& sums) {
 struct Region {
   TileSums sums;
   double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
-  double opening_gain = 0;       ///< squared error saved by its leaves' tiles
+  double tile_error = 0;         ///< squared error as one tile, weighted where a scene weighs
+  double opening_gain = 0;       ///< what of that its leaves' tiles save
+  MinMax reach = kNoBounds;      ///< over the reaches of its leaves; where a scene weighs
   bool open = false;             ///< a lower node; otherwise one tile of the upper node
   std::uint32_t leaves = 0;      ///< kept ones
   std::uint64_t node = 0;        ///< ordinal of the lower node in the file
@@ -49,7 +52,8 @@ struct Region {
 struct Upper {
   TileSums sums;
   double key = 0;
-  double opening_gain = 0;  ///< squared error saved by its regions' tiles
+  double tile_error = 0;    ///< squared error as one tile, weighted where a scene weighs
+  double opening_gain = 0;  ///< what of that its regions' tiles save
   bool open = false;        ///< an upper node; otherwise one root tile
   std::uint64_t node = 0;   ///< ordinal of the upper node in the file
 };

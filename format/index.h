@@ -66,6 +66,20 @@ struct Box {
 
 constexpr Box intersect(const Box& a, const Box& b) { return {max(a.lo, b.lo), min(a.hi, b.hi)}; }
 
+constexpr Box grown(const Box& box, std::int64_t by) {
+  return {box.lo - Index3{by, by, by}, box.hi + Index3{by, by, by}};
+}
+
+/// Calls visit(index) for every index of `box`, x fastest.
+template <typename Visit>
+void for_each_index(const Box& box, const Visit& visit) {
+  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) visit(Index3{x, y, z});
+    }
+  }
+}
+
 /// The nodes of edge length `dim` voxels that touch a domain, as a dense lattice.
 /// `first` is the node coordinate (voxel index / dim, rounded down) of the lowest one.
 struct NodeLattice {

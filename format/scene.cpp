@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -60,6 +61,27 @@ void read_points(TomlReader& reader, std::string_view key, const Add& add) {
   }
 }
 
+// Whole voxel indices, [[x0, x1], [y0, y1], [z0, z1]], half open.
+void read_region(TomlReader& reader, SceneVolume& volume) {
+  const toml::node* node = reader.find("region");
+  if (node == nullptr) return;
+  if (!node->is_array() || node->as_array()->size() != 3) {
+    reader.fail(*node, "region must be [[x0, x1], [y0, y1], [z0, z1]], voxels from x0 up to and without x1");
+  }
+  std::array<std::int64_t, 3> lo{};
+  std::array<std::int64_t, 3> hi{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const toml::node& item = *node->as_array()->get(axis);
+    const auto [from, to] = reader.numbers<2>(item, "region", {-2147483648.0, 2147483648.0});
+    if (from != std::floor(from) || to != std::floor(to) || !(from < to)) {
+      reader.fail(item, cat("region has ", from, " to ", to, "; it must be whole voxels, the first below the second"));
+    }
+    lo[axis] = static_cast<std::int64_t>(from);
+    hi[axis] = static_cast<std::int64_t>(to);
+  }
+  volume.region = Box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
+
 void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.read("colormap", volume.colormap);
   if (reader.read("range", volume.range, {-3.4e38, 3.4e38}) && (*volume.range)[0] > (*volume.range)[1]) {
@@ -76,6 +98,7 @@ void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.read("shading", volume.shading, kUnit);
   reader.read("iso", volume.iso, {-3.4e38, 3.4e38});
   reader.read("max_bounces", volume.max_bounces, {0, 1 << 20});
+  read_region(reader, volume);
   reader.finish();
 }
 

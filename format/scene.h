@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "format/index.h"
+
 namespace weir {
 
 using Double3 = std::array<double, 3>;
@@ -60,6 +62,7 @@ struct SceneVolume {
   double shading = 0.7;                        ///< dvr: 0 flat to 1 lit like a surface
   std::optional<double> iso;                   ///< value of the surface; default: from the range
   int max_bounces = 256;                       ///< path: collisions at most
+  std::optional<Box> region;                   ///< voxels of index space that are shown; default: all
 };
 
 /// Directional light.

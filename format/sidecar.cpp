@@ -15,6 +15,16 @@ namespace {
 
 constexpr std::array<const char*, 6> kBitKeys{"1", "2", "4", "8", "16", "32"};
 
+template <typename Archive, typename E>
+void describe_error(Archive& archive, E& error) {
+  archive.field("mse", error.mse);
+  archive.field("rmse", error.rmse);
+  archive.field("nmse", error.nmse);
+  archive.field("psnr_db", error.psnr_db);
+  archive.field("max_abs", error.max_abs);
+  archive.field("lossless", error.lossless);
+}
+
 // The document's keys, once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
 template <typename Archive, typename S>
 void describe(Archive& archive, S& s) {
@@ -83,13 +93,12 @@ void describe(Archive& archive, S& s) {
       for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], s.selection.bits[i]);
     });
   });
-  archive.object("error", [&] {
-    archive.field("mse", s.error.mse);
-    archive.field("rmse", s.error.rmse);
-    archive.field("nmse", s.error.nmse);
-    archive.field("psnr_db", s.error.psnr_db);
-    archive.field("max_abs", s.error.max_abs);
-    archive.field("lossless", s.error.lossless);
+  archive.object("error", [&] { describe_error(archive, s.error); });
+  archive.optional_object("visible", s.visible, [&](auto& visible) {
+    archive.field("scene", visible.scene);
+    archive.field("blocks", visible.blocks);
+    archive.field("voxels", visible.voxels);
+    describe_error(archive, visible.error);
   });
   archive.object("macrocells", [&] {
     archive.field("cell", s.macrocells.cell);
@@ -127,6 +136,11 @@ class JsonWriter {
     at_ = &((*outer)[key] = Json::object());
     fields();
     at_ = outer;
+  }
+
+  template <typename T, typename Fields>
+  void optional_object(const char* key, const std::optional<T>& value, const Fields& fields) {
+    if (value) object(key, [&] { fields(*value); });
   }
 
   template <typename T>
@@ -167,6 +181,12 @@ class JsonReader {
     fields();
     at_ = outer;
     prefix_ = outer_prefix;
+  }
+
+  template <typename T, typename Fields>
+  void optional_object(const char* key, std::optional<T>& value, const Fields& fields) {
+    value.reset();
+    if (at_->contains(key)) object(key, [&] { fields(value.emplace()); });
   }
 
   template <typename T>

@@ -107,6 +107,15 @@ struct Sidecar {
     bool lossless = false;
   } error;
 
+  /// With a scene that decided what matters: the same over the voxels of all 8^3 blocks of which something can be seen.
+  struct Visible {
+    std::string scene;         ///< path, as the user gave it
+    std::uint64_t blocks = 0;  ///< that can be seen
+    std::uint64_t voxels = 0;  ///< finite ones in them: the error is over these
+    CertifiedError error;
+  };
+  std::optional<Visible> visible;
+
   struct Macrocells {
     std::int64_t cell = 0;  ///< voxels along an edge
     Index3 dims;            ///< cells

@@ -51,7 +51,7 @@ template <class Volume>
 WEIR_HOST_DEVICE Float3 shade_iso(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                   const Float3& direction, float iso, const Float3& colour, float step) {
   Ray ray = medium.ray(origin, direction);
-  const float length = enter(ray, medium.volume.extent());
+  const float length = enter(ray, medium.shown);
   const float t = find_iso(medium, ray, length, iso, step);
   if (t < 0.0F) return lighting.behind(direction);
   const Float3 normal = normalised(gradient(medium.volume, ray.at(t)) / medium.stretch, -direction);

@@ -16,21 +16,10 @@ Int3 narrow(const Index3& i) {
   return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
 }
 
-template <class Visit>
-void for_each_index(const Box& box, const Visit& visit) {
-  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) visit(Index3{x, y, z});
-    }
-  }
-}
-
 // Cells that a box of voxels touches.
 Box cells_of(const Box& voxels, std::int64_t edge) {
   return {floor_div(voxels.lo, edge), floor_div(voxels.hi - Index3{1, 1, 1}, edge) + Index3{1, 1, 1}};
 }
-
-Box grown(const Box& box, std::int64_t by) { return {box.lo - Index3{by, by, by}, box.hi + Index3{by, by, by}}; }
 
 }  // namespace
 

@@ -32,7 +32,7 @@ template <class Volume>
 WEIR_HOST_DEVICE Float3 project_max(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                     const Float3& direction, float step, Random& random) {
   Ray ray = medium.ray(origin, direction);
-  const float length = enter(ray, medium.volume.extent());
+  const float length = enter(ray, medium.shown);
   const float best = max_along(medium, ray, length, step, random.uniform());
   const Rgba colour = medium.transfer.at(best);
   return mix(lighting.behind(direction), rgb(colour), colour.a);

@@ -18,6 +18,7 @@ struct Medium {
   Volume volume;
   TransferFunctionView transfer;
   CellLattice cells;
+  RayBox shown;                         ///< the part of the volume that is seen, inside the domain
   const float* cell_opacity = nullptr;  ///< largest opacity of each cell
   const MinMax* cell_values = nullptr;  ///< bounds of the values of each cell
   Float3 stretch{1, 1, 1};              ///< edges of a voxel, in units of the shortest

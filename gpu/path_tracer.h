@@ -22,7 +22,7 @@ WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lightin
   for (int i = 0; i < lighting.light_count; ++i) {
     const DirectionalLight& light = lighting.lights[i];
     Ray shadow = medium.ray(position, light.direction);
-    const float length = enter(shadow, medium.volume.extent());
+    const float length = enter(shadow, medium.shown);
     const float visible = ratio_track(medium, shadow, length, random);
     sum += light.irradiance * (visible * phase(dot(direction, light.direction), medium.g));
   }
@@ -40,7 +40,7 @@ WEIR_HOST_DEVICE Float3 trace_path(const Medium<Volume>& medium, const Lighting&
   Float3 throughput{1, 1, 1};
   Ray ray = medium.ray(origin, direction);
   for (int bounce = 0;; ++bounce) {
-    const float length = enter(ray, medium.volume.extent());
+    const float length = enter(ray, medium.shown);
     const Flight flight = length > 0.0F ? delta_track(medium, ray, length, random) : Flight{};
     if (flight.end == FlightEnd::absorbed) return radiance;
     if (flight.end == FlightEnd::escaped) {

@@ -25,7 +25,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   Float3 radiance;
   float transmittance = 1.0F;
   Ray ray = medium.ray(origin, direction);
-  const float length = enter(ray, medium.volume.extent());
+  const float length = enter(ray, medium.shown);
   // One lattice of samples along the whole ray, shifted at random: cells only say which to leave out.
   const float jitter = random.uniform();
   CellWalk walk(medium.cells, ray, 0.0F, length);

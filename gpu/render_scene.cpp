@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "format/error.h"
+#include "format/text.h"
 #include "gpu/colormap.h"
 #include "gpu/scene_camera.h"
 #include "gpu/scene_transfer.h"
@@ -93,10 +95,17 @@ RenderScene::RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderO
   const Double3 size = frame.size();
   const double longest = *std::max_element(size.begin(), size.end());
 
+  // From the domain's lowest corner.
+  const auto local = [&](const Index3& i) {
+    const Index3 offset = i - table_.domain().lo;
+    return Float3{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)};
+  };
   Medium<VolumeSampler>& medium = task_.medium;
   medium.volume = {table_.view(), options.filter};
   medium.transfer = transfer_.view();
   medium.cells = cells_.lattice();
+  const Box seen = shown(scene);
+  medium.shown = {local(seen.lo), local(seen.hi)};
   medium.cell_opacity = majorants_.data();
   medium.cell_values = cells_.bounds().data();
   medium.stretch = narrow(frame.stretch());
@@ -121,13 +130,27 @@ RenderScene::RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderO
            .soft_clip = scene.mode == RenderMode::path};
 }
 
+// The scene's region, or the whole domain.
+Box RenderScene::shown(const Scene& scene) const {
+  if (!scene.volume.region) return table_.domain();
+  const Box box = intersect(*scene.volume.region, table_.domain());
+  if (!box.empty()) return box;
+  const Box& d = table_.domain();
+  throw Error(ErrorKind::usage, cat("the scene's region shows no voxel of the volume, whose index box is [[", d.lo.x,
+                                    ", ", d.hi.x, "], [", d.lo.y, ", ", d.hi.y, "], [", d.lo.z, ", ", d.hi.z, "]]"));
+}
+
 // What the camera frames: an opacity below a hundredth is a haze that nobody looks at.
 std::vector<Box> RenderScene::framed(const Scene& scene) const {
-  if (scene.camera.framing == Framing::volume) return {table_.domain()};
-  return cells_.content([&](std::size_t i) {
+  const Box all = shown(scene);
+  if (scene.camera.framing == Framing::volume) return {all};
+  std::vector<Box> boxes = cells_.content([&](std::size_t i) {
     const MinMax& bounds = cells_.bounds()[i];
     return scene.mode == RenderMode::iso ? bounds.min <= task_.iso && task_.iso <= bounds.max : majorants_[i] > 0.01F;
   });
+  for (Box& box : boxes) box = intersect(box, all);
+  std::erase_if(boxes, [](const Box& box) { return box.empty(); });
+  return boxes.empty() ? std::vector<Box>{all} : boxes;
 }
 
 }  // namespace weir

@@ -28,7 +28,7 @@ struct RenderOptions {
 class RenderScene {
  public:
   /// `grid`'s bytes must outlive the object. Throws Error(input) where the grid is too large for the
-  /// leaf table, Error(usage) for an unknown colormap or an impossible camera.
+  /// leaf table, Error(usage) for an unknown colormap, an impossible camera or a region outside the volume.
   RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderOptions& options);
   RenderScene(const RenderScene&) = delete;
   RenderScene& operator=(const RenderScene&) = delete;
@@ -40,6 +40,7 @@ class RenderScene {
   ToneMapping tone() const { return tone_; }
 
  private:
+  Box shown(const Scene& scene) const;
   std::vector<Box> framed(const Scene& scene) const;
 
   LeafTable table_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "format/scene_opacity.h"
 #include "gpu/colormap.h"
 
 namespace weir {
@@ -11,17 +12,6 @@ namespace {
 // Share of the largest distance from the background up to which the default is transparent: noise
 // around the background would veil everything else.
 constexpr double kTransparentShare = 0.06;
-
-// Value of a piecewise-linear function given by points with rising `position`, ends extended.
-template <class Point, class Value>
-auto interpolate(const std::vector<Point>& points, double at, const Value& value) {
-  const auto above = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.position >= at; });
-  if (above == points.begin()) return value(points.front());
-  if (above == points.end()) return value(points.back());
-  const auto below = above - 1;
-  const auto f = static_cast<float>((at - below->position) / (above->position - below->position));
-  return mix(value(*below), value(*above), f);
-}
 
 double default_opacity(double value, double low, double high, double background) {
   const double reach = std::max(std::abs(high - background), std::abs(low - background));
@@ -37,23 +27,24 @@ TransferFunction make_transfer_function(const SceneVolume& volume, MinMax range,
   if (volume.range) range = {static_cast<float>((*volume.range)[0]), static_cast<float>((*volume.range)[1])};
   const std::string_view name = volume.colormap.empty() ? default_colormap : std::string_view(volume.colormap);
   const std::vector<Float3> colours = colormap(name, kTransferEntries);
+  const std::vector<float> opacities = volume.opacity.empty() ? std::vector<float>{} : opacity_table(volume.opacity);
   std::vector<Rgba> table(kTransferEntries);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double position = static_cast<double>(i) / static_cast<double>(kTransferEntries - 1);
     Float3 colour = colours[i];
     if (!volume.color.empty()) {
-      const Float3 srgb = interpolate(volume.color, position, [](const ColorPoint& p) {
+      const auto srgb_of = [](const ColorPoint& p) {
         return Float3{static_cast<float>(p.srgb[0]), static_cast<float>(p.srgb[1]), static_cast<float>(p.srgb[2])};
-      });
+      };
+      const Float3 srgb = interpolate(volume.color, position, srgb_of,
+                                      [](const Float3& a, const Float3& b, float f) { return mix(a, b, f); });
       colour = {linear_from_srgb(srgb.x), linear_from_srgb(srgb.y), linear_from_srgb(srgb.z)};
     }
     const double low = range.min;
     const double high = range.max;
     const float opacity =
-        volume.opacity.empty()
-            ? static_cast<float>(default_opacity(low + position * (high - low), low, high, background))
-            : interpolate(volume.opacity, position,
-                          [](const OpacityPoint& p) { return static_cast<float>(p.opacity); });
+        opacities.empty() ? static_cast<float>(default_opacity(low + position * (high - low), low, high, background))
+                          : opacities[i];
     table[i] = {colour.x, colour.y, colour.z, opacity};
   }
   return {std::move(table), range.min, range.max};

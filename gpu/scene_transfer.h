@@ -11,9 +11,6 @@
 
 namespace weir {
 
-/// Entries of the tables: a control point is met within half a thousandth of the range.
-inline constexpr std::size_t kTransferEntries = 1024;
-
 /// `range` is the grid's; the scene's own replaces it. `default_colormap` holds where the scene names
 /// none. Throws Error(usage) for an unknown colormap.
 TransferFunction make_transfer_function(const SceneVolume& volume, MinMax range, float background,

@@ -1,7 +1,6 @@
 #include "gpu/transfer_function.h"
 
 #include <algorithm>
-#include <bit>
 #include <cfloat>
 
 #include "format/error.h"
@@ -9,8 +8,18 @@
 
 namespace weir {
 
+namespace {
+
+RangeMax opacities_of(const std::vector<Rgba>& table) {
+  std::vector<float> opacities(table.size());
+  std::transform(table.begin(), table.end(), opacities.begin(), [](const Rgba& c) { return c.a; });
+  return RangeMax(std::move(opacities));
+}
+
+}  // namespace
+
 TransferFunction::TransferFunction(std::vector<Rgba> table, float low, float high)
-    : table_(std::move(table)), low_(low), high_(high) {
+    : table_(std::move(table)), opacities_(opacities_of(table_)), low_(low), high_(high) {
   if (table_.size() < 2 || !is_finite(low) || !is_finite(high) || low > high) {
     throw Error(ErrorKind::internal, cat("transfer function of ", table_.size(), " entries over [", low, ", ", high,
                                          "]; at least 2 over a finite range are needed"));
@@ -21,23 +30,10 @@ TransferFunction::TransferFunction(std::vector<Rgba> table, float low, float hig
            .low = low * scale,
            .width = high * scale - low * scale,
            .scale = scale};
-
-  std::vector<float> level(table_.size());
-  std::transform(table_.begin(), table_.end(), level.begin(), [](const Rgba& c) { return c.a; });
-  for (std::size_t half = 1;; half *= 2) {
-    max_.push_back(level);
-    if (2 * half > level.size()) break;
-    for (std::size_t i = 0; i + half < level.size(); ++i) level[i] = std::max(level[i], level[i + half]);
-  }
-}
-
-float TransferFunction::max_between(std::size_t first, std::size_t last) const {
-  const auto k = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
-  return std::max(max_[k][first], max_[k][last + 1 - (std::size_t{1} << k)]);
 }
 
 float TransferFunction::max_opacity(float low, float high) const {
-  if (!(low <= high) || !is_finite(low) || !is_finite(high)) return max_between(0, table_.size() - 1);
+  if (!(low <= high) || !is_finite(low) || !is_finite(high)) return opacities_.between(0, table_.size() - 1);
   // A filtered value may round past the voxels it came from, by a few ulp of the larger of them.
   const float slack = 4 * FLT_EPSILON * std::max(std::abs(low), std::abs(high));
   const float first = view_.position(std::max(low - slack, -FLT_MAX));
@@ -51,7 +47,7 @@ float TransferFunction::max_opacity(float low, float high) const {
   float result = std::max(opacity(first), opacity(last));
   const auto from = static_cast<std::size_t>(std::ceil(first));
   const auto until = static_cast<std::size_t>(last);
-  if (from <= until) result = std::max(result, max_between(from, until));
+  if (from <= until) result = std::max(result, opacities_.between(from, until));
   return result * (1.0F + 4 * FLT_EPSILON);
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "format/range_max.h"
 #include "gpu/portable.h"
 
 namespace weir {
@@ -60,10 +61,8 @@ class TransferFunction {
   float max_opacity(float low, float high) const;
 
  private:
-  float max_between(std::size_t first, std::size_t last) const;
-
   std::vector<Rgba> table_;
-  std::vector<std::vector<float>> max_;  ///< max_[k][i]: largest opacity of entries i .. i + 2^k - 1
+  RangeMax opacities_;
   float low_;
   float high_;
   TransferFunctionView view_;

@@ -145,6 +145,9 @@ void add_conversion_options(CLI::App& command, ConversionArguments& a) {
   command.add_option("--brick", a.brick, "granularity of the paper's metrics in voxels: 8, 16 or 32; default 8");
   command.add_option("--preset", a.preset,
                      "paper: --encoding float --metric farthest --fill background and the paper's background");
+  command.add_option("--scene", a.scene,
+                     "scene file (as for weir render) that decides what matters: blocks that its opacity, iso value or "
+                     "region cannot show become tiles, errors count by what it shows of them");
 }
 
 ConversionOptions parse_conversion(const ConversionArguments& a) {
@@ -152,6 +155,7 @@ ConversionOptions parse_conversion(const ConversionArguments& a) {
   options.budget = parse_budget(a);
   if (!a.non_finite.empty()) options.non_finite = parse_policy(a.non_finite);
   parse_method(a, options);
+  if (!a.scene.empty()) options.scene = SceneFile{load_scene(a.scene), a.scene};
   return options;
 }
 

@@ -23,15 +23,17 @@ struct ConversionArguments {
   std::string background;  ///< auto or a finite float32
   std::string brick;       ///< 8, 16 or 32 voxels
   std::string preset;      ///< paper
+  std::string scene;       ///< path of a scene that decides what matters
 };
 
 /// Adds --nonfinite, --size, --rate, --psnr, --max-error, --lossless, --encoding, --metric, --fill, --background,
-/// --brick and
-/// --preset, stored in `arguments`, which must live as long as the command.
+/// --brick,
+/// --preset and --scene, stored in `arguments`, which must live as long as the command.
 void add_conversion_options(CLI::App& command, ConversionArguments& arguments);
 
 /// What they mean: budget, metric, fill, brick, background and policy of ConversionOptions. Throws
-/// Error(usage) naming option, text and form where one cannot be read or two contradict each other.
+/// Error(usage) naming option, text and form where one cannot be read or two contradict each other; what load_scene
+/// throws.
 ConversionOptions parse_conversion(const ConversionArguments& arguments);
 
 }  // namespace weir

@@ -43,9 +43,14 @@ struct ConvertArguments {
 
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
 
+std::string error_text(const Sidecar::CertifiedError& error) {
+  if (error.lossless) return "lossless";
+  return cat("PSNR ", error.psnr_db.value_or(0), " dB, largest error ", error.max_abs);
+}
+
 void report(const Sidecar& s, const std::string& output) {
-  const std::string error =
-      s.error.lossless ? "lossless" : cat("PSNR ", s.error.psnr_db.value_or(0), " dB, largest error ", s.error.max_abs);
+  std::string error = error_text(s.error);
+  if (s.visible) error += cat(" (what the scene shows: ", error_text(s.visible->error), ')');
   spdlog::info("{}: {} bytes, rate {:.4g}, {} of {} leaves kept, {}, {:.2f} s, {} at most", output, s.file.bytes,
                s.budget.rate, s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
                format_bytes(s.timing.peak_rss_bytes));

@@ -137,6 +137,10 @@ void print_sidecar(const Sidecar& s) {
   line("background  ",
        cat(s.background.value, ", ", s.background.method, ", ", 100 * s.background.share, " % of the voxels"));
   line("error       ", certificate_text(s.error));
+  if (s.visible) {
+    line("visible     ", cat(s.visible->voxels, " voxels in ", s.visible->blocks, " blocks, by ", s.visible->scene,
+                             ": ", certificate_text(s.visible->error)));
+  }
   line("cost        ", cat(s.timing.total_s, " s, peak memory ", format_bytes(s.timing.peak_rss_bytes)));
 }
 

@@ -179,9 +179,9 @@ TEST_P(SelectionTest, ErrorAndKeptLeavesNeverGoBackwardsAsTheSizeGrows) {
     Choice before;
     for (const std::uint64_t size : spread(chooser.minimum(), chooser.lossless() + 1, 300)) {
       const Choice choice = chooser.choose(size);
-      EXPECT_LE(choice.plan.squared_error, error) << kind << ' ' << size;
+      EXPECT_LE(choice.plan.tiles.squared, error) << kind << ' ' << size;
       EXPECT_LE(choice.plan.layout.content_end, size) << kind;
-      error = choice.plan.squared_error;
+      error = choice.plan.tiles.squared;
       const auto grows = [](const std::vector<bool>& a, const std::vector<bool>& b) {
         return a.empty() || std::equal(a.begin(), a.end(), b.begin(), std::less_equal<>());
       };
@@ -189,7 +189,7 @@ TEST_P(SelectionTest, ErrorAndKeptLeavesNeverGoBackwardsAsTheSizeGrows) {
       before = choice;
     }
     EXPECT_EQ(error, 0) << kind;
-    EXPECT_TRUE(before.plan.lossless) << kind;
+    EXPECT_TRUE(before.plan.tiles.exact) << kind;
   }
 }
 
@@ -207,9 +207,9 @@ TEST_P(SelectionTest, PlannedErrorIsTheMeasuredOne) {
     for (const std::uint64_t size : spread(chooser.minimum(), chooser.lossless(), 6)) {
       const Choice choice = chooser.choose(size);
       const auto measured = measured_error(volume, rule_of(GetParam(), 0.1F).fill, chooser.tree(), choice);
-      EXPECT_NEAR(choice.plan.squared_error, measured.squared, measured.squared * 1e-12) << size;
-      EXPECT_EQ(choice.plan.max_abs, measured.max_abs) << size;
-      EXPECT_EQ(choice.plan.lossless, measured.lossless) << size;
+      EXPECT_NEAR(choice.plan.tiles.squared, measured.squared, measured.squared * 1e-12) << size;
+      EXPECT_EQ(choice.plan.tiles.max_abs, measured.max_abs) << size;
+      EXPECT_EQ(choice.plan.tiles.exact, measured.lossless) << size;
     }
   }
 }
@@ -263,7 +263,7 @@ TEST(Selection, KeepsTheSubsetOfLeastErrorOfAllSubsets) {
     for (const std::uint64_t slack : {0U, 1U, 2143U}) {
       const Choice choice = chooser.choose(chooser.minimum() + k * 2144 + slack);
       EXPECT_EQ(choice.plan.layout.counts.leaves, k + 2 < 12 || slack == 0 ? k + 2 : 12);
-      EXPECT_NEAR(choice.plan.squared_error, least[k], least[k] * 1e-12);
+      EXPECT_NEAR(choice.plan.tiles.squared, least[k], least[k] * 1e-12);
     }
   }
 }

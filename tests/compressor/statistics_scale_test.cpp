@@ -144,7 +144,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
       expected += static_cast<long double>(exact[kind_of(leaf)].sse_about(kinds[kind_of(leaf)].mean));
     }
   }
-  const Certificate certificate = make_certificate(plan.squared_error, plan.max_abs, plan.lossless, sums.finite, 0, 1);
+  const Certificate certificate = make_certificate(plan.tiles.squared, plan.tiles.max_abs, plan.tiles.exact, sums.finite, 0, 1);
   const auto mse = static_cast<double>(expected / 0x1p30L);
   EXPECT_NEAR(certificate.mse, mse, mse * 1e-12);
 }
@@ -183,7 +183,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
   const TreePlan plan = plan_tree(selection, billion.rows, billion.tree, choices);
   const auto leaves = static_cast<std::uint64_t>(billion.tree.leaves.size());
   ASSERT_EQ(plan.layout.counts.leaves, leaves);
-  EXPECT_EQ(plan.squared_error, 0);
+  EXPECT_EQ(plan.tiles.squared, 0);
 
   // Differences of the decoded values, which have 24 bits, are exact in double, their squares in long double.
   const Box node{{0, 0, 0}, {8, 8, 8}};

@@ -158,5 +158,18 @@ TEST(RenderModeName, RoundTrip) {
   EXPECT_FALSE(parse_render_mode("PATH"));
 }
 
+TEST(Scene, RegionIsWholeVoxels) {
+  const Scene scene = parse_scene("[volume]\nregion = [[-8, 16], [0, 1], [3, 400]]", "s.toml");
+  ASSERT_TRUE(scene.volume.region);
+  EXPECT_EQ(*scene.volume.region, (Box{{-8, 0, 3}, {16, 1, 400}}));
+  EXPECT_FALSE(parse_scene("[volume]\nalbedo = 1", "s.toml").volume.region);
+  EXPECT_EQ(message("[volume]\nregion = [[0, 8], [0, 8]]"),
+            "s.toml:2:10: region must be [[x0, x1], [y0, y1], [z0, z1]], voxels from x0 up to and without x1");
+  EXPECT_EQ(message("[volume]\nregion = [[0, 8], [8, 8], [0, 8]]"),
+            "s.toml:2:19: region has 8 to 8; it must be whole voxels, the first below the second");
+  EXPECT_EQ(message("[volume]\nregion = [[0.5, 8], [0, 8], [0, 8]]"),
+            "s.toml:2:11: region has 0.5 to 8; it must be whole voxels, the first below the second");
+}
+
 }  // namespace
 }  // namespace weir

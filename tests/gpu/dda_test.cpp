@@ -11,7 +11,7 @@ namespace weir {
 namespace {
 
 constexpr CellLattice kLattice{{4, 3, 2}, {0, 0, 0}, 16};
-constexpr Float3 kExtent{64, 48, 32};
+constexpr RayBox kBox{{}, {64, 48, 32}};
 
 std::vector<CellSpan> walk(const CellLattice& lattice, const Ray& ray, float t0, float t1) {
   std::vector<CellSpan> spans;
@@ -134,7 +134,7 @@ TEST(CellWalk, RandomRays) {
     Ray ray{{coordinate(64), coordinate(48), coordinate(32)}, {component(), component(), component()}};
     float t0 = 0;
     float t1 = 1e4F;
-    if (!clip(ray, kExtent, t0, t1)) continue;
+    if (!clip(ray, kBox, t0, t1)) continue;
     const auto spans = walk(kLattice, ray, t0, t1);
     ASSERT_LE(spans.size(), 10U);
     EXPECT_EQ(spans.front().t0, t0);
@@ -154,32 +154,32 @@ TEST(CellWalk, RandomRays) {
 TEST(Clip, ZeroComponentOnTheFaces) {
   float t0 = 0;
   float t1 = kInfinity;
-  EXPECT_TRUE(clip({{-1, 0, 5}, {1, 0, 0}}, kExtent, t0, t1)) << "the lower face belongs to the box";
+  EXPECT_TRUE(clip({{-1, 0, 5}, {1, 0, 0}}, kBox, t0, t1)) << "the lower face belongs to the box";
   EXPECT_EQ(t0, 1.0F);
   EXPECT_EQ(t1, 65.0F);
   t0 = 0;
   t1 = kInfinity;
-  EXPECT_FALSE(clip({{-1, 48, 5}, {1, 0, 0}}, kExtent, t0, t1)) << "the upper face does not";
+  EXPECT_FALSE(clip({{-1, 48, 5}, {1, 0, 0}}, kBox, t0, t1)) << "the upper face does not";
 }
 
 TEST(Clip, FromAFaceOutwardsIsAMiss) {
   float t0 = 0;
   float t1 = kInfinity;
-  EXPECT_FALSE(clip({{0, 8, 8}, {-1, 0, 0}}, kExtent, t0, t1));
+  EXPECT_FALSE(clip({{0, 8, 8}, {-1, 0, 0}}, kBox, t0, t1));
   t0 = 0;
   t1 = kInfinity;
-  EXPECT_FALSE(clip({{64, 8, 8}, {1, 0.5F, 0}}, kExtent, t0, t1));
+  EXPECT_FALSE(clip({{64, 8, 8}, {1, 0.5F, 0}}, kBox, t0, t1));
 }
 
 TEST(Enter, MovesTheOriginToTheBox) {
   Ray ray{{-1000, 8, 8}, {2, 0, 0}};
-  EXPECT_EQ(enter(ray, kExtent), 32.0F);
+  EXPECT_EQ(enter(ray, kBox), 32.0F);
   EXPECT_EQ(ray.origin, (Float3{0, 8, 8}));
   Ray inside{{10, 10, 10}, {0, 1, 0}};
-  EXPECT_EQ(enter(inside, kExtent), 38.0F);
+  EXPECT_EQ(enter(inside, kBox), 38.0F);
   EXPECT_EQ(inside.origin, (Float3{10, 10, 10}));
   Ray still{{10, 10, 10}, {0, 0, 0}};
-  EXPECT_EQ(enter(still, kExtent), 0.0F);
+  EXPECT_EQ(enter(still, kBox), 0.0F);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(FindIso, SphereOnRandomRays) {
     const Float3 direction = normalised(Float3{component(), component(), component()}, {1, 0, 0});
     const Float3 offset{component() * 25, component() * 25, component() * 25};
     Ray ray = medium->ray(Float3{32, 32, 32} + offset - direction * 200, direction);
-    const float distance = enter(ray, medium->volume.extent());
+    const float distance = enter(ray, medium->shown);
     if (distance == 0) continue;
     const float t = find_iso(*medium, ray, distance, 20.0F / 64, 0.5F);
     const Float3 to_centre = Float3{32, 32, 32} - ray.origin;

@@ -97,7 +97,7 @@ TEST(TracePath, RouletteIsUnbiased) {
     Float3 direction{1, 0, 0};
     Ray ray = dense->ray(eye, direction);
     for (;;) {
-      const float length = enter(ray, dense->volume.extent());
+      const float length = enter(ray, dense->shown);
       const Flight flight = length > 0 ? delta_track(*dense, ray, length, random) : Flight{};
       if (flight.end != FlightEnd::collided) return weight;
       weight *= 0.9;

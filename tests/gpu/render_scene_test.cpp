@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "format/error.h"
 #include "tests/gpu/test_grid.h"
 
 namespace weir {
@@ -89,6 +90,40 @@ TEST(RenderScene, StepGrowsWithExtremeLengths) {
   options.tiles = {{{0, 0, 0}, 8, 1, true}, {{10000000 / 8 * 8, 0, 0}, 8, 1, true}};
   const TestGrid grid({}, ramp, options);
   EXPECT_GT(RenderScene(grid.grid(), {}, {}).task().step, 1e7F / (1 << 22));
+}
+
+TEST(RenderScene, ShowsTheRegionOnly) {
+  const TestGrid grid({{-8, 0, 0}, {33, 20, 10}}, ramp);
+  Scene scene;
+  scene.mode = RenderMode::mip;
+  scene.camera.framing = Framing::volume;
+  EXPECT_EQ(RenderScene(grid.grid(), scene, {}).task().medium.shown.high, (Float3{41, 20, 10}));
+  scene.volume.region = Box{{-100, 4, 2}, {8, 12, 9}};
+  const RenderScene prepared(grid.grid(), scene, {});
+  EXPECT_EQ(prepared.task().medium.shown.low, (Float3{0, 4, 2})) << "from the domain's corner, inside it";
+  EXPECT_EQ(prepared.task().medium.shown.high, (Float3{16, 12, 9}));
+  // Along x through the region: the ramp's largest value there, between the last voxel's centre and the next.
+  const Medium<VolumeSampler>& medium = prepared.task().medium;
+  Ray ray{{-5, 8, 5}, {1, 0, 0}};
+  const float length = enter(ray, medium.shown);
+  EXPECT_EQ(length, 16.0F);
+  EXPECT_NEAR(max_along(medium, ray, length, 0.25F, 0.0F), 7.5F, 0.3F);
+  Ray beside{{-5, 2, 5}, {1, 0, 0}};
+  EXPECT_EQ(enter(beside, medium.shown), 0.0F);
+}
+
+TEST(RenderScene, RefusesARegionOutsideTheVolume) {
+  const TestGrid grid({{0, 0, 0}, {41, 20, 10}}, ramp);
+  Scene scene;
+  scene.volume.region = Box{{0, 20, 0}, {41, 30, 10}};
+  try {
+    const RenderScene prepared(grid.grid(), scene, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_STREQ(error.what(),
+                 "the scene's region shows no voxel of the volume, whose index box is [[0, 41], [0, 20], [0, 10]]");
+  }
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ class TestMedium {
                            std::move(f)},
                 .transfer = transfer_.view(),
                 .cells = {count_, {0, 0, 0}, static_cast<float>(cell)},
+                .shown = {{}, {static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)}},
                 .cell_opacity = opacity_.data(),
                 .cell_values = bounds_.data(),
                 .density = density} {}

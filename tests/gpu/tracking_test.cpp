@@ -59,7 +59,7 @@ TEST(DeltaTrack, LengthIsPhysical) {
   TestMedium medium({32, 32, 32}, 16, 0.05F, 1.0F, kHalf);
   medium->stretch = {2, 1, 1};
   Ray ray = medium->ray({-5, 8, 8}, {1, 0, 0});
-  const float length = enter(ray, medium->volume.extent());
+  const float length = enter(ray, medium->shown);
   EXPECT_EQ(length, 64.0F);
   const Estimate t = estimate(kDraws, [&](Random& random) {
     return delta_track(*medium, ray, length, random).end == FlightEnd::escaped ? 1.0 : 0.0;
