@@ -24,12 +24,13 @@ constexpr std::string_view kContentPolicy =
 struct Call {
   Control& control;
   const RequestTarget& target;
+  bool trusted;  ///< may see data
 };
 
 struct Route {
   std::string_view method;
   std::string_view path;  ///< "*" stands for any one segment
-  bool open;              ///< shows no data, so it needs no token
+  bool open;              ///< needs no token
   HttpResponse (*answer)(const Call&);
 };
 
@@ -67,7 +68,8 @@ HttpResponse health(const Call& /*call*/) { return text(200, "ok\n"); }
 
 HttpResponse ready(const Call& call) {
   const Readiness readiness = call.control.readiness();
-  return readiness.ready ? text(200, "ready\n") : text(503, cat("not ready: ", readiness.reason, '\n'));
+  if (readiness.ready) return text(200, "ready\n");
+  return text(503, call.trusted ? cat("not ready: ", readiness.reason, '\n') : "not ready\n");
 }
 
 HttpResponse metrics(const Call& call) {
@@ -196,7 +198,7 @@ HttpResponse answer_routed(Control& control, const AccessRules& rules, const Htt
   }
   if (auto refused = refuse(rules, request, chosen != nullptr && chosen->open)) return *std::move(refused);
   if (!target) return error_response(400, "the request's target is no path");
-  if (chosen != nullptr) return chosen->answer({control, *target});
+  if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false)});
   if (allowed.empty()) return error_response(404, cat("there is nothing at ", request.target));
   HttpResponse response = error_response(405, cat(request.method, " is not for ", request.target, "; use ", allowed));
   response.headers.emplace_back("Allow", allowed);

@@ -3,6 +3,7 @@
 //   GET  /                                the page; its other files are /page/NAME
 //   GET  /healthz                         200 while the process answers
 //   GET  /readyz                          200 while every watch is up and the state file can be written, else 503
+//                                         with the reason, for those who may see it
 //   GET  /metrics                         metrics.h
 //   GET  /api/status                      StatusView
 //   GET  /api/jobs?state=S&watch=DIR&limit=N&offset=N      JobPage; limit 100 unless said, at most 1000

@@ -10,7 +10,7 @@
 namespace weir {
 
 /// Every metric with its HELP and TYPE line; names begin with weir_, units are seconds and bytes, counters end in
-/// _total and count since the start of the process. docs/operations.md explains each.
+/// _total and count since the start of the process.
 std::string metrics_text(const StatusView& status, const MetricsView& metrics, const ProcessUsage& usage);
 
 }  // namespace weir

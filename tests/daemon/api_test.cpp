@@ -268,8 +268,13 @@ TEST_F(ApiTest, AsksForTheTokenWhereThereIsData) {
     EXPECT_EQ(status(target, "Bearer wrong"), 401U) << target;
     EXPECT_NE(status(target, "Bearer secret"), 401U) << target;
   }
-  for (const char* target : {"/", "/page/page.js", "/healthz", "/readyz"})
-    EXPECT_EQ(status(target, ""), 200U) << target;
+  control_.readiness_now = {false, "/scratch/run: not there"};
+  HttpRequest ready;
+  ready.target = "/readyz";
+  EXPECT_EQ(api.answer(ready).body, "not ready\n");
+  ready.authorization = "Bearer secret";
+  EXPECT_EQ(api.answer(ready).body, "not ready: /scratch/run: not there\n");
+  for (const char* target : {"/", "/page/page.js", "/healthz"}) EXPECT_EQ(status(target, ""), 200U) << target;
 }
 
 TEST_F(ApiTest, IsNoUseToForeignPages) {

@@ -2,15 +2,18 @@
 #include "daemon/http_server.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <thread>
 #include <vector>
 
+#include "daemon/process_usage.h"
 #include "format/error.h"
 #include "tests/daemon/fake_control.h"
 #include "tests/daemon/raw_client.h"
 #include "tests/daemon/served.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 namespace {
@@ -123,7 +126,7 @@ TEST(HttpServer, RefusesALongHeader) {
   };
   RawClient fits(served.port());
   EXPECT_EQ(fits.ask(with_header(8 << 10)).status, 200);
-  for (const std::size_t bytes : {(8 << 10) + 1, 16 << 10, 1 << 20}) {
+  for (const std::size_t bytes : {8193U, 16384U, 1U << 20}) {
     RawClient client(served.port());
     const RawResponse response = client.ask(with_header(bytes));
     EXPECT_EQ(response.status, 431) << bytes;
@@ -266,6 +269,22 @@ TEST(HttpServer, ServesBesideSendersThatNeverFinish) {
   }
   RawClient client(served.port());
   EXPECT_EQ(client.ask(kHealth).status, 200);
+}
+
+TEST(HttpServer, OutlivesAShortageOfDescriptors) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer needs descriptors, too";
+  FakeControl control;
+  Served served(control);
+  std::vector<RawClient> clients(20);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit tight{process_usage().open_descriptors + 5, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &tight), 0);
+  for (RawClient& client : clients) client.connect(served.port());
+  const RawResponse meanwhile = clients.back().ask(kHealth);  // idle ones were closed for it
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(meanwhile.status, 200);
+  EXPECT_EQ(RawClient(served.port()).ask(kHealth).status, 200);
 }
 
 TEST(HttpServer, SaysWhatWentWrongInside) {

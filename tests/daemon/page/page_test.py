@@ -4,9 +4,8 @@ tests/daemon/page_test.cpp. Screenshots go into DIRECTORY, where one is given. E
 import json
 import os
 import sys
-import urllib.request
 
-from webdriver import Browser
+from webdriver import DIRECT, Browser
 
 url, case = sys.argv[1:3]
 pictures = sys.argv[3] if len(sys.argv) > 3 else None
@@ -29,7 +28,7 @@ def loaded(browser):
 
 def asked_of_service():
     """What the page made the service do."""
-    with urllib.request.urlopen(url + "/api/jobs/9999") as answer:
+    with DIRECT.open(url + "/api/jobs/9999") as answer:
         return json.load(answer)["reason"].split(", ")
 
 
@@ -151,6 +150,7 @@ def works_with_the_keyboard(browser):
     assert "failed" in facts and "5" in facts, facts
     assert browser.text("#job-log").startswith("09:12:01 info survey: 128 of 512 MiB"), browser.text("#job-log")
     equal([browser.visible("#job-retry"), browser.visible("#job-cancel")], [True, False])
+    equal(browser.script("return document.activeElement.id"), "job-close")
     picture(browser, "dialog")
     browser.press("ESCAPE")
     equal(browser.visible("#job"), False)
