@@ -52,8 +52,11 @@ export function show_problems(failed, quarantined, open, retry) {
 }
 
 export function show_queue(page, open) {
-  const make = (job) => element("li", "", name_button(job, open), element("span", "fact quiet"));
+  const make = (job) => element("li", "", name_button(job, open), element("span", "fact quiet"),
+                                element("span", "reason quiet"));
   const update = (child, job) => {
+    part(child, "reason").hidden = !job.reason;
+    set_text(part(child, "reason"), job.reason);
     const facts = [format.bytes(job.source_bytes)];
     if (job.next_attempt_at !== null) {
       const wait = job.next_attempt_at - Date.now() / 1000;

@@ -45,8 +45,10 @@ function show_figures(status) {
   set_text(by_id("throughput"), `${format.bytes(status.bytes_per_s)}/s`);
   show_sparkline(status.bytes_per_s);
   set_text(by_id("waiting"), format.count(status.jobs.waiting));
-  set_text(by_id("queue-age"), status.jobs.waiting > 0 ? `waiting, the oldest for ${format.seconds(status.queue_age_s)}`
-                                                       : "waiting");
+  const queue = ["waiting"];
+  if (status.jobs.waiting > 0) queue.push(`the oldest for ${format.seconds(status.queue_age_s)}`);
+  if (status.jobs.discovered > 0) queue.push(`${format.count(status.jobs.discovered)} more not complete yet`);
+  set_text(by_id("queue-age"), queue.join(", "));
   set_text(by_id("done"), format.count(status.jobs.done));
   set_text(by_id("totals"),
            `done; since start ${format.bytes(status.bytes_in_total)} in, ${format.bytes(status.bytes_out_total)} out`);

@@ -98,7 +98,9 @@ void add_queue(FakeControl& control, double now) {
   JobView again = job_of(200, cat(kRun, '/', step_name(25), ".raw"), JobState::waiting, now - 62);
   again.attempts = 1;
   again.next_attempt_at = now + 45;
+  again.reason = again.source + ": read: Resource temporarily unavailable";
   control.all.push_back(again);
+  control.all.push_back(job_of(300, cat(kRun, '/', step_name(42), ".raw"), JobState::discovered, now - 1));
   for (int step = 28; step < 42; ++step) {
     control.all.push_back(job_of(200 + step, cat(kRun, '/', step_name(step), ".raw"), JobState::waiting, now - 20));
   }

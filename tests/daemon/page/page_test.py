@@ -46,7 +46,7 @@ def shows_the_service(browser):
     equal(browser.text("#state"), "running")
     equal(browser.text("#throughput"), "141.1 MiB/s")
     equal(browser.text("#waiting"), "15")
-    equal(browser.text("#queue-age"), "waiting, the oldest for 62 s")
+    equal(browser.text("#queue-age"), "waiting, the oldest for 62 s, 1 more not complete yet")
     equal(browser.text("#done"), "24")
     equal(browser.text("#totals"), "done; since start 12.0 GiB in, 1.5 GiB out")
     equal(browser.text("#broken"), "2")
@@ -57,6 +57,8 @@ def shows_the_service(browser):
     equal(len(browser.texts("#queue li")), 10)
     equal(browser.text("#queue-more"), "and 5 more")
     assert browser.texts("#queue .fact")[0].startswith("512.0 MiB, attempt 2 in "), browser.texts("#queue .fact")[0]
+    equal([text for text in browser.texts("#queue .reason") if text],
+          ["/scratch/run42/density_25_512x512x512_float32.raw: read: Resource temporarily unavailable"])
     equal(len(browser.texts("#results .card")), 12)
     equal(browser.text("#results .card .name"), "density_24_512x512x512_float32.nvdb")
     equal(browser.text("#results .card .fact"), "64.0 MiB, rate 8")
