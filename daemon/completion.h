@@ -6,19 +6,21 @@
 //   close   a writer closed it; found without its writer: unchanged for settle
 //   rename  it has its name by a rename; found without its writer: at once
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
-//   size    it has its expected size, unchanged for kCloseSettle
+//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle
 //   stable  unchanged for settle
 //   auto    renamed: at once
 //           closed: at once where its expected size is known and reached, else unchanged for kCloseSettle
-//           being written and its close will be seen: that is waited for
-//           found without its writer: unchanged for settle
-// A file that is complete by its policy and empty, or of another size than expected, is broken.
+//           being written and its close will be seen: that is waited for, however long
+//           found without its writer, or linked: unchanged for settle
+// An empty file is waited for unless its writer closed or renamed it. A file that is complete by its policy and empty,
+// or of another size than expected, is broken.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "daemon/config.h"
 #include "daemon/file_event.h"
@@ -80,7 +82,7 @@ class FileCompletion {
   enum class Writer { unknown, open, closed, renamed };
 
   CompletionAnswer when_unchanged(std::chrono::nanoseconds settle, Time now) const;
-  CompletionAnswer whole(const FileIdentity& identity) const;
+  CompletionAnswer whole() const;
 
   CompletionRules rules_;
   Writer writer_ = Writer::unknown;

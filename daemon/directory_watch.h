@@ -34,17 +34,23 @@ struct WatchFigures {
 class DirectoryWatch {
  public:
   virtual ~DirectoryWatch() = default;
-  /// inotify or poll: what is used now. automatic while the directory has not been there yet.
+  /// inotify or poll: what is used now.
   virtual WatchMethod method() const = 0;
   /// Whether the directory is there, as of the last look.
   virtual bool up() const = 0;
   virtual WatchFigures figures() const = 0;
 };
 
+class Inotify;
+using OpenInotify = std::function<std::unique_ptr<Inotify>()>;
+
 /// Watches config.directory from now on by config.watch. automatic: inotify where it sees everything
 /// (file_system_kind.h), else polling; inotify whose limits are reached becomes polling and a notice says so.
 /// Events of one file are merged within 20 ms, by polling within config.poll_interval_s.
 std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
                                                      WatchListener listener);
+/// The same with another inotify than the system's, for tests.
+std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
+                                                     WatchListener listener, OpenInotify open_inotify);
 
 }  // namespace weir

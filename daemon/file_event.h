@@ -7,7 +7,7 @@ namespace weir {
 
 enum class FileEventKind {
   found,      ///< seen by looking: it is new, or differs from what was seen before; nothing is known of its writer
-  created,    ///< a program made it and has it open; its close will be seen
+  created,    ///< its name was made, by a program that has it open or by a link; nothing else is known of its writer
   written,    ///< a program writes to it; its close will be seen
   closed,     ///< a program that had it open for writing closed it
   moved_in,   ///< it got this name by a rename
@@ -15,7 +15,7 @@ enum class FileEventKind {
   removed,    ///< it is gone, or has another name
   overflow,   ///< events were lost; whatever differs is reported as found or removed. `path` is the directory
   root_lost,  ///< the watched directory is not there; `path` is the directory
-  root_back   ///< it is there (again); its files follow
+  root_back   ///< it is there (again); whatever differs from before is reported
 };
 
 struct FileEvent {

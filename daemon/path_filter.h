@@ -30,10 +30,9 @@ class PathFilter {
   bool enters_directory(std::string_view path) const;
   /// "a.raw" for "a.raw.done" where the policy is `marker` and a.raw is accepted.
   std::optional<std::string> marked_source(std::string_view path) const;
-  /// Why the symbolic link `path`, which is there and accepted, is no source: it leaves the tree, or leads to what
-  /// the filter refuses. Empty: it is one. nullopt: it leads nowhere, or not to a regular file; it is passed over.
-  /// Looks at the file system.
-  std::optional<std::string> link_refusal(const std::string& path) const;
+  /// Why the symbolic link `path`, which leads somewhere, is no source: it leaves the tree, or leads to what is never
+  /// a source. Empty: nothing against it. Looks at the file system.
+  std::string link_refusal(const std::string& path) const;
 
  private:
   bool is_excluded(std::string_view path) const;
