@@ -1,0 +1,173 @@
+#include "daemon/service.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "daemon/output_cleaning.h"
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The processes of a daemon that was killed die a moment after it.
+constexpr milliseconds kDyingWriters{10'000};
+
+std::uint64_t monotonic_usec() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(now.tv_nsec) / 1000;
+}
+
+// What a running service cannot change.
+bool needs_restart(const ServiceConfig& a, const ServiceConfig& b) {
+  return a.state != b.state || a.listen.host != b.listen.host || a.listen.port != b.listen.port ||
+         a.port_file != b.port_file || a.token != b.token;
+}
+
+}  // namespace
+
+Service::Service(Load load, std::string program, std::string version)
+    : load_(std::move(load)),
+      config_(load_()),
+      log_(config_.service),
+      notifier_(ServiceNotifier::from_environment()),
+      store_(config_.service.state),
+      state_{std::move(version), config_.path, false, 0, 0, config_.service.jobs},
+      runner_(io_, store_, log_, std::move(program),
+              [this](const Job& job) {
+                for (const auto& tree : trees_) {
+                  if (tree->config().label == job.watch) tree->look_again(job.source);
+                }
+              }),
+      control_(store_, runner_, trees_, state_),
+      server_(io_, {config_.service.listen, config_.service.token, {}}, control_),
+      signals_(io_, SIGTERM, SIGINT, SIGHUP),
+      watchdog_timer_(io_) {
+  log_.info("begin", {{"version", state_.version}, {"config", config_.path}, {"state", config_.service.state}});
+  if (!store_.notice().empty()) log_.warn("state-file", {{"notice", store_.notice()}});
+  clean(config_, kDyingWriters);
+  write_port_file();
+}
+
+void Service::clean(const DaemonConfig& config, milliseconds patience) const {
+  for (const WatchConfig& watch : config.watches) {
+    const CleaningReport report = clean_outputs(watch.output, watch.recursive, patience);
+    for (const std::string& path : report.removed) log_.info("cleaned", {{"removed", path}});
+    for (const std::string& line : report.left) log_.warn("not-cleaned", {{"reason", line}});
+  }
+}
+
+// Written beside and renamed, so that a reader sees the number or nothing.
+void Service::write_port_file() const {
+  const std::string& path = config_.service.port_file;
+  if (path.empty()) return;
+  const std::string beside = path + ".new";
+  std::ofstream file(beside);
+  file << server_.port() << '\n';
+  file.close();
+  std::error_code error;
+  std::filesystem::rename(beside, path, error);
+  if (!file || error) throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));
+}
+
+void Service::watch_trees() {
+  WatchedTrees before = std::move(trees_);
+  trees_.clear();
+  for (const WatchConfig& watch : config_.watches) {
+    const auto same = std::find_if(before.begin(), before.end(),
+                                   [&](const auto& tree) { return tree != nullptr && tree->config() == watch; });
+    if (same != before.end()) {
+      trees_.push_back(std::move(*same));
+      continue;
+    }
+    trees_.push_back(std::make_unique<WatchedTree>(
+        io_, watch, store_, log_,
+        WatchedTree::Reports{[this] { runner_.wake(); }, [this](std::int64_t id) { runner_.abandon(id); }}));
+  }
+}
+
+void Service::run() {
+  runner_.configure(config_);
+  watch_trees();
+  await_signal();
+  feed_watchdog();
+  const ListenAddress& listen = config_.service.listen;
+  log_.info("ready", {{"listen", listen.host}, {"port", server_.port()}, {"watches", trees_.size()}});
+  notifier_.send(cat("READY=1\nSTATUS=", trees_.size(), " directories watched, port ", server_.port()));
+  runner_.wake();
+  io_.run();
+  log_.info("end", {});
+}
+
+void Service::await_signal() {
+  signals_.async_wait([this](boost::system::error_code error, int signal) {
+    if (error) return;
+    if (signal == SIGHUP) {
+      reload();
+    } else {
+      shut_down();
+    }
+    await_signal();
+  });
+}
+
+void Service::reload() {
+  notifier_.send(cat("RELOADING=1\nMONOTONIC_USEC=", monotonic_usec()));
+  try {
+    DaemonConfig config = load_();
+    log_.reopen(config.service);
+    if (needs_restart(config_.service, config.service)) {
+      log_.warn("reload", {{"notice", "state, listen, port_file and token stay as they were until a restart"}});
+      const ServiceConfig& old = config_.service;
+      config.service.state = old.state;
+      config.service.listen = old.listen;
+      config.service.port_file = old.port_file;
+      config.service.token = old.token;
+    }
+    config_ = std::move(config);
+    state_.jobs = config_.service.jobs;
+    ++state_.reloads;
+    clean(config_, milliseconds(0));
+    runner_.configure(config_);
+    watch_trees();
+    runner_.wake();
+    log_.info("reload", {{"config", config_.path}, {"watches", trees_.size()}});
+  } catch (const Error& error) {
+    ++state_.rejected_reloads;
+    log_.error("reload-rejected", {{"reason", error.what()}, {"notice", "the configuration before stays"}});
+  }
+  notifier_.send("READY=1");
+}
+
+void Service::shut_down() {
+  if (state_.stopping) {
+    log_.warn("stop", {{"how", "at once"}});
+    runner_.kill();
+    return;
+  }
+  state_.stopping = true;
+  const double grace_s = config_.service.grace_s;
+  log_.info("stop", {{"running", runner_.running().size()}, {"grace_s", grace_s}});
+  notifier_.send("STOPPING=1");
+  runner_.shut_down(milliseconds(static_cast<std::int64_t>(grace_s * 1000)), [this] { io_.stop(); });
+}
+
+void Service::feed_watchdog() {
+  const auto period = notifier_.watchdog();
+  if (!period) return;
+  notifier_.send("WATCHDOG=1");
+  watchdog_timer_.expires_after(*period / 3);
+  watchdog_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) feed_watchdog();
+  });
+}
+
+}  // namespace weir

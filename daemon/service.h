@@ -1,0 +1,60 @@
+// The daemon: what `weir watch CONFIG.toml` is from its first line of log to its
+// last. Puts the parts together and answers signals:
+//   SIGTERM, SIGINT  starts nothing more, ends when what runs is done or the grace time is over; a second one at once
+//   SIGHUP           reads the configuration again and opens the log file anew; a bad configuration changes nothing
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "daemon/config.h"
+#include "daemon/control_server.h"
+#include "daemon/event_log.h"
+#include "daemon/job_runner.h"
+#include "daemon/job_store.h"
+#include "daemon/notify.h"
+#include "daemon/service_control.h"
+#include "daemon/watched_tree.h"
+
+namespace weir {
+
+class Service {
+ public:
+  using Load = std::function<DaemonConfig()>;  ///< reads the configuration; throws Error as load_config does
+
+  /// Cleans the output directories, opens the state file and listens. `program` is the `weir` that converts.
+  /// Throws Error where the service cannot run.
+  Service(Load load, std::string program, std::string version);
+
+  /// Watches and converts until a signal ends it.
+  void run();
+
+ private:
+  void clean(const DaemonConfig& config, std::chrono::milliseconds patience) const;
+  void watch_trees();
+  void write_port_file() const;
+  void await_signal();
+  void reload();
+  void shut_down();
+  void feed_watchdog();
+
+  boost::asio::io_context io_;
+  Load load_;
+  DaemonConfig config_;
+  EventLog log_;
+  ServiceNotifier notifier_;
+  JobStore store_;
+  ServiceState state_;
+  JobRunner runner_;
+  WatchedTrees trees_;
+  ServiceControl control_;
+  ControlServer server_;
+  boost::asio::signal_set signals_;
+  boost::asio::steady_timer watchdog_timer_;
+};
+
+}  // namespace weir

@@ -1,0 +1,169 @@
+#include "daemon/service_control.h"
+
+#include <utility>
+
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+double seconds_of(std::int64_t milliseconds) { return static_cast<double>(milliseconds) / 1000; }
+
+JobView view_of(const Job& job) {
+  JobView view;
+  view.id = job.id;
+  view.watch = job.watch;
+  view.source = job.source;
+  view.state = job.state;
+  view.source_bytes = job.identity.bytes;
+  view.attempts = job.attempts;
+  view.discovered_at = seconds_of(job.discovered_ms);
+  view.changed_at = seconds_of(job.changed_ms);
+  if (job.state == JobState::waiting && job.due_ms > 0) view.next_attempt_at = seconds_of(job.due_ms);
+  view.reason = job.result.reason;
+  if (job.finished_ms > 0) {
+    view.exit_code = job.result.exit_code;
+    view.seconds = job.result.seconds;
+  }
+  view.bytes_read = job.result.bytes_read;
+  view.bytes_written = job.result.bytes_written;
+  view.peak_rss_bytes = job.result.peak_rss_bytes;
+  for (const JobOutput& output : job.result.outputs) {
+    view.outputs.push_back(
+        {output.path, output.bytes, output.rate, output.psnr_db, !output.psnr_db, !output.thumbnail.empty()});
+  }
+  return view;
+}
+
+}  // namespace
+
+ServiceControl::ServiceControl(JobStore& store, JobRunner& runner, const WatchedTrees& trees, const ServiceState& state)
+    : store_(store),
+      runner_(runner),
+      trees_(trees),
+      state_(state),
+      started_at_(seconds_of(JobStore::wall_clock_ms())) {}
+
+JobPage ServiceControl::jobs(const JobQuery& query) {
+  const JobFilter filter{query.state, query.watch.value_or(""), ""};
+  JobPage page;
+  page.total = store_.count(filter);
+  for (const Job& job : store_.jobs(filter, query.offset, query.limit)) page.jobs.push_back(view_of(job));
+  return page;
+}
+
+std::optional<JobView> ServiceControl::job(std::int64_t id) {
+  const std::optional<Job> job = store_.job(id);
+  if (!job) return std::nullopt;
+  JobView view = view_of(*job);
+  view.log_tail = job->result.log_tail;
+  return view;
+}
+
+JobChange ServiceControl::retry(std::int64_t id) {
+  if (!store_.job(id)) return JobChange::no_such_job;
+  if (!store_.retry(id)) return JobChange::wrong_state;
+  const std::optional<Job> job = store_.job(id);
+  for (const auto& tree : trees_) {
+    if (tree->config().label == job->watch && job->state == JobState::discovered) tree->look_again(job->source);
+  }
+  runner_.wake();
+  return JobChange::made;
+}
+
+std::uint64_t ServiceControl::retry_all_failed() {
+  std::uint64_t retried = 0;
+  for (const JobState state : {JobState::failed, JobState::quarantined}) {
+    const JobFilter filter{state, "", ""};
+    for (const Job& job : store_.jobs(filter, 0, store_.count(filter))) {
+      retried += retry(job.id) == JobChange::made ? 1 : 0;
+    }
+  }
+  return retried;
+}
+
+JobChange ServiceControl::cancel(std::int64_t id) {
+  if (!store_.job(id)) return JobChange::no_such_job;
+  if (!store_.cancel(id)) return JobChange::wrong_state;
+  runner_.abandon(id);
+  return JobChange::made;
+}
+
+std::vector<RunningView> ServiceControl::running() const {
+  std::vector<RunningView> views;
+  for (const auto& [id, run] : runner_.running()) {
+    RunningView view;
+    view.id = id;
+    view.watch = run.job.watch;
+    view.source = run.job.source;
+    view.step = run.work->step();
+    view.fraction = run.work->fraction();
+    view.seconds = run.work->seconds();
+    view.source_bytes = run.job.identity.bytes;
+    view.rss_bytes = run.work->resident_bytes();
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+WatchView ServiceControl::watch(const WatchedTree& tree, const std::map<std::string, JobCounts>& counts) const {
+  const WatchConfig& config = tree.config();
+  const WatchedTree::Status status = tree.status();
+  WatchView view;
+  view.label = config.label;
+  view.directory = config.directory;
+  view.output = config.output;
+  view.method = status.method;
+  view.up = status.up;
+  view.reason = status.reason;
+  view.overflows = status.overflows;
+  if (const auto found = counts.find(config.label); found != counts.end()) view.jobs = found->second;
+  const std::vector<Job> last = store_.jobs({JobState::done, config.label, ""}, 0, 1);
+  if (!last.empty()) view.last_done = view_of(last.front());
+  return view;
+}
+
+StatusView ServiceControl::status() {
+  StatusView view;
+  view.version = state_.version;
+  view.config = state_.config;
+  view.reason = runner_.hold();
+  view.state = state_.stopping ? "stopping" : view.reason.empty() ? "running" : "paused";
+  view.started_at = started_at_;
+  view.queue_age_s = seconds_of(store_.queue_age_ms().value_or(0));
+  view.bytes_per_s = runner_.bytes_per_s();
+  view.jobs_at_once = static_cast<std::uint64_t>(state_.jobs);
+  const std::map<std::string, JobCounts> counts = store_.counts();
+  for (const auto& [label, of_watch] : counts) {
+    for (std::size_t i = 0; i < kJobStates; ++i) view.jobs[i] += of_watch[i];
+  }
+  view.done_total = runner_.figures().done;
+  view.bytes_in_total = runner_.figures().bytes_in;
+  view.bytes_out_total = runner_.figures().bytes_out;
+  view.running = running();
+  for (const auto& tree : trees_) view.watches.push_back(watch(*tree, counts));
+  return view;
+}
+
+MetricsView ServiceControl::metrics() {
+  return {runner_.figures().seconds, runner_.figures().errors, state_.reloads, state_.rejected_reloads};
+}
+
+Readiness ServiceControl::readiness() {
+  if (state_.stopping) return {false, "the service is stopping"};
+  if (!runner_.store_fault().empty()) return {false, runner_.store_fault()};
+  for (const auto& tree : trees_) {
+    const WatchedTree::Status status = tree->status();
+    if (!status.up) return {false, cat(tree->config().label, ": ", status.reason)};
+  }
+  return {true, ""};
+}
+
+std::optional<std::string> ServiceControl::thumbnail_path(std::int64_t id, std::size_t output) {
+  const std::optional<Job> job = store_.job(id);
+  if (!job || output >= job->result.outputs.size() || job->result.outputs[output].thumbnail.empty())
+    return std::nullopt;
+  return job->result.outputs[output].thumbnail;
+}
+
+}  // namespace weir

@@ -1,0 +1,57 @@
+// The answers to the HTTP side, put together from the state file, what runs and
+// what is watched. One thread, that of the io_context.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/control.h"
+#include "daemon/job_runner.h"
+#include "daemon/job_store.h"
+#include "daemon/watched_tree.h"
+
+namespace weir {
+
+/// What the service knows of itself.
+struct ServiceState {
+  std::string version;
+  std::string config;  ///< path
+  bool stopping = false;
+  std::uint64_t reloads = 0;
+  std::uint64_t rejected_reloads = 0;
+  int jobs = 1;  ///< at once
+};
+
+using WatchedTrees = std::vector<std::unique_ptr<WatchedTree>>;  ///< in the order of the configuration
+
+class ServiceControl final : public Control {
+ public:
+  /// All must outlive the object.
+  ServiceControl(JobStore& store, JobRunner& runner, const WatchedTrees& trees, const ServiceState& state);
+
+  JobPage jobs(const JobQuery& query) override;
+  std::optional<JobView> job(std::int64_t id) override;
+  JobChange retry(std::int64_t id) override;
+  std::uint64_t retry_all_failed() override;
+  JobChange cancel(std::int64_t id) override;
+  void pause() override { runner_.pause(); }
+  void resume() override { runner_.resume(); }
+  StatusView status() override;
+  MetricsView metrics() override;
+  Readiness readiness() override;
+  std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) override;
+
+ private:
+  std::vector<RunningView> running() const;
+  WatchView watch(const WatchedTree& tree, const std::map<std::string, JobCounts>& counts) const;
+
+  JobStore& store_;
+  JobRunner& runner_;
+  const WatchedTrees& trees_;
+  const ServiceState& state_;
+  double started_at_;
+};
+
+}  // namespace weir

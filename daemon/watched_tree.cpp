@@ -1,0 +1,227 @@
+#include "daemon/watched_tree.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "daemon/conversion_task.h"
+#include "daemon/path_filter.h"
+#include "format/error.h"
+
+namespace weir {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+/// Until the state file is tried again.
+constexpr milliseconds kRetry{1000};
+/// So many changes to the state file are one transaction: long enough to be quick, short enough to answer meanwhile.
+constexpr std::size_t kBatch = 500;
+
+// API, page and convert's announcements are text.
+bool is_text(const std::string& path) {
+  try {
+    static_cast<void>(nlohmann::json(path).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+WatchedTree::WatchedTree(boost::asio::io_context& io, WatchConfig config, JobStore& store, const EventLog& log,
+                         Reports reports)
+    : config_(std::move(config)),
+      options_(options_text(config_)),
+      store_(store),
+      log_(log),
+      reports_(std::move(reports)),
+      timer_(io) {
+  watch_ = make_directory_watch(io, config_,
+                                {[this](const FileEvent& event) { take(event); },
+                                 [this](const std::string& line) {
+                                   log_.warn("watch", {{"watch", config_.label}, {"notice", line}});
+                                 }});
+  schedule(milliseconds(0));
+}
+
+WatchedTree::Status WatchedTree::status() const {
+  const bool up = watch_->up();
+  return {std::string(watch_method_name(watch_->method())), up, up ? "" : config_.directory + " is not there",
+          watch_->figures().overflows};
+}
+
+void WatchedTree::look_again(const std::string& path) { take({FileEventKind::found, path}); }
+
+void WatchedTree::take(const FileEvent& event) {
+  events_.push_back(event);
+  schedule(milliseconds(0));
+}
+
+void WatchedTree::schedule(milliseconds delay) {
+  if (scheduled_ && delay == milliseconds(0) && timer_.expiry() <= Clock::now()) return;
+  scheduled_ = true;
+  timer_.expires_after(delay);
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) work();
+  });
+}
+
+// All that is due, in transactions of its own. Where the state file cannot be written, nothing has happened and all
+// is due again.
+void WatchedTree::work() {
+  scheduled_ = false;
+  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), kBatch));
+  std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
+  try {
+    store_.together([&] {
+      if (!known_looked_at_) look_at_known_jobs();
+      work_off(events);
+    });
+    known_looked_at_ = true;
+  } catch (const Error& error) {
+    log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
+    ready_ = false;
+    superseded_.clear();
+    // What was looked at is due again; what was thought to be known is new again.
+    for (const std::string& path : looked_at_) {
+      if (tracked_.contains(path)) {
+        track_until(path, Clock::now());
+      } else {
+        events_.push_back({FileEventKind::found, path});
+      }
+    }
+    schedule(kRetry);
+    return;
+  }
+  events_.erase(events_.begin(), events_.begin() + count);
+  for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
+  if (std::exchange(ready_, false)) reports_.ready();
+  if (!events_.empty()) {
+    schedule(milliseconds(0));
+  } else if (!agenda_.empty()) {
+    schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
+  }
+}
+
+// Jobs of files that are not there any more, or that the configuration no longer takes.
+void WatchedTree::look_at_known_jobs() {
+  const PathFilter filter(config_);
+  for (const JobState state : {JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined}) {
+    const JobFilter jobs{state, config_.label, ""};
+    for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
+      const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
+      if (!filter.accepts_file(relative) || !sample_file(job.source, "").exists) store_.remove(job.id);
+    }
+  }
+}
+
+void WatchedTree::work_off(const std::vector<FileEvent>& events) {
+  const Time now = Clock::now();
+  std::set<std::string>& changed = looked_at_;
+  changed.clear();
+  for (const FileEvent& event : events) {
+    switch (event.kind) {
+      case FileEventKind::overflow:
+        // The close that a file waited for may be among what was lost.
+        for (auto& [path, tracked] : tracked_) {
+          tracked.completion.happened(FileEventKind::found, now);
+          changed.insert(path);
+        }
+        break;
+      case FileEventKind::root_lost:
+      case FileEventKind::root_back:
+        log_.warn(
+            "watch",
+            {{"watch", config_.label},
+             {"notice", config_.directory +
+                            (event.kind == FileEventKind::root_lost ? " is not there; waiting for it" : " is there")}});
+        break;
+      default: {
+        auto at = tracked_.find(event.path);
+        if (at == tracked_.end()) {
+          at = tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path))}).first;
+        }
+        at->second.completion.happened(event.kind, now);
+        changed.insert(event.path);
+        break;
+      }
+    }
+  }
+  while (!agenda_.empty() && agenda_.begin()->first <= now) {
+    changed.insert(agenda_.begin()->second);
+    agenda_.erase(agenda_.begin());
+  }
+  for (const std::string& path : changed) look(path, now);
+}
+
+void WatchedTree::look(const std::string& path, Time now) {
+  const FileSample sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "");
+  if (!sample.exists) {
+    gone(path);
+    return;
+  }
+  const JobStore::Observation seen = store_.observe(config_.label, path, sample.identity, options_);
+  if (seen.change == JobStore::Change::created) {
+    log_.info("discovered", {{"job", seen.job.id}, {"source", path}, {"bytes", sample.identity.bytes}});
+  } else if (seen.change == JobStore::Change::changed && seen.before == JobState::running) {
+    superseded_.push_back(seen.job.id);
+  }
+  if (seen.job.state != JobState::discovered) {
+    forget(path);  // known, and as it was
+    return;
+  }
+  if (!is_text(path)) {
+    store_.quarantine(seen.job.id, "the name is not UTF-8; rename the file");
+    forget(path);
+    return;
+  }
+  apply(path, tracked_.at(path).completion.look(sample, now), seen.job.id);
+}
+
+void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer, std::int64_t job) {
+  switch (answer.state) {
+    case CompletionAnswer::State::complete:
+      store_.enqueue(job);
+      ready_ = true;
+      forget(path);
+      break;
+    case CompletionAnswer::State::waiting:
+      track_until(path, answer.until);
+      break;
+    case CompletionAnswer::State::broken:
+      store_.quarantine(job, answer.reason);
+      log_.warn("quarantined", {{"job", job}, {"source", path}, {"reason", answer.reason}});
+      forget(path);
+      break;
+    case CompletionAnswer::State::gone:
+      gone(path);
+      break;
+  }
+}
+
+void WatchedTree::track_until(const std::string& path, Time until) {
+  Tracked& tracked = tracked_.at(path);
+  agenda_.erase({tracked.look, path});
+  tracked.look = until;
+  if (until != Time::max()) agenda_.insert({until, path});
+}
+
+void WatchedTree::forget(const std::string& path) {
+  const auto at = tracked_.find(path);
+  if (at == tracked_.end()) return;
+  agenda_.erase({at->second.look, path});
+  tracked_.erase(at);
+}
+
+void WatchedTree::gone(const std::string& path) {
+  forget(path);
+  const auto job = store_.find(config_.label, path);
+  // A done job is the record of its result; a running one finds out by itself.
+  if (!job || job->state == JobState::done || job->state == JobState::running) return;
+  store_.remove(job->id);
+  log_.info("source-gone", {{"job", job->id}, {"source", path}});
+}
+
+}  // namespace weir

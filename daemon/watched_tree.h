@@ -1,0 +1,86 @@
+// One [[watch]] at work: what happens to its files becomes jobs in the state
+// file, and a job whose file is complete waits to be converted. One thread, that
+// of the io_context.
+//
+// Events are taken together and written in one transaction, so that two thousand
+// files that appear at once cost a few flushes of the disk and not two thousand.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/completion.h"
+#include "daemon/config.h"
+#include "daemon/directory_watch.h"
+#include "daemon/event_log.h"
+#include "daemon/job_store.h"
+
+namespace weir {
+
+class WatchedTree {
+ public:
+  struct Reports {
+    std::function<void()> ready;                       ///< a job waits that did not before
+    std::function<void(std::int64_t job)> superseded;  ///< the source of a running job was rewritten
+  };
+
+  /// `store` and `log` must outlive the tree. Reports are called from handlers of `io` only.
+  WatchedTree(boost::asio::io_context& io, WatchConfig config, JobStore& store, const EventLog& log, Reports reports);
+
+  const WatchConfig& config() const { return config_; }
+  struct Status {
+    std::string method;  ///< "inotify", "poll", or "auto" where the directory was never there
+    bool up = false;
+    std::string reason;  ///< why not
+    std::uint64_t overflows = 0;
+  };
+  Status status() const;
+
+  /// As if the file had just been found: its job was asked to be tried again, or its content is not what it was.
+  void look_again(const std::string& path);
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Tracked {
+    FileCompletion completion;
+    Time look = Time::max();
+  };
+
+  void take(const FileEvent& event);
+  void schedule(std::chrono::milliseconds delay);
+  void work();
+  void work_off(const std::vector<FileEvent>& events);
+  void look_at_known_jobs();
+  void look(const std::string& path, Time now);
+  void apply(const std::string& path, const CompletionAnswer& answer, std::int64_t job);
+  void track_until(const std::string& path, Time until);
+  void forget(const std::string& path);
+  void gone(const std::string& path);
+
+  WatchConfig config_;
+  std::string options_;
+  JobStore& store_;
+  const EventLog& log_;
+  Reports reports_;
+  std::map<std::string, Tracked> tracked_;         ///< files that are not known to be complete
+  std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at which of them
+  std::vector<FileEvent> events_;
+  std::set<std::string> looked_at_;  ///< paths, in the last transaction
+  bool known_looked_at_ = false;
+  bool scheduled_ = false;
+  bool ready_ = false;                    ///< to report after the transaction
+  std::vector<std::int64_t> superseded_;  ///< the same
+  boost::asio::steady_timer timer_;
+  std::unique_ptr<DirectoryWatch> watch_;
+};
+
+}  // namespace weir
