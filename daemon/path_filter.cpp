@@ -95,7 +95,7 @@ bool PathFilter::enters_directory(std::string_view path) const {
 std::optional<std::string> PathFilter::marked_source(std::string_view path) const {
   if (marker_.empty() || !path.ends_with(marker_)) return std::nullopt;
   const std::string_view source = path.substr(0, path.size() - marker_.size());
-  if (!accepts_file(source)) return std::nullopt;
+  if (name_of(source).empty() || !accepts_file(source)) return std::nullopt;
   return std::string(source);
 }
 
