@@ -4,6 +4,7 @@
 #include <string>
 
 #include "daemon/config.h"
+#include "daemon/service.h"
 #include "tools/command.h"
 #include "tools/convert_syntax.h"
 #include "tools/describe_config.h"
@@ -16,9 +17,19 @@ struct WatchArguments {
   bool check = false;
 };
 
-void watch_directories(const WatchArguments& a) {
-  const DaemonConfig config = load_config(a.config, convert_syntax());
-  std::fputs(describe_config(config).c_str(), stdout);
+void watch_directories(const CLI::App& command, const WatchArguments& a) {
+  const auto load = [&] {
+    DaemonConfig config = load_config(a.config, convert_syntax());
+    const CLI::Option* level = command.get_option("--log-level");
+    if (level->count() > 0) config.service.log_level = level->as<std::string>();
+    return config;
+  };
+  if (a.check) {
+    std::fputs(describe_config(load()).c_str(), stdout);
+    return;
+  }
+  // The very program that runs now converts, also where another has been installed in its place since.
+  Service(load, "/proc/self/exe", WEIR_VERSION).run();
 }
 
 }  // namespace
@@ -27,9 +38,9 @@ void add_watch(CLI::App& app) {
   CLI::App* command = app.add_subcommand("watch", "Convert what appears in directories, as a configuration says");
   const auto a = std::make_shared<WatchArguments>();
   command->add_option("config", a->config, "CONFIG.toml")->required();
-  command->add_flag("--check", a->check, "only validate the configuration and print what it asks for")->required();
+  command->add_flag("--check", a->check, "only validate the configuration and print what it asks for");
   add_log_level(*command);
-  command->callback([a] { watch_directories(*a); });
+  command->callback([command, a] { watch_directories(*command, *a); });
 }
 
 }  // namespace weir

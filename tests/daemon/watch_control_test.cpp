@@ -1,0 +1,182 @@
+// The running service: signals, reloads, and what is asked over HTTP.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "format/text.h"
+#include "ingest/descriptor.h"
+#include "tests/daemon/service_harness.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using Names = std::vector<std::string>;
+
+/// A source that takes seconds: a gibibyte of zeros that takes no disk.
+std::string add_long(const ServiceHarness& service) {
+  const std::string name = "long_1024x1024x1024_uint8.raw";
+  write_file(service.path("long.tmp"), "");
+  fs::resize_file(service.path("long.tmp"), std::uintmax_t{1} << 30U);
+  fs::rename(service.path("long.tmp"), service.in(name));
+  return name;
+}
+
+bool started(const ServiceHarness& service) {
+  return ServiceHarness::eventually([&] {
+    const auto status = service.get("/api/status");
+    return status.is_object() && !status["running"].empty() && status["running"][0]["fraction"].is_number();
+  });
+}
+
+TEST(WatchControl, SigtermLetsWhatRunsEnd) {
+  ServiceHarness service("grace = 60\n");
+  service.start();
+  const std::string name = add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  EXPECT_EQ(service.stop(), 0);
+  EXPECT_TRUE(fs::exists(service.out("long_1024x1024x1024_uint8.nvdb")));
+  EXPECT_EQ(service.logged(" done "), 1U) << service.log();
+}
+
+TEST(WatchControl, SigtermAbandonsWhatTakesLongerThanTheGrace) {
+  ServiceHarness service("grace = 0.1\n");
+  service.start();
+  add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  EXPECT_EQ(service.stop(), 0);
+  EXPECT_EQ(list_directory(service.out()), Names{});
+  EXPECT_EQ(service.logged(" stopped "), 1U) << service.log();
+  fs::remove(service.in("long_1024x1024x1024_uint8.raw"));
+}
+
+TEST(WatchControl, ASecondSigtermEndsItAtOnce) {
+  ServiceHarness service("grace = 600\n");
+  service.start();
+  add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  service.signal(SIGTERM);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" stop ") == 1; }));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(service.stop(), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_FALSE(fs::exists(service.out("long_1024x1024x1024_uint8.nvdb")));
+}
+
+TEST(WatchControl, CancelPauseResumeAndRetry) {
+  ServiceHarness service;
+  service.start();
+  add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  const auto running = service.get("/api/status")["running"][0];
+  EXPECT_EQ(running["step"], "convert");
+  EXPECT_GT(running["rss_bytes"], 0);
+  const std::string job = cat("/api/jobs/", running["id"].get<int>());
+  EXPECT_EQ(service.post(job + "/cancel")["state"], "cancelled");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.get("/api/status")["running"].empty(); }));
+  EXPECT_EQ(list_directory(service.out()), Names{});
+  EXPECT_EQ(service.count("cancelled"), 1U);
+
+  EXPECT_EQ(service.post("/api/pause")["state"], "paused");
+  const std::string small = service.add("small");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 1; })) << service.log();
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_EQ(service.count("waiting"), 1U);
+  EXPECT_EQ(service.post("/api/resume")["state"], "running");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+
+  service.post(job + "/retry");
+  ASSERT_TRUE(started(service)) << service.log();
+  service.post(job + "/cancel");
+}
+
+TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
+  ServiceHarness service;
+  service.start();
+  service.add("one");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+
+  service.configure("", "colour = \"blue\"\n");
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload-rejected ") == 1; })) << service.log();
+  EXPECT_NE(service.log().find("colour"), std::string::npos);
+  service.add("two", 5);
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+
+  fs::create_directory(service.path("more"));
+  service.configure("", "size = \"400000\"\n");
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload config=") == 1; })) << service.log();
+  // Other options: what was done is done again.
+  ASSERT_TRUE(ServiceHarness::eventually([&] {
+    return fs::file_size(service.out(std::string("one") + ServiceHarness::kSuffix + ".nvdb")) == 400000 &&
+           fs::file_size(service.out(std::string("two") + ServiceHarness::kSuffix + ".nvdb")) == 400000;
+  })) << service.log();
+}
+
+TEST(WatchControl, TheLogCanBeRotatedByOthers) {
+  ServiceHarness service("log_size = \"0\"\n");
+  service.start();
+  fs::rename(service.path("log"), service.path("log.1"));
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return fs::exists(service.path("log")); }));
+  service.add("one");
+  ASSERT_TRUE(service.eventually_done(1));
+  EXPECT_EQ(service.logged(" done "), 1U);
+}
+
+TEST(WatchControl, TwoDaemonsDoNotShareAStateFile) {
+  ServiceHarness service;
+  service.start();
+  const CommandResult second = run_weir({"watch", service.path("weir.toml")});
+  EXPECT_EQ(second.exit_code, 5) << second.err;
+  EXPECT_NE(second.err.find("weir.db"), std::string::npos) << second.err;
+  EXPECT_TRUE(service.running());
+}
+
+TEST(WatchControl, NotifiesTheServiceManager) {
+  const TemporaryDirectory directory;
+  const Descriptor manager(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = directory / "notify";
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(manager.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  std::string received;
+  const auto receive = [&] {
+    std::array<char, 512> text{};
+    for (ssize_t n; (n = ::recv(manager.get(), text.data(), text.size(), MSG_DONTWAIT)) > 0;) {
+      received.append(text.data(), static_cast<std::size_t>(n)).append("\n");
+    }
+    return received;
+  };
+  ::setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  ::setenv("WATCHDOG_USEC", "300000", 1);
+  ServiceHarness service;
+  service.start();
+  ::unsetenv("NOTIFY_SOCKET");
+  ::unsetenv("WATCHDOG_USEC");
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return receive().find("READY=1\n") != std::string::npos; }));
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return receive().find("WATCHDOG=1\n", 60) != std::string::npos; }));
+  EXPECT_EQ(service.stop(), 0);
+  EXPECT_NE(receive().find("STOPPING=1\n"), std::string::npos);
+}
+
+TEST(WatchControl, ThumbnailsAreServed) {
+  ServiceHarness service("", "thumbnails = true\n");
+  service.start();
+  const std::string name = service.add("one");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_TRUE(fs::exists(service.out(name + ".nvdb.png")));
+  EXPECT_TRUE(service.job(name + ".raw")["outputs"][0]["thumbnail"].get<bool>());
+  EXPECT_EQ(service.leftovers(), Names{});
+}
+
+}  // namespace
+}  // namespace weir

@@ -1,0 +1,145 @@
+// What goes wrong around the service, and what it says and does then.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "format/text.h"
+#include "tests/daemon/service_harness.h"
+#include "tests/tools/scoped_mount.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using Names = std::vector<std::string>;
+
+TEST(WatchFaults, ALostStateFileIsRebuiltFromTheOutputs) {
+  ServiceHarness service;
+  const std::string one = service.add("one", 3);
+  const std::string two = service.add("two", 5);
+  service.start();
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  EXPECT_EQ(service.stop(), 0);
+  const auto made = fs::last_write_time(service.out(one + ".nvdb"));
+
+  for (const char* suffix : {"-wal", "-shm"}) fs::remove(service.path(std::string("weir.db") + suffix));
+  write_file(service.path("weir.db"), "this is no database, it only has the name of one............................");
+  service.start();
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  EXPECT_TRUE(fs::exists(service.path("weir.db.corrupt-1"))) << "kept aside";
+  EXPECT_EQ(service.logged("state-file "), 1U) << service.log();
+  EXPECT_EQ(service.logged("done already"), 2U) << service.log();
+  EXPECT_EQ(fs::last_write_time(service.out(one + ".nvdb")), made);
+  EXPECT_EQ(service.get("/api/status")["done_total"], 0) << "no conversion in this process";
+}
+
+TEST(WatchFaults, AFullDiskPausesUntilThereIsRoom) {
+  ServiceHarness service;
+  ScopedMount mount(service.out(), 2 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  write_file(service.out("ballast"), std::string(1800 << 10, 'x'));
+  service.start();
+  const std::string name = service.add("one", 3);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" disk-full ") == 1; })) << service.log();
+  const auto status = service.get("/api/status");
+  EXPECT_EQ(status["state"], "paused");
+  EXPECT_TRUE(status["reason"].get<std::string>().starts_with("no room in " +
+                                                              service.out().substr(0, service.out().size() - 1)))
+      << status["reason"];
+  EXPECT_EQ(service.count("waiting"), 1U);
+  EXPECT_EQ(service.job(name + ".raw")["attempts"], 0);
+  EXPECT_EQ(list_directory(service.out()), Names{"ballast"});
+  fs::remove(service.out("ballast"));
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
+  EXPECT_EQ(service.logged(" disk-has-room "), 1U);
+  EXPECT_EQ(service.stop(), 0);
+}
+
+TEST(WatchFaults, AReadOnlyOutputIsAFailureThatIsTriedAgain) {
+  ServiceHarness service;
+  ScopedMount mount(service.out(), 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  mount.make_read_only();
+  service.start();
+  const std::string name = service.add("one");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
+  const auto job = service.job(name + ".raw");
+  EXPECT_EQ(job["state"], "waiting") << "with a delay: the file system may be writable again";
+  EXPECT_EQ(job["attempts"], 1);
+  EXPECT_EQ(job["exit_code"], 5);
+  EXPECT_NE(job["reason"].get<std::string>().find("Read-only file system"), std::string::npos) << job;
+  EXPECT_TRUE(job["next_attempt_at"].is_number());
+  EXPECT_EQ(service.stop(), 0);
+}
+
+TEST(WatchFaults, AnOutputThatCannotBeADirectoryIsSaid) {
+  ServiceHarness service("", "output = \"file/out\"\n");
+  write_file(service.path("file"), "");
+  service.start();
+  const std::string name = service.add("one");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
+  EXPECT_EQ(service.job(name + ".raw")["reason"], service.path("file/out") + ": make the directory: Not a directory");
+}
+
+TEST(WatchFaults, ASourceDeletedMeanwhileLeavesNothing) {
+  ServiceHarness service;
+  const std::string name = "long_1024x1024x1024_uint8.raw";
+  write_file(service.path("tmp"), "");
+  fs::resize_file(service.path("tmp"), std::uintmax_t{1} << 30U);
+  service.start();
+  service.post("/api/pause");
+  fs::rename(service.path("tmp"), service.in(name));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 1; })) << service.log();
+  fs::remove(service.in(name));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.get("/api/jobs")["total"] == 0; })) << service.log();
+  service.post("/api/resume");
+  const std::string fine = service.add("fine");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.logged(" failed "), 0U) << service.log();
+}
+
+TEST(WatchFaults, AnOutputOfSomebodyElseIsNotReplaced) {
+  ServiceHarness service;
+  const std::string name = std::string("one") + ServiceHarness::kSuffix;
+  write_file(service.out(name + ".nvdb"), "precious");
+  service.start();
+  service.add("one");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
+  EXPECT_EQ(read_file(service.out(name + ".nvdb")), "precious");
+  EXPECT_NE(service.job(name + ".raw")["reason"].get<std::string>().find("exists and is not of "), std::string::npos);
+  fs::remove(service.out(name + ".nvdb"));
+  EXPECT_EQ(service.post("/api/retry-failed")["retried"], 1);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+}
+
+TEST(WatchFaults, LeftoversOfAKilledConversionAreCleanedAtStart) {
+  ServiceHarness service;
+  fs::create_directory(service.out(".old.nvdb.work"));
+  write_file(service.out("old.nvdb.partial"), "half");
+  write_file(service.out("old.nvdb.json.partial"), "half");
+  service.start();
+  EXPECT_EQ(list_directory(service.out()), Names{});
+  EXPECT_EQ(service.logged(" cleaned "), 3U) << service.log();
+}
+
+// A modification time in the future, and one that goes backwards: both are only different ones.
+TEST(WatchFaults, ClocksOfSourcesMayJump) {
+  ServiceHarness service;
+  service.start();
+  const std::string name = service.add("one");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  for (const auto by : {std::chrono::hours(24 * 365 * 20), std::chrono::hours(-24 * 365 * 20)}) {
+    const std::size_t before = service.logged(" done ");
+    fs::last_write_time(service.in(name + ".raw"), fs::file_time_type::clock::now() + by);
+    std::ofstream(service.in(name + ".raw"), std::ios::binary | std::ios::app).flush();  // closed again
+    ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" done ") > before; })) << service.log();
+  }
+  EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
+}
+
+}  // namespace
+}  // namespace weir
