@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "format/index.h"
 #include "format/simd.h"
 
 namespace weir {
@@ -17,13 +18,13 @@ constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
 
-// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times `scale`, a power of
-// two that brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
+// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
+// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
 struct Sums {
-  float squares = 0;  // of the scaled errors
-  float codes = 0;    // exact: below 2^24 a lane for up to 8 bits
-  float code_squares = 0;
-  float code_values = 0;  // code * scaled deviation
+  double squares = 0;  // of the errors of the scaled deviations
+  double codes = 0;    // exact: below 2^24 a lane for up to 8 bits
+  double code_squares = 0;
+  double code_values = 0;  // code * deviation
 };
 
 struct Levels {
@@ -31,49 +32,86 @@ struct Levels {
   float quantum;
   float reciprocal;
   float top;
-  float mean;
-  float scale;
 };
 
+using Deviations = std::array<float, kLeafVoxels>;
+
 // Pairwise, whatever the machine.
-float sum(const Floats16& lanes) {
+double sum(const Floats16& lanes) {
   std::array<float, kLanes> all;
   std::memcpy(all.data(), &lanes, sizeof all);
   for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
   }
-  return all[0];
+  return static_cast<double>(all[0]);
 }
 
-WEIR_SIMD Sums assign(const float* values, std::size_t count, const Levels& levels) {
-  const Levels l = levels;
+// The next 16 of `left` values; `filler` behind the last.
+[[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
+  if (left >= kLanes) {
+    std::memcpy(&v, values, sizeof v);
+  } else {
+    v = filler - Floats16{};
+    std::memcpy(&v, values, left * sizeof(float));
+  }
+}
+
+// The code of each value.
+[[gnu::always_inline]] inline void nearest(const Floats16& v, const Levels& l, Floats16& code) {
   const Floats16 zero{};
   const Floats16 top = l.top - zero;
+  Floats16 t = (v - l.minimum) * l.reciprocal;
+  t = t > zero ? t : zero;
+  t = t < top ? t : top;
+  code = (t + kRounder) - kRounder;
+}
+
+// Fills the deviations, 0 behind the last value, and returns the sum of their squares.
+WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
   Floats16 squares{};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    Floats16 v;
+    load(values + i, count - i, mean, v);
+    const Floats16 d = (v - mean) * scale;
+    squares += d * d;
+    std::memcpy(deviations + i, &d, sizeof d);
+  }
+  return sum(squares);
+}
+
+// All but the squares.
+WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const Levels& levels) {
+  const Levels l = levels;
   Floats16 codes{};
   Floats16 code_squares{};
   Floats16 code_values{};
   for (std::size_t i = 0; i < count; i += kLanes) {
-    const float* from = values + i;
-    std::array<float, kLanes> rest;
-    if (count - i < kLanes) {
-      rest.fill(l.minimum);  // code 0 without error: adds nothing
-      std::memcpy(rest.data(), from, (count - i) * sizeof(float));
-      from = rest.data();
-    }
     Floats16 v;
-    std::memcpy(&v, from, sizeof v);
-    Floats16 t = (v - l.minimum) * l.reciprocal;
-    t = t > zero ? t : zero;
-    t = t < top ? t : top;
-    const Floats16 code = (t + kRounder) - kRounder;
-    const Floats16 error = (v - (code * l.quantum + l.minimum)) * l.scale;
-    squares += error * error;
+    Floats16 d;
+    Floats16 code;
+    load(values + i, count - i, l.minimum, v);
+    std::memcpy(&d, deviations + i, sizeof d);
+    nearest(v, l, code);  // behind the last value 0, which adds nothing
     codes += code;
     code_squares += code * code;
-    code_values += code * ((v - l.mean) * l.scale);
+    code_values += code * d;
   }
-  return {sum(squares), sum(codes), sum(code_squares), sum(code_values)};
+  return {0, sum(codes), sum(code_squares), sum(code_values)};
+}
+
+// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
+WEIR_SIMD double measure(const float* values, std::size_t count, const Levels& levels, float scale) {
+  const Levels l = levels;
+  Floats16 squares{};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    Floats16 v;
+    Floats16 code;
+    load(values + i, count - i, l.minimum, v);
+    nearest(v, l, code);
+    const Floats16 error = (v - (code * l.quantum + l.minimum)) * scale;
+    squares += error * error;
+  }
+  return sum(squares);
 }
 
 WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const Levels& levels, std::uint16_t* codes) {
@@ -93,15 +131,21 @@ bool usable(const Quantiser& q, float top) {
          std::isfinite(q.quantum * top + q.minimum);
 }
 
-// One leaf being fitted.
+// One leaf being fitted, at one width after the other.
 class Fitter {
  public:
-  Fitter(std::span<const float> values, const ValueRange& range, unsigned bits)
-      : values_(values), range_(range), top_(top_code(bits)) {
-    const float half = range.max / 2 - range.min / 2;
-    scale_exponent_ = -std::ilogb(half);
-    scale_ = std::ldexp(1.0F, scale_exponent_);
-    deviation_ = std::ldexp(range.deviation, scale_exponent_);
+  Fitter(std::span<const float> values, const ValueRange& range) : values_(values), range_(range) {
+    const int exponent = -std::ilogb(range.max / 2 - range.min / 2);
+    scale_ = std::ldexp(1.0F, exponent);
+    unscale_ = std::ldexp(1.0, -exponent);
+    deviation_ = range.deviation * static_cast<double>(scale_);
+    squares_ = deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
+  }
+
+  void set_bits(unsigned bits) {
+    bits_ = bits;
+    top_ = top_code(bits);
+    best_ = std::numeric_limits<double>::infinity();
   }
 
   // Refits from levels over `share` of the range; keeps what is better than before.
@@ -110,13 +154,12 @@ class Fitter {
     const double middle = share == 1 ? static_cast<double>(range_.min) + half : static_cast<double>(range_.mean);
     Quantiser q{share == 1 ? range_.min : static_cast<float>(middle - half),
                 static_cast<float>(2 * half / static_cast<double>(top_))};
-    float last = std::numeric_limits<float>::infinity();
+    double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q, top_); ++round) {
-      const Sums sums =
-          assign(values_.data(), values_.size(), {q.minimum, q.quantum, 1 / q.quantum, top_, range_.mean, scale_});
+      const Sums sums = assigned(q);
       if (sums.squares < best_) {
         best_ = sums.squares;
-        fit_.quantiser = q;
+        quantiser_ = q;
       }
       if (!(sums.squares < last)) return;  // Lloyd's iteration has converged, but for roundings
       last = sums.squares;
@@ -124,44 +167,52 @@ class Fitter {
     }
   }
 
-  QuantiserFit result() {
-    fit_.squared_error = std::ldexp(static_cast<double>(best_), -2 * scale_exponent_);
-    return fit_;
-  }
-  bool found() const { return best_ < std::numeric_limits<float>::infinity(); }
+  bool found() const { return best_ < std::numeric_limits<double>::infinity(); }
+  Quantiser quantiser() const { return quantiser_; }
+  double squared_error() const { return best_ * unscale_ * unscale_; }
 
  private:
+  Sums assigned(const Quantiser& q) const {
+    const Levels levels{q.minimum, q.quantum, 1 / q.quantum, top_};
+    Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
+    if (bits_ >= 8) {
+      sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+      return sums;
+    }
+    // The sum of (deviation - (code * quantum + minimum))^2, multiplied out.
+    const auto scale = static_cast<double>(scale_);
+    const double quantum = static_cast<double>(q.quantum) * scale;
+    const double minimum = (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * scale;
+    const auto n = static_cast<double>(values_.size());
+    sums.squares = std::max(0.0, squares_ + quantum * (quantum * sums.code_squares - 2 * sums.code_values) +
+                                     minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_)));
+    return sums;
+  }
+
   // Least squares of value = minimum + code * quantum; false where all values have one code.
   bool refit(const Sums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
-    const auto codes = static_cast<double>(sums.codes);
-    const double determinant = n * static_cast<double>(sums.code_squares) - codes * codes;
+    const double determinant = n * sums.code_squares - sums.codes * sums.codes;
     if (!(determinant > 0)) return false;
-    const double slope = (n * static_cast<double>(sums.code_values) - codes * deviation_) / determinant;
-    const double offset = (deviation_ - slope * codes) / n;
-    q.quantum = static_cast<float>(std::ldexp(slope, -scale_exponent_));
-    q.minimum = static_cast<float>(static_cast<double>(range_.mean) + std::ldexp(offset, -scale_exponent_));
+    const double slope = (n * sums.code_values - sums.codes * deviation_) / determinant;
+    const double offset = (deviation_ - slope * sums.codes) / n;
+    q.quantum = static_cast<float>(slope * unscale_);
+    q.minimum = static_cast<float>(static_cast<double>(range_.mean) + offset * unscale_);
     return true;
   }
 
   std::span<const float> values_;
   ValueRange range_;
-  float top_;
-  int scale_exponent_;
+  Deviations deviations_;  // scaled; as many as there are values
   float scale_;
-  double deviation_;  // sum of the scaled deviations from the mean
-  float best_ = std::numeric_limits<float>::infinity();
-  QuantiserFit fit_;
+  double unscale_;
+  double deviation_;  // sum of the deviations: what rounding the mean left
+  double squares_;    // sum of their squares
+  unsigned bits_ = 0;
+  float top_ = 0;
+  double best_ = 0;  // squared error, scaled
+  Quantiser quantiser_;
 };
-
-double squares_about(std::span<const float> values, float level) {
-  double total = 0;
-  for (const float v : values) {
-    const double d = static_cast<double>(v) - static_cast<double>(level);
-    total += d * d;
-  }
-  return total;
-}
 
 }  // namespace
 
@@ -172,41 +223,41 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
   return usable(q, top) ? q : Quantiser{range.mean, 0};
 }
 
-QuantiserFit fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
-  if (range_quantiser(range, bits).quantum > 0) {
-    Fitter fitter(values, range, bits);
-    fitter.start(1, bits <= 4 ? 3 : 2);
-    if (bits <= 2) fitter.start(0.45, 3);
-    if (fitter.found()) return fitter.result();
-  }
-  return {{range.mean, 0}, squares_about(values, range.mean)};
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
+  const Quantiser whole = range_quantiser(range, bits);
+  if (!(whole.quantum > 0)) return whole;
+  Fitter fitter(values, range);
+  fitter.set_bits(bits);
+  fitter.start(1, bits <= 4 ? 3 : 2);
+  if (bits <= 2) fitter.start(0.45, 3);
+  return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
 }
 
-double estimated_error(std::span<const float> values, const ValueRange& range, unsigned bits, double squares) {
-  if (!(range_quantiser(range, bits).quantum > 0)) return 1;
-  Fitter fitter(values, range, bits);
-  // What the rounds left out would gain on average: 0.5 dB at 2 bits, 0.3 dB at 4.
-  double gain = 1;
-  switch (bits) {
-    case 1:
-      fitter.start(0.7, 2);
-      gain = 0.93;
-      break;
-    case 2:
-      fitter.start(1, 3);
-      gain = 0.89;
-      break;
-    default:
-      fitter.start(1, 1);
-      gain = 0.93;
+std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
+                                       double squares) {
+  // The rounds, and what those left out would gain on average: 0.5 dB at 2 bits, 0.3 dB at 4.
+  struct Start {
+    double share;
+    int rounds;
+    double gain;
+  };
+  constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.93}, {1, 3, 0.89}, {1, 1, 0.93}}};
+  std::array<double, 3> errors{1, 1, 1};
+  if (below_bits <= 1 || !(range_quantiser(range, 1).quantum > 0)) return errors;
+  Fitter fitter(values, range);
+  for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
+    if (!(range_quantiser(range, 1U << log2).quantum > 0)) continue;
+    fitter.set_bits(1U << log2);
+    fitter.start(kStarts[log2].share, kStarts[log2].rounds);
+    if (fitter.found()) errors[log2] = std::min(1.0, kStarts[log2].gain * fitter.squared_error() / squares);
   }
-  return fitter.found() ? std::min(1.0, gain * fitter.result().squared_error / squares) : 1;
+  return errors;
 }
 
 void quantise(std::span<const float> values, const Quantiser& quantiser, unsigned bits,
               std::span<std::uint16_t> codes) {
   const float reciprocal = quantiser.quantum > 0 ? 1 / quantiser.quantum : 0.0F;
-  nearest_codes(values.data(), values.size(), {quantiser.minimum, quantiser.quantum, reciprocal, top_code(bits), 0, 1},
+  nearest_codes(values.data(), values.size(), {quantiser.minimum, quantiser.quantum, reciprocal, top_code(bits)},
                 codes.data());
 }
 

@@ -2,6 +2,7 @@
 // placed so that the squared error of what a reader decodes is least.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -11,11 +12,6 @@ namespace weir {
 struct Quantiser {
   float minimum = 0;
   float quantum = 0;  ///< >= 0; 0: one level
-};
-
-struct QuantiserFit {
-  Quantiser quantiser;
-  double squared_error = 0;  ///< of the decoded values; good to single precision, for choosing
 };
 
 /// What a fit needs to know of the values.
@@ -33,11 +29,12 @@ struct ValueRange {
 /// Where float cannot hold the levels (a range beyond it, or one so small that the quantum has no
 /// reciprocal) there is one level, the mean.
 /// The same on every machine: fixed lanes, nothing fused.
-QuantiserFit fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
 
-/// What fit_quantiser's squared error will be at 1, 2 or 4 bits, from a third of the work: within 15 % on
-/// average, relative to `squares`, the squared error about the mean (above 0).
-double estimated_error(std::span<const float> values, const ValueRange& range, unsigned bits, double squares);
+/// What the squared error of fit_quantiser will be at 1, 2 and 4 bits, from a third of the work: within 15 % on
+/// average, relative to `squares`, the squared error about the mean (above 0). 1 for what is not below `below_bits`.
+std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
+                                       double squares);
 
 /// Levels over the whole range: the largest error is half a quantum, and the roundings of the decoder.
 Quantiser range_quantiser(const ValueRange& range, unsigned bits);

@@ -196,13 +196,13 @@ void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
     row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));
   }
   const ValueRange range{row.min, row.max, row.mean, static_cast<double>(row.residual)};
+  const unsigned exact_bits = row.exact_bits == 0 ? 32 : row.exact_bits;
+  if (row.sse > 0) {
+    const std::array<double, 3> errors = estimated_errors(values, range, exact_bits, row.sse);
+    for (std::size_t log2 = 0; log2 < errors.size(); ++log2) row.quantised[log2] = static_cast<float>(errors[log2]);
+  }
   for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
-    const unsigned bits = 1U << log2;
-    if (row.exact_bits != 0 && bits >= row.exact_bits) {
-      row.quantised[log2] = 0;
-    } else if (row.sse > 0) {
-      row.quantised[log2] = static_cast<float>(estimated_error(values, range, bits, row.sse));
-    }
+    if (1U << log2 >= exact_bits) row.quantised[log2] = 0;
   }
 }
 

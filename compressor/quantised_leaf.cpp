@@ -44,7 +44,7 @@ Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit
   if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
     return {range.min, lattice->step};
   }
-  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits).quantiser;
+  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits);
 }
 
 WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, float* decoded) {

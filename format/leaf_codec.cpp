@@ -34,6 +34,32 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
   batch = s;
 }
 
+// Transposes 8 x 8 values: row i of `from`, `stride` apart, becomes column i of `to`, whose rows are 64 apart.
+WEIR_SIMD void transpose(const float* from, std::int64_t stride, float* to) {
+  std::array<Floats8, 8> rows;
+  for (std::size_t i = 0; i < 8; ++i) {
+    std::memcpy(&rows[i], from + static_cast<std::int64_t>(i) * stride, sizeof(Floats8));
+  }
+  std::array<Floats8, 8> pairs;
+  for (std::size_t i = 0; i < 8; i += 2) {
+    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  std::array<Floats8, 8> fours;
+  for (std::size_t i = 0; i < 8; i += 4) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      fours[i + 2 * k] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[i + 2 * k + 1] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Floats8 low = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    const Floats8 high = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    std::memcpy(to + 64 * i, &low, sizeof low);
+    std::memcpy(to + 64 * (i + 4), &high, sizeof high);
+  }
+}
+
 }  // namespace
 
 void gather_leaf(std::span<const float> values, const Box& box, const Box& node, const Box& inside, float outside,
@@ -41,11 +67,8 @@ void gather_leaf(std::span<const float> values, const Box& box, const Box& node,
   const Index3 extent = box.extent();
   if (inside == node) {
     const float* corner = values.data() + linear_index(inside.lo - box.lo, extent);
-    for (std::int64_t y = 0; y < kLeafDim; ++y) {
-      for (std::int64_t z = 0; z < kLeafDim; ++z) {
-        const float* row = corner + extent.x * (y + extent.y * z);
-        for (std::int64_t x = 0; x < kLeafDim; ++x) leaf[static_cast<std::size_t>(x << 6 | y << 3 | z)] = row[x];
-      }
+    for (std::int64_t y = 0; y < kLeafDim; ++y) {  // rows along x in, rows along z out
+      transpose(corner + extent.x * y, extent.x * extent.y, leaf.data() + (y << 3));
     }
     return;
   }

@@ -10,6 +10,7 @@
 
 #include "compressor/leaf_quantiser.h"
 #include "compressor/leaf_summary.h"
+#include "format/leaf_decode.h"
 #include "tests/compressor/converted.h"
 #include "tests/compressor/surveyed.h"
 
@@ -160,7 +161,16 @@ LeafRow summarized(const std::vector<float>& values) {
 }
 
 double fitted_error(const std::vector<float>& values, const LeafRow& row, LeafWidth width) {
-  return fit_quantiser(values, {row.min, row.max, row.mean}, 1U << bits_log2_of(width)).squared_error;
+  const unsigned bits = 1U << bits_log2_of(width);
+  const Quantiser fit = fit_quantiser(values, {row.min, row.max, row.mean}, bits);
+  std::vector<std::uint16_t> codes(values.size());
+  quantise(values, fit, bits, codes);
+  double error = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    error += std::pow(
+        static_cast<double>(values[i]) - static_cast<double>(dequantize(codes[i], fit.quantum, fit.minimum)), 2);
+  }
+  return error;
 }
 
 TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {

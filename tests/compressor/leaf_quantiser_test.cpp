@@ -43,24 +43,13 @@ std::vector<float> noise(std::size_t count, float scale, float offset, unsigned 
   return values;
 }
 
-TEST(LeafQuantiser, TheErrorItSaysIsTheErrorOfTheDecodedValues) {
-  for (const std::size_t count : {2UL, 7UL, 16UL, 100UL, 511UL, 512UL}) {
-    const auto values = noise(count, 3, 10, static_cast<unsigned>(count));
-    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
-      const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
-      const double error = decoded_error(values, fit.quantiser, bits);
-      EXPECT_NEAR(fit.squared_error, error, 1e-4 * error) << count << ' ' << bits;
-    }
-  }
-}
-
 TEST(LeafQuantiser, RefittingBeatsLevelsOverTheRange) {
   const auto values = noise(512, 3, 10, 1);
   for (const auto& [bits, least_db] :
        {std::pair{1U, 4.0}, std::pair{2U, 1.5}, std::pair{4U, 0.1}, std::pair{8U, 0.0}}) {
-    const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
+    const double fitted = decoded_error(values, fit_quantiser(values, range_of(values), bits), bits);
     const double plain = decoded_error(values, range_quantiser(range_of(values), bits), bits);
-    EXPECT_GE(10 * std::log10(plain / fit.squared_error), least_db) << bits;
+    EXPECT_GE(10 * std::log10(plain / fitted), least_db) << bits;
   }
 }
 
@@ -81,7 +70,7 @@ TEST(LeafQuantiser, OneBitIsTheBestSplitInTwo) {
     }
     best = std::min(best, error);
   }
-  EXPECT_NEAR(fit_quantiser(values, range_of(values), 1).squared_error, best, 1e-3 * best);
+  EXPECT_NEAR(decoded_error(values, fit_quantiser(values, range_of(values), 1), 1), best, 1e-3 * best);
 }
 
 TEST(LeafQuantiser, ScaleChangesNothing) {
@@ -90,10 +79,10 @@ TEST(LeafQuantiser, ScaleChangesNothing) {
     std::vector<float> scaled = values;
     for (float& v : scaled) v *= scale;
     for (const unsigned bits : {1U, 2U, 4U, 8U}) {
-      const QuantiserFit fit = fit_quantiser(values, range_of(values), bits);
-      const QuantiserFit of_scaled = fit_quantiser(scaled, range_of(scaled), bits);
-      EXPECT_EQ(of_scaled.quantiser.quantum, fit.quantiser.quantum * scale) << scale << ' ' << bits;
-      EXPECT_EQ(of_scaled.quantiser.minimum, fit.quantiser.minimum * scale) << scale << ' ' << bits;
+      const Quantiser fit = fit_quantiser(values, range_of(values), bits);
+      const Quantiser of_scaled = fit_quantiser(scaled, range_of(scaled), bits);
+      EXPECT_EQ(of_scaled.quantum, fit.quantum * scale) << scale << ' ' << bits;
+      EXPECT_EQ(of_scaled.minimum, fit.minimum * scale) << scale << ' ' << bits;
     }
   }
 }
@@ -102,9 +91,8 @@ TEST(LeafQuantiser, SmallSignalOnALargeOffset) {
   std::vector<float> values = noise(512, 1e4F, 1e8F, 5);
   for (const unsigned bits : {1U, 2U, 4U, 8U}) {
     const auto range = range_of(values);
-    const QuantiserFit fit = fit_quantiser(values, range, bits);
-    const double error = decoded_error(values, fit.quantiser, bits);
-    EXPECT_NEAR(fit.squared_error, error, 1e-3 * error);
+    const Quantiser fit = fit_quantiser(values, range, bits);
+    const double error = decoded_error(values, fit, bits);
     EXPECT_LE(error, decoded_error(values, range_quantiser(range, bits), bits) * 1.0001);
   }
 }
@@ -115,11 +103,11 @@ TEST(LeafQuantiser, WhatFloatCannotHoldIsOneLevel) {
   for (const auto& values : {huge, tiny}) {
     const ValueRange range = range_of(values);
     for (const unsigned bits : {2U, 8U, 16U}) {
-      const QuantiserFit fit = fit_quantiser(values, range, bits);
-      EXPECT_EQ(fit.quantiser.quantum, 0.0F);
-      EXPECT_EQ(fit.quantiser.minimum, range.mean);
+      const Quantiser fit = fit_quantiser(values, range, bits);
+      EXPECT_EQ(fit.quantum, 0.0F);
+      EXPECT_EQ(fit.minimum, range.mean);
       std::vector<std::uint16_t> codes(values.size());
-      quantise(values, fit.quantiser, bits, codes);
+      quantise(values, fit, bits, codes);
       EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
     }
   }
@@ -148,11 +136,24 @@ TEST(LeafQuantiser, EstimatesAreNearTheFit) {
       const ValueRange range = range_of(values);
       double squares = 0;
       for (const float v : values) squares += std::pow(static_cast<double>(v) - static_cast<double>(range.mean), 2);
-      ratio +=
-          estimated_error(values, range, bits, squares) * squares / fit_quantiser(values, range, bits).squared_error;
+      const std::array<double, 3> estimated = estimated_errors(values, range, 32, squares);
+      ratio += estimated[bits / 2] * squares / decoded_error(values, fit_quantiser(values, range, bits), bits);
     }
     EXPECT_NEAR(ratio / kLeaves, 1, 0.15) << bits;
   }
+}
+
+TEST(LeafQuantiser, EstimatesStopWhereTheValuesAreExact) {
+  const auto values = noise(512, 3, 10, 1);
+  double squares = 0;
+  const ValueRange range = range_of(values);
+  for (const float v : values) squares += std::pow(static_cast<double>(v) - static_cast<double>(range.mean), 2);
+  const std::array<double, 3> all = estimated_errors(values, range, 32, squares);
+  EXPECT_LT(all[2], all[1]);
+  EXPECT_LT(all[1], all[0]);
+  EXPECT_LT(all[0], 1);
+  EXPECT_EQ(estimated_errors(values, range, 4, squares), (std::array<double, 3>{all[0], all[1], 1}));
+  EXPECT_EQ(estimated_errors(values, range, 1, squares), (std::array<double, 3>{1, 1, 1}));
 }
 
 }  // namespace

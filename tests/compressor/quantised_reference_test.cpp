@@ -46,18 +46,17 @@ float nearest_code(float value, const Quantiser& q, float top) {
   return std::nearbyint(t);
 }
 
-struct Fit {
-  Quantiser quantiser;
-  float squares = std::numeric_limits<float>::infinity();
-};
-
 class Reference {
  public:
   Reference(const std::vector<float>& values, const ValueRange& range, unsigned bits)
-      : values_(values), range_(range), top_(static_cast<float>((1U << bits) - 1U)) {
-    exponent_ = -std::ilogb(range.max / 2 - range.min / 2);
-    scale_ = std::ldexp(1.0F, exponent_);
-    deviation_ = std::ldexp(range.deviation, exponent_);
+      : values_(values), range_(range), bits_(bits), top_(static_cast<float>((1U << bits) - 1U)) {
+    const int exponent = -std::ilogb(range.max / 2 - range.min / 2);
+    scale_ = std::ldexp(1.0F, exponent);
+    unscale_ = std::ldexp(1.0, -exponent);
+    deviation_ = std::ldexp(range.deviation, exponent);
+    LaneSum squares;
+    for (std::size_t i = 0; i < values_.size(); ++i) squares.add(i, deviation(i) * deviation(i));
+    squares_ = static_cast<double>(squares.value());
   }
 
   void start(double share, int rounds) {
@@ -65,11 +64,11 @@ class Reference {
     const double middle = static_cast<double>(share == 1 ? range_.min : range_.mean) + (share == 1 ? half : 0);
     Quantiser q{share == 1 ? range_.min : static_cast<float>(middle - half),
                 static_cast<float>(2 * half / static_cast<double>(top_))};
-    float last = std::numeric_limits<float>::infinity();
+    double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
       if (!(q.quantum >= 0x1p-120F) || !std::isfinite(q.minimum) || !std::isfinite(q.quantum * top_ + q.minimum))
         return;
-      LaneSum squares;
+      LaneSum measured;
       LaneSum codes;
       LaneSum code_squares;
       LaneSum code_values;
@@ -77,36 +76,51 @@ class Reference {
         const float code = nearest_code(values_[i], q, top_);
         const float product = code * q.quantum;
         const float error = (values_[i] - (product + q.minimum)) * scale_;
-        squares.add(i, error * error);
+        measured.add(i, error * error);
         codes.add(i, code);
         code_squares.add(i, code * code);
-        code_values.add(i, code * ((values_[i] - range_.mean) * scale_));
+        code_values.add(i, code * deviation(i));
       }
-      if (squares.value() < fit.squares) fit = {q, squares.value()};
-      if (!(squares.value() < last)) return;
-      last = squares.value();
-      // Least squares of value = minimum + code * quantum.
       const auto n = static_cast<double>(values_.size());
       const auto c = static_cast<double>(codes.value());
-      const double determinant = n * static_cast<double>(code_squares.value()) - c * c;
+      const auto cc = static_cast<double>(code_squares.value());
+      const auto cv = static_cast<double>(code_values.value());
+      const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
+      const double minimum =
+          (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
+      const double followed = std::max(
+          0.0, squares_ + quantum * (quantum * cc - 2 * cv) + minimum * (n * minimum + 2 * (quantum * c - deviation_)));
+      const double squares = bits_ >= 8 ? static_cast<double>(measured.value()) : followed;
+      if (squares < best_) {
+        best_ = squares;
+        fit = q;
+      }
+      if (!(squares < last)) return;
+      last = squares;
+      // Least squares of value = minimum + code * quantum.
+      const double determinant = n * cc - c * c;
       if (!(determinant > 0)) return;
-      const double slope = (n * static_cast<double>(code_values.value()) - c * deviation_) / determinant;
+      const double slope = (n * cv - c * deviation_) / determinant;
       const double offset = (deviation_ - slope * c) / n;
-      q.quantum = static_cast<float>(std::ldexp(slope, -exponent_));
-      q.minimum = static_cast<float>(static_cast<double>(range_.mean) + std::ldexp(offset, -exponent_));
+      q.quantum = static_cast<float>(slope * unscale_);
+      q.minimum = static_cast<float>(static_cast<double>(range_.mean) + offset * unscale_);
     }
   }
 
-  Fit fit;
-  double squared_error() const { return std::ldexp(static_cast<double>(fit.squares), -2 * exponent_); }
+  Quantiser fit;
 
  private:
+  float deviation(std::size_t i) const { return (values_[i] - range_.mean) * scale_; }
+
   const std::vector<float>& values_;
   ValueRange range_;
+  unsigned bits_;
   float top_;
-  int exponent_;
   float scale_;
+  double unscale_;
   double deviation_;
+  double squares_ = 0;
+  double best_ = std::numeric_limits<double>::infinity();
 };
 
 std::vector<float> leaf(std::mt19937& random, int kind) {
@@ -156,19 +170,18 @@ TEST(QuantisedReference, FitsAndCodesHaveTheSameBits) {
       Reference reference(values, range, bits);
       reference.start(1, bits <= 4 ? 3 : 2);
       if (bits <= 2) reference.start(0.45, 3);
-      const QuantiserFit fit = fit_quantiser(values, range, bits);
+      const Quantiser fit = fit_quantiser(values, range, bits);
       if (!(range_quantiser(range, bits).quantum > 0)) {
-        EXPECT_EQ(fit.quantiser.quantum, 0.0F);
+        EXPECT_EQ(fit.quantum, 0.0F);
         continue;
       }
-      ASSERT_EQ(bits_of(fit.quantiser.minimum), bits_of(reference.fit.quantiser.minimum));
-      ASSERT_EQ(bits_of(fit.quantiser.quantum), bits_of(reference.fit.quantiser.quantum));
-      ASSERT_EQ(fit.squared_error, reference.squared_error());
+      ASSERT_EQ(bits_of(fit.minimum), bits_of(reference.fit.minimum));
+      ASSERT_EQ(bits_of(fit.quantum), bits_of(reference.fit.quantum));
       std::vector<std::uint16_t> codes(values.size());
-      quantise(values, fit.quantiser, bits, codes);
+      quantise(values, fit, bits, codes);
       const auto top = static_cast<float>((1U << bits) - 1U);
       for (std::size_t i = 0; i < values.size(); ++i) {
-        ASSERT_EQ(static_cast<float>(codes[i]), nearest_code(values[i], fit.quantiser, top));
+        ASSERT_EQ(static_cast<float>(codes[i]), nearest_code(values[i], fit, top));
       }
     }
   }
