@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <set>
 
-#include "watched_directory.h"
+#include "tests/daemon/watched_directory.h"
 
 namespace weir {
 namespace {

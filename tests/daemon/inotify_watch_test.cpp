@@ -14,7 +14,7 @@
 #include <set>
 
 #include "format/error.h"
-#include "watched_directory.h"
+#include "tests/daemon/watched_directory.h"
 
 namespace weir {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "support/temporary_directory.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <boost/asio/post.hpp>
 
-#include "watched_directory.h"
+#include "tests/daemon/watched_directory.h"
 
 namespace weir {
 namespace {

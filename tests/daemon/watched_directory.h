@@ -1,12 +1,14 @@
 // A real directory being watched in a test, and what was told of it.
 #pragma once
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,13 +16,10 @@
 
 #include "daemon/directory_watch.h"
 #include "daemon/inotify.h"
-#include "support/temporary_directory.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/tools/run_command.h"
 
 namespace weir {
-
-inline void write_file(const std::string& path, std::string_view content) {
-  std::ofstream(path, std::ios::binary) << content;
-}
 
 /// An inotify that must not be used.
 inline OpenInotify no_inotify() {
