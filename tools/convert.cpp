@@ -11,10 +11,13 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "format/bandwidth.h"
 #include "format/error.h"
+#include "format/limited_file_system.h"
 #include "format/output_files.h"
 #include "format/text.h"
 #include "ingest/extent.h"
+#include "ingest/limited_source.h"
 #include "ingest/series.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
@@ -36,6 +39,7 @@ struct ConvertArguments {
   ConversionArguments conversion;
   RunArguments run;
   std::string work_dir;
+  std::string bandwidth;  ///< a size, per second
   bool overwrite = false;
   bool skip_done = false;
   bool json = false;
@@ -54,6 +58,16 @@ void report(const Sidecar& s, const std::string& output) {
   spdlog::info("{}: {} bytes, rate {:.4g}, {} of {} leaves kept, {}, {:.2f} s, {} at most", output, s.file.bytes,
                s.budget.rate, s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
                format_bytes(s.timing.peak_rss_bytes));
+}
+
+// Bytes per second; none: no limit.
+std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto bytes = parse_bytes(text);
+  if (!bytes || *bytes == 0) {
+    throw usage(cat("--bandwidth is \"", text, "\", it must be a size above 0, like 200MB (a second)"));
+  }
+  return bytes;
 }
 
 // What would be refused after minutes of work is refused before it.
@@ -117,10 +131,10 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
 }
 
 Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
-                     const Sidecar* first, bool skip_done, const ProgressOptions& shown) {
+                     const Sidecar* first, bool skip_done, Bandwidth* bandwidth, const ProgressOptions& shown) {
   source_options.dataset = step.dataset;
   source_options.index = step.index;
-  const std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
+  std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
   if (first != nullptr) check_alike(*first, source->info(), options.budget);
   if (skip_done) {
     if (auto record = skip_or_replace(source->info(), options)) {
@@ -134,8 +148,13 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
-  const std::unique_ptr<FileSystem> files = make_posix_file_system();
-  Sidecar sidecar = convert_volume(*source, options, control, *files);
+  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system();
+  std::unique_ptr<FileSystem> limited;
+  if (bandwidth != nullptr) {
+    source = limit_source(std::move(source), *bandwidth);
+    limited = limit_file_system(*unlimited, *bandwidth);
+  }
+  Sidecar sidecar = convert_volume(*source, options, control, limited ? *limited : *unlimited);
   progress.finish();
   report(sidecar, options.output);
   announce_output(shown, options.output, false, sidecar);
@@ -172,12 +191,14 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
     spdlog::warn("--lossless: each of the {} files is as long as it needs; give --size for files of one size",
                  steps.size());
   }
+  std::optional<Bandwidth> bandwidth;
+  if (const auto bytes_per_s = parse_bandwidth(a.bandwidth)) bandwidth.emplace(*bytes_per_s, &interrupt_flag());
   std::vector<Sidecar> sidecars;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
     sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(),
-                                    a.skip_done, a.run.progress));
+                                    a.skip_done, bandwidth ? &*bandwidth : nullptr, a.run.progress));
   }
   if (a.json) print_json(sidecars);
 }
@@ -199,6 +220,11 @@ void add_convert(CLI::App& app) {
   add_input_options(*command, a->source);
   add_conversion_options(*command, a->conversion);
   add_run_options(*command, a->run);
+  command
+      ->add_option("--bandwidth", a->bandwidth,
+                   "most bytes per second that are read and written, in the long run; default: no limit")
+      ->type_name("SIZE")
+      ->group("Run");
   command->add_option("--work-dir", a->work_dir,
                       "for spill files, on a disk; default: a hidden directory beside the output");
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");

@@ -13,7 +13,8 @@ namespace {
 using Options = std::map<std::string, std::string>;
 
 Options deciding(Options options) {
-  for (const char* name : {"output", "memory", "threads", "work-dir", "direct-io", "overwrite"}) options.erase(name);
+  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "direct-io", "overwrite"})
+    options.erase(name);
   return options;
 }
 
