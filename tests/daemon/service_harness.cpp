@@ -43,12 +43,22 @@ void ServiceHarness::configure(const std::string& service, const std::string& wa
                  unless(watch, "thumbnails", "thumbnails = false\n"), watch));
 }
 
+void ServiceHarness::run_unprivileged() {
+  if (::geteuid() != 0) return;
+  constexpr uid_t kNobody = 65534;
+  for (const char* name : {".", "in", "out", "weir.toml"}) {
+    if (::chown(path(name).c_str(), kNobody, kNobody) != 0) throw std::runtime_error("chown " + path(name));
+  }
+  launcher_ = {"setpriv", cat("--reuid=", kNobody), cat("--regid=", kNobody), "--clear-groups"};
+}
+
 void ServiceHarness::launch() {
   fs::remove(path("port"));
   CommandOptions options;
   options.timeout = std::chrono::minutes(10);
-  process_ =
-      std::make_unique<ChildProcess>(std::vector<std::string>{WEIR_COMMAND, "watch", path("weir.toml")}, options);
+  std::vector<std::string> command = launcher_;
+  command.insert(command.end(), {WEIR_COMMAND, "watch", path("weir.toml")});
+  process_ = std::make_unique<ChildProcess>(command, options);
 }
 
 void ServiceHarness::start() {

@@ -26,6 +26,8 @@ class ServiceHarness {
   ServiceHarness(const ServiceHarness&) = delete;
   ServiceHarness& operator=(const ServiceHarness&) = delete;
 
+  /// From now on the service runs as nobody, whom permissions stop, where the test runs as root, whom they do not.
+  void run_unprivileged();
   /// Starts `weir watch` and waits until it is ready.
   void start();
   /// Starts it without waiting.
@@ -75,6 +77,7 @@ class ServiceHarness {
   std::string request(const std::string& method, const std::string& target) const;
 
   TemporaryDirectory directory_;
+  std::vector<std::string> launcher_;  ///< before the command
   std::unique_ptr<ChildProcess> process_;
 };
 

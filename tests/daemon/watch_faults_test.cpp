@@ -85,6 +85,21 @@ TEST(WatchFaults, AnOutputThatCannotBeADirectoryIsSaid) {
   EXPECT_EQ(service.job(name + ".raw")["reason"], service.path("file/out") + ": make the directory: Not a directory");
 }
 
+TEST(WatchFaults, AnUnreadableFileIsQuarantinedUntilItChanges) {
+  ServiceHarness service;
+  service.run_unprivileged();
+  const std::string name = service.add("locked");
+  fs::permissions(service.in(name + ".raw"), fs::perms::none);
+  service.start();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("quarantined") == 1; })) << service.log();
+  const auto job = service.job(name + ".raw");
+  EXPECT_EQ(job["exit_code"], 3);
+  EXPECT_NE(job["reason"].get<std::string>().find("Permission denied"), std::string::npos) << job;
+  fs::permissions(service.in(name + ".raw"), fs::perms::all);
+  service.add("locked", 5);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+}
+
 TEST(WatchFaults, ASourceDeletedMeanwhileLeavesNothing) {
   ServiceHarness service;
   const std::string name = "long_1024x1024x1024_uint8.raw";
