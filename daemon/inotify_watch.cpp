@@ -159,6 +159,7 @@ void InotifyWatch::enter(const std::string& directory) {
 }
 
 void InotifyWatch::leave(const std::string& directory) {
+  look_.leave(directory);
   const std::string below = cat(directory, '/');
   for (auto at = watches_.lower_bound(directory); at != watches_.end() && at->first.starts_with(directory);) {
     if (at->first != directory && !at->first.starts_with(below)) {
@@ -218,8 +219,10 @@ void InotifyWatch::take(const inotify_event& event, std::string_view name) {
       begin_anew_ = true;  // what was below the mount is to be watched now: begin anew
     }
     if ((event.mask & IN_IGNORED) != 0) {
-      watches_.erase(directory);
-      directories_.erase(event.wd);
+      if (const auto own = watches_.find(directory); own != watches_.end() && own->second == event.wd) {
+        watches_.erase(own);
+      }
+      directories_.erase(at);
     }
     return;
   }
@@ -234,9 +237,8 @@ void InotifyWatch::take_directory(std::uint32_t mask, const std::string& path) {
     leave(path);
     table_.removed_below(path);
   }
-  const bool made = (mask & (IN_CREATE | IN_MOVED_TO)) != 0;
-  const bool readable_now = (mask & IN_ATTRIB) != 0 && !watches_.contains(path);
-  if (!made && !readable_now) return;
+  if ((mask & IN_ATTRIB) != 0 && watches_.contains(path)) return;  // it was readable before
+  // After a removal too: another directory may have this name already, and have been told of before.
   look_.add(path);
   look_on();
 }
@@ -266,8 +268,12 @@ void InotifyWatch::deliver() {
   }
   changes_.clear();
   for (auto change = last.rbegin(); change != last.rend(); ++change) {
-    change->first == FileEventKind::removed ? table_.removed(change->second)
-                                            : table_.happened(change->first, change->second);
+    if (change->first != FileEventKind::removed) {
+      table_.happened(change->first, change->second);
+      continue;
+    }
+    table_.removed(change->second);
+    look_.look_at(change->second);  // another file may have this name already, and have been told of before
   }
 }
 

@@ -21,6 +21,14 @@ std::string joined(const std::string& directory, std::string_view name) {
 
 }  // namespace
 
+void TreeLook::leave(const std::string& directory) {
+  const auto inside = [below = cat(directory, '/'), &directory](const std::string& path) {
+    return path == directory || path.starts_with(below);
+  };
+  std::erase_if(waiting_, inside);
+  if (stream_ != nullptr && inside(directory_)) stream_.reset();
+}
+
 void TreeLook::clear() {
   waiting_.clear();
   stream_.reset();

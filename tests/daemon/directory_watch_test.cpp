@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <random>
 #include <set>
 
 #include "tests/daemon/watched_directory.h"
@@ -176,6 +178,95 @@ TEST_P(DirectoryWatchTest, SwappedDirectoriesAreToldUnderTheirNewNames) {
   write_file(dir / "b/y.raw", "1");
   ASSERT_TRUE(dir.run_until_written(dir / "a/x.raw"));
   ASSERT_TRUE(dir.run_until_written(dir / "b/y.raw"));
+}
+
+TEST_P(DirectoryWatchTest, ExchangedFilesAndDirectoriesAndADirectoryInThePlaceOfAnother) {
+  for (const char* name : {"a", "b", "empty"}) fs::create_directory(dir / name);
+  for (const char* name : {"a/of_a.raw", "b/of_b.raw", "x.raw", "y.raw"}) write_file(dir / name, name);
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  const auto exchange = [&](const char* one, const char* other) {
+    return ::renameat2(AT_FDCWD, (dir / one).c_str(), AT_FDCWD, (dir / other).c_str(), RENAME_EXCHANGE);
+  };
+  ASSERT_EQ(exchange("a", "b"), 0);
+  ASSERT_EQ(exchange("x.raw", "y.raw"), 0);
+  const auto is_there = [&](const char* name) {
+    const auto last = dir.last(dir / name);
+    return last.has_value() && last != Kind::removed;
+  };
+  ASSERT_TRUE(dir.run_until([&] { return is_there("b/of_a.raw") && is_there("a/of_b.raw") && is_there("x.raw"); }));
+  ASSERT_TRUE(dir.run_until([&] { return is_there("y.raw") && dir.last(dir / "a/of_a.raw") == Kind::removed; }));
+  fs::rename(dir / "a", dir / "empty");
+  ASSERT_TRUE(dir.run_until([&] { return is_there("empty/of_b.raw"); }));
+  dir.run_for(std::chrono::milliseconds(60));
+  dir.events.clear();
+  write_file(dir / "empty/later.raw", "1");
+  EXPECT_TRUE(dir.run_until_written(dir / "empty/later.raw"));
+}
+
+/// What a listener that keeps a list of files has, and what there is.
+std::set<std::string> listed(const std::vector<FileEvent>& events) {
+  std::set<std::string> files;
+  for (const FileEvent& event : events) {
+    if (event.kind == Kind::removed) {
+      files.erase(event.path);
+    } else {
+      files.insert(event.path);
+    }
+  }
+  return files;
+}
+
+std::set<std::string> files_in(const std::string& directory) {
+  std::set<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (entry.is_regular_file()) files.insert(entry.path().string());
+  }
+  return files;
+}
+
+TEST_P(DirectoryWatchTest, AnyOrderOfChangesEndsInTheTruth) {
+  std::mt19937 random(20251);
+  const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
+  const auto any_directory = [&] {
+    std::string path = dir.root();
+    for (int depth = any(4); depth > 0; --depth) path += std::string("/") + "abc"[any(3)];
+    return path;
+  };
+  const auto any_file = [&] { return any_directory() + "/" + "xy"[any(2)] + ".raw"; };
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  for (int round = 0; round < 15; ++round) {
+    for (int i = 0; i < 60; ++i) {
+      std::error_code ignored;
+      switch (any(8)) {
+        case 0:
+        case 1:
+          fs::create_directories(any_directory(), ignored);
+          break;
+        case 2:
+        case 3:
+          if (const std::string path = any_file(); fs::exists(fs::path(path).parent_path())) write_file(path, "1");
+          break;
+        case 4:
+          if (const std::string to = any_directory(); to != dir.root()) fs::rename(any_directory(), to, ignored);
+          break;
+        case 5:
+          fs::rename(any_file(), any_file(), ignored);
+          break;
+        case 6:
+          if (const std::string path = any_directory(); path != dir.root()) fs::remove_all(path, ignored);
+          break;
+        default:
+          fs::remove(any_file(), ignored);
+      }
+      if (any(3) == 0) dir.io.poll();
+    }
+    ASSERT_TRUE(dir.run_until([&] { return listed(dir.events) == files_in(dir.root()); })) << "round " << round;
+    EXPECT_EQ(dir.watch->figures().files, files_in(dir.root()).size());
+  }
+  EXPECT_EQ(dir.notices, std::vector<std::string>{});
+  EXPECT_EQ(dir.watch->figures().overflows, 0U);
 }
 
 TEST_P(DirectoryWatchTest, LinksThatLeaveTheTreeAreRefusedOnceAndLoopsAreNone) {
