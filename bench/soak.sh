@@ -35,7 +35,7 @@ daemon=$!
 until [ -s "$work/port" ]; do sleep 0.05; done
 
 field() { awk -v key="$1:" '$1 == key { print $2 }' "/proc/$daemon/status"; }
-figures() { echo "$(field VmRSS) $(ls "/proc/$daemon/fd" | wc -l) $(field Threads)"; }
+figures() { echo "$(field VmRSS) $(find "/proc/$daemon/fd" -type l | wc -l) $(field Threads)"; }
 first=
 begin=$(date +%s)
 for ((i = 1; i <= files; ++i)); do

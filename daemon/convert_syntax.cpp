@@ -7,6 +7,7 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "format/text.h"
 
 namespace weir {
 namespace {
@@ -33,7 +34,7 @@ std::string value_text(const toml::node& node, const std::string& key, const Tom
   std::string joined;
   for (const toml::node& element : *array) {
     if (element.is_array()) reader.fail(element, cat(key, " must not be an array of arrays"));
-    joined += (joined.empty() ? "" : ",") + value_text(element, key, reader);
+    joined += cat(joined.empty() ? "" : ",", value_text(element, key, reader));
   }
   return joined;
 }
@@ -81,10 +82,10 @@ std::vector<std::string> read_convert_options(TomlReader& reader, const toml::ta
     if (option.flag) {
       const auto* set = node->as_boolean();
       if (set == nullptr) reader.fail(*node, cat(key, " must be true or false"));
-      if (set->get()) arguments.push_back("--" + option.name);
+      if (set->get()) arguments.push_back(cat("--", option.name));
     } else {
       // One word, so that a negative number is never taken for an option.
-      arguments.push_back("--" + option.name + "=" + value_text(*node, key, reader));
+      arguments.push_back(cat("--", option.name, "=", value_text(*node, key, reader)));
     }
   }
   try {

@@ -25,8 +25,8 @@ struct JobsArguments {
 
 void run(const JobsArguments& a) {
   std::string target = cat("/api/jobs?limit=", a.limit, "&offset=", a.offset);
-  if (!a.state.empty()) target += "&state=" + percent_encode(a.state);
-  if (!a.watch.empty()) target += "&watch=" + percent_encode(a.watch);
+  if (!a.state.empty()) target += cat("&state=", percent_encode(a.state));
+  if (!a.watch.empty()) target += cat("&watch=", percent_encode(a.watch));
   const ServiceClient client(a.service);
   const auto now = static_cast<double>(std::time(nullptr));
   std::cout << client.read(client.get(target), [&](const ServiceClient::Json& page) {

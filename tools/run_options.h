@@ -23,7 +23,8 @@ struct RunArguments {
   ProgressOptions progress;
 };
 
-/// Adds --memory, --threads, --progress and --progress-fd, stored in `arguments`, which must live as long as the command.
+/// Adds --memory, --threads, --progress and --progress-fd, stored in `arguments`, which must live as long as the
+/// command.
 void add_run_options(CLI::App& command, RunArguments& arguments);
 
 /// Bytes. Throws Error(usage) where the text is no size or below kLeastMemory.

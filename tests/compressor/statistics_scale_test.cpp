@@ -144,7 +144,8 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
       expected += static_cast<long double>(exact[kind_of(leaf)].sse_about(kinds[kind_of(leaf)].mean));
     }
   }
-  const Certificate certificate = make_certificate(plan.tiles.squared, plan.tiles.max_abs, plan.tiles.exact, sums.finite, 0, 1);
+  const Certificate certificate =
+      make_certificate(plan.tiles.squared, plan.tiles.max_abs, plan.tiles.exact, sums.finite, 0, 1);
   const auto mse = static_cast<double>(expected / 0x1p30L);
   EXPECT_NEAR(certificate.mse, mse, mse * 1e-12);
 }

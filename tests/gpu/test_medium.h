@@ -33,14 +33,15 @@ class TestMedium {
                      static_cast<std::size_t>(count_.z),
                  majorant),
         bounds_(opacity_.size(), MinMax{0, majorant}),
-        medium_{.volume = {{static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)},
-                           std::move(f)},
-                .transfer = transfer_.view(),
-                .cells = {count_, {0, 0, 0}, static_cast<float>(cell)},
-                .shown = {{}, {static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)}},
-                .cell_opacity = opacity_.data(),
-                .cell_values = bounds_.data(),
-                .density = density} {}
+        medium_{
+            .volume = {{static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)},
+                       std::move(f)},
+            .transfer = transfer_.view(),
+            .cells = {count_, {0, 0, 0}, static_cast<float>(cell)},
+            .shown = {{}, {static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)}},
+            .cell_opacity = opacity_.data(),
+            .cell_values = bounds_.data(),
+            .density = density} {}
   TestMedium(const TestMedium&) = delete;
   TestMedium& operator=(const TestMedium&) = delete;
 
