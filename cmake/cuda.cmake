@@ -1,4 +1,4 @@
-# The tracer's templates compiled for the device (gpu/*.cu), where nvcc is found.
+# weir_cuda, the library of gpu/cuda/: grid loader and CUDA renderer, where nvcc is found.
 # At file scope: enable_language does not work inside a function.
 
 include(CheckLanguage)
@@ -8,16 +8,21 @@ if(WEIR_NVCC AND NOT CMAKE_CUDA_COMPILER)
 endif()
 check_language(CUDA)
 if(CMAKE_CUDA_COMPILER)
-  set(CMAKE_CUDA_ARCHITECTURES 90 CACHE STRING "Compute capabilities to compile for")
+  # Machine code for Hopper, and what any newer or older device's driver can compile.
+  set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real CACHE STRING "Compute capabilities to compile for")
   enable_language(CUDA)
   if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know that nvcc 12 and later have it
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
     set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
     set(CMAKE_CUDA20_STANDARD__HAS_FULL_SUPPORT ON)
   endif()
-  file(GLOB WEIR_CUDA_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/*.cu)
-  add_library(weir_cuda_check OBJECT ${WEIR_CUDA_SOURCES})
-  target_include_directories(weir_cuda_check PRIVATE ${PROJECT_SOURCE_DIR})
+  set(CMAKE_CUDA_STANDARD 20)
+  set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+  find_package(CUDAToolkit REQUIRED)
+  file(GLOB WEIR_CUDA_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
+  add_library(weir_cuda STATIC ${WEIR_CUDA_SOURCES})
+  target_link_libraries(weir_cuda PUBLIC weir_gpu CUDA::cudart_static)
+  target_compile_definitions(weir_cuda PUBLIC WEIR_HAVE_CUDA)
 elseif(WEIR_CUDA STREQUAL "ON")
   message(FATAL_ERROR "WEIR_CUDA=ON, but there is no nvcc: name it with -DCMAKE_CUDA_COMPILER=")
 endif()

@@ -24,11 +24,11 @@ if(WEIR_TIDY)
   target_compile_definitions(weir_options INTERFACE WEIR_TIDY_CONFIGURATION="${tidy_digest}")
 endif()
 
-# weir_library(NAME LINKS target...): every .cpp in NAME/ and below but main.cpp.
+# weir_library(NAME LINKS target...): every .cpp in NAME/ and below but main.cpp and what needs the CUDA toolkit.
 function(weir_library name)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|/gpu/cuda/")
   if(NOT sources)
     add_library(weir_${name} INTERFACE)
     target_link_libraries(weir_${name} INTERFACE weir_options ${ARG_LINKS})
@@ -51,7 +51,11 @@ endfunction()
 
 # weir_tests(NAME): every .cpp in tests/NAME/, and what tests share in tests/support/, as the program weir_tests_NAME.
 function(weir_tests name)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)
+  set(patterns ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)
+  if(CMAKE_CUDA_COMPILER)
+    list(APPEND patterns ${PROJECT_SOURCE_DIR}/tests/${name}/*.cu)
+  endif()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${patterns})
   if(NOT sources)
     return()
   endif()

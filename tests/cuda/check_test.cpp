@@ -1,0 +1,43 @@
+#include "gpu/cuda/check.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+template <class Call>
+std::string refusal(ErrorKind kind, Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(CheckCuda, SaysWhatFailedAndWhatCudaCallsIt) {
+  check_cuda(cudaSuccess, "nothing");
+  EXPECT_EQ(refusal(ErrorKind::io, [] { check_cuda(cudaErrorMemoryAllocation, "allocating 4 GiB"); }),
+            "allocating 4 GiB: cudaErrorMemoryAllocation, out of memory");
+}
+
+TEST(CheckCuda, NamesTheRemedyWhereThereIsNoDevice) {
+  const int devices = device_count();
+  if (devices > 0) {
+    EXPECT_EQ(refusal(ErrorKind::usage, [&] { use_device(devices); }),
+              cat("there is no CUDA device ", devices, ", the last is ", devices - 1));
+    return;
+  }
+  const std::string message = refusal(ErrorKind::usage, [] { use_device(0); });
+  EXPECT_EQ(message.rfind("no CUDA device: ", 0), 0U) << message;
+  EXPECT_EQ(message.substr(message.size() - 19), "; use --backend cpu") << message;
+}
+
+}  // namespace
+}  // namespace weir
