@@ -13,9 +13,8 @@ namespace weir {
 /// An extinction above this is as good as a wall; it keeps products of lengths finite.
 inline constexpr float kMaxExtinction = 1e30F;
 
-template <class Volume>
-struct Medium {
-  Volume volume;
+/// All of a medium but its volume.
+struct MediumProperties {
   TransferFunctionView transfer;
   CellLattice cells;
   RayBox shown;                         ///< the part of the volume that is seen, inside the domain
@@ -34,6 +33,11 @@ struct Medium {
   WEIR_HOST_DEVICE Ray ray(const Float3& origin, const Float3& direction) const {
     return {origin, direction / stretch};
   }
+};
+
+template <class Volume>
+struct Medium : MediumProperties {
+  Volume volume;
 };
 
 /// Colour of a table entry without its opacity.

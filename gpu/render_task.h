@@ -11,9 +11,8 @@
 
 namespace weir {
 
-template <class Volume>
-struct RenderTask {
-  Medium<Volume> medium;
+/// All of a picture but its medium.
+struct RenderFrame {
   Lighting lighting;
   Camera camera;
   RenderMode mode = RenderMode::path;
@@ -25,6 +24,11 @@ struct RenderTask {
   float iso = 0;      ///< iso: value of the surface
   Float3 iso_color{1, 1, 1};
   std::int32_t max_bounces = 0;  ///< path
+};
+
+template <class Volume>
+struct RenderTask : RenderFrame {
+  Medium<Volume> medium;
 };
 
 /// Radiance of sample `sample` of pixel (x, y), y down; linear RGB, finite. Depends on the arguments

@@ -3,6 +3,7 @@
 // transparent. Bounds of the opacity over an interval are exact, for majorants.
 #pragma once
 
+#include <cfloat>
 #include <vector>
 
 #include "format/range_max.h"
@@ -46,6 +47,35 @@ struct TransferFunctionView {
   }
 };
 
+/// The largest opacity that any lookup of a stretch of values gives.
+struct OpacityBounds {
+  TransferFunctionView transfer;
+  RangeMaxView opacities;  ///< of the table's entries
+
+  /// No lookup of a value in [low, high] gives a larger opacity. Where an end is not finite or the
+  /// interval is empty, the largest opacity of all.
+  WEIR_HOST_DEVICE float max_opacity(float low, float high) const {
+    if (!(low <= high) || !is_finite(low) || !is_finite(high)) return opacities.between(0, opacities.size - 1);
+    // A filtered value may round past the voxels it came from, by a few ulp of the larger of them.
+    const float slack = 4 * FLT_EPSILON * greater(std::abs(low), std::abs(high));
+    const float first = transfer.position(greater(low - slack, -FLT_MAX));
+    const float last = transfer.position(lesser(high + slack, FLT_MAX));
+    // Positions grow with values and the opacity is linear between entries: its largest value is at an
+    // entry inside the interval or at one of the two ends.
+    float result = greater(opacity(first), opacity(last));
+    const auto from = static_cast<std::uint32_t>(std::ceil(first));
+    const auto until = static_cast<std::uint32_t>(last);
+    if (from <= until) result = greater(result, opacities.between(from, until));
+    return result * (1.0F + 4 * FLT_EPSILON);
+  }
+
+ private:
+  WEIR_HOST_DEVICE float opacity(float u) const {
+    const auto i = static_cast<std::uint32_t>(u);
+    return mix(transfer.table[i].a, transfer.table[lesser(i + 1, opacities.size - 1)].a, u - static_cast<float>(i));
+  }
+};
+
 class TransferFunction {
  public:
   /// `table` (2 or more entries) over [low, high], both finite, low <= high. Throws Error(internal)
@@ -56,9 +86,10 @@ class TransferFunction {
   float low() const { return low_; }
   float high() const { return high_; }
   Rgba at(float value) const { return view_.at(value); }
-  /// No lookup of a value in [low, high] gives a larger opacity. Where an end is not finite or the
-  /// interval is empty, the largest opacity of all.
-  float max_opacity(float low, float high) const;
+  OpacityBounds bounds() const { return {view_, opacities_.view()}; }
+  float max_opacity(float low, float high) const { return bounds().max_opacity(low, high); }
+  const std::vector<Rgba>& table() const { return table_; }
+  const RangeMax& opacities() const { return opacities_; }
 
  private:
   std::vector<Rgba> table_;

@@ -16,9 +16,8 @@
 #include "format/nvdb_file.h"
 #include "format/scene.h"
 #include "format/text.h"
-#include "gpu/cpu_renderer.h"
 #include "gpu/image_output.h"
-#include "gpu/render_scene.h"
+#include "tools/backend_choice.h"
 #include "tools/command.h"
 #include "tools/progress.h"
 
@@ -120,9 +119,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 void render(const RenderArguments& arguments) {
-  if (arguments.backend == "cuda") {
-    throw usage("--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
-  }
+  const int threads = static_cast<int>(parse_count("--threads", arguments.threads, 0, kMaxThreads));
   const Scene scene = make_scene(arguments);
   RenderOptions options;
   parse_size(arguments.size, options);
@@ -130,47 +127,48 @@ void render(const RenderArguments& arguments) {
       {"nearest", Filter::nearest}, {"trilinear", Filter::trilinear}, {"stochastic", Filter::stochastic}};
   options.filter = filters.at(arguments.filter);
   options.seed = static_cast<std::uint64_t>(parse_count("--seed", arguments.seed, 0, INT64_MAX));
-  CpuRenderOptions cpu;
-  cpu.samples =
+  SampleOptions sampling;
+  sampling.samples =
       static_cast<std::uint32_t>(arguments.samples.empty() ? default_samples(scene.mode)
                                                            : parse_count("--spp", arguments.samples, 1, kMaxSamples));
-  cpu.threads = static_cast<int>(parse_count("--threads", arguments.threads, 0, kMaxThreads));
-  cpu.cancel = &interrupt_flag();
+  sampling.cancel = &interrupt_flag();
 
+  const std::unique_ptr<Backend> backend = make_backend(arguments.backend, threads);
   const auto start = std::chrono::steady_clock::now();
-  const NvdbFile file(arguments.input);
-  const RenderScene prepared(file.grid(), scene, options);
+  const std::unique_ptr<LoadedVolume> volume =
+      backend->load(std::make_shared<const NvdbFile>(arguments.input), 0, nullptr);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   ImageFile image_file(*files, arguments.output);
   const double load_s = seconds_since(start);
 
-  const auto render_start = std::chrono::steady_clock::now();
   const std::uint64_t total =
-      static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * cpu.samples;
+      static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * sampling.samples;
   Progress progress(arguments.progress);
   progress.start(cat("render, ", render_mode_name(scene.mode)), total, ProgressUnit::samples);
-  cpu.progress = [&](std::uint64_t done) { progress.update(done); };
-  const Image image = render_cpu(prepared.task(), cpu);
+  sampling.progress = [&](std::uint64_t done) { progress.update(done); };
+  const Picture picture = backend->render(*volume, scene, options, sampling);
   progress.finish();
-  const double render_s = seconds_since(render_start);
-  const std::uint64_t bytes = image_file.commit(image, prepared.tone());
+  const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
+  const LoadSummary& loaded = volume->load_summary();
 
   if (arguments.json) {
-    const nlohmann::json report{{"image", arguments.output},
-                                {"bytes", bytes},
-                                {"width", options.width},
-                                {"height", options.height},
-                                {"mode", render_mode_name(scene.mode)},
-                                {"filter", arguments.filter},
-                                {"backend", "cpu"},
-                                {"samples", cpu.samples},
-                                {"seed", options.seed},
-                                {"load_s", load_s},
-                                {"render_s", render_s}};
+    const nlohmann::json report{
+        {"image", arguments.output},
+        {"bytes", bytes},
+        {"width", options.width},
+        {"height", options.height},
+        {"mode", render_mode_name(scene.mode)},
+        {"filter", arguments.filter},
+        {"backend", backend->name()},
+        {"samples", sampling.samples},
+        {"seed", options.seed},
+        {"load", {{"way", loaded.way}, {"bytes", loaded.bytes}, {"transfer_s", loaded.seconds}, {"note", loaded.note}}},
+        {"load_s", load_s},
+        {"render_s", picture.render_s}};
     std::cout << report.dump(2) << '\n';
   } else {
     spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, options.width, options.height,
-                 cpu.samples, render_s);
+                 sampling.samples, picture.render_s);
   }
 }
 

@@ -34,14 +34,14 @@ class TestMedium {
                  majorant),
         bounds_(opacity_.size(), MinMax{0, majorant}),
         medium_{
-            .volume = {{static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)},
-                       std::move(f)},
-            .transfer = transfer_.view(),
-            .cells = {count_, {0, 0, 0}, static_cast<float>(cell)},
-            .shown = {{}, {static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)}},
-            .cell_opacity = opacity_.data(),
-            .cell_values = bounds_.data(),
-            .density = density} {}
+            {.transfer = transfer_.view(),
+             .cells = {count_, {0, 0, 0}, static_cast<float>(cell)},
+             .shown = {{}, {static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)}},
+             .cell_opacity = opacity_.data(),
+             .cell_values = bounds_.data(),
+             .density = density},
+            {{static_cast<float>(voxels.x), static_cast<float>(voxels.y), static_cast<float>(voxels.z)},
+             std::move(f)}} {}
   TestMedium(const TestMedium&) = delete;
   TestMedium& operator=(const TestMedium&) = delete;
 
