@@ -10,12 +10,19 @@
 namespace weir {
 namespace {
 
+ControlServerSettings settings(const ListenAddress& address, const std::string& token) {
+  ControlServerSettings result;
+  result.address = address;
+  result.token = token;
+  return result;
+}
+
 TEST(ControlServer, ListensBeyondThisMachineOnlyWithAToken) {
   FakeControl control;
   boost::asio::io_context io;
   for (const char* host : {"0.0.0.0", "::", "10.1.2.3", "node"}) {
     try {
-      const ControlServer server(io, {{host, 8470}, "", {}}, control);
+      const ControlServer server(io, settings({host, 8470}, ""), control);
       ADD_FAILURE() << host;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
@@ -24,7 +31,7 @@ TEST(ControlServer, ListensBeyondThisMachineOnlyWithAToken) {
                                   "service.token_file, or listen on 127.0.0.1"));
     }
   }
-  const ControlServer server(io, {{"0.0.0.0", 0}, "secret", {}}, control);
+  const ControlServer server(io, settings({"0.0.0.0", 0}, "secret"), control);
   EXPECT_NE(server.port(), 0);
 }
 
@@ -32,7 +39,7 @@ TEST(ControlServer, ListensOnAddressesNotNames) {
   FakeControl control;
   boost::asio::io_context io;
   try {
-    const ControlServer server(io, {{"node", 8470}, "secret", {}}, control);
+    const ControlServer server(io, settings({"node", 8470}, "secret"), control);
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "node:8470: cannot listen on a name; write this machine's address, or 0.0.0.0 for all");

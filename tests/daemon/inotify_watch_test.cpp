@@ -14,6 +14,7 @@
 #include <set>
 
 #include "format/error.h"
+#include "format/text.h"
 #include "tests/daemon/watched_directory.h"
 
 namespace weir {
@@ -137,7 +138,7 @@ TEST_F(InotifyWatchTest, TwoThousandFilesThroughAQueueOfSixteen) {
   ASSERT_TRUE(dir.settle());
   std::set<std::string> missing;
   for (int i = 0; i < 2000; ++i) {
-    const std::string path = dir / ("d" + std::to_string(i % 7) + "/" + std::to_string(i) + ".raw");
+    const std::string path = dir / cat("d", i % 7, "/", i, ".raw");
     fs::create_directories(fs::path(path).parent_path());
     write_file(path, "1");
     missing.insert(path);
@@ -152,7 +153,7 @@ TEST_F(InotifyWatchTest, TwoThousandFilesThroughAQueueOfSixteen) {
   // None of them is left waiting for a close that was lost.
   ASSERT_TRUE(dir.run_until([&] {
     for (int i = 0; i < 2000; ++i) {
-      const auto last = dir.last(dir / ("d" + std::to_string(i % 7) + "/" + std::to_string(i) + ".raw"));
+      const auto last = dir.last(dir / cat("d", i % 7, "/", i, ".raw"));
       if (last == Kind::created || last == Kind::written) return false;
     }
     return true;

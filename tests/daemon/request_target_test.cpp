@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "format/text.h"
+
 namespace weir {
 namespace {
 
@@ -36,8 +38,8 @@ TEST(RequestTarget, DecodesWhatItEncoded) {
   std::string every;
   for (int byte = 0; byte < 256; ++byte) every += static_cast<char>(byte);
   EXPECT_EQ(percent_encode("/a b+~"), "%2Fa%20b%2B~");
-  EXPECT_EQ(parse_target("/a?x=" + percent_encode(every))->query.at("x"), every);
-  EXPECT_EQ(parse_target("/" + percent_encode(every))->path, Path{every});
+  EXPECT_EQ(parse_target(cat("/a?x=", percent_encode(every)))->query.at("x"), every);
+  EXPECT_EQ(parse_target(cat("/", percent_encode(every)))->path, Path{every});
 }
 
 }  // namespace
