@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 #include "ingest/source_registry.h"
 #include "ingest/synthetic/synthetic.h"
 

@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "format/descriptor.h"
 #include "format/text.h"
 #include "ingest/block_plan.h"
 #include "ingest/block_stream.h"
-#include "ingest/descriptor.h"
 #include "ingest/page_buffer.h"
 #include "ingest/raw_source.h"
 

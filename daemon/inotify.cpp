@@ -5,8 +5,8 @@
 
 #include <cerrno>
 
+#include "format/descriptor.h"
 #include "format/error.h"
-#include "ingest/descriptor.h"
 
 namespace weir {
 namespace {

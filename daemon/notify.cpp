@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 
 namespace weir {
 namespace {

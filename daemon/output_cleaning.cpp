@@ -9,8 +9,8 @@
 #include <system_error>
 #include <thread>
 
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 
 namespace weir {
 namespace {

@@ -17,9 +17,9 @@
 #include <fstream>
 #include <utility>
 
+#include "format/descriptor.h"
 #include "format/error.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 
 namespace weir {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "ingest/descriptor.h"
+#include "format/descriptor.h"
 
 namespace weir {
 

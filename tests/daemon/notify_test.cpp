@@ -8,8 +8,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir {

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 
 namespace weir {
 

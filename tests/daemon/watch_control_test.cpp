@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <thread>
 
+#include "format/descriptor.h"
 #include "format/text.h"
-#include "ingest/descriptor.h"
 #include "tests/daemon/service_harness.h"
 
 namespace weir {

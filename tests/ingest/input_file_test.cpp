@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "ingest/descriptor.h"
+#include "format/descriptor.h"
 #include "ingest/page_buffer.h"
 #include "tests/ingest/scratch.h"
 
