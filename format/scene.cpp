@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -102,6 +103,39 @@ void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.finish();
 }
 
+// An environment is all the light there is but for [[light]]: keys that it would silence are refused.
+void read_environment(TomlReader& reader, SceneLighting& lighting) {
+  const bool given = reader.read("environment", lighting.environment);
+  if (given && lighting.environment.empty()) {
+    reader.fail(*reader.find("environment"), "environment is empty, it must be the path of an .exr or .hdr file");
+  }
+  for (const std::string_view key : {"environment_rotation", "environment_scale"}) {
+    if (const toml::node* node = reader.find(key); node != nullptr && !given) {
+      reader.fail(*node, cat(key, " without environment; name the picture as environment = \"FILE\""));
+    }
+  }
+  for (const std::string_view key : {"ambient", "zenith", "horizon", "ground"}) {
+    if (const toml::node* node = reader.find(key); node != nullptr && given) {
+      reader.fail(*node, cat(key, " beside environment, which takes its place; leave one of them out"));
+    }
+  }
+  reader.read("environment_rotation", lighting.environment_rotation, {-3600, 3600});
+  reader.read("environment_scale", lighting.environment_scale, kRadiance);
+}
+
+void read_background(TomlReader& reader, SceneLighting& lighting) {
+  const toml::node* node = reader.find("background");
+  if (node == nullptr || !node->is_string()) {
+    reader.read("background", lighting.background, kRadiance);
+    return;
+  }
+  const std::string name = node->value_or(std::string{});
+  if (name != "environment" || lighting.environment.empty()) {
+    reader.fail(*node, cat("background is \"", name, "\", it must be a colour, or \"environment\" where one is given"));
+  }
+  lighting.environment_behind = true;
+}
+
 void read_lighting(TomlReader reader, SceneLighting& lighting) {
   std::optional<Double3> ambient;
   reader.read("ambient", ambient, kRadiance);
@@ -109,7 +143,8 @@ void read_lighting(TomlReader reader, SceneLighting& lighting) {
   reader.read("zenith", lighting.zenith, kRadiance);
   reader.read("horizon", lighting.horizon, kRadiance);
   reader.read("ground", lighting.ground, kRadiance);
-  reader.read("background", lighting.background, kRadiance);
+  read_environment(reader, lighting);
+  read_background(reader, lighting);
   reader.read("exposure", lighting.exposure, {0, 1e6});
   reader.finish();
 }
@@ -163,6 +198,9 @@ Scene parse_scene(std::string_view text, const std::string& path) {
   section("camera", read_camera, scene.camera);
   section("volume", read_volume, scene.volume);
   section("lighting", read_lighting, scene.lighting);
+  if (!scene.lighting.environment.empty()) {
+    scene.lighting.environment = (std::filesystem::path(path).parent_path() / scene.lighting.environment).string();
+  }
   if (const toml::node* node = reader.find("light")) {
     if (!node->is_array_of_tables()) reader.fail(*node, "light must be an array of tables, [[light]]");
     if (node->as_array()->size() > kMaxSceneLights) {

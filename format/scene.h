@@ -71,14 +71,18 @@ struct SceneLight {
   Double3 irradiance{1, 1, 1};  ///< linear RGB
 };
 
-/// Linear RGB radiance of the sky by elevation, and what the camera sees behind the volume.
+/// Linear RGB radiance of the sky by elevation or from a picture, and what the camera sees behind the volume.
 struct SceneLighting {
   std::optional<Double3> zenith;
   std::optional<Double3> horizon;
   std::optional<Double3> ground;
+  std::string environment;                        ///< a latitude-longitude picture instead of the three; empty: none
+  double environment_rotation = 0;                ///< degrees about the camera's `up`
+  double environment_scale = 1;                   ///< factor on its radiance
+  bool environment_behind = false;                ///< the camera sees it instead of `background`
   std::optional<Double3> background;              ///< default: the mode's
   std::optional<double> exposure;                 ///< factor on the radiance; default: the mode's
-  std::optional<std::vector<SceneLight>> lights;  ///< at most 4; default: one key light
+  std::optional<std::vector<SceneLight>> lights;  ///< at most 4; default: one key light, none with an environment
 };
 
 struct Scene {
@@ -91,8 +95,8 @@ struct Scene {
 /// Most directional lights a scene may have.
 inline constexpr std::size_t kMaxSceneLights = 4;
 
-/// Parses a scene. Throws Error(input) "PATH:LINE:COLUMN: ..." for broken TOML, an unknown key, a
-/// wrong type or a value out of range.
+/// Parses a scene; paths in it are relative to `path`'s directory. Throws Error(input) "PATH:LINE:COLUMN: ..." for
+/// broken TOML, an unknown key, a wrong type or a value out of range.
 Scene parse_scene(std::string_view text, const std::string& path);
 /// parse_scene of a file; Error(input) where it is missing or unreadable.
 Scene load_scene(const std::string& path);

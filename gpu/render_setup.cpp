@@ -49,8 +49,9 @@ MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
   return range.min <= range.max ? range : MinMax{0, 1};
 }
 
-Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults) {
+Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const Environment* environment) {
   Lighting light;
+  if (environment != nullptr) light.environment = environment->view();
   const SceneLighting& s = scene.lighting;
   light.up = normalised(narrow(scene.camera.up), {0, 0, 1});
   light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
@@ -61,8 +62,9 @@ Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults) {
   const Double3& ground = defaults.background;
   light.background =
       narrow(s.background.value_or(Double3{ground[0] / exposure, ground[1] / exposure, ground[2] / exposure}));
-  light.sky_behind = false;
-  const std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
+  light.sky_behind = s.environment_behind;
+  std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
+  if (environment != nullptr) key.clear();  // it has its own sun
   for (const SceneLight& l : s.lights.value_or(key)) {
     if (light.light_count == kMaxLights) break;
     light.lights[light.light_count++] = {normalised(narrow(l.direction), {0, 0, 1}), narrow(l.irradiance)};
@@ -93,7 +95,8 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
       cells_(cells),
       transfer_(
           make_transfer_function(scene.volume, volume.range, volume.background, defaults_of(scene.mode).colormap)),
-      majorants_(cells.majorants(transfer_)) {
+      majorants_(cells.majorants(transfer_)),
+      environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
   const Double3 size = volume.frame.size();
   const double longest = *std::max_element(size.begin(), size.end());
@@ -117,7 +120,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
 
   frame_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso) : default_iso(transfer_, volume.background);
   frame_.iso_color = rgb(transfer_.at(frame_.iso));
-  frame_.lighting = make_lighting(scene, defaults);
+  frame_.lighting = make_lighting(scene, defaults, environment_.get());
   frame_.camera =
       make_camera(scene.camera, volume.frame, framed(scene), static_cast<double>(options.width) / options.height);
   frame_.mode = scene.mode;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "format/macrocells.h"
 #include "format/nvdb_grid.h"
 #include "format/scene.h"
+#include "gpu/environment.h"
 #include "gpu/image_output.h"
 #include "gpu/macrocell_grid.h"
 #include "gpu/render_task.h"
@@ -23,6 +25,8 @@ struct RenderOptions {
   Filter filter = Filter::trilinear;
   std::uint64_t seed = 0;
   std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
+  /// The scene's; null: loaded from where the scene says. Who renders the scene again hands it over.
+  std::shared_ptr<const Environment> environment;
 };
 
 /// What a picture depends on besides the voxels.
@@ -38,7 +42,7 @@ VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells);
 class RenderSetup {
  public:
   /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a
-  /// region outside the volume.
+  /// region outside the volume, and as load_environment.
   RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene, const RenderOptions& options);
   RenderSetup(const RenderSetup&) = delete;
   RenderSetup& operator=(const RenderSetup&) = delete;
@@ -65,6 +69,7 @@ class RenderSetup {
   const MacrocellGrid& cells_;
   TransferFunction transfer_;
   std::vector<float> majorants_;
+  std::shared_ptr<const Environment> environment_;
   MediumProperties medium_;
   RenderFrame frame_;
   ToneMapping tone_;

@@ -77,6 +77,15 @@ Double3 GridFrame::size() const { return physical(as_double(domain.hi)); }
 
 GridFrame frame_of(const NvdbGrid& grid) { return {grid.index_bbox(), grid.voxel_size(), grid.world_origin()}; }
 
+AzimuthFrame azimuth_frame(const Double3& up, double degrees) {
+  const Double3 axis = unit(up);
+  const Double3 e1 = across(axis);
+  const Double3 e2 = cross(axis, e1);
+  const double angle = degrees * std::numbers::pi / 180;
+  return {narrow(axis), narrow(e1 * std::cos(angle) + e2 * std::sin(angle)),
+          narrow(e2 * std::cos(angle) - e1 * std::sin(angle))};
+}
+
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect) {
   const auto from_world = [&](const Double3& world) {
     Double3 index{};

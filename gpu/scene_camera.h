@@ -26,6 +26,17 @@ struct GridFrame {
 
 GridFrame frame_of(const NvdbGrid& grid);
 
+/// Unit vectors: `up`, azimuth 0 and azimuth 90 degrees, a right-handed frame.
+struct AzimuthFrame {
+  Float3 up;
+  Float3 ahead;
+  Float3 left;
+};
+
+/// The frame about `up` (any length but 0) that azimuths of cameras are counted in, turned by `degrees`
+/// counter-clockwise seen from above. Azimuth 0 is +x where up is +z.
+AzimuthFrame azimuth_frame(const Double3& up, double degrees);
+
 /// `aspect` is width / height. An orbiting camera stands where the boxes `content` (voxels, not
 /// empty) fill the picture but for a small margin. Throws Error(usage) where position and look_at coincide.
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect);

@@ -99,12 +99,47 @@ direction = [1, 0, 0]
   EXPECT_EQ((*scene.lighting.lights)[1].irradiance, (Double3{1, 1, 1}));
 }
 
+TEST(Scene, EnvironmentIsRelativeToTheScene) {
+  const auto lighting = [](const std::string& text, const std::string& path) {
+    return parse_scene("[lighting]\n" + text, path).lighting;
+  };
+  SceneLighting light = lighting("environment = \"sky.exr\"", "scenes/s.toml");
+  EXPECT_EQ(light.environment, "scenes/sky.exr");
+  EXPECT_EQ(light.environment_rotation, 0);
+  EXPECT_EQ(light.environment_scale, 1);
+  EXPECT_FALSE(light.environment_behind);
+  light = lighting(
+      "environment = \"/sky.hdr\"\nenvironment_rotation = -90\nenvironment_scale = 2.5\n"
+      "background = \"environment\"",
+      "scenes/s.toml");
+  EXPECT_EQ(light.environment, "/sky.hdr");
+  EXPECT_EQ(light.environment_rotation, -90);
+  EXPECT_EQ(light.environment_scale, 2.5);
+  EXPECT_TRUE(light.environment_behind);
+  EXPECT_FALSE(light.background);
+  EXPECT_EQ(lighting("environment = \"a.hdr\"", "s.toml").environment, "a.hdr");
+  EXPECT_EQ(lighting("exposure = 1", "s.toml").environment, "");
+}
+
+TEST(Scene, EnvironmentErrors) {
+  EXPECT_EQ(message("[lighting]\nenvironment = \"\""),
+            "s.toml:2:15: environment is empty, it must be the path of an .exr or .hdr file");
+  EXPECT_EQ(message("[lighting]\nenvironment_scale = 1"),
+            "s.toml:2:21: environment_scale without environment; name the picture as environment = \"FILE\"");
+  EXPECT_EQ(message("[lighting]\nzenith = [1, 1, 1]\nenvironment = \"a.exr\""),
+            "s.toml:2:10: zenith beside environment, which takes its place; leave one of them out");
+  EXPECT_EQ(message("[lighting]\nbackground = \"environment\""),
+            "s.toml:2:14: background is \"environment\", it must be a colour, or \"environment\" where one is given");
+  EXPECT_EQ(message("[lighting]\nenvironment = \"a.exr\"\nbackground = \"white\""),
+            "s.toml:3:14: background is \"white\", it must be a colour, or \"environment\" where one is given");
+}
+
 TEST(Scene, UnknownKeysSayWhereAndWhatThereIs) {
   EXPECT_EQ(message("mode = \"iso\"\n\n  colour = 1\n"),
             "s.toml:3:3: unknown key \"colour\" in the scene; there are camera, light, lighting, mode, volume");
   EXPECT_EQ(message("[lighting]\nsun = 1"),
-            "s.toml:2:1: unknown key \"sun\" in [lighting]; there are ambient, background, exposure, ground, horizon, "
-            "zenith");
+            "s.toml:2:1: unknown key \"sun\" in [lighting]; there are ambient, background, environment, "
+            "environment_rotation, environment_scale, exposure, ground, horizon, zenith");
   EXPECT_EQ(message("[[light]]\ndirection = [0, 0, 1]\ncolor = 1"),
             "s.toml:3:1: unknown key \"color\" in [[light]]; there are direction, irradiance");
 }
