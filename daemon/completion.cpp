@@ -46,7 +46,7 @@ std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std:
 // False where nothing is there.
 bool look_at(const std::string& path, struct stat& status) {
   if (::stat(path.c_str(), &status) == 0) return true;
-  if (errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == ENAMETOOLONG) return false;
+  if (says_missing(errno)) return false;
   throw io_error(path, "look at it", errno);
 }
 
@@ -103,7 +103,7 @@ CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
     seen_ = sample.identity;
     unchanged_since_ = now;
   }
-  const CompletionAnswer its_close{State::waiting, Time::max(), "a program has it open for writing"};
+  CompletionAnswer its_close{State::waiting, Time::max(), "a program has it open for writing"};
   switch (rules_.policy) {
     case Completion::close:
       if (writer_ == Writer::open) return its_close;

@@ -233,9 +233,9 @@ void ConversionJob::fail(int exit_code, const std::string& reason) {
   const auto now = identify(task_.source);
   if (stopping_) {
     end(TaskEnd::stopped);
-  } else if (!now) {
+  } else if (is_gone(task_.source)) {
     end(TaskEnd::source_gone);
-  } else if (*now != task_.identity) {
+  } else if (now && *now != task_.identity) {
     end(TaskEnd::source_changed);
   } else if (exit_code == kIo && says_disk_full(reason)) {
     end(TaskEnd::disk_full);

@@ -1,5 +1,7 @@
 #include "daemon/file_identity.h"
 
+#include <cerrno>
+
 namespace weir {
 
 FileIdentity identity_of(const struct stat& status) {
@@ -12,6 +14,15 @@ std::optional<FileIdentity> identify(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   return identity_of(status);
+}
+
+bool says_missing(int error) {
+  return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENAMETOOLONG;
+}
+
+bool is_gone(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 ? !S_ISREG(status.st_mode) : says_missing(errno);
 }
 
 }  // namespace weir

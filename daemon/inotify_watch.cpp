@@ -263,17 +263,19 @@ void InotifyWatch::take_file(std::uint32_t mask, const std::string& path) {
 void InotifyWatch::deliver() {
   std::set<Change> told;
   std::vector<Change> last;
-  for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) {
-    if (told.insert(*change).second) last.push_back(std::move(*change));
+  std::reverse(changes_.begin(), changes_.end());
+  for (Change& change : changes_) {
+    if (told.insert(change).second) last.push_back(std::move(change));
   }
   changes_.clear();
-  for (auto change = last.rbegin(); change != last.rend(); ++change) {
-    if (change->first != FileEventKind::removed) {
-      table_.happened(change->first, change->second);
+  std::reverse(last.begin(), last.end());
+  for (const auto& [kind, path] : last) {
+    if (kind != FileEventKind::removed) {
+      table_.happened(kind, path);
       continue;
     }
-    table_.removed(change->second);
-    look_.look_at(change->second);  // another file may have this name already, and have been told of before
+    table_.removed(path);
+    look_.look_at(path);  // another file may have this name already, and have been told of before
   }
 }
 

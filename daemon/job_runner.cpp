@@ -112,7 +112,8 @@ bool JobRunner::start_next() {
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
   scheduler_.started(watch.label);
-  if (identify(job.source) != job.identity) {
+  const auto now = identify(job.source);
+  if (now ? *now != job.identity : is_gone(job.source)) {
     source_changed(job);
     return;
   }
@@ -167,7 +168,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
 void JobRunner::source_changed(const Job& job) {
   if (const auto now = identify(job.source)) {
     store_.observe(job.watch, job.source, *now, job.options);
-  } else {
+  } else if (is_gone(job.source)) {
     store_.remove(job.id);
   }
   look_again_(job);

@@ -32,6 +32,13 @@ bool needs_restart(const ServiceConfig& a, const ServiceConfig& b) {
          a.port_file != b.port_file || a.token != b.token;
 }
 
+ControlServerSettings server_settings(const ServiceConfig& service) {
+  ControlServerSettings settings;
+  settings.address = service.listen;
+  settings.token = service.token;
+  return settings;
+}
+
 }  // namespace
 
 Service::Service(Load load, std::string program, std::string version)
@@ -48,7 +55,7 @@ Service::Service(Load load, std::string program, std::string version)
                 }
               }),
       control_(store_, runner_, trees_, state_),
-      server_(io_, {config_.service.listen, config_.service.token, {}}, control_),
+      server_(io_, server_settings(config_.service), control_),
       signals_(io_, SIGTERM, SIGINT, SIGHUP),
       watchdog_timer_(io_) {
   log_.info("begin", {{"version", state_.version}, {"config", config_.path}, {"state", config_.service.state}});

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/conversion_task.h"
+#include "daemon/file_identity.h"
 #include "daemon/path_filter.h"
 #include "format/error.h"
 
@@ -15,6 +16,8 @@ using std::chrono::milliseconds;
 
 /// Until the state file is tried again.
 constexpr milliseconds kRetry{1000};
+/// Until a file is looked at again that could not be looked at.
+constexpr std::chrono::seconds kUnreachable{5};
 /// So many changes to the state file are one transaction: long enough to be quick, short enough to answer meanwhile.
 constexpr std::size_t kBatch = 500;
 
@@ -112,7 +115,7 @@ void WatchedTree::look_at_known_jobs() {
     const JobFilter jobs{state, config_.label, ""};
     for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
       const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
-      if (!filter.accepts_file(relative) || !sample_file(job.source, "").exists) store_.remove(job.id);
+      if (!filter.accepts_file(relative) || is_gone(job.source)) store_.remove(job.id);
     }
   }
 }
@@ -157,7 +160,16 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events) {
 }
 
 void WatchedTree::look(const std::string& path, Time now) {
-  const FileSample sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "");
+  FileSample sample;
+  try {
+    sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "");
+  } catch (const Error& error) {  // of this file; the others go on
+    if (!std::exchange(tracked_.at(path).unreachable, true)) {
+      log_.warn("watch", {{"watch", config_.label}, {"notice", error.what()}});
+    }
+    track_until(path, now + kUnreachable);
+    return;
+  }
   if (!sample.exists) {
     gone(path);
     return;

@@ -53,6 +53,7 @@ class WatchedTree {
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
+    bool unreachable = false;  ///< it could not be looked at, which was said
   };
 
   void take(const FileEvent& event);

@@ -18,7 +18,7 @@ namespace weir {
 class Served {
  public:
   explicit Served(Control& control, const std::string& token = "", const HttpLimits& limits = {})
-      : server_(std::make_unique<ControlServer>(io_, ControlServerSettings{{"127.0.0.1", 0}, token, limits}, control)),
+      : server_(std::make_unique<ControlServer>(io_, settings(token, limits), control)),
         port_(server_->port()),
         thread_([this] { io_.run(); }) {}
   ~Served() {
@@ -52,6 +52,14 @@ class Served {
   }
 
  private:
+  static ControlServerSettings settings(const std::string& token, const HttpLimits& limits) {
+    ControlServerSettings result;
+    result.address = {"127.0.0.1", 0};
+    result.token = token;
+    result.limits = limits;
+    return result;
+  }
+
   boost::asio::io_context io_;
   // Keeps io_ running while the server is closed.
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};

@@ -100,6 +100,47 @@ TEST(WatchFaults, AnUnreadableFileIsQuarantinedUntilItChanges) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 
+// As behind a file server that does not answer: what cannot be looked at is not deleted.
+TEST(WatchFaults, AFileThatCannotBeLookedAtIsNotForgotten) {
+  ServiceHarness service("", "recursive = true\n");
+  service.run_unprivileged();
+  fs::create_directory(service.in("sub"));
+  write_file(service.in("sub/short_9x9x9_uint8.raw"), "x");
+  service.start();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("quarantined") == 1; })) << service.log();
+  EXPECT_EQ(service.stop(), 0);
+  fs::permissions(service.in("sub"), fs::perms::none);
+  service.add("other");
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.count("quarantined"), 1U) << service.log();
+  EXPECT_EQ(service.stop(), 0);
+  fs::permissions(service.in("sub"), fs::perms::all);
+  fs::remove(service.in("sub/short_9x9x9_uint8.raw"));
+  service.start();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("quarantined") == 0; })) << service.log();
+}
+
+TEST(WatchFaults, AFileThatCannotBeLookedAtIsSaidOnceAndTriedAgain) {
+  ServiceHarness service("", "recursive = true\nsettle = 1\n");
+  service.run_unprivileged();
+  fs::create_directory(service.in("sub"));
+  const std::string late = service.add("sub/late");
+  const std::string other = service.add("other");
+  service.start();
+  fs::permissions(service.in("sub"), fs::perms::none);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.logged(
+                cat("notice=\"", service.in(late),
+                    ".raw: cannot look at it: Permission denied; check the permissions or choose another place\"")),
+            1U)
+      << service.log();
+  EXPECT_EQ(service.count("discovered"), 1U);
+  fs::permissions(service.in("sub"), fs::perms::all);
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  EXPECT_EQ(service.logged(": cannot look at it:"), 1U);
+}
+
 TEST(WatchFaults, ASourceDeletedMeanwhileLeavesNothing) {
   ServiceHarness service;
   const std::string name = "long_1024x1024x1024_uint8.raw";
