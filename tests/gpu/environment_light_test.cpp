@@ -30,12 +30,14 @@ Lighting lit_by(const Environment& environment) {
   return lighting;
 }
 
-// A sun of 0.01 sr, as bright as all the sky around it 40 times over.
-Environment sun() {
-  return {test::surroundings(32,
-                             [](int x, int y) {
-                               return x == 40 && y == 9 ? Float3{5000, 4000, 3000} : Float3{0.2F, 0.3F, 0.4F};
-                             }),
+// A sky with a sun of `size` x `size` texels of 0.008 sr, `radiance` red.
+Environment sun(float radiance, int size) {
+  return {test::surroundings(
+              32,
+              [=](int x, int y) {
+                const bool in_sun = x >= 40 && x < 40 + size && y >= 9 && y < 9 + size;
+                return in_sun ? Float3{radiance, 0.8F * radiance, 0.6F * radiance} : Float3{0.2F, 0.3F, 0.4F};
+              }),
           {},
           "sun"};
 }
@@ -96,24 +98,30 @@ TEST(EnvironmentLight, EvenSurroundingsAreAmbientLight) {
   }
 }
 
+// The soft sun is for the mean, which scattering alone finds to some percent; the bright one for the variance.
 TEST(EnvironmentLight, AgreesWithScatteringAloneAndIsLessNoisy) {
-  const Environment environment = sun();
-  const Lighting lighting = lit_by(environment);
-  for (const float g : {0.0F, 0.8F, -0.5F}) {
-    for (const int bounces : {1, 1 << 20}) {
-      TestMedium medium({32, 32, 32}, 16, 0.3F, 1.0F, kBlob);
-      medium->albedo = 0.9F;
-      medium->g = g;
-      // kBlob's gray is its opacity's table, white: throughput is the albedo.
-      const Float3 eye{-40, 10, 16};
-      const Float3 direction = normalised(Float3{1, 0.1F, 0.02F}, {1, 0, 0});
-      const Estimate alone = estimate(
-          400000, [&](Random& random) { return by_scattering(*medium, lighting, eye, direction, bounces, random); });
-      const Estimate both = estimate(
-          100000, [&](Random& random) { return trace_path(*medium, lighting, eye, direction, bounces, random).x; });
-      EXPECT_NEAR(alone.mean, both.mean, kSigmas * std::hypot(alone.sigma, both.sigma)) << g << ' ' << bounces;
-      const double variance_ratio = 4 * alone.sigma * alone.sigma / (both.sigma * both.sigma);
-      EXPECT_GT(variance_ratio, 20) << g << ' ' << bounces;
+  const Environment soft = sun(30, 4);
+  const Environment bright = sun(5000, 1);
+  for (const Environment* environment : {&soft, &bright}) {
+    const Lighting lighting = lit_by(*environment);
+    for (const float g : {0.0F, 0.8F, -0.5F}) {
+      for (const int bounces : {1, 1 << 20}) {
+        TestMedium medium({32, 32, 32}, 16, 0.3F, 1.0F, kBlob);
+        medium->albedo = 0.9F;
+        medium->g = g;
+        const Float3 eye{-40, 10, 16};
+        const Float3 direction = normalised(Float3{1, 0.1F, 0.02F}, {1, 0, 0});
+        const Estimate alone = estimate(
+            400000, [&](Random& random) { return by_scattering(*medium, lighting, eye, direction, bounces, random); });
+        const Estimate both = estimate(
+            100000, [&](Random& random) { return trace_path(*medium, lighting, eye, direction, bounces, random).x; });
+        EXPECT_NEAR(alone.mean, both.mean, kSigmas * std::hypot(alone.sigma, both.sigma)) << g << ' ' << bounces;
+        if (environment == &soft) {
+          EXPECT_LT(alone.sigma, 0.03 * alone.mean);
+        }
+        const double variance_ratio = 4 * alone.sigma * alone.sigma / (both.sigma * both.sigma);
+        EXPECT_GT(variance_ratio, environment == &soft ? 2 : 100) << g << ' ' << bounces;
+      }
     }
   }
 }
@@ -178,7 +186,7 @@ TEST(EnvironmentLight, HardPicturesGiveFiniteRadiance) {
 }
 
 TEST(EnvironmentLight, TheCameraSeesItOnlyWhenAsked) {
-  const Environment environment = sun();
+  const Environment environment = sun(5000, 1);
   Lighting lighting = lit_by(environment);
   const Float3 ahead{1, 0, 0};
   TestMedium empty({16, 16, 16}, 16, 1, 0.0F, [](const Float3&) { return 0.0F; });
