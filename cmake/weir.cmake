@@ -61,6 +61,8 @@ function(weir_tests name)
   endif()
   if(name STREQUAL "ingest")  # NanoVDB files are an input too
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/format/stock_nvdb.cpp)
+  elseif(name STREQUAL "cuda")  # they load and render the same small grids
+    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/gpu/test_grid.cpp)
   elseif(name STREQUAL "daemon")  # it is the command that watches
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/tools/run_command.cpp ${PROJECT_SOURCE_DIR}/tests/tools/scoped_mount.cpp)
   endif()
@@ -76,6 +78,20 @@ function(weir_tests name)
                                                    ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
   target_compile_definitions(weir_tests_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120)
+endfunction()
+
+# weir_loader_tests(): the grid loader and its tests with the pretended CUDA runtime of tests/fake_cuda/, as the program
+# weir_tests_loader, which needs CUDA's headers and no device.
+function(weir_loader_tests)
+  set(root ${PROJECT_SOURCE_DIR})
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
+                                      ${root}/tests/fake_cuda/*.cpp)
+  add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/tests/cuda/grid_loader_test.cpp ${root}/tests/gpu/test_grid.cpp)
+  target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
+  target_link_libraries(weir_tests_loader PRIVATE weir_format GTest::gtest GTest::gtest_main ${OPENVDB_LIBRARY}
+                                                  ${IMATH_LIBRARY} TBB::tbb Threads::Threads ${CMAKE_DL_LIBS})
+  gtest_discover_tests(weir_tests_loader DISCOVERY_TIMEOUT 120)
 endfunction()
 
 # weir_benchmarks(): every bench/NAME.cpp as the Google Benchmark program NAME in the build folder's bench/.

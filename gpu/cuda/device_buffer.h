@@ -1,0 +1,40 @@
+// The device memory that a grid is loaded into, kept from one load to the next.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "gpu/cuda/device_array.h"
+#include "gpu/cuda/load/direct_storage.h"
+#include "gpu/cuda/load/pinned_ring.h"
+
+namespace weir {
+
+/// Grows, never shrinks: the files of a series have one size, so two buffers play it without an allocation. Beside
+/// the memory it keeps what a slower way of loading had to set up. Move only; one load at a time.
+class DeviceBuffer {
+ public:
+  DeviceBuffer() = default;
+
+  std::byte* data() const { return memory_.data(); }
+  std::uint64_t capacity() const { return memory_.bytes(); }
+
+  /// At least `bytes`, what was in it is lost where it grows. Throws Error(io) where the device has no room; it is
+  /// empty then.
+  void reserve(std::uint64_t bytes) {
+    if (bytes <= capacity()) return;
+    memory_ = DeviceArray<std::byte>();  // first: there may be no room for both
+    memory_ = DeviceArray<std::byte>(bytes);
+  }
+
+  std::optional<PinnedRing>& ring() { return ring_; }
+  std::optional<DirectStorage>& direct_storage() { return direct_storage_; }
+
+ private:
+  DeviceArray<std::byte> memory_;
+  std::optional<PinnedRing> ring_;
+  std::optional<DirectStorage> direct_storage_;
+};
+
+}  // namespace weir

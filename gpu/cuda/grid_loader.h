@@ -1,0 +1,73 @@
+// From a .nvdb file to the device, by the fastest way that the system allows.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "format/nvdb_file.h"
+#include "gpu/cuda/device_buffer.h"
+#include "gpu/cuda/load/copy_task.h"
+#include "gpu/cuda/load/load_report.h"
+#include "gpu/cuda/load/zero_copy.h"
+
+namespace weir {
+
+struct LoadOptions {
+  /// Only this way, and Error(io) with the reason where it is refused; else: direct_storage where the system has it
+  /// and the file is not in the page cache, registered, pinned_ring, pageable.
+  std::optional<LoadPath> only = std::nullopt;
+  std::uint64_t chunk_bytes = 128ULL << 20U;  ///< of the file page-locked, or read, at a time by each thread
+  int threads = 2;                            ///< that populate and page-lock chunks
+  /// Leaves the grid in host memory, page-locked, where kernels read it over the bus: for grids larger than the
+  /// device. The file's own pages are locked, all of them; where that is refused, or a foreign file has its grid at an
+  /// offset that is no multiple of 32, a copy in page-locked memory serves (reported as pinned_ring).
+  bool zero_copy = false;
+  const std::atomic<bool>* cancel = nullptr;  ///< looked at before every chunk
+};
+
+/// A grid that the device can read. Move only.
+class DeviceGrid {
+ public:
+  /// The device's address of the grid's first byte: a multiple of 256, with zero_copy of 32.
+  const std::byte* data() const { return data_; }
+  /// NvdbGrid::data_bytes(): without the padding at the tail.
+  std::uint64_t bytes() const { return report_.bytes; }
+  const LoadReport& report() const { return report_; }
+  /// The memory for another load, which ends this grid.
+  DeviceBuffer take_buffer() && {
+    data_ = nullptr;
+    host_.reset();
+    return std::move(buffer_);
+  }
+
+ private:
+  friend DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options,
+                              cudaStream_t stream);
+
+  DeviceGrid() = default;
+  void move_to_device(CopyTask& task, const std::vector<LoadPath>& paths, DeviceBuffer& buffer);
+  void stay_in_host_memory(const CopyTask& task, const std::optional<LoadPath>& only);
+
+  const std::byte* data_ = nullptr;
+  LoadReport report_;
+  DeviceBuffer buffer_;
+  std::optional<ZeroCopyRange> host_;  ///< with zero_copy
+};
+
+/// Brings the first grid of `file` to the current device, into `buffer` where that is large enough, behind what
+/// `stream` has to do; all is there when it returns. On a throw `buffer` is still the caller's. With
+/// options.zero_copy `file` must outlive the grid.
+///
+/// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and
+/// never a signal; a write through another mapping of it may go unnoticed, and the grid is then no longer the one that
+/// was validated. Throws Error(io) where the device has no room or fails, Error(interrupted).
+DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options = {},
+                     cudaStream_t stream = nullptr);
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+// The point of a stream that a copy has, to wait for it without spinning.
+#pragma once
+
+#include <utility>
+
+#include "gpu/cuda/check.h"
+
+namespace weir {
+
+class CopyEvent {
+ public:
+  CopyEvent() {
+    check_cuda(cudaEventCreateWithFlags(&event_, cudaEventBlockingSync | cudaEventDisableTiming), "making an event");
+  }
+  ~CopyEvent() {
+    if (event_ != nullptr) cudaEventDestroy(event_);
+  }
+  CopyEvent(CopyEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
+  CopyEvent& operator=(CopyEvent&& other) noexcept {
+    std::swap(event_, other.event_);
+    return *this;
+  }
+
+  /// After all that `stream` was given so far.
+  void record(cudaStream_t stream) { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
+  /// Until what was recorded is done; at once where nothing was. Throws Error(io) where a copy failed.
+  void wait() const { check_cuda(cudaEventSynchronize(event_), "copying to the device"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+}  // namespace weir

@@ -1,0 +1,36 @@
+// What weir uses of NVIDIA's cuFile library, declared as in its documentation ("cuFile API Reference Guide"), because
+// neither the library nor its header need be there where weir is built.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+
+namespace weir::cufile {
+
+struct Status {
+  int code;       ///< CUfileOpError, 0: success
+  int cuda_code;  ///< CUresult, where code says that the CUDA driver failed
+};
+
+inline constexpr int kDescriptorHandle = 1;  ///< CU_FILE_HANDLE_TYPE_OPAQUE_FD
+
+struct FileDescription {
+  int type;
+  union {
+    int descriptor;
+    void* handle;
+  } file;
+  const void* operations;
+};
+static_assert(sizeof(FileDescription) == 24 && offsetof(FileDescription, file) == 8);
+
+using Handle = void*;
+using DriverOpen = Status (*)();
+using DriverClose = Status (*)();
+using HandleRegister = Status (*)(Handle*, FileDescription*);
+using HandleDeregister = void (*)(Handle);
+/// Bytes read; -1 with errno, or less: minus a CUfileOpError.
+using Read = ssize_t (*)(Handle, void* device_base, std::size_t bytes, off_t file_offset, off_t device_offset);
+
+}  // namespace weir::cufile

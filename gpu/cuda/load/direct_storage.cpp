@@ -1,0 +1,147 @@
+#include "gpu/cuda/load/direct_storage.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <type_traits>
+#include <utility>
+
+#include "format/descriptor.h"
+#include "format/text.h"
+#include "gpu/cuda/check.h"
+#include "gpu/cuda/load/cufile.h"
+#include "gpu/cuda/load/parallel_read.h"
+
+namespace weir {
+
+// The library's functions and, from driver_open on, its driver.
+struct CuFile {
+  CuFile() = default;
+  ~CuFile() {
+    if (opened) driver_close();
+  }
+  CuFile(const CuFile&) = delete;
+  CuFile& operator=(const CuFile&) = delete;
+
+  cufile::DriverOpen driver_open = nullptr;
+  cufile::DriverClose driver_close = nullptr;
+  cufile::HandleRegister handle_register = nullptr;
+  cufile::HandleDeregister handle_deregister = nullptr;
+  cufile::Read read = nullptr;
+  bool opened = false;
+};
+
+namespace {
+
+std::string status_text(const cufile::Status& status) {
+  return status.cuda_code == 0 ? cat("cuFile error ", status.code)
+                               : cat("cuFile error ", status.code, ", CUDA driver error ", status.cuda_code);
+}
+
+// The file once more, for reads past the page cache; the same file, whatever has its path now.
+Descriptor open_direct(const FileMapping& file) {
+  const std::string path = cat("/proc/self/fd/", file.descriptor());
+  return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECT));
+}
+
+class FileHandle {
+ public:
+  FileHandle(const CuFile& library, int descriptor) : library_(library) {
+    cufile::FileDescription description{};
+    description.type = cufile::kDescriptorHandle;
+    description.file.descriptor = descriptor;
+    status_ = library_.handle_register(&handle_, &description);
+  }
+  ~FileHandle() {
+    if (status_.code == 0) library_.handle_deregister(handle_);
+  }
+  FileHandle(const FileHandle&) = delete;
+  FileHandle& operator=(const FileHandle&) = delete;
+
+  const cufile::Status& status() const { return status_; }
+  cufile::Handle get() const { return handle_; }
+
+ private:
+  const CuFile& library_;
+  cufile::Handle handle_ = nullptr;
+  cufile::Status status_{};
+};
+
+}  // namespace
+
+bool DirectStorage::offered() { return ::access("/proc/driver/nvidia-fs/version", F_OK) == 0; }
+
+std::optional<DirectStorage> DirectStorage::open(std::string& refusal) {
+  // Never unloaded: it has threads of its own.
+  void* const library = ::dlopen("libcufile.so.0", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+  if (library == nullptr) {
+    const char* const reason = ::dlerror();
+    refusal = cat("GPUDirect Storage: ", reason == nullptr ? "libcufile.so.0 does not load" : reason);
+    return std::nullopt;
+  }
+  const auto functions = std::make_shared<CuFile>();
+  std::string missing;
+  const auto find = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(::dlsym(library, name));
+    if (function == nullptr) missing = name;
+  };
+  find(functions->driver_open, "cuFileDriverOpen");
+  find(functions->driver_close, "cuFileDriverClose");
+  find(functions->handle_register, "cuFileHandleRegister");
+  find(functions->handle_deregister, "cuFileHandleDeregister");
+  find(functions->read, "cuFileRead");
+  ::dlclose(library);
+  if (!missing.empty()) {
+    refusal = cat("GPUDirect Storage: libcufile.so.0 has no ", missing);
+    return std::nullopt;
+  }
+  if (const cufile::Status status = functions->driver_open(); status.code != 0) {
+    refusal = cat("GPUDirect Storage: its driver does not open: ", status_text(status));
+    return std::nullopt;
+  }
+  functions->opened = true;
+  return DirectStorage(functions);
+}
+
+CopyOutcome DirectStorage::copy(const CopyTask& task) const {
+  // cuFile knows no streams.
+  check_cuda(cudaStreamSynchronize(task.stream), "work before a load");
+  const Descriptor direct = open_direct(task.file);
+  if (!direct) return {cat("GPUDirect Storage: no direct reads of ", task.file.path(), ": ", std::strerror(errno)), {}};
+  const FileHandle handle(*library_, direct.get());
+  if (handle.status().code != 0) {
+    return {cat("GPUDirect Storage: ", task.file.path(), ": ", status_text(handle.status())), {}};
+  }
+  CopyOutcome outcome;
+  std::mutex mutex;
+  const auto take = [&](int, const FilePiece& piece) {
+    double seconds = 0;
+    std::uint64_t done = 0;
+    std::string refusal;
+    {
+      const StageClock clock(seconds);
+      while (done < piece.bytes) {
+        const ssize_t got = library_->read(handle.get(), task.target, piece.bytes - done,
+                                           static_cast<off_t>(task.offset + piece.offset + done),
+                                           static_cast<off_t>(piece.offset + done));
+        if (got <= 0) {
+          task.file.check_unchanged();
+          refusal = got == -1 ? std::strerror(errno) : status_text({static_cast<int>(-got), 0});
+          break;
+        }
+        done += static_cast<std::uint64_t>(got);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    outcome.stages.populate_s += seconds;
+    if (!refusal.empty()) outcome.refusal = cat("GPUDirect Storage: reading ", task.file.path(), ": ", refusal);
+  };
+  for_each_piece(task, task.chunk_bytes, task.threads, take);
+  return outcome;
+}
+
+}  // namespace weir

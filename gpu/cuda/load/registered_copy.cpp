@@ -1,0 +1,195 @@
+#include "gpu/cuda/load/registered_copy.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "gpu/cuda/check.h"
+#include "gpu/cuda/load/copy_event.h"
+#include "gpu/cuda/load/load_chunks.h"
+#include "gpu/cuda/load/registered_range.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kChunksBeyondThreads = 3;  // copied, unlocked, waiting to be copied
+constexpr std::size_t kReadAhead = 4;            // chunks asked from the disk before one is prepared
+
+class Pipeline {
+ public:
+  explicit Pipeline(const CopyTask& task)
+      : task_(task),
+        chunks_(plan_load_chunks(task.offset, task.bytes, static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
+                                 task.chunk_bytes)),
+        most_locked_(static_cast<std::size_t>(task.threads) + kChunksBeyondThreads) {}
+
+  CopyOutcome run() {
+    std::vector<std::thread> threads;
+    double copy_wait_s = 0;
+    try {
+      for (std::size_t k = 0; k < std::min(kReadAhead, chunks_.size()); ++k) prefetch(chunks_[k]);
+      for (int t = 0; t < task_.threads; ++t) threads.emplace_back([this] { run_stage(&Pipeline::prepare); });
+      threads.emplace_back([this] { run_stage(&Pipeline::retire); });
+      copy_wait_s = copy();
+    } catch (...) {
+      stop([this] { failure_ = std::current_exception(); });
+    }
+    double drain_s = 0;
+    {
+      const StageClock clock(drain_s);
+      for (std::thread& thread : threads) thread.join();
+    }
+    stages_.copy_wait_s = copy_wait_s;
+    stages_.drain_s = drain_s;
+    if (!stopped_) return {"", stages_};
+    // What still copies must end before its pages are unlocked; a failure of the device is known already.
+    if (cudaStreamSynchronize(task_.stream) != cudaSuccess) cudaGetLastError();
+    copying_.clear();
+    locked_.clear();
+    if (failure_) std::rethrow_exception(failure_);
+    return {refusal_, {}};
+  }
+
+ private:
+  struct LockedChunk {
+    RegisteredRange range;
+    LoadChunk chunk;
+  };
+  struct CopyingChunk {
+    RegisteredRange range;
+    CopyEvent done;
+  };
+
+  void run_stage(void (Pipeline::*stage)()) {
+    try {
+      check_cuda(cudaSetDevice(task_.device), "choosing the device");
+      (this->*stage)();
+    } catch (...) {
+      stop([this] { failure_ = std::current_exception(); });
+    }
+  }
+
+  // The first that stops the pipeline says why.
+  template <class Reason>
+  void stop(Reason give_reason) {
+    const std::lock_guard lock(mutex_);
+    if (!stopped_) give_reason();
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+  void prefetch(const LoadChunk& chunk) const {
+    const std::uint64_t bytes = chunk.copy_end - chunk.copy_begin;
+    if (!task_.file.cached(chunk.copy_begin, bytes)) task_.file.prefetch(chunk.copy_begin, bytes);
+  }
+
+  void prepare() {
+    LoadStages mine;
+    while (const std::optional<std::size_t> k = claim()) {
+      task_.check_cancelled();
+      if (*k + kReadAhead < chunks_.size()) prefetch(chunks_[*k + kReadAhead]);
+      const LoadChunk& chunk = chunks_[*k];
+      {
+        const StageClock clock(mine.populate_s);
+        task_.file.populate(chunk.copy_begin, chunk.copy_end - chunk.copy_begin);
+      }
+      const StageClock clock(mine.register_s);
+      std::string refusal;
+      auto range = RegisteredRange::make({task_.file.bytes().data() + chunk.begin, chunk.end - chunk.begin},
+                                         RegisteredRange::Use::copied, refusal);
+      if (!range) {
+        task_.file.check_unchanged();  // pages that are gone cannot be locked either
+        stop([&] { refusal_ = refusal; });
+        return;
+      }
+      const std::lock_guard lock(mutex_);
+      locked_.push_back({std::move(*range), chunk});
+      changed_.notify_all();
+    }
+    const std::lock_guard lock(mutex_);
+    stages_.populate_s += mine.populate_s;
+    stages_.register_s += mine.register_s;
+  }
+
+  // The next chunk to prepare, as soon as one more may be locked.
+  std::optional<std::size_t> claim() {
+    std::unique_lock lock(mutex_);
+    const auto all_claimed = [this] { return stopped_ || claimed_ == chunks_.size(); };
+    changed_.wait(lock, [&] { return all_claimed() || claimed_ - retired_ < most_locked_; });
+    if (all_claimed()) return std::nullopt;
+    return claimed_++;
+  }
+
+  // Queues every copy; returns the seconds it waited for chunks.
+  double copy() {
+    double waited_s = 0;
+    for (std::size_t copied = 0; copied < chunks_.size(); ++copied) {
+      std::unique_lock lock(mutex_);
+      {
+        const StageClock clock(waited_s);
+        changed_.wait(lock, [this] { return stopped_ || !locked_.empty(); });
+      }
+      if (stopped_) break;
+      const LoadChunk chunk = locked_.front().chunk;
+      copying_.push_back({std::move(locked_.front().range), CopyEvent()});
+      locked_.pop_front();
+      check_cuda(cudaMemcpyAsync(task_.target + (chunk.copy_begin - task_.offset),
+                                 task_.file.bytes().data() + chunk.copy_begin, chunk.copy_end - chunk.copy_begin,
+                                 cudaMemcpyHostToDevice, task_.stream),
+                 "copying to the device");
+      copying_.back().done.record(task_.stream);
+      changed_.notify_all();
+    }
+    return waited_s;
+  }
+
+  void retire() {
+    while (retired_ < chunks_.size()) {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stopped_ || !copying_.empty(); });
+      if (stopped_) return;
+      CopyingChunk& chunk = copying_.front();  // stays where it is while others are appended
+      lock.unlock();
+      chunk.done.wait();
+      double unregister_s = 0;
+      {
+        const StageClock clock(unregister_s);
+        chunk.range.release();
+      }
+      lock.lock();
+      copying_.pop_front();
+      ++retired_;
+      stages_.unregister_s += unregister_s;
+      changed_.notify_all();
+    }
+  }
+
+  const CopyTask& task_;
+  const std::vector<LoadChunk> chunks_;
+  const std::size_t most_locked_;
+
+  std::mutex mutex_;  // guards what follows, but for the front of copying_, which is retire's
+  std::condition_variable changed_;
+  std::size_t claimed_ = 0;
+  std::size_t retired_ = 0;
+  std::deque<LockedChunk> locked_;
+  std::deque<CopyingChunk> copying_;  // in the stream's order
+  bool stopped_ = false;
+  std::string refusal_;
+  std::exception_ptr failure_;
+  LoadStages stages_;
+};
+
+}  // namespace
+
+CopyOutcome registered_copy(const CopyTask& task) { return Pipeline(task).run(); }
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// A range of a file that stays in page-locked host memory, where the device reads it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "gpu/cuda/load/copy_task.h"
+#include "gpu/cuda/load/pinned_memory.h"
+#include "gpu/cuda/load/registered_range.h"
+
+namespace weir {
+
+/// Page-locks the file's own pages, or copies. The mapping must outlive it.
+class ZeroCopyRange {
+ public:
+  /// The task's range, its target unused. The pages of the file where `own_pages`, else a copy. Nothing, with the
+  /// reason in `refusal`, where the system does not lock that. Throws Error(input, io, interrupted).
+  static std::optional<ZeroCopyRange> make(const CopyTask& task, bool own_pages, std::string& refusal,
+                                           LoadStages& stages);
+
+  /// The device's address of the range's first byte.
+  const std::byte* data() const { return data_; }
+
+ private:
+  ZeroCopyRange(std::variant<RegisteredRange, PinnedMemory> memory, const std::byte* data)
+      : memory_(std::move(memory)), data_(data) {}
+
+  std::variant<RegisteredRange, PinnedMemory> memory_;
+  const std::byte* data_;
+};
+
+}  // namespace weir

@@ -1,0 +1,146 @@
+// The functions of the CUDA runtime themselves, for a program that does not link it.
+#include <cuda_runtime_api.h>
+
+#include <cstdlib>
+#include <cstring>
+
+#include "tests/fake_cuda/fake_runtime.h"
+
+using weir::test::FakeRuntime;
+
+namespace {
+
+constexpr std::size_t kDeviceBytes = std::size_t{1} << 32U;
+
+FakeRuntime& runtime() { return FakeRuntime::instance(); }
+std::uintptr_t number(const void* address) { return reinterpret_cast<std::uintptr_t>(address); }
+
+cudaError_t allocate(void** memory, std::size_t bytes) {
+  *memory = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
+  runtime().allocated(number(*memory), bytes);
+  return cudaSuccess;
+}
+
+cudaError_t release(void* memory) {
+  if (memory == nullptr) return cudaSuccess;
+  if (!runtime().freed(number(memory))) return cudaErrorInvalidValue;
+  std::free(memory);
+  return cudaSuccess;
+}
+
+}  // namespace
+
+#define WEIR_ENTER(function) \
+  if (const cudaError_t code = runtime().enter(function); code != cudaSuccess) return code
+
+extern "C" {
+
+cudaError_t cudaGetDeviceCount(int* count) {
+  *count = 1;
+  return cudaSuccess;
+}
+cudaError_t cudaGetDevice(int* device) {
+  WEIR_ENTER("cudaGetDevice");
+  *device = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaSetDevice(int) {
+  WEIR_ENTER("cudaSetDevice");
+  return cudaSuccess;
+}
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
+  WEIR_ENTER("cudaDeviceGetAttribute");
+  *value = runtime().attribute(attribute);
+  return cudaSuccess;
+}
+cudaError_t cudaGetLastError() { return runtime().take_last_error(); }
+const char* cudaGetErrorName(cudaError_t code) {
+  switch (code) {
+    case cudaErrorMemoryAllocation:
+      return "cudaErrorMemoryAllocation";
+    case cudaErrorNotSupported:
+      return "cudaErrorNotSupported";
+    case cudaErrorIllegalAddress:
+      return "cudaErrorIllegalAddress";
+    default:
+      return "cudaError";
+  }
+}
+const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
+
+cudaError_t cudaMalloc(void** memory, std::size_t bytes) {
+  WEIR_ENTER("cudaMalloc");
+  return allocate(memory, bytes);
+}
+cudaError_t cudaFree(void* memory) {
+  WEIR_ENTER("cudaFree");
+  return release(memory);
+}
+cudaError_t cudaHostAlloc(void** memory, std::size_t bytes, unsigned) {
+  WEIR_ENTER("cudaHostAlloc");
+  return allocate(memory, bytes);
+}
+cudaError_t cudaFreeHost(void* memory) {
+  WEIR_ENTER("cudaFreeHost");
+  return release(memory);
+}
+cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
+  *total = kDeviceBytes;
+  *free = kDeviceBytes - runtime().allocated_bytes();
+  return cudaSuccess;
+}
+cudaError_t cudaHostRegister(void* memory, std::size_t bytes, unsigned flags) {
+  WEIR_ENTER("cudaHostRegister");
+  return runtime().register_range(number(memory), bytes, flags);
+}
+cudaError_t cudaHostUnregister(void* memory) {
+  WEIR_ENTER("cudaHostUnregister");
+  return runtime().unregister_range(number(memory));
+}
+cudaError_t cudaHostGetDevicePointer(void** device, void* host, unsigned) {
+  WEIR_ENTER("cudaHostGetDevicePointer");
+  *device = host;
+  return cudaSuccess;
+}
+cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind) {
+  WEIR_ENTER("cudaMemcpy");
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
+  WEIR_ENTER("cudaMemcpyAsync");
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemset(void* memory, int value, std::size_t bytes) {
+  WEIR_ENTER("cudaMemset");
+  std::memset(memory, value, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
+  WEIR_ENTER("cudaEventCreateWithFlags");
+  void* memory = nullptr;
+  allocate(&memory, 1);
+  *event = static_cast<cudaEvent_t>(memory);
+  return cudaSuccess;
+}
+cudaError_t cudaEventDestroy(cudaEvent_t event) { return release(event); }
+cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
+  WEIR_ENTER("cudaEventRecord");
+  return cudaSuccess;
+}
+cudaError_t cudaEventSynchronize(cudaEvent_t) {
+  WEIR_ENTER("cudaEventSynchronize");
+  return cudaSuccess;
+}
+cudaError_t cudaStreamCreate(cudaStream_t* stream) {
+  *stream = nullptr;
+  return cudaSuccess;
+}
+cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
+cudaError_t cudaStreamSynchronize(cudaStream_t) {
+  WEIR_ENTER("cudaStreamSynchronize");
+  return cudaSuccess;
+}
+
+}  // extern "C"

@@ -1,0 +1,129 @@
+#include "tests/fake_cuda/fake_runtime.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+namespace weir::test {
+namespace {
+
+std::uint64_t sum(const std::map<std::uintptr_t, std::uint64_t>& ranges) {
+  return std::accumulate(ranges.begin(), ranges.end(), std::uint64_t{0},
+                         [](std::uint64_t s, const auto& range) { return s + range.second; });
+}
+
+}  // namespace
+
+FakeRuntime& FakeRuntime::instance() {
+  static FakeRuntime runtime;
+  return runtime;
+}
+
+void FakeRuntime::reset() {
+  const std::lock_guard lock(mutex_);
+  registered_.clear();
+  allocated_.clear();
+  faults_.clear();
+  calls_.clear();
+  attributes_ = {{cudaDevAttrHostRegisterReadOnlySupported, 1}};
+  most_registered_ = 0;
+  sticky_ = last_ = cudaSuccess;
+}
+
+void FakeRuntime::fail(const std::string& function, int nth, cudaError_t code, bool sticky) {
+  const std::lock_guard lock(mutex_);
+  faults_.push_back({function, calls_[function] + static_cast<std::uint64_t>(nth), code, sticky});
+}
+
+void FakeRuntime::set_attribute(cudaDeviceAttr attribute, int value) {
+  const std::lock_guard lock(mutex_);
+  attributes_[attribute] = value;
+}
+
+int FakeRuntime::attribute(cudaDeviceAttr attribute) {
+  const std::lock_guard lock(mutex_);
+  return attributes_[attribute];
+}
+
+cudaError_t FakeRuntime::enter(const std::string& function) {
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t call = calls_[function]++;
+  if (sticky_ != cudaSuccess) return sticky_;
+  for (const Fault& fault : faults_) {
+    if (fault.function != function || fault.call != call) continue;
+    if (fault.sticky) sticky_ = fault.code;
+    return last_ = fault.code;
+  }
+  return cudaSuccess;
+}
+
+cudaError_t FakeRuntime::take_last_error() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(last_, sticky_);
+}
+
+cudaError_t FakeRuntime::register_range(std::uintptr_t address, std::uint64_t bytes, unsigned flags) {
+  const std::lock_guard lock(mutex_);
+  // What the driver does: the memory is mapped read-only and can be written by no one.
+  if ((flags & cudaHostRegisterReadOnly) == 0) return last_ = cudaErrorInvalidValue;
+  const auto next = registered_.upper_bound(address);
+  const bool overlaps_next = next != registered_.end() && next->first < address + bytes;
+  const bool overlaps_last = next != registered_.begin() && std::prev(next)->first + std::prev(next)->second > address;
+  if (overlaps_next || overlaps_last) return last_ = cudaErrorHostMemoryAlreadyRegistered;
+  constexpr int kPopulateRead = 22;  // fails for pages beyond the file's end, as page-locking does
+  if (::madvise(reinterpret_cast<void*>(address), bytes, kPopulateRead) != 0) return last_ = cudaErrorInvalidValue;
+  registered_[address] = bytes;
+  most_registered_ = std::max(most_registered_, sum(registered_));
+  return cudaSuccess;
+}
+
+cudaError_t FakeRuntime::unregister_range(std::uintptr_t address) {
+  const std::lock_guard lock(mutex_);
+  return registered_.erase(address) == 1 ? cudaSuccess : last_ = cudaErrorHostMemoryNotRegistered;
+}
+
+bool FakeRuntime::registered(std::uintptr_t address, std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  const auto next = registered_.upper_bound(address);
+  return next != registered_.begin() && std::prev(next)->first + std::prev(next)->second >= address + bytes;
+}
+
+void FakeRuntime::allocated(std::uintptr_t address, std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  allocated_[address] = bytes;
+}
+
+bool FakeRuntime::freed(std::uintptr_t address) {
+  const std::lock_guard lock(mutex_);
+  return allocated_.erase(address) == 1;
+}
+
+bool FakeRuntime::broken() {
+  const std::lock_guard lock(mutex_);
+  return sticky_ != cudaSuccess;
+}
+
+std::uint64_t FakeRuntime::registered_bytes() {
+  const std::lock_guard lock(mutex_);
+  return sum(registered_);
+}
+
+std::uint64_t FakeRuntime::most_registered_bytes() {
+  const std::lock_guard lock(mutex_);
+  return most_registered_;
+}
+
+std::uint64_t FakeRuntime::allocated_bytes() {
+  const std::lock_guard lock(mutex_);
+  return sum(allocated_);
+}
+
+std::uint64_t FakeRuntime::calls(const std::string& function) {
+  const std::lock_guard lock(mutex_);
+  return calls_[function];
+}
+
+}  // namespace weir::test

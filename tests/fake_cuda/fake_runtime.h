@@ -1,0 +1,63 @@
+// The calls of the CUDA runtime that the loader makes, pretended on the host, so that loading, its threads and its
+// failures are tested where there is no device: device memory is host memory, a stream does at once what it is given.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace weir::test {
+
+/// What the pretended device does; reset() between tests. Any thread may call.
+class FakeRuntime {
+ public:
+  static FakeRuntime& instance();
+  void reset();
+
+  /// The `nth` call (0: the next) of `function` fails with `code`; a sticky one makes all later calls fail too.
+  void fail(const std::string& function, int nth, cudaError_t code, bool sticky = false);
+  void set_attribute(cudaDeviceAttr attribute, int value);
+  int attribute(cudaDeviceAttr attribute);
+
+  /// At the beginning of a call: what it returns.
+  cudaError_t enter(const std::string& function);
+  /// Failures returned and not cleared by cudaGetLastError; a sticky one stays.
+  cudaError_t take_last_error();
+
+  // Ranges that are registered, and memory that is allocated; address and bytes.
+  cudaError_t register_range(std::uintptr_t address, std::uint64_t bytes, unsigned flags);
+  cudaError_t unregister_range(std::uintptr_t address);
+  bool registered(std::uintptr_t address, std::uint64_t bytes);
+  void allocated(std::uintptr_t address, std::uint64_t bytes);
+  bool freed(std::uintptr_t address);
+
+  bool broken();  ///< by a failure that sticks
+  std::uint64_t registered_bytes();
+  std::uint64_t most_registered_bytes();
+  std::uint64_t allocated_bytes();
+  std::uint64_t calls(const std::string& function);
+
+ private:
+  struct Fault {
+    std::string function;
+    std::uint64_t call;
+    cudaError_t code;
+    bool sticky;
+  };
+
+  std::mutex mutex_;
+  std::vector<Fault> faults_;
+  std::map<std::string, std::uint64_t> calls_;
+  std::map<cudaDeviceAttr, int> attributes_;
+  std::map<std::uintptr_t, std::uint64_t> registered_;
+  std::map<std::uintptr_t, std::uint64_t> allocated_;
+  std::uint64_t most_registered_ = 0;
+  cudaError_t sticky_ = cudaSuccess;
+  cudaError_t last_ = cudaSuccess;
+};
+
+}  // namespace weir::test

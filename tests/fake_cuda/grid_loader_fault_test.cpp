@@ -1,0 +1,170 @@
+// What the loader does when the runtime refuses or fails in the middle, on the pretended device.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/error.h"
+#include "format/text.h"
+#include "gpu/cuda/grid_loader.h"
+#include "tests/cuda/grid_file.h"
+#include "tests/fake_cuda/fake_runtime.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir {
+namespace {
+
+using test::FakeRuntime;
+
+class GridLoaderFault : public testing::Test {
+ protected:
+  GridLoaderFault() { FakeRuntime::instance().reset(); }
+  ~GridLoaderFault() override {
+    // A device that failed for good gives nothing back.
+    if (!runtime().broken()) {
+      EXPECT_EQ(runtime().registered_bytes(), 0U);
+      EXPECT_EQ(runtime().allocated_bytes(), 0U);
+    }
+    runtime().reset();
+  }
+
+  static FakeRuntime& runtime() { return FakeRuntime::instance(); }
+
+  NvdbFile file(int edge = 40) const {
+    const std::string path = directory_ / "grid.nvdb";
+    test::write_grid_file(path, edge);
+    return NvdbFile(path);
+  }
+
+  static bool holds(const DeviceGrid& grid, const NvdbFile& file) {
+    const auto data = file.grid().data();
+    return std::equal(data.begin(), data.end(), grid.data(), grid.data() + grid.bytes());
+  }
+
+  static std::string refusal(const NvdbFile& file, const LoadOptions& options = kOptions) {
+    try {
+      load_grid(file, {}, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+      return error.what();
+    }
+    return "none";
+  }
+
+  static constexpr LoadOptions kOptions{.only = {}, .chunk_bytes = 65536, .threads = 2};
+  const TemporaryDirectory directory_;
+};
+
+TEST_F(GridLoaderFault, ARefusalAtAnyChunkLeadsToTheNextWay) {
+  const NvdbFile grid_file = file();
+  for (const cudaError_t code : {cudaErrorNotSupported, cudaErrorMemoryAllocation}) {
+    for (const int chunk : {0, 1, 7}) {
+      runtime().reset();
+      runtime().fail("cudaHostRegister", chunk, code);
+      const DeviceGrid grid = load_grid(grid_file, {}, kOptions);
+      EXPECT_EQ(grid.report().path, LoadPath::pinned_ring);
+      EXPECT_EQ(grid.report().note.rfind("not registered: registering ", 0), 0U) << grid.report().note;
+      EXPECT_NE(grid.report().note.find(cat(" of the file: ", cudaGetErrorName(code), ", pretended")),
+                std::string::npos)
+          << grid.report().note;
+      EXPECT_TRUE(holds(grid, grid_file));
+      EXPECT_EQ(runtime().registered_bytes(), 0U);
+      EXPECT_EQ(cudaGetLastError(), cudaSuccess);
+    }
+  }
+}
+
+TEST_F(GridLoaderFault, APlainCopyIsTheLastResort) {
+  const NvdbFile grid_file = file();
+  runtime().set_attribute(cudaDevAttrHostRegisterReadOnlySupported, 0);
+  runtime().fail("cudaHostAlloc", 0, cudaErrorMemoryAllocation);
+  const DeviceGrid grid = load_grid(grid_file, {}, kOptions);
+  EXPECT_EQ(grid.report().path, LoadPath::pageable);
+  EXPECT_EQ(grid.report().note,
+            "not registered: the device does not register read-only memory; not pinned-ring: page-locking 1.0 MiB of "
+            "host memory: cudaErrorMemoryAllocation, pretended");
+  EXPECT_TRUE(holds(grid, grid_file));
+}
+
+TEST_F(GridLoaderFault, TheWayAskedForIsNotReplaced) {
+  const NvdbFile grid_file = file();
+  runtime().set_attribute(cudaDevAttrHostRegisterReadOnlySupported, 0);
+  EXPECT_EQ(refusal(grid_file, {.only = LoadPath::registered}),
+            grid_file.path() +
+                ": cannot be brought to the device: not registered: the device does not register read-only memory");
+}
+
+TEST_F(GridLoaderFault, AFailureThatSticksIsNoRefusal) {
+  const NvdbFile grid_file = file();
+  for (const char* function : {"cudaHostRegister", "cudaMemcpyAsync", "cudaEventRecord", "cudaEventSynchronize",
+                               "cudaEventCreateWithFlags", "cudaHostUnregister", "cudaSetDevice"}) {
+    for (const int call : {0, 3}) {
+      if (std::string(function) == "cudaSetDevice" && call > 2) continue;  // once a thread
+      runtime().reset();
+      runtime().fail(function, call, cudaErrorIllegalAddress);
+      EXPECT_NE(refusal(grid_file).find(": cudaErrorIllegalAddress, pretended"), std::string::npos) << function;
+    }
+  }
+}
+
+// An illegal access of earlier work may come out of registration with a code that looks like a refusal.
+TEST_F(GridLoaderFault, AFailureOfEarlierWorkIsNotTakenForARefusal) {
+  const NvdbFile grid_file = file();
+  runtime().fail("cudaHostRegister", 2, cudaErrorNotSupported, true);
+  const std::string message = refusal(grid_file);
+  EXPECT_EQ(message.rfind("registering ", 0), 0U) << message;
+  EXPECT_NE(message.find(": cudaErrorNotSupported, pretended"), std::string::npos) << message;
+}
+
+TEST_F(GridLoaderFault, TheBufferIsStillTheCallersAfterAFailure) {
+  const NvdbFile grid_file = file();
+  DeviceBuffer buffer;
+  buffer.reserve(grid_file.grid().data_bytes());
+  const std::byte* const at = buffer.data();
+  runtime().fail("cudaMemcpyAsync", 1, cudaErrorIllegalAddress);
+  EXPECT_THROW(load_grid(grid_file, std::move(buffer), kOptions), Error);
+  EXPECT_EQ(buffer.data(), at);
+  EXPECT_TRUE(holds(load_grid(grid_file, std::move(buffer), kOptions), grid_file));
+}
+
+TEST_F(GridLoaderFault, SaysThatTheDeviceHasNoRoom) {
+  const NvdbFile grid_file = file();
+  runtime().fail("cudaMalloc", 0, cudaErrorMemoryAllocation);
+  EXPECT_EQ(refusal(grid_file), cat("allocating ", format_bytes(grid_file.grid().data_bytes()),
+                                    " of device memory: cudaErrorMemoryAllocation, pretended"));
+}
+
+TEST_F(GridLoaderFault, NeverLocksMoreThanThreadsAndThreeChunks) {
+  const NvdbFile grid_file = file(96);
+  for (const int threads : {1, 2, 4}) {
+    runtime().reset();
+    LoadOptions options = kOptions;
+    options.threads = threads;
+    EXPECT_TRUE(holds(load_grid(grid_file, {}, options), grid_file));
+    EXPECT_GT(runtime().calls("cudaHostRegister"), 40U);
+    EXPECT_LE(runtime().most_registered_bytes(), (static_cast<std::uint64_t>(threads) + 3) * options.chunk_bytes);
+  }
+}
+
+TEST_F(GridLoaderFault, ZeroCopyFallsBackToACopyInHostMemory) {
+  const NvdbFile grid_file = file();
+  runtime().fail("cudaHostRegister", 0, cudaErrorNotSupported);
+  const DeviceGrid grid = load_grid(grid_file, {}, {.zero_copy = true});
+  EXPECT_EQ(grid.report().path, LoadPath::pinned_ring);
+  EXPECT_EQ(grid.report().note.rfind("not registered: registering ", 0), 0U) << grid.report().note;
+  EXPECT_TRUE(holds(grid, grid_file));
+}
+
+TEST_F(GridLoaderFault, KeepsTheRingForTheNextLoad) {
+  const NvdbFile grid_file = file();
+  LoadOptions options = kOptions;
+  options.only = LoadPath::pinned_ring;
+  DeviceGrid grid = load_grid(grid_file, {}, options);
+  grid = load_grid(grid_file, std::move(grid).take_buffer(), options);
+  EXPECT_EQ(runtime().calls("cudaHostAlloc"), 1U);
+  EXPECT_EQ(runtime().calls("cudaMalloc"), 1U);
+}
+
+}  // namespace
+}  // namespace weir
