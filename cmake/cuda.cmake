@@ -21,10 +21,14 @@ if(CMAKE_CUDA_COMPILER)
   find_package(CUDAToolkit REQUIRED)
   file(GLOB_RECURSE WEIR_CUDA_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp
                                                         ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
+  if(WEIR_EMBED)  # the back end of weir render reads scenes and images
+    list(FILTER WEIR_CUDA_SOURCES EXCLUDE REGEX "/cuda_backend\\.cpp$")
+  endif()
   add_library(weir_cuda STATIC ${WEIR_CUDA_SOURCES})
-  target_link_libraries(weir_cuda PUBLIC weir_gpu CUDA::cudart_static ${CMAKE_DL_LIBS} Threads::Threads)
+  target_compile_options(weir_cuda INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>)  # where CMake does not know it
+  target_link_libraries(weir_cuda PUBLIC $<IF:$<BOOL:${WEIR_EMBED}>,weir_gpu_core,weir_gpu> CUDA::cudart_static ${CMAKE_DL_LIBS} Threads::Threads)
   target_compile_definitions(weir_cuda PUBLIC WEIR_HAVE_CUDA)
-  if(WEIR_BUILD_BENCH)
+  if(WEIR_BUILD_BENCH AND NOT WEIR_EMBED)
     # As few shared libraries as it uses: it runs on machines that have a device and little else.
     add_executable(weir_bench_load ${PROJECT_SOURCE_DIR}/bench/gpu/bench_load.cpp)
     target_link_options(weir_bench_load PRIVATE -Wl,--as-needed)

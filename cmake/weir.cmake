@@ -24,11 +24,26 @@ if(WEIR_TIDY)
   target_compile_definitions(weir_options INTERFACE WEIR_TIDY_CONFIGURATION="${tidy_digest}")
 endif()
 
-# weir_library(NAME LINKS target...): every .cpp in NAME/ and below but main.cpp and what needs the CUDA toolkit.
+# weir_core(NAME FILES name... LINKS target...): those files of NAME/, which need no library, as weir_NAME_core: what
+# another program embeds (docs/embedding.md).
+function(weir_core name)
+  cmake_parse_arguments(ARG "" "" "FILES;LINKS" ${ARGN})
+  list(TRANSFORM ARG_FILES REPLACE ".+" "${PROJECT_SOURCE_DIR}/${name}/\\0.cpp")
+  add_library(weir_${name}_core STATIC ${ARG_FILES})
+  target_link_libraries(weir_${name}_core PUBLIC weir_options ${ARG_LINKS})
+endfunction()
+
+# weir_library(NAME LINKS target...): every .cpp in NAME/ and below but main.cpp, what needs the CUDA toolkit, and what
+# weir_NAME_core has, which is linked where there is one.
 function(weir_library name)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|/gpu/cuda/")
+  if(TARGET weir_${name}_core)
+    get_target_property(core weir_${name}_core SOURCES)
+    list(REMOVE_ITEM sources ${core})
+    list(PREPEND ARG_LINKS weir_${name}_core)
+  endif()
   if(NOT sources)
     add_library(weir_${name} INTERFACE)
     target_link_libraries(weir_${name} INTERFACE weir_options ${ARG_LINKS})

@@ -1,7 +1,5 @@
 #include "format/nvdb_grid.h"
 
-#include <zlib.h>
-
 #include <limits>
 
 #include "format/leaf_decode.h"
@@ -14,9 +12,6 @@ namespace weir {
 namespace {
 
 using nvdb::InternalLayout;
-
-// Up to this version the root table belongs to the head of the checksum.
-constexpr std::uint32_t kLastVersionWithRootTable = 32U << 21U | 6U << 10U;
 
 bool mask_on(const std::byte* mask, unsigned n) {
   return ((static_cast<unsigned>(mask[n >> 3U]) >> (n & 7U)) & 1U) != 0;
@@ -86,15 +81,6 @@ NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path
   grid.head_checksum_ = bytes.get<std::uint32_t>(nvdb::grid::kChecksum);
   grid.macrocells_ = blind.macrocells;
   return grid;
-}
-
-std::uint32_t NvdbGrid::computed_head_checksum() const {
-  const std::uint64_t begin = nvdb::grid::kVersion;
-  const std::uint64_t tiles = version_ <= kLastVersionWithRootTable ? root_tiles_ * nvdb::kRootTileBytes : 0;
-  const std::uint64_t end =
-      (version_ <= kLastVersionWithRootTable ? nvdb::kRootTilesOffset : nvdb::kRootOffset) + tiles;
-  const auto* head = reinterpret_cast<const Bytef*>(data().data() + begin);
-  return static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), head, end - begin));
 }
 
 GridBlock NvdbGrid::block_at(const Index3& i) const {

@@ -74,9 +74,6 @@ class NvdbGrid {
   std::array<std::uint32_t, 3> tile_counts() const { return tile_counts_; }  ///< active: lower, upper, root; as stored
   std::uint32_t root_tiles() const { return root_tiles_; }                   ///< entries of the root table
   std::uint32_t head_checksum() const { return head_checksum_; }             ///< all bits set where absent
-  /// CRC-32 of the head (as the grid's version defines it, FORMAT.md) as it stands in the file; equals
-  /// head_checksum() in an intact one.
-  std::uint32_t computed_head_checksum() const;
   MacrocellView macrocells() const { return macrocells_; }
 
   /// What covers voxel `i` (any coordinates).

@@ -14,6 +14,7 @@
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/nanovdb_layout.h"
+#include "format/nvdb_checksum.h"
 #include "format/nvdb_file.h"
 #include "format/nvdb_header.h"
 #include "format/text.h"
@@ -61,7 +62,7 @@ std::string hex(std::uint32_t value) {
 
 const char* checksum_state(const NvdbGrid& grid) {
   if (grid.head_checksum() == static_cast<std::uint32_t>(nvdb::kNoChecksum)) return "absent";
-  return grid.head_checksum() == grid.computed_head_checksum() ? "ok" : "wrong";
+  return grid.head_checksum() == computed_head_checksum(grid) ? "ok" : "wrong";
 }
 
 Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions& shown) {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "format/nanovdb_layout.h"
+#include "format/nvdb_checksum.h"
 #include "format/text.h"
 
 namespace weir {
@@ -44,10 +45,10 @@ bool same_value(double stored, double from_sidecar) {
 
 VolumeCheck head_checksum(const NvdbGrid& grid) {
   if (grid.head_checksum() == static_cast<std::uint32_t>(nvdb::kNoChecksum)) {
-    return {"head checksum", "none stored", hex(grid.computed_head_checksum()), false};
+    return {"head checksum", "none stored", hex(computed_head_checksum(grid)), false};
   }
-  return {"head checksum", hex(grid.computed_head_checksum()), hex(grid.head_checksum()),
-          grid.computed_head_checksum() == grid.head_checksum()};
+  return {"head checksum", hex(computed_head_checksum(grid)), hex(grid.head_checksum()),
+          computed_head_checksum(grid) == grid.head_checksum()};
 }
 
 VolumeCheck stored_range(const NvdbGrid& grid, const TreeCensus& census) {
