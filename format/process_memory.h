@@ -1,4 +1,4 @@
-// The process's resident memory, as the kernel counts it.
+// The process's resident memory, and what is left, as the kernel counts it.
 #pragma once
 
 #include <cstdint>
@@ -10,5 +10,9 @@ std::uint64_t resident_bytes();
 /// The most that were ever resident (VmHWM): of this program only, where getrusage also counts the
 /// process that started it.
 std::uint64_t peak_resident_bytes();
+
+/// Bytes that this process can still take before something has to go: the system's MemAvailable, and what is left of a
+/// container's limit (cgroup v2 memory.max) where that is less.
+std::uint64_t available_bytes();
 
 }  // namespace weir

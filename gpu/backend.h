@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "format/nvdb_file.h"
+#include "gpu/dense_volume.h"
 #include "gpu/image.h"
 #include "gpu/render_setup.h"
 
@@ -52,6 +53,9 @@ class Backend {
   /// fastest here. `reuse` (may be null), a volume of this back end that nobody needs any more, lends its memory.
   virtual std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
                                              std::unique_ptr<LoadedVolume> reuse) = 0;
+  /// A volume that is held voxel by voxel; `volume` stays as long as it is needed. Throws Error(usage) where this back
+  /// end renders none.
+  virtual std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) = 0;
   /// `volume` must be this back end's. May run while another volume is loaded from another thread. Throws
   /// Error(interrupted) where `cancel` was set, and as RenderSetup.
   virtual Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,

@@ -20,7 +20,8 @@ constexpr std::uint32_t kSamplesPerPass = 4;  // a tile of a pass is some millis
 
 }  // namespace
 
-Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options) {
+template <class Volume>
+Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options) {
   Image image(task.width, task.height);
   std::atomic<std::uint64_t> done{0};
   std::mutex reporting;
@@ -66,5 +67,8 @@ Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& 
   for (Float3& pixel : image.pixels) pixel = pixel * scale;
   return image;
 }
+
+template Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options);
+template Image render_cpu(const RenderTask<DenseSampler>& task, const CpuRenderOptions& options);
 
 }  // namespace weir

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "gpu/dense_volume.h"
 #include "gpu/image.h"
 #include "gpu/render_task.h"
 #include "gpu/volume_sampler.h"
@@ -20,7 +21,8 @@ struct CpuRenderOptions {
   std::function<void(std::uint64_t)> progress;
 };
 
-/// The mean of all samples. Throws Error(interrupted) where `cancel` was set.
-Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options);
+/// The mean of all samples. Throws Error(interrupted) where `cancel` was set. Of VolumeSampler and DenseSampler.
+template <class Volume>
+Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options);
 
 }  // namespace weir

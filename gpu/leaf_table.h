@@ -15,6 +15,11 @@
 
 namespace weir {
 
+/// `i`, or the next voxel where `up` and there is one.
+WEIR_HOST_DEVICE inline std::int32_t upper(std::int32_t i, bool up, std::int32_t extent) {
+  return up && i + 1 < extent ? i + 1 : i;
+}
+
 /// A block's entry resolved: the leaf's bytes, or null and the value of the whole block.
 struct LeafBlock {
   const std::byte* leaf = nullptr;
@@ -46,6 +51,31 @@ struct LeafTableView {
     const Int3 v{i.x + shift.x, i.y + shift.y, i.z + shift.z};
     const LeafBlock b = block(v);
     return b.leaf == nullptr ? b.value : leaf_value(type, b.leaf, offset_in_leaf(v));
+  }
+
+  /// The 2 x 2 x 2 voxels from the local voxel `i` up, x fastest, those beyond the extent clamped. True where
+  /// one tile covers all of them; then only c[0] is set.
+  WEIR_HOST_DEVICE bool taps(const Int3& i, float (&c)[8]) const {
+    const Int3 v{i.x + shift.x, i.y + shift.y, i.z + shift.z};
+    if ((v.x & 7) < 7 && (v.y & 7) < 7 && (v.z & 7) < 7 && i.x + 1 < extent.x && i.y + 1 < extent.y &&
+        i.z + 1 < extent.z) {
+      // Two of three positions: all eight taps lie in one block, one table look-up serves them all.
+      const LeafBlock b = block(v);
+      if (b.leaf == nullptr) {
+        c[0] = b.value;
+        return true;
+      }
+      const std::uint32_t o = offset_in_leaf(v);
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        c[k] = leaf_value(type, b.leaf, o + ((k & 1U) << 6U) + ((k & 2U) << 2U) + (k >> 2U));
+      }
+    } else {
+      for (int k = 0; k < 8; ++k) {
+        c[k] = voxel({upper(i.x, (k & 1) != 0, extent.x), upper(i.y, (k & 2) != 0, extent.y),
+                      upper(i.z, (k & 4) != 0, extent.z)});
+      }
+    }
+    return false;
   }
 
   WEIR_HOST_DEVICE static std::uint32_t offset_in_leaf(const Int3& v) {

@@ -26,7 +26,7 @@ struct RenderOptions {
   std::uint64_t seed = 0;
   std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
   /// The scene's; null: loaded from where the scene says. Who renders the scene again hands it over.
-  std::shared_ptr<const Environment> environment;
+  std::shared_ptr<const Environment> environment = nullptr;
 };
 
 /// What a picture depends on besides the voxels.

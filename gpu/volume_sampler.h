@@ -15,8 +15,10 @@ enum class Filter { nearest, trilinear, stochastic };
 
 /// The volume a tracer sees: `sample` for lookups that may draw random numbers, `smooth` for those
 /// that must be a function of the position. Any type with these two and `extent` may take its place.
-struct VolumeSampler {
-  LeafTableView table;
+/// `Table` holds the voxels: `extent`, `voxel(i)`, and `taps`, the eight that a blend needs.
+template <class Table>
+struct FilteredVolume {
+  Table table;
   Filter filter = Filter::trilinear;
 
   WEIR_HOST_DEVICE Float3 extent() const {
@@ -28,9 +30,9 @@ struct VolumeSampler {
     Int3 i;
     Float3 f;
     corner(p, i, f);
-    return table.voxel({step(i.x, random.uniform() < f.x, table.extent.x),
-                        step(i.y, random.uniform() < f.y, table.extent.y),
-                        step(i.z, random.uniform() < f.z, table.extent.z)});
+    return table.voxel({upper(i.x, random.uniform() < f.x, table.extent.x),
+                        upper(i.y, random.uniform() < f.y, table.extent.y),
+                        upper(i.z, random.uniform() < f.z, table.extent.z)});
   }
 
   /// Nearest or trilinear; trilinear where the filter is stochastic.
@@ -43,32 +45,14 @@ struct VolumeSampler {
     Int3 i;
     Float3 f;
     corner(p, i, f);
-    const Int3 v{i.x + table.shift.x, i.y + table.shift.y, i.z + table.shift.z};
     float c[8];
-    if ((v.x & 7) < 7 && (v.y & 7) < 7 && (v.z & 7) < 7 && i.x + 1 < table.extent.x && i.y + 1 < table.extent.y &&
-        i.z + 1 < table.extent.z) {
-      // Two of three positions: all eight taps lie in one block, one table look-up serves them all.
-      const LeafBlock b = table.block(v);
-      if (b.leaf == nullptr) return b.value;
-      const std::uint32_t o = LeafTableView::offset_in_leaf(v);
-      for (std::uint32_t k = 0; k < 8; ++k) {
-        c[k] = leaf_value(table.type, b.leaf, o + ((k & 1U) << 6U) + ((k & 2U) << 2U) + (k >> 2U));
-      }
-    } else {
-      for (int k = 0; k < 8; ++k) {
-        c[k] = table.voxel({step(i.x, (k & 1) != 0, table.extent.x), step(i.y, (k & 2) != 0, table.extent.y),
-                            step(i.z, (k & 4) != 0, table.extent.z)});
-      }
-    }
+    if (table.taps(i, c)) return c[0];
     const float y0 = mix(mix(c[0], c[1], f.x), mix(c[2], c[3], f.x), f.y);
     const float y1 = mix(mix(c[4], c[5], f.x), mix(c[6], c[7], f.x), f.y);
     return mix(y0, y1, f.z);
   }
 
  private:
-  WEIR_HOST_DEVICE static std::int32_t step(std::int32_t i, bool up, std::int32_t extent) {
-    return up && i + 1 < extent ? i + 1 : i;
-  }
   WEIR_HOST_DEVICE static std::int32_t voxel_of(float p, std::int32_t extent) {
     return lesser(static_cast<std::int32_t>(clamped(p, 0.0F, static_cast<float>(extent))), extent - 1);
   }
@@ -87,6 +71,9 @@ struct VolumeSampler {
     corner(p.z, table.extent.z, i.z, f.z);
   }
 };
+
+/// The voxels of a NanoVDB file.
+using VolumeSampler = FilteredVolume<LeafTableView>;
 
 /// Central differences over two voxels, in value per voxel.
 template <class Volume>

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "format/error.h"
@@ -113,6 +114,24 @@ void add_input_options(CLI::App& command, InputArguments& arguments) {
       "a stored value that stands for \"no data\", besides what the file says");
   add("--roi", arguments.roi, "x0:x1,y0:y1,z0:z1", "only this box of voxels, half open");
   add("--direct-io", arguments.direct_io, "auto|on|off", "read past the page cache; default auto: what is not in it");
+}
+
+std::string given_input_option(const InputArguments& arguments) {
+  const std::array<std::pair<std::string_view, const std::string&>, 11> options{{{"--dims", arguments.dims},
+                                                                                 {"--type", arguments.type},
+                                                                                 {"--endian", arguments.endian},
+                                                                                 {"--offset", arguments.offset},
+                                                                                 {"--dataset", arguments.dataset},
+                                                                                 {"--index", arguments.index},
+                                                                                 {"--spacing", arguments.spacing},
+                                                                                 {"--origin", arguments.origin},
+                                                                                 {"--missing", arguments.missing},
+                                                                                 {"--roi", arguments.roi},
+                                                                                 {"--direct-io", arguments.direct_io}}};
+  for (const auto& [name, text] : options) {
+    if (!text.empty()) return std::string(name);
+  }
+  return arguments.stack ? "--stack" : "";
 }
 
 SourceOptions parse_input(const InputArguments& arguments) {

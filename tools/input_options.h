@@ -30,6 +30,9 @@ struct InputArguments {
 /// --direct-io, stored in `arguments`, which must live as long as the command.
 void add_input_options(CLI::App& command, InputArguments& arguments);
 
+/// The first of the options that is given, "--dims"; empty where none is.
+std::string given_input_option(const InputArguments& arguments);
+
 /// What the options mean. Throws Error(usage) naming option, text and form where one cannot be read;
 /// whether the values make sense for the file is for open_source to say.
 SourceOptions parse_input(const InputArguments& arguments);

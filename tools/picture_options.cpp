@@ -1,0 +1,132 @@
+#include "tools/picture_options.h"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "format/error.h"
+#include "format/text.h"
+#include "tools/command.h"
+
+namespace weir {
+
+namespace {
+
+constexpr std::int64_t kMaxEdge = 32768;       // pixels
+constexpr std::int64_t kMaxPixels = 1 << 28;   // 3 GiB of picture
+constexpr std::int64_t kMaxSamples = 1 << 20;  // the mean is a sum of floats
+constexpr std::int64_t kMaxThreads = 4096;
+
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+std::int64_t parse_count(std::string_view option, const std::string& text, std::int64_t low, std::int64_t high) {
+  const std::optional<std::int64_t> value = parse_int(text);
+  if (!value || *value < low || *value > high) {
+    throw usage(cat(option, " is \"", text, "\", it must be a whole number from ", low, " to ", high));
+  }
+  return *value;
+}
+
+void parse_size(const std::string& text, RenderOptions& options) {
+  const std::vector<std::string> parts = split(text, 'x');
+  const auto bad = [&] {
+    return usage(cat("--size is \"", text, "\", it must be WxH in pixels, each from 1 to ", kMaxEdge, " and ",
+                     kMaxPixels, " together"));
+  };
+  if (parts.size() != 2) throw bad();
+  const auto width = parse_int(parts[0]);
+  const auto height = parse_int(parts[1]);
+  if (!width || !height || *width < 1 || *height < 1 || *width > kMaxEdge || *height > kMaxEdge) throw bad();
+  if (*width * *height > kMaxPixels) throw bad();
+  options.width = static_cast<std::int32_t>(*width);
+  options.height = static_cast<std::int32_t>(*height);
+}
+
+// AZIMUTH,ELEVATION[,ZOOM]; everything else about a camera is in a scene.
+void parse_camera(const std::string& text, SceneCamera& camera) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::vector<double> numbers;
+  for (const std::string& part : parts) {
+    if (const auto number = parse_double(part)) numbers.push_back(*number);
+  }
+  const bool valid = numbers.size() == parts.size() && (numbers.size() == 2 || numbers.size() == 3) &&
+                     std::abs(numbers[0]) <= 3600 && std::abs(numbers[1]) <= 90 &&
+                     (numbers.size() == 2 || (numbers[2] >= 0.01 && numbers[2] <= 100));
+  if (!valid) {
+    throw usage(cat("--camera is \"", text, "\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees,",
+                    " elevation from -90 to 90, zoom from 0.01 to 100"));
+  }
+  camera.position.reset();
+  camera.azimuth = numbers[0];
+  camera.elevation = numbers[1];
+  if (numbers.size() == 3) camera.zoom = numbers[2];
+}
+
+// The scene file first, the command line over it.
+Scene make_scene(const PictureArguments& arguments) {
+  Scene scene = arguments.scene.empty() ? Scene{} : load_scene(arguments.scene);
+  if (!arguments.mode.empty()) scene.mode = parse_render_mode(arguments.mode).value_or(scene.mode);
+  if (!arguments.colormap.empty()) {
+    scene.volume.colormap = arguments.colormap;
+    scene.volume.color.clear();
+  }
+  if (!arguments.camera.empty()) parse_camera(arguments.camera, scene.camera);
+  if (!arguments.iso.empty()) {
+    const std::optional<double> iso = parse_double(arguments.iso);
+    if (!iso || !(std::abs(*iso) <= 3.4e38)) throw usage(cat("--iso is \"", arguments.iso, "\", it must be a number"));
+    scene.volume.iso = iso;
+  }
+  return scene;
+}
+
+// Enough that a default picture is clean; the other modes only have edges to smooth.
+std::int64_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 32 : 4; }
+
+}  // namespace
+
+void add_picture_options(CLI::App& command, PictureArguments& arguments) {
+  command.add_option("--backend", arguments.backend, "auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  command
+      .add_option("--mode", arguments.mode,
+                  "path: multiple scattering; dvr: emission and absorption; iso: surface; mip: largest value")
+      ->check(CLI::IsMember({"path", "dvr", "iso", "mip"}));
+  command.add_option("--size", arguments.size, "WxH in pixels")->capture_default_str();
+  command.add_option("--spp", arguments.samples, "samples a pixel; default 32 for path, 4 for the others");
+  command.add_option("--seed", arguments.seed, "of the random numbers; the same seed gives the same picture")
+      ->capture_default_str();
+  command.add_option("--scene", arguments.scene, "SCENE.toml: camera, transfer function, medium, light");
+  command
+      .add_option("--filter", arguments.filter,
+                  "trilinear, stochastic (path: as exact, less memory traffic) or nearest")
+      ->check(CLI::IsMember({"trilinear", "stochastic", "nearest"}))
+      ->capture_default_str();
+  command.add_option("--colormap", arguments.colormap, "by name; a wrong one lists them");
+  command.add_option("--iso", arguments.iso, "value of the surface; default: 35 % of the way from the background");
+  command.add_option("--camera", arguments.camera, "AZIMUTH,ELEVATION[,ZOOM] in degrees; default 35,20,1");
+  command.add_option("--threads", arguments.threads, "0: all of the machine's")->capture_default_str();
+}
+
+PictureRequest parse_picture(const PictureArguments& arguments) {
+  PictureRequest request;
+  request.threads = static_cast<int>(parse_count("--threads", arguments.threads, 0, kMaxThreads));
+  request.backend = arguments.backend;
+  request.scene = make_scene(arguments);
+  parse_size(arguments.size, request.options);
+  const std::map<std::string, Filter> filters{
+      {"nearest", Filter::nearest}, {"trilinear", Filter::trilinear}, {"stochastic", Filter::stochastic}};
+  request.options.filter = filters.at(arguments.filter);
+  request.options.seed = static_cast<std::uint64_t>(parse_count("--seed", arguments.seed, 0, INT64_MAX));
+  request.sampling.samples =
+      static_cast<std::uint32_t>(arguments.samples.empty() ? default_samples(request.scene.mode)
+                                                           : parse_count("--spp", arguments.samples, 1, kMaxSamples));
+  request.sampling.cancel = &interrupt_flag();
+  request.options.environment = load_environment(request.scene);
+  return request;
+}
+
+}  // namespace weir
