@@ -3,8 +3,13 @@
 
 add_library(weir_options INTERFACE)
 target_include_directories(weir_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_features(weir_options INTERFACE cxx_std_20)
 # A decoded value is two roundings everywhere: never let the compiler fuse them.
-target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -Wall -Wextra -Wconversion -Wshadow>)
+target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
+                                              $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+if(NOT WEIR_EMBED)  # another program chooses its own warnings
+  target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow>)
+endif()
 # A compiler newer than those weir is checked with brings warnings of its own: shown, but no failure.
 if(WEIR_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
   set(WEIR_WERROR OFF)
@@ -88,6 +93,10 @@ function(weir_tests name)
     set(library weir_tools)
     add_dependencies(weir_tests_${name} weir)
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
+    # Of the one that builds a program itself, with the tools weir is built with.
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/embedding_test.cpp PROPERTY COMPILE_DEFINITIONS
+                 WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_CXX="${CMAKE_CXX_COMPILER}"
+                 WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}")
   endif()
   target_link_libraries(weir_tests_${name} PRIVATE ${library} GTest::gtest GTest::gtest_main
                                                    ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
