@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/file_system_kind.h"
+#include "format/error.h"
 #include "format/text.h"
 
 namespace weir {
@@ -32,7 +34,22 @@ void describe(std::ostream& out, const ServiceConfig& service) {
           ", I/O class ", io_class_name(service.io_class)));
   if (service.bandwidth != 0) say(out, "bandwidth", cat(format_bytes(service.bandwidth), "/s"));
   say(out, "work_dir", service.work_dir.empty() ? "a hidden directory beside each output" : service.work_dir);
+  say(out, "grace", cat(service.grace_s, " s"));
+  say(out, "history", cat(service.history_days, " days"));
   say(out, "log", cat(service.log_file.empty() ? "stderr" : service.log_file, ", level ", service.log_level));
+}
+
+// What will be used, as far as that can be known now.
+std::string watch_method(const WatchConfig& watch) {
+  const std::string poll = cat("polling every ", watch.poll_interval_s, " s");
+  if (watch.watch == WatchMethod::poll) return poll;
+  if (watch.watch == WatchMethod::inotify) return "inotify";
+  try {
+    const FileSystemKind kind = file_system_kind(watch.directory);
+    return cat("auto: ", kind.sees_all_changes ? "inotify" : poll, ", as it lies on ", kind.name);
+  } catch (const Error&) {
+    return cat("auto: inotify or ", poll, ", by its file system");
+  }
 }
 
 void describe(std::ostream& out, const WatchConfig& watch) {
@@ -46,7 +63,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   for (const std::string& path : watch.excluded_paths) say(out, "never", path);
   say(out, "output", cat(watch.output, '/', watch.name.empty() ? "{stem}.nvdb" : watch.name));
   say(out, "thumbnails", watch.thumbnails ? "yes" : "no");
-  say(out, "watch", cat(watch_method_name(watch.watch), ", polling every ", watch.poll_interval_s, " s"));
+  say(out, "watch", watch_method(watch));
   say(out, "complete",
       watch.complete == Completion::marker
           ? cat("marker ", watch.marker)

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "daemon/file_system_kind.h"
+#include "format/text.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/tools/run_command.h"
 
@@ -51,6 +53,9 @@ exclude = ["restart*"]
 )");
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
+  const FileSystemKind kind = file_system_kind(directory_ / "in");
+  const std::string method =
+      cat(kind.sees_all_changes ? "inotify" : "polling every 1 s", ", as it lies on ", kind.name);
   EXPECT_EQ(result.out, here(R"(service
   state       @/weir.db
   listen      127.0.0.1:8470
@@ -58,6 +63,8 @@ exclude = ["restart*"]
   jobs        all threads each, nice 10, I/O class none
   bandwidth   100.0 MiB/s
   work_dir    a hidden directory beside each output
+  grace       30 s
+  history     90 days
   log         stderr, level info
 watch "@/in"
   directory   @/in
@@ -65,7 +72,8 @@ watch "@/in"
   never       @/in/nvdb
   output      @/in/nvdb/{stem}.nvdb
   thumbnails  yes
-  watch       auto, polling every 1 s
+  watch       auto: )" + method +
+                             R"(
   complete    auto, settled after 2 s
   priority    oldest
   source      keep
@@ -76,7 +84,7 @@ watch "all"
   exclude     restart*
   output      /nvdb/{stem}_all.nvdb
   thumbnails  no
-  watch       poll, polling every 1 s
+  watch       polling every 1 s
   complete    marker .done
   priority    oldest
   source      keep
@@ -84,6 +92,13 @@ watch "all"
 )"));
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"in/", "watch.toml"}))
       << "checking made something";
+}
+
+TEST_F(WatchCheck, TheMethodOfADirectoryThatIsNotThereIsOpen) {
+  const std::string keys = "[[watch]]\ndirectory = 'later'\noutput = 'out'\n";
+  EXPECT_NE(check(keys).out.find("\n  watch       auto: inotify or polling every 1 s, by its file system\n"),
+            std::string::npos);
+  EXPECT_NE(check(keys + "watch = 'inotify'\n").out.find("\n  watch       inotify\n"), std::string::npos);
 }
 
 TEST_F(WatchCheck, AMistakeIsOneLineAndExitCode3) {
