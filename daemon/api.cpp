@@ -197,7 +197,7 @@ HttpResponse answer_routed(Control& control, const AccessRules& rules, const Htt
     }
   }
   if (auto refused = refuse(rules, request, chosen != nullptr && chosen->open)) return *std::move(refused);
-  if (!target) return error_response(400, "the request's target is no path");
+  if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
   if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false)});
   if (allowed.empty()) return error_response(404, cat("there is nothing at ", request.target));
   HttpResponse response = error_response(405, cat(request.method, " is not for ", request.target, "; use ", allowed));

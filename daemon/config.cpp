@@ -170,6 +170,7 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
   reader.read_bytes("bandwidth", service.bandwidth);
   reader.read_path("work_dir", service.work_dir);
   reader.toml.read("grace", service.grace_s, {0, 86400});
+  reader.toml.read("history", service.history_days, {0, 36500});
   reader.read_path("log", service.log_file);
   reader.choose("log_level", service.log_level, kLogLevels);
   reader.read_bytes("log_size", service.log_size);

@@ -7,7 +7,6 @@
 
 #include "format/error.h"
 #include "format/text.h"
-#include "format/text.h"
 
 namespace weir {
 namespace {

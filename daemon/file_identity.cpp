@@ -16,9 +16,7 @@ std::optional<FileIdentity> identify(const std::string& path) {
   return identity_of(status);
 }
 
-bool says_missing(int error) {
-  return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENAMETOOLONG;
-}
+bool says_missing(int error) { return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENAMETOOLONG; }
 
 bool is_gone(const std::string& path) {
   struct stat status {};

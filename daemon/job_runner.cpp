@@ -68,6 +68,13 @@ void JobRunner::configure(const DaemonConfig& config) {
   config_ = config;
   const ServiceConfig& service = config.service;
   scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
+  forget_other_watches();
+}
+
+void JobRunner::forget_other_watches() {
+  std::vector<std::string> labels;
+  for (const WatchConfig& watch : config_.watches) labels.push_back(watch.label);
+  record([this, labels] { store_.forget_other_watches(labels); });
 }
 
 const WatchConfig* JobRunner::watch_of(const std::string& label) const {
@@ -80,9 +87,11 @@ void JobRunner::wake() {
   try {
     while (start_next()) {
     }
+    if (pending_.empty()) store_fault_.clear();
+  } catch (const CorruptDatabase&) {
+    throw;
   } catch (const Error& error) {  // the state file: nothing was changed
-    store_fault_ = error.what();
-    log_.error("state-file-fault", {{"reason", error.what()}});
+    say_fault(error);
   }
   arm_timer();
 }
@@ -103,7 +112,6 @@ bool JobRunner::start_next() {
     }
     loads.push_back(std::move(load));
   }
-  store_fault_.clear();
   const auto label = scheduler_.next(loads, available_memory(), Clock::now());
   if (!label) return false;
   start(*watch_of(*label), first.at(*label));
@@ -157,6 +165,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
       record([this, id] { store_.postpone(id, "stopped with the service"); });
       break;
   }
+  if (watch_of(run.job.watch) == nullptr) forget_other_watches();
   if (stopping_ && running_.empty() && stopped_) {
     grace_timer_.cancel();
     boost::asio::post(io_, std::exchange(stopped_, nullptr));
@@ -224,10 +233,16 @@ void JobRunner::write_pending() {
       pending_.pop_front();
     }
     store_fault_.clear();
+  } catch (const CorruptDatabase&) {
+    throw;
   } catch (const Error& error) {
-    if (store_fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
-    store_fault_ = error.what();
+    say_fault(error);
   }
+}
+
+void JobRunner::say_fault(const Error& error) {
+  if (store_fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
+  store_fault_ = error.what();
 }
 
 void JobRunner::look_at_disk() {
@@ -249,6 +264,8 @@ void JobRunner::arm_timer() {
   }
   try {
     if (const auto due = store_.next_due_ms()) delay = std::min(delay, milliseconds(std::max<std::int64_t>(*due, 1)));
+  } catch (const CorruptDatabase&) {
+    throw;
   } catch (const Error&) {
     delay = kLook;
   }

@@ -21,6 +21,7 @@
 #include "daemon/job_store.h"
 #include "daemon/scheduler.h"
 #include "daemon/seconds_histogram.h"
+#include "format/error.h"
 
 namespace weir {
 
@@ -49,7 +50,8 @@ class JobRunner {
   JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
             LookAgain look_again);
 
-  /// From now on as `config` says; running jobs end as they began. Jobs of watches that are no more wait.
+  /// From now on as `config` says; running jobs end as they began. What is not over of watches that are no more is
+  /// forgotten: it is found again where one comes back.
   void configure(const DaemonConfig& config);
   /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
   void wake();
@@ -83,8 +85,10 @@ class JobRunner {
   void done(const RunningJob& run, const TaskReport& report);
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);
+  void forget_other_watches();
   void record(std::function<void()> step);
   void write_pending();
+  void say_fault(const Error& error);
   void arm_timer();
   void look_at_disk();
   const WatchConfig* watch_of(const std::string& label) const;

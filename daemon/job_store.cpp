@@ -200,17 +200,6 @@ bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to
     insert.bind(id).bind(std::uint64_t{i}).bind(output.path).bind(output.bytes).bind(output.rate);
     insert.bind(output.psnr_db).bind(output.thumbnail).step();
   }
-  if (to == JobState::done) {
-    Statement add = database_.prepare(
-        "UPDATE totals SET conversions = conversions + 1, bytes_read = bytes_read + ?, "
-        "bytes_written = bytes_written + ?, seconds = seconds + ?");
-    add.bind(result.bytes_read).bind(result.bytes_written).bind(result.seconds).step();
-  } else {
-    database_
-        .prepare("INSERT INTO failures VALUES (?, 1) ON CONFLICT (exit_code) DO UPDATE SET attempts = attempts + 1")
-        .bind(result.exit_code)
-        .step();
-  }
   transaction.commit();
   return true;
 }
@@ -277,6 +266,19 @@ bool JobStore::remove(std::int64_t id) {
   return removed;
 }
 
+void JobStore::forget_other_watches(const std::vector<std::string>& labels) {
+  std::string kept;
+  for (std::size_t i = 0; i < labels.size(); ++i) kept += i == 0 ? "?" : ", ?";
+  Transaction transaction(database_);
+  Statement forget = database_.prepare(
+      cat("DELETE FROM jobs WHERE watch NOT IN (", kept, ") AND ",
+          in_state({JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined})));
+  for (const std::string& label : labels) forget.bind(label);
+  forget.step();
+  if (database_.changes() > 0) database_.prepare("DELETE FROM outputs WHERE job NOT IN (SELECT id FROM jobs)").step();
+  transaction.commit();
+}
+
 std::optional<Job> JobStore::job(std::int64_t id) const {
   return read_one(database_, std::move(database_.prepare(cat(kColumns, "WHERE id = ?")).bind(id)));
 }
@@ -287,12 +289,6 @@ std::optional<Job> JobStore::find(const std::string& watch, const std::string& s
   return read_one(database_, std::move(row));
 }
 
-std::optional<Job> JobStore::find_output(const std::string& path) const {
-  Statement row = database_.prepare(cat(kColumns, "WHERE id = (SELECT job FROM outputs WHERE path = ?)"));
-  row.bind(path);
-  return read_one(database_, std::move(row));
-}
-
 std::vector<Job> JobStore::jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const {
   const bool queue = filter.state == JobState::waiting;
   Statement rows = database_.prepare(cat(kColumns, where(filter),
@@ -300,6 +296,13 @@ std::vector<Job> JobStore::jobs(const JobFilter& filter, std::size_t offset, std
                                          " LIMIT ? OFFSET ?"));
   bind(rows, filter);
   rows.bind(std::uint64_t{limit}).bind(std::uint64_t{offset});
+  return read_jobs(database_, std::move(rows));
+}
+
+std::vector<Job> JobStore::over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const {
+  Statement rows = database_.prepare(cat(kColumns, "WHERE id > ? AND changed_ms <= ? AND ",
+                                         in_state({JobState::done, JobState::cancelled}), " ORDER BY id LIMIT ?"));
+  rows.bind(after).bind(clock_() - age_ms).bind(std::uint64_t{limit});
   return read_jobs(database_, std::move(rows));
 }
 
@@ -346,19 +349,6 @@ std::optional<std::int64_t> JobStore::queue_age_ms() const {
   row.step();
   if (row.is_null(0)) return std::nullopt;
   return std::max<std::int64_t>(0, clock_() - row.integer(0));
-}
-
-JobTotals JobStore::totals() const {
-  JobTotals totals;
-  Statement sums = database_.prepare("SELECT conversions, bytes_read, bytes_written, seconds FROM totals");
-  sums.step();
-  totals.conversions = sums.whole(0);
-  totals.bytes_read = sums.whole(1);
-  totals.bytes_written = sums.whole(2);
-  totals.seconds = sums.real(3);
-  Statement failures = database_.prepare("SELECT exit_code, attempts FROM failures");
-  while (failures.step()) totals.failures[static_cast<int>(failures.integer(0))] = failures.whole(1);
-  return totals;
 }
 
 }  // namespace weir

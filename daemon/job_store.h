@@ -44,15 +44,6 @@ struct JobFilter {
   std::string source;  ///< a part of the path, letter case aside where it is ASCII
 };
 
-/// What jobs did since the state file was made.
-struct JobTotals {
-  std::uint64_t conversions = 0;  ///< that ended well
-  std::uint64_t bytes_read = 0;   ///< by those
-  std::uint64_t bytes_written = 0;
-  double seconds = 0;
-  std::map<int, std::uint64_t> failures;  ///< failed attempts by exit code
-};
-
 using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
 
 class JobStore {
@@ -100,14 +91,18 @@ class JobStore {
   /// Either way no attempt counts any more.
   bool retry(std::int64_t id);
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
+  /// Forgets the jobs of all watches but those with these labels: what is not over, and what failed. Running ones,
+  /// results and what was cancelled stay.
+  void forget_other_watches(const std::vector<std::string>& labels);
 
   std::optional<Job> job(std::int64_t id) const;
   std::optional<Job> find(const std::string& watch, const std::string& source) const;
-  /// The job whose last result lists that output.
-  std::optional<Job> find_output(const std::string& path) const;
   /// Last changed first; where only waiting ones are asked for, the one longest in the queue first.
   std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const;
   std::uint64_t count(const JobFilter& filter) const;
+  /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
+  /// milliseconds or longer.
+  std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
   /// By watch; watches without jobs are absent.
   std::map<std::string, JobCounts> counts() const;
   /// The first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
@@ -116,7 +111,6 @@ class JobStore {
   std::optional<std::int64_t> next_due_ms() const;
   /// Milliseconds since the job longest in the queue became complete; nullopt: none is waiting.
   std::optional<std::int64_t> queue_age_ms() const;
-  JobTotals totals() const;
 
  private:
   bool move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason);

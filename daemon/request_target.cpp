@@ -37,8 +37,7 @@ bool add_parameter(std::map<std::string, std::string>& query, std::string_view p
   const auto value =
       equals == std::string_view::npos ? std::string() : percent_decode(parameter.substr(equals + 1), true);
   if (!name || !value) return false;
-  if (!parameter.empty()) query[*name] = *value;
-  return true;
+  return parameter.empty() || query.emplace(*name, *value).second;
 }
 
 }  // namespace

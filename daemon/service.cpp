@@ -55,6 +55,7 @@ Service::Service(Load load, std::string program, std::string version)
                 }
               }),
       control_(store_, runner_, trees_, state_),
+      history_(io_, store_, log_),
       server_(io_, server_settings(config_.service), control_),
       signals_(io_, SIGTERM, SIGINT, SIGHUP),
       watchdog_timer_(io_) {
@@ -104,13 +105,19 @@ void Service::watch_trees() {
 void Service::run() {
   runner_.configure(config_);
   watch_trees();
+  history_.keep(config_.service.history_days);
   await_signal();
   feed_watchdog();
   const ListenAddress& listen = config_.service.listen;
   log_.info("ready", {{"listen", listen.host}, {"port", server_.port()}, {"watches", trees_.size()}});
   notifier_.send(cat("READY=1\nSTATUS=", trees_.size(), " directories watched, port ", server_.port()));
   runner_.wake();
-  io_.run();
+  try {
+    io_.run();
+  } catch (const CorruptDatabase& damage) {  // nothing can be known from here on; what runs ends with the process
+    log_.error("end", {{"reason", damage.what()}});
+    throw Error(damage.kind(), cat(damage.what(), "; start again, then it is moved aside and rebuilt"));
+  }
   log_.info("end", {});
 }
 
@@ -145,6 +152,7 @@ void Service::reload() {
     clean(config_, milliseconds(0));
     runner_.configure(config_);
     watch_trees();
+    history_.keep(config_.service.history_days);
     runner_.wake();
     log_.info("reload", {{"config", config_.path}, {"watches", trees_.size()}});
   } catch (const Error& error) {

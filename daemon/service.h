@@ -14,6 +14,7 @@
 #include "daemon/config.h"
 #include "daemon/control_server.h"
 #include "daemon/event_log.h"
+#include "daemon/job_history.h"
 #include "daemon/job_runner.h"
 #include "daemon/job_store.h"
 #include "daemon/notify.h"
@@ -52,6 +53,7 @@ class Service {
   JobRunner runner_;
   WatchedTrees trees_;
   ServiceControl control_;
+  JobHistory history_;
   ControlServer server_;
   boost::asio::signal_set signals_;
   boost::asio::steady_timer watchdog_timer_;

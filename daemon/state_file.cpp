@@ -48,16 +48,7 @@ constexpr const char* kTables[] = {
          rate REAL NOT NULL,
          psnr_db REAL,
          thumbnail TEXT NOT NULL,
-         PRIMARY KEY (job, place)) STRICT, WITHOUT ROWID)",
-    "CREATE INDEX outputs_path ON outputs (path)",
-    // One row.
-    R"(CREATE TABLE totals (
-         conversions INTEGER NOT NULL,
-         bytes_read INTEGER NOT NULL,
-         bytes_written INTEGER NOT NULL,
-         seconds REAL NOT NULL) STRICT)",
-    "INSERT INTO totals VALUES (0, 0, 0, 0)",
-    "CREATE TABLE failures (exit_code INTEGER PRIMARY KEY, attempts INTEGER NOT NULL) STRICT"};
+         PRIMARY KEY (job, place)) STRICT, WITHOUT ROWID)"};
 
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);

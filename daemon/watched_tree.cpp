@@ -83,8 +83,13 @@ void WatchedTree::work() {
       work_off(events);
     });
     known_looked_at_ = true;
+    store_fault_said_ = false;
+  } catch (const CorruptDatabase&) {
+    throw;
   } catch (const Error& error) {
-    log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
+    if (!std::exchange(store_fault_said_, true)) {
+      log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
+    }
     ready_ = false;
     superseded_.clear();
     // What was looked at is due again; what was thought to be known is new again.

@@ -77,6 +77,7 @@ class WatchedTree {
   std::vector<FileEvent> events_;
   std::set<std::string> looked_at_;  ///< paths, in the last transaction
   bool known_looked_at_ = false;
+  bool store_fault_said_ = false;
   bool scheduled_ = false;
   bool ready_ = false;                    ///< to report after the transaction
   std::vector<std::int64_t> superseded_;  ///< the same

@@ -82,6 +82,7 @@ io_class = "idle"
 bandwidth = 200000000
 work_dir = "work/"
 grace = 2.5
+history = 0.5
 log = "log/weir.log"
 log_level = "debug"
 log_size = "1MB"
@@ -120,6 +121,7 @@ index = [0, "*"]
   EXPECT_EQ(service.bandwidth, 200000000U);
   EXPECT_EQ(service.work_dir, directory_ / "work");
   EXPECT_EQ(service.grace_s, 2.5);
+  EXPECT_EQ(service.history_days, 0.5);
   EXPECT_EQ(service.log_file, directory_ / "log/weir.log");
   EXPECT_EQ(service.log_level, "debug");
   EXPECT_EQ(service.log_size, 1000000U);

@@ -135,8 +135,6 @@ TEST_F(StoredJobs, StepsFromAnotherStateChangeNothing) {
   EXPECT_FALSE(store_->cancel(id));
   EXPECT_FALSE(store_->quarantine(id, "late"));
   EXPECT_EQ(job(id).result, success());
-  EXPECT_EQ(store_->totals().conversions, 1U);
-  EXPECT_EQ(store_->totals().failures.size(), 0U);
   for (const std::int64_t unknown : {0, 2, -1}) {
     EXPECT_FALSE(store_->job(unknown));
     EXPECT_FALSE(store_->finish(unknown, success()));
@@ -206,7 +204,6 @@ TEST_F(StoredJobs, FailedAttemptsWaitLongerEachTimeAndEnd) {
   store_->fail(id, failure(137, "killed"));
   EXPECT_EQ(job(id).state, JobState::failed);
   EXPECT_EQ(job(id).attempts, 5);
-  EXPECT_EQ(store_->totals().failures, (std::map<int, std::uint64_t>{{1, 4}, {137, 1}}));
   EXPECT_TRUE(store_->retry(id));
   EXPECT_EQ(job(id).state, JobState::discovered);
   EXPECT_EQ(job(id).attempts, 0);
@@ -251,7 +248,6 @@ TEST_F(StoredJobs, PostponedAndInterruptedOnesCostNothing) {
     EXPECT_EQ(job(id).due_ms, 0);
   }
   EXPECT_EQ(candidates(Priority::oldest), (Names{"/in/a.raw", "/in/b.raw"}));
-  EXPECT_TRUE(store_->totals().failures.empty());
 }
 
 TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
@@ -308,24 +304,58 @@ TEST_F(StoredJobs, OfOneSourceInTwoWatchesAreTwo) {
   EXPECT_FALSE(store_->find("v", "/in/b.raw"));
 }
 
-TEST_F(StoredJobs, AreFoundByTheirOutputs) {
-  const std::int64_t id = running("/in/a.raw");
-  store_->finish(id, success());
-  EXPECT_EQ(store_->find_output("/out/a_1.nvdb")->id, id);
-  EXPECT_FALSE(store_->find_output("/out/a_2.nvdb"));
+TEST_F(StoredJobs, NumbersAreNotUsedAgain) {
+  const std::int64_t id = observe("/in/a.raw");
   EXPECT_TRUE(store_->remove(id));
-  EXPECT_FALSE(store_->find_output("/out/a_1.nvdb"));
-  EXPECT_EQ(observe("/in/a.raw"), id + 1) << "a number was used again";
+  EXPECT_EQ(observe("/in/a.raw"), id + 1);
 }
 
-TEST_F(StoredJobs, TotalsAddUpAndStay) {
-  for (const std::string source : {"/in/a.raw", "/in/b.raw"}) store_->finish(running(source), success());
-  open();
-  const JobTotals totals = store_->totals();
-  EXPECT_EQ(totals.conversions, 2U);
-  EXPECT_EQ(totals.bytes_read, 16000U);
-  EXPECT_EQ(totals.bytes_written, 3072U);
-  EXPECT_EQ(totals.seconds, 3.0);
+TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
+  const std::int64_t kept = observe("/in/kept.raw", kIdentity, "a");
+  std::vector<std::int64_t> ids;
+  for (const char* source : {"discovered", "waiting", "failed", "quarantined", "running", "done", "cancelled"}) {
+    ids.push_back(observe(source, kIdentity, "b"));
+  }
+  for (const int at : {1, 2, 4, 5}) store_->enqueue(ids[static_cast<std::size_t>(at)]);
+  for (const int at : {2, 4, 5}) store_->start(ids[static_cast<std::size_t>(at)]);
+  JobResult wrong_options = success();  // of the first of several volumes
+  wrong_options.exit_code = 2;
+  store_->fail(ids[2], wrong_options);
+  store_->quarantine(ids[3], "bad");
+  store_->finish(ids[5], success());
+  store_->cancel(ids[6]);
+
+  store_->forget_other_watches({"a", "b"});
+  EXPECT_EQ(store_->count({}), 8U);
+  store_->forget_other_watches({"a", "c"});
+  EXPECT_EQ(sources({std::nullopt, "b", ""}), (Names{"cancelled", "done", "running"}));
+  EXPECT_TRUE(store_->job(kept));
+  EXPECT_EQ(job(ids[5]).result.outputs, success().outputs);
+  store_->forget_other_watches({});
+  EXPECT_FALSE(store_->job(kept));
+}
+
+TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {
+  const std::int64_t first = running("/in/first.raw");
+  const std::int64_t second = running("/in/second.raw");
+  const std::int64_t third = running("/in/third.raw");
+  waiting("/in/waiting.raw");
+  now_ += 1000;
+  store_->finish(first, success());
+  store_->cancel(second);
+  now_ += 1000;
+  store_->finish(third, success());
+  const auto over = [&](std::int64_t age_ms, std::int64_t after, std::size_t limit = 10) {
+    std::vector<std::int64_t> ids;
+    for (const Job& job : store_->over_since(age_ms, after, limit)) ids.push_back(job.id);
+    return ids;
+  };
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(over(2000, 0), Ids{});
+  EXPECT_EQ(over(1000, 0), (Ids{first, second}));
+  EXPECT_EQ(over(1000, 0, 1), Ids{first});
+  EXPECT_EQ(over(1000, first), Ids{second});
+  EXPECT_EQ(over(0, first), (Ids{second, third}));
 }
 
 TEST_F(StoredJobs, PathsAreBytes) {
@@ -450,7 +480,6 @@ TEST_F(StoredJobs, AKillAtAnyMomentLosesNothingThatReturned) {
       EXPECT_EQ(job.attempts, 0);
       reached[i] = job.state;
     }
-    EXPECT_EQ(store.totals().conversions, store.count({JobState::done, "", ""}));
   }
 }
 

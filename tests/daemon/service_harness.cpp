@@ -70,9 +70,11 @@ void ServiceHarness::start() {
   }
 }
 
-int ServiceHarness::wait() {
-  const int code = process_->wait().exit_code;
+int ServiceHarness::wait(CommandResult* result) {
+  CommandResult end = process_->wait();
   process_.reset();
+  const int code = end.exit_code;
+  if (result != nullptr) *result = std::move(end);
   return code;
 }
 

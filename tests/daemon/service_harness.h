@@ -37,8 +37,8 @@ class ServiceHarness {
   void kill();
   void signal(int signal) { process_->send_signal(signal); }
   bool running() { return process_ && process_->running(); }
-  /// Waits for the end; the exit code.
-  int wait();
+  /// Waits for the end; the exit code. `result`: where the rest of it goes.
+  int wait(CommandResult* result = nullptr);
 
   std::string in(const std::string& name = "") const { return directory_ / ("in/" + name); }
   std::string out(const std::string& name = "") const { return directory_ / ("out/" + name); }

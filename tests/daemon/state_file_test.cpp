@@ -24,11 +24,11 @@ class StateFile : public testing::Test {
   /// A state file with a row.
   void make() {
     const Database database = open_state_file(path_, notice_);
-    database.run("INSERT INTO failures VALUES (5, 42)");
+    database.run("INSERT INTO outputs VALUES (42, 0, '', 0, 0, NULL, '')");
   }
-  std::int64_t failures() {
+  std::int64_t marked() {
     const Database database = open_state_file(path_, notice_);
-    Statement sum = database.prepare("SELECT coalesce(sum(attempts), 0) FROM failures");
+    Statement sum = database.prepare("SELECT coalesce(max(job), 0) FROM outputs");
     sum.step();
     return sum.integer(0);
   }
@@ -41,7 +41,7 @@ class StateFile : public testing::Test {
 
 TEST_F(StateFile, IsMadeOnceAndFoundAgain) {
   make();
-  EXPECT_EQ(failures(), 42);
+  EXPECT_EQ(marked(), 42);
   EXPECT_EQ(notice_, "");
   EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
 }
@@ -62,7 +62,7 @@ TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
                            "file as state in [service]");
   EXPECT_EQ(kind_, ErrorKind::input);
   Database(path_).run("PRAGMA user_version=1");
-  EXPECT_EQ(failures(), 42);
+  EXPECT_EQ(marked(), 42);
 }
 
 TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {
@@ -81,7 +81,7 @@ TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
   for (const std::string n : {"1", "2"}) {
     write_file(path_, text);
     write_file(path_ + "-wal", "its journal");
-    EXPECT_EQ(failures(), 0);
+    EXPECT_EQ(marked(), 0);
     EXPECT_EQ(notice_, path_ + ": cannot use the state: file is not a database; moved to " + path_ + ".corrupt-" + n +
                            ", jobs are found anew");
     EXPECT_EQ(read_file(path_ + ".corrupt-" + n), text);
@@ -91,7 +91,7 @@ TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
 TEST_F(StateFile, ThatIsCutOffIsMovedAside) {
   make();
   std::filesystem::resize_file(path_, 5 * 4096 + 100);
-  EXPECT_EQ(failures(), 0);
+  EXPECT_EQ(marked(), 0);
   EXPECT_EQ(notice_, path_ + ": cannot use the state: database disk image is malformed; moved to " + path_ +
                          ".corrupt-1, jobs are found anew");
 }
@@ -102,14 +102,14 @@ TEST_F(StateFile, WithADamagedPageIsMovedAside) {
   // The second page is a table's; its first byte says what kind of page it is.
   bytes.replace(4096, 512, 512, '\x7f');
   write_file(path_, bytes);
-  EXPECT_EQ(failures(), 0);
+  EXPECT_EQ(marked(), 0);
   EXPECT_TRUE(notice_.ends_with("; moved to " + path_ + ".corrupt-1, jobs are found anew")) << notice_;
   EXPECT_EQ(read_file(path_ + ".corrupt-1"), bytes);
 }
 
 TEST_F(StateFile, EmptyIsNew) {
   write_file(path_, "");
-  EXPECT_EQ(failures(), 0);
+  EXPECT_EQ(marked(), 0);
   EXPECT_EQ(notice_, "");
 }
 

@@ -120,6 +120,34 @@ TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
   })) << service.log();
 }
 
+TEST(WatchControl, AReloadWithoutAWatchLetsItsJobEndAndForgetsWhatWaits) {
+  ServiceHarness service;
+  service.start();
+  const std::string running = add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  const std::string waiting = service.add("waiting");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 1; })) << service.log();
+
+  fs::create_directory(service.path("other"));
+  const std::string with = read_file(service.path("weir.toml"));
+  std::string without = with;
+  without.replace(without.find("directory = \"in\""), 16, "directory = \"other\"");
+  write_file(service.path("weir.toml"), without);
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 0; })) << service.log();
+  EXPECT_EQ(service.count("running"), 1U);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.get("/api/jobs")["total"], 1);
+  EXPECT_EQ(service.get("/api/status")["queue_age_s"], 0);
+  EXPECT_EQ(service.logged(" start "), 1U);
+
+  write_file(service.path("weir.toml"), with);
+  service.signal(SIGHUP);
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  EXPECT_EQ(service.difference(waiting + ".raw", waiting + ".nvdb"), "");
+  EXPECT_EQ(service.logged(" start "), 2U) << "the first one is known";
+}
+
 TEST(WatchControl, TheLogCanBeRotatedByOthers) {
   ServiceHarness service("log_size = \"0\"\n");
   service.start();

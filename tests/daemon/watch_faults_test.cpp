@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "daemon/job_store.h"
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 #include "tests/tools/scoped_mount.h"
@@ -34,6 +35,75 @@ TEST(WatchFaults, ALostStateFileIsRebuiltFromTheOutputs) {
   EXPECT_EQ(service.logged("done already"), 2U) << service.log();
   EXPECT_EQ(fs::last_write_time(service.out(one + ".nvdb")), made);
   EXPECT_EQ(service.get("/api/status")["done_total"], 0) << "no conversion in this process";
+}
+
+// More than SQLite keeps in memory, so that what is damaged on disk is read.
+TEST(WatchFaults, AStateFileDamagedMeanwhileEndsItAndTheNextStartRebuildsIt) {
+  ServiceHarness service;
+  {
+    JobStore store(service.path("weir.db"));
+    store.together([&] {
+      for (int i = 0; i < 20'000; ++i) {
+        const std::string source = service.in(cat(std::string(200, 'x'), i, ".h5"));
+        store.cancel(store.observe(service.in(), source, {}, "").job.id);
+      }
+    });
+  }
+  service.start();
+  const auto size = fs::file_size(service.path("weir.db"));
+  ASSERT_GT(size, 8U << 20U);
+  std::fstream(service.path("weir.db"), std::ios::in | std::ios::out | std::ios::binary) << std::string(size, 'x');
+  for (int i = 0; i < 20 && service.running(); ++i) {
+    service.add(cat("v", i));
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  CommandResult end;
+  EXPECT_EQ(service.wait(&end), 5);
+  EXPECT_EQ(end.err, cat("weir: ", service.path("weir.db"),
+                         ": cannot use the state: database disk image is malformed; start again, then it is moved "
+                         "aside and rebuilt\n"));
+  EXPECT_EQ(service.logged("error end reason="), 1U) << service.log();
+  for (int i = 0; i < 20; ++i) service.add(cat("v", i));
+  service.start();
+  ASSERT_TRUE(service.eventually_done(20)) << service.log();
+  EXPECT_TRUE(fs::exists(service.path("weir.db.corrupt-1")));
+  EXPECT_EQ(service.leftovers(), Names{});
+}
+
+TEST(WatchFaults, AFullDiskOfTheStateFileHoldsAllUntilThereIsRoom) {
+  ServiceHarness service("state = \"state/weir.db\"\n");
+  fs::create_directory(service.path("state"));
+  ScopedMount mount(service.path("state"), 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  service.start();
+  {
+    std::ofstream ballast(service.path("state/ballast"));
+    while (ballast << std::string(4096, 'x') << std::flush) {
+    }
+  }
+  for (int i = 0; i < 20; ++i) service.add(cat("v", i));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" state-file-fault ") > 0; })) << service.log();
+  std::this_thread::sleep_for(milliseconds(2500));  // tried again each second
+  EXPECT_LE(service.logged(" state-file-fault "), 2U) << "said once by each who needs it\n" << service.log();
+  fs::remove(service.path("state/ballast"));
+  ASSERT_TRUE(service.eventually_done(20)) << service.log();
+  EXPECT_EQ(service.logged(" start "), 20U);
+  EXPECT_EQ(service.stop(), 0);
+}
+
+TEST(WatchFaults, TwoSourcesOfOneOutputAreOneResultAndAnHonestFailure) {
+  ServiceHarness service;
+  const std::string name = service.add("same", 3);
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  write_file(service.in(name + ".nrrd"),
+             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n" + ServiceHarness::volume(5));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
+  EXPECT_EQ(service.job(name + ".nrrd")["reason"],
+            cat(service.out(name), ".nvdb: exists and is not of ", service.in(name), ".nrrd (was made of ",
+                service.in(name), ".raw); choose another output with -o or pass --overwrite"));
+  EXPECT_EQ(service.job(name + ".nrrd")["attempts"], 1);
+  EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
 }
 
 TEST(WatchFaults, AFullDiskPausesUntilThereIsRoom) {
