@@ -42,7 +42,7 @@ float tone_map(float radiance, const ToneMapping& tone) {
   return kShoulder + (1.0F - kShoulder) * (over / (1.0F + over));
 }
 
-std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone) {
+std::vector<std::uint8_t> encode_rgb24(const Image& image, const ToneMapping& tone) {
   std::vector<std::uint8_t> rows(image.pixels.size() * 3);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const Float3& p = image.pixels[i];
@@ -50,6 +50,11 @@ std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone) {
     rows[3 * i + 1] = to_byte(tone_map(p.y, tone));
     rows[3 * i + 2] = to_byte(tone_map(p.z, tone));
   }
+  return rows;
+}
+
+std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone) {
+  const std::vector<std::uint8_t> rows = encode_rgb24(image, tone);
   png_image head{};
   head.version = PNG_IMAGE_VERSION;
   head.width = static_cast<png_uint_32>(image.width);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ inline constexpr float kShoulder = 0.8F;
 /// Display-linear value in [0, 1] of one channel.
 float tone_map(float radiance, const ToneMapping& tone);
 
+/// 8-bit sRGB, three bytes a pixel, rows from the top.
+std::vector<std::uint8_t> encode_rgb24(const Image& image, const ToneMapping& tone);
 std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone);
 /// Channels B, G, R in float32, radiance as it is.
 std::vector<std::byte> encode_exr(const Image& image);

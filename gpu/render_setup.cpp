@@ -93,8 +93,8 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
                          const RenderOptions& options)
     : domain_(volume.frame.domain),
       cells_(cells),
-      transfer_(
-          make_transfer_function(scene.volume, volume.range, volume.background, defaults_of(scene.mode).colormap)),
+      transfer_(make_transfer_function(scene.volume, volume.range, options.background.value_or(volume.background),
+                                       defaults_of(scene.mode).colormap)),
       majorants_(cells.majorants(transfer_)),
       environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
@@ -118,7 +118,8 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   medium_.emission = static_cast<float>(scene.volume.emission);
   medium_.g = static_cast<float>(scene.volume.anisotropy);
 
-  frame_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso) : default_iso(transfer_, volume.background);
+  frame_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso)
+                                : default_iso(transfer_, options.background.value_or(volume.background));
   frame_.iso_color = rgb(transfer_.at(frame_.iso));
   frame_.lighting = make_lighting(scene, defaults, environment_.get());
   frame_.camera =

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "format/macrocells.h"
@@ -25,6 +26,8 @@ struct RenderOptions {
   Filter filter = Filter::trilinear;
   std::uint64_t seed = 0;
   std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
+  /// Instead of the volume's own, so that all steps of a series look alike.
+  std::optional<float> background = std::nullopt;
   /// The scene's; null: loaded from where the scene says. Who renders the scene again hands it over.
   std::shared_ptr<const Environment> environment = nullptr;
 };

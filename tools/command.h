@@ -22,6 +22,7 @@ void add_compare(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_render(CLI::App& app);
+void add_play(CLI::App& app);
 void add_sample(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_watch(CLI::App& app);

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
     weir::add_inspect(app);
     weir::add_convert(app);
     weir::add_render(app);
+    weir::add_play(app);
     weir::add_sample(app);
     weir::add_compare(app);
     weir::add_sweep(app);

@@ -1,5 +1,6 @@
 #include "tools/picture_options.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -65,6 +66,21 @@ void parse_camera(const std::string& text, SceneCamera& camera) {
   if (numbers.size() == 3) camera.zoom = numbers[2];
 }
 
+void parse_range(const std::string& text, SceneVolume& volume) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::array<double, 2> range{};
+  bool valid = parts.size() == range.size();
+  for (std::size_t i = 0; valid && i < range.size(); ++i) {
+    const std::optional<double> number = parse_double(parts[i]);
+    valid = number && std::abs(*number) <= 3.4e38;
+    if (valid) range.at(i) = *number;
+  }
+  if (!valid || range[0] > range[1]) {
+    throw usage(cat("--range is \"", text, "\", it must be LOW,HIGH, two numbers that do not fall"));
+  }
+  volume.range = range;
+}
+
 // The scene file first, the command line over it.
 Scene make_scene(const PictureArguments& arguments) {
   Scene scene = arguments.scene.empty() ? Scene{} : load_scene(arguments.scene);
@@ -74,6 +90,7 @@ Scene make_scene(const PictureArguments& arguments) {
     scene.volume.color.clear();
   }
   if (!arguments.camera.empty()) parse_camera(arguments.camera, scene.camera);
+  if (!arguments.range.empty()) parse_range(arguments.range, scene.volume);
   if (!arguments.iso.empty()) {
     const std::optional<double> iso = parse_double(arguments.iso);
     if (!iso || !(std::abs(*iso) <= 3.4e38)) throw usage(cat("--iso is \"", arguments.iso, "\", it must be a number"));
@@ -106,6 +123,8 @@ void add_picture_options(CLI::App& command, PictureArguments& arguments) {
       ->check(CLI::IsMember({"trilinear", "stochastic", "nearest"}))
       ->capture_default_str();
   command.add_option("--colormap", arguments.colormap, "by name; a wrong one lists them");
+  command.add_option("--range", arguments.range,
+                     "LOW,HIGH: values at the ends of colours and opacity; default: those there are");
   command.add_option("--iso", arguments.iso, "value of the surface; default: 35 % of the way from the background");
   command.add_option("--camera", arguments.camera, "AZIMUTH,ELEVATION[,ZOOM] in degrees; default 35,20,1");
   command.add_option("--threads", arguments.threads, "0: all of the machine's")->capture_default_str();

@@ -20,13 +20,14 @@ struct PictureArguments {
   std::string colormap;
   std::string camera;
   std::string iso;
+  std::string range;
   std::string samples;
   std::string seed = "0";
   std::string threads = "0";
 };
 
-/// Adds --backend, --mode, --size, --spp, --seed, --scene, --filter, --colormap, --iso, --camera and --threads, stored
-/// in `arguments`, which must live as long as the command.
+/// Adds --backend, --mode, --size, --spp, --seed, --scene, --filter, --colormap, --range, --iso, --camera and
+/// --threads, stored in `arguments`, which must live as long as the command.
 void add_picture_options(CLI::App& command, PictureArguments& arguments);
 
 /// What they mean.
