@@ -141,18 +141,25 @@ void NvdbGrid::decode_leaf(const std::byte* leaf, std::span<float, 512> values) 
 
 bool NvdbGrid::leaf_voxel_active(const std::byte* leaf, unsigned offset) { return leaf_active(leaf, offset); }
 
-void NvdbGrid::for_each_block(const std::function<void(const GridBlock&)>& visit) const {
+void NvdbGrid::for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const {
   const std::byte* grid = data().data();
   for (std::uint32_t t = 0; t < root_tiles_; ++t) {
     const std::byte* tile = grid + nvdb::kRootTilesOffset + t * nvdb::kRootTileBytes;
-    const Index3 origin = root_tile_origin(load<std::uint64_t>(tile + nvdb::root::kTileKey));
-    if (const auto child = load<std::int64_t>(tile + nvdb::root::kTileChild); child != 0) {
-      visit_upper(origin, grid + nvdb::kRootOffset + child, visit);
-    } else {
-      visit({origin, kUpperDim, load<std::uint32_t>(tile + nvdb::root::kTileState) != 0,
-             load<float>(tile + nvdb::root::kTileValue), nullptr});
-    }
+    const auto child = load<std::int64_t>(tile + nvdb::root::kTileChild);
+    visit({root_tile_origin(load<std::uint64_t>(tile + nvdb::root::kTileKey)),
+           child != 0 ? grid + nvdb::kRootOffset + child : nullptr,
+           load<std::uint32_t>(tile + nvdb::root::kTileState) != 0, load<float>(tile + nvdb::root::kTileValue)});
   }
+}
+
+void NvdbGrid::for_each_block(const std::function<void(const GridBlock&)>& visit) const {
+  for_each_root_entry([&](const RootEntry& entry) {
+    if (entry.upper != nullptr) {
+      visit_upper(entry.origin, entry.upper, visit);
+    } else {
+      visit({entry.origin, kUpperDim, entry.active, entry.value, nullptr});
+    }
+  });
 }
 
 void NvdbGrid::visit_upper(const Index3& origin, const std::byte* upper,

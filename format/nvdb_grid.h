@@ -34,6 +34,14 @@ struct GridBlock {
   const std::byte* leaf = nullptr;
 };
 
+/// An entry of the root's table: an upper node of 4096^3 voxels, or a value tile of that size.
+struct RootEntry {
+  Index3 origin;                     ///< lowest voxel
+  const std::byte* upper = nullptr;  ///< null: a tile
+  bool active = false;               ///< tile state
+  float value = 0;                   ///< tile value
+};
+
 /// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
 /// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).
 struct MacrocellView {
@@ -87,6 +95,8 @@ class NvdbGrid {
   unsigned leaf_bits(const std::byte* leaf) const;
   /// True where voxel (x<<6 | y<<3 | z) of a leaf is active.
   static bool leaf_voxel_active(const std::byte* leaf, unsigned offset);
+  /// Calls `visit` for every entry of the root's table, in file order.
+  void for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const;
   /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper
   /// node its tiles and children. Tiles of background value that are inactive are visited too.
   void for_each_block(const std::function<void(const GridBlock&)>& visit) const;

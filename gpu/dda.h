@@ -29,56 +29,79 @@ class CellWalk {
   WEIR_HOST_DEVICE CellWalk(const CellLattice& lattice, const Ray& ray, float t0, float t1)
       : edge_(lattice.edge), t_(t0), end_(t1), inside_(t0 < t1) {
     const Float3 start = ray.at(t0);
-    set(0, lattice.count.x, lattice.shift.x, ray.origin.x, ray.direction.x, start.x);
-    set(1, lattice.count.y, lattice.shift.y, ray.origin.y, ray.direction.y, start.y);
-    set(2, lattice.count.z, lattice.shift.z, ray.origin.z, ray.direction.z, start.z);
+    const auto pitch = static_cast<std::int64_t>(lattice.count.x) * lattice.count.y;
+    x_.set(lattice.count.x, 1, static_cast<float>(lattice.shift.x), ray.origin.x, ray.direction.x, start.x, edge_);
+    y_.set(lattice.count.y, lattice.count.x, static_cast<float>(lattice.shift.y), ray.origin.y, ray.direction.y,
+           start.y, edge_);
+    z_.set(lattice.count.z, pitch, static_cast<float>(lattice.shift.z), ray.origin.z, ray.direction.z, start.z, edge_);
+    index_ = x_.cell + y_.cell * y_.pitch + z_.cell * z_.pitch;
   }
 
   /// The next cell; false behind the last. Spans may be empty where a ray runs through an edge or corner.
   WEIR_HOST_DEVICE bool next(CellSpan& span) {
     if (!inside_) return false;
-    const int axis = exit_[0] <= exit_[1] ? (exit_[0] <= exit_[2] ? 0 : 2) : (exit_[1] <= exit_[2] ? 1 : 2);
-    span.cell = cell_[0] + count_[0] * (cell_[1] + static_cast<std::int64_t>(count_[1]) * cell_[2]);
+    const float exit = lesser(x_.exit, lesser(y_.exit, z_.exit));
+    span.cell = index_;
     span.t0 = t_;
-    span.t1 = clamped(exit_[axis], t_, end_);
+    span.t1 = clamped(exit, t_, end_);
     t_ = span.t1;
-    cell_[axis] += step_[axis];
-    inside_ = exit_[axis] < end_ && cell_[axis] >= 0 && cell_[axis] < count_[axis];
-    exit_[axis] = border(axis);
+    inside_ = exit < end_;
+    if (x_.exit <= exit) {
+      step(x_);
+    } else if (y_.exit <= exit) {
+      step(y_);
+    } else {
+      step(z_);
+    }
     return true;
   }
 
  private:
-  WEIR_HOST_DEVICE void set(int axis, std::int32_t count, std::int32_t shift, float origin, float direction,
-                            float start) {
-    const auto offset = static_cast<float>(shift);
-    count_[axis] = count;
-    origin_[axis] = origin + offset;
-    direction_[axis] = direction;
-    step_[axis] = direction > 0.0F ? 1 : (direction < 0.0F ? -1 : 0);
-    const float at = clamped((start + offset) / edge_, 0.0F, static_cast<float>(count));
-    cell_[axis] = lesser(static_cast<std::int32_t>(at), count - 1);
-    exit_[axis] = border(axis);
+  struct Axis {
+    std::int64_t pitch;  ///< of the cells' positions
+    std::int32_t count;
+    std::int32_t cell;
+    std::int32_t step;
+    float origin;
+    float inverse;  ///< of the direction, finite
+    float exit;     ///< parameter at which the ray leaves the cell
+
+    WEIR_HOST_DEVICE void set(std::int32_t cells, std::int64_t cell_pitch, float shift, float from, float direction,
+                              float start, float edge) {
+      count = cells;
+      pitch = cell_pitch;
+      origin = from + shift;
+      // A slower ray moves less than any position's precision along this axis; its inverse would overflow.
+      const bool still = std::abs(direction) < 1e-30F;
+      step = still ? 0 : (direction > 0.0F ? 1 : -1);
+      inverse = still ? 0.0F : 1.0F / direction;
+      const float at = clamped((start + shift) / edge, 0.0F, static_cast<float>(cells));
+      cell = lesser(static_cast<std::int32_t>(at), cells - 1);
+      set_exit(edge);
+    }
+
+    // Computed from the border itself, never accumulated.
+    WEIR_HOST_DEVICE void set_exit(float edge) {
+      const auto face = static_cast<float>(step > 0 ? cell + 1 : cell) * edge;
+      exit = step == 0 ? kInfinity : (face - origin) * inverse;
+    }
+  };
+
+  WEIR_HOST_DEVICE void step(Axis& axis) {
+    axis.cell += axis.step;
+    index_ += axis.step < 0 ? -axis.pitch : axis.pitch;
+    inside_ = inside_ && axis.step != 0 && axis.cell >= 0 && axis.cell < axis.count;
+    axis.set_exit(edge_);
   }
 
-  // Parameter at which the ray leaves the current cell along `axis`. Computed from the border itself,
-  // never accumulated; divided, since the inverse of a denormal direction is infinite and 0 * inf NaN.
-  WEIR_HOST_DEVICE float border(int axis) const {
-    if (step_[axis] == 0) return kInfinity;
-    const auto face = static_cast<float>(cell_[axis] + (step_[axis] > 0 ? 1 : 0)) * edge_;
-    return (face - origin_[axis]) / direction_[axis];
-  }
-
+  Axis x_;
+  Axis y_;
+  Axis z_;
+  std::int64_t index_;
   float edge_;
   float t_;
   float end_;
   bool inside_;
-  std::int32_t count_[3] = {};
-  std::int32_t cell_[3] = {};
-  std::int32_t step_[3] = {};
-  float origin_[3] = {};
-  float direction_[3] = {};
-  float exit_[3] = {};
 };
 
 }  // namespace weir

@@ -13,12 +13,15 @@ namespace {
 // 10^12 voxels are 2 * 10^9 blocks; local voxel coordinates stay far inside 32 bits.
 constexpr std::int64_t kMaxBlocks = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxExtent = std::int64_t{1} << 30;
+constexpr std::uint64_t kMaxEntry = std::numeric_limits<std::uint32_t>::max();
 
 Int3 narrow(const Index3& i) {
   return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
 }
 
-NodeLattice checked_lattice(const Box& domain) {
+}  // namespace
+
+NodeLattice leaf_lattice(const Box& domain) {
   if (domain.empty()) throw Error(ErrorKind::input, "the grid has no active voxel; nothing to render");
   const Index3 e = domain.extent();
   const std::string extent = cat(e.x, " x ", e.y, " x ", e.z);
@@ -34,9 +37,17 @@ NodeLattice checked_lattice(const Box& domain) {
   return lattice;
 }
 
-}  // namespace
+void check_entry_range(std::uint64_t tiles, std::uint64_t units) {
+  if (tiles > kMaxEntry / 2) {
+    throw Error(ErrorKind::input, "the grid has more than 2^31 value tiles; convert a part of it with --roi");
+  }
+  if (units + tiles > kMaxEntry) {
+    throw Error(ErrorKind::input, cat("the grid's leaves span ", format_bytes(units * nvdb::kAlignment),
+                                      ", more than a 32-bit table of 32-byte units holds; convert to a smaller size"));
+  }
+}
 
-LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(checked_lattice(grid.index_bbox())) {
+LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(leaf_lattice(grid.index_bbox())) {
   // Entry 0 is the background: calloc's untouched pages cost nothing where a sparse grid is empty.
   entries_.reset(
       static_cast<std::uint32_t*>(std::calloc(static_cast<std::size_t>(lattice_.size()), sizeof(std::uint32_t))));
@@ -54,19 +65,12 @@ LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(checked_lattice(grid.index
       add(block, static_cast<std::uint32_t>(tile_values_.size()));
       tile_values_.push_back(block.value);
     }
-    if (tile_values_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
-      throw Error(ErrorKind::input, "the grid has more than 2^31 value tiles; convert a part of it with --roi");
-    }
   });
 
+  check_entry_range(tile_values_.size(),
+                    first_leaf == nullptr ? 0 : static_cast<std::uint64_t>(last_leaf - first_leaf) / nvdb::kAlignment);
   const auto tiles = static_cast<std::uint32_t>(tile_values_.size());
   if (first_leaf != nullptr) {
-    const auto span = static_cast<std::uint64_t>(last_leaf - first_leaf) / nvdb::kAlignment;
-    if (span + tiles > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(ErrorKind::input,
-                  cat("the grid's leaves span ", format_bytes(span * nvdb::kAlignment),
-                      ", more than a 32-bit table of 32-byte units holds; convert to a smaller size"));
-    }
     grid.for_each_block([&](const GridBlock& block) {
       if (block.leaf == nullptr) return;
       const auto units = static_cast<std::uint64_t>(block.leaf - first_leaf) / nvdb::kAlignment;

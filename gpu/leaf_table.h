@@ -40,8 +40,9 @@ struct LeafTableView {
 
   /// The block that covers a voxel given as coordinates from the first block's corner.
   WEIR_HOST_DEVICE LeafBlock block(const Int3& v) const {
-    const std::int64_t at = (v.x >> 3) + count.x * ((v.y >> 3) + static_cast<std::int64_t>(count.y) * (v.z >> 3));
-    const std::uint32_t entry = entries[at];
+    const auto blocks = [](std::int32_t i) { return static_cast<std::uint32_t>(i) >> 3U; };
+    const auto pitch = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };  // 2^31 blocks at most in all
+    const std::uint32_t entry = entries[blocks(v.x) + pitch(count.x) * (blocks(v.y) + pitch(count.y) * blocks(v.z))];
     if (entry < tile_count) return {nullptr, tile_values[entry]};
     return {leaves + 32 * static_cast<std::size_t>(entry - tile_count), 0.0F};
   }
@@ -82,6 +83,13 @@ struct LeafTableView {
     return static_cast<std::uint32_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
   }
 };
+
+/// The blocks over a domain. Throws Error(input) where it is empty or has more than 2^31 of them.
+NodeLattice leaf_lattice(const Box& domain);
+
+/// Throws Error(input) where `tiles` tile values (background included) and leaves up to `units` of 32 bytes from
+/// the first do not fit a table's 32-bit entries.
+void check_entry_range(std::uint64_t tiles, std::uint64_t units);
 
 class LeafTable {
  public:

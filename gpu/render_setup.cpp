@@ -95,7 +95,6 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
       cells_(cells),
       transfer_(make_transfer_function(scene.volume, volume.range, options.background.value_or(volume.background),
                                        defaults_of(scene.mode).colormap)),
-      majorants_(cells.majorants(transfer_)),
       environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
   const Double3 size = volume.frame.size();
@@ -110,7 +109,6 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   medium_.cells = cells_.lattice();
   const Box seen = shown(scene);
   medium_.shown = {local(seen.lo), local(seen.hi)};
-  medium_.cell_opacity = majorants_.data();
   medium_.cell_values = cells_.bounds().data();
   medium_.stretch = narrow(volume.frame.stretch());
   medium_.density = static_cast<float>(scene.volume.density.value_or(defaults.density) / longest);
@@ -136,6 +134,11 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
            .soft_clip = scene.mode == RenderMode::path};
 }
 
+const std::vector<float>& RenderSetup::majorants() const {
+  if (majorants_.empty()) majorants_ = cells_.majorants(transfer_);
+  return majorants_;
+}
+
 // The scene's region, or the whole domain.
 Box RenderSetup::shown(const Scene& scene) const {
   if (!scene.volume.region) return domain_;
@@ -152,7 +155,8 @@ std::vector<Box> RenderSetup::framed(const Scene& scene) const {
   if (scene.camera.framing == Framing::volume) return {all};
   std::vector<Box> boxes = cells_.content([&](std::size_t i) {
     const MinMax& bounds = cells_.bounds()[i];
-    return scene.mode == RenderMode::iso ? bounds.min <= frame_.iso && frame_.iso <= bounds.max : majorants_[i] > 0.01F;
+    return scene.mode == RenderMode::iso ? bounds.min <= frame_.iso && frame_.iso <= bounds.max
+                                         : majorants()[i] > 0.01F;
   });
   for (Box& box : boxes) box = intersect(box, all);
   std::erase_if(boxes, [](const Box& box) { return box.empty(); });

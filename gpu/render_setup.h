@@ -51,9 +51,16 @@ class RenderSetup {
   RenderSetup& operator=(const RenderSetup&) = delete;
 
   /// The picture of `volume` (see volume_sampler.h), which lies over the same domain. The pointers in it are to
-  /// this object and `cells`.
+  /// this object, `cells` and the environment.
   template <class Volume>
   RenderTask<Volume> task(const Volume& volume) const {
+    RenderTask<Volume> task = bare_task(volume);
+    task.medium.cell_opacity = majorants().data();
+    return task;
+  }
+  /// The same without majorants, for who finds them elsewhere.
+  template <class Volume>
+  RenderTask<Volume> bare_task(const Volume& volume) const {
     RenderTask<Volume> task;
     static_cast<RenderFrame&>(task) = frame_;
     static_cast<MediumProperties&>(task.medium) = medium_;
@@ -62,16 +69,19 @@ class RenderSetup {
   }
 
   const TransferFunction& transfer_function() const { return transfer_; }
+  /// With host pointers; not present where the scene has none.
+  const EnvironmentView& environment() const { return frame_.lighting.environment; }
   ToneMapping tone() const { return tone_; }
 
  private:
+  const std::vector<float>& majorants() const;
   Box shown(const Scene& scene) const;
   std::vector<Box> framed(const Scene& scene) const;
 
   Box domain_;
   const MacrocellGrid& cells_;
   TransferFunction transfer_;
-  std::vector<float> majorants_;
+  mutable std::vector<float> majorants_;  ///< empty until asked for
   std::shared_ptr<const Environment> environment_;
   MediumProperties medium_;
   RenderFrame frame_;

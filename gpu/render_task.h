@@ -32,9 +32,9 @@ struct RenderTask : RenderFrame {
 };
 
 /// Radiance of sample `sample` of pixel (x, y), y down; linear RGB, finite. Depends on the arguments
-/// alone.
+/// alone. `mode` is the task's, for who knows it when compiling.
 template <class Volume>
-WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, std::int32_t x, std::int32_t y,
+WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, RenderMode mode, std::int32_t x, std::int32_t y,
                                       std::uint32_t sample) {
   const std::uint64_t pixel =
       static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(task.width) + static_cast<std::uint64_t>(x);
@@ -44,7 +44,7 @@ WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, std::int32
   const Float3 direction = task.camera.direction(u, v);
   const Float3& eye = task.camera.position;
   Float3 radiance;
-  switch (task.mode) {
+  switch (mode) {
     case RenderMode::path:
       radiance = trace_path(task.medium, task.lighting, eye, direction, task.max_bounces, random);
       break;
@@ -60,6 +60,12 @@ WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, std::int32
   }
   // Light of 1e38 times a white may overflow: one such sample must not take the pixel with it.
   return is_finite(radiance.x + radiance.y + radiance.z) ? radiance : Float3{};
+}
+
+template <class Volume>
+WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, std::int32_t x, std::int32_t y,
+                                      std::uint32_t sample) {
+  return render_sample(task, task.mode, x, y, sample);
 }
 
 }  // namespace weir

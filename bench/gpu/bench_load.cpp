@@ -1,6 +1,6 @@
 // weir_bench_load FILE.nvdb: how fast every way brings a file from the page cache to the device, against the rate of
-// copies from page-locked memory, which no way can exceed. Exits with 1 unless the loader takes the registered
-// pipeline by itself and its median is at least 0.8 of the median of that rate; 2 for anything wrong.
+// copies from page-locked memory, which no way can exceed. Exits with 1 unless the median of the way that the
+// loader takes by itself is at least 0.8 of the median of that rate; 2 for anything wrong.
 #include <cuda_runtime_api.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -185,9 +185,9 @@ int run(const std::string& path) {
   table.row("zero copy, set-up, 4 threads", loads.time({.threads = 4, .zero_copy = true}));
 
   const double ratio = table.ratio(by_itself);
-  const bool good = taken.path == LoadPath::registered && ratio >= kLeastRatio;
-  std::printf("%s: by default %s at %.3f of the limit; it must be registered at %.1f or more\n",
-              good ? "passed" : "FAILED", std::string(load_path_name(taken.path)).c_str(), ratio, kLeastRatio);
+  const bool good = ratio >= kLeastRatio;
+  std::printf("%s: by default %s at %.3f of the limit; it must be %.1f or more\n", good ? "passed" : "FAILED",
+              std::string(load_path_name(taken.path)).c_str(), ratio, kLeastRatio);
   return good ? 0 : 1;
 }
 

@@ -11,8 +11,9 @@
 
 namespace weir {
 
-/// `size` elements of T, uninitialised, on the device that was current when it was made. T is trivially copyable.
-/// Transfers are ordered behind all that was started on the default stream, and done when they return.
+/// `size` elements of T, uninitialised, on the device that was current when it was made, from the device's memory
+/// pool: unlike cudaFree, giving it back does not wait for what other streams do. T is trivially copyable. Transfers
+/// are ordered behind what this thread started on its default stream, and done when they return.
 template <class T>
 class DeviceArray {
  public:
@@ -20,12 +21,15 @@ class DeviceArray {
   /// Throws Error(io) where the device has no room.
   explicit DeviceArray(std::size_t size) : size_(size) {
     if (size > 0) {
-      check_cuda(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+      check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaStreamPerThread),
                  cat("allocating ", format_bytes(size * sizeof(T)), " of device memory"));
+      check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "allocating device memory");
     }
   }
   explicit DeviceArray(std::span<const T> host) : DeviceArray(host.size()) { upload(host); }
-  ~DeviceArray() { cudaFree(data_); }
+  ~DeviceArray() {
+    if (data_ != nullptr) cudaFreeAsync(data_, cudaStreamPerThread);
+  }
   DeviceArray(DeviceArray&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
   DeviceArray& operator=(DeviceArray&& other) noexcept {
@@ -41,13 +45,13 @@ class DeviceArray {
   /// host.size() elements to the front.
   void upload(std::span<const T> host) {
     if (!host.empty()) {
-      check_cuda(cudaMemcpy(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice), "copying to the device");
+      transfer(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice, "copying to the device");
     }
   }
   /// The first host.size() elements.
   void download(std::span<T> host) const {
     if (!host.empty()) {
-      check_cuda(cudaMemcpy(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost), "copying from the device");
+      transfer(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost, "copying from the device");
     }
   }
   std::vector<T> download() const {
@@ -57,6 +61,11 @@ class DeviceArray {
   }
 
  private:
+  static void transfer(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, const char* what) {
+    check_cuda(cudaMemcpyAsync(to, from, bytes, kind, cudaStreamPerThread), what);
+    check_cuda(cudaStreamSynchronize(cudaStreamPerThread), what);
+  }
+
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };

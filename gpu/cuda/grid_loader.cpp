@@ -1,5 +1,7 @@
 #include "gpu/cuda/grid_loader.h"
 
+#include <thread>
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -53,7 +55,8 @@ CopyOutcome copy_by(LoadPath path, const CopyTask& task, DeviceBuffer& buffer) {
 
 std::vector<LoadPath> paths_to_try(const CopyTask& task, const LoadOptions& options) {
   if (options.only) return {*options.only};
-  std::vector<LoadPath> paths{LoadPath::registered, LoadPath::pinned_ring, LoadPath::pageable};
+  if (!options.order.empty()) return options.order;
+  std::vector<LoadPath> paths = load_paths(task.bytes, std::thread::hardware_concurrency());
   if (DirectStorage::offered() && !task.file.cached(task.offset, task.bytes)) {
     paths.insert(paths.begin(), LoadPath::direct_storage);
   }
@@ -69,6 +72,12 @@ void add_refusal(std::string& note, LoadPath path, const std::string& refusal) {
 }
 
 }  // namespace
+
+std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads) {
+  if (bytes < kSmallGrid) return {LoadPath::pageable, LoadPath::pinned_ring, LoadPath::registered};
+  if (hardware_threads >= kThreadsForRing) return {LoadPath::pinned_ring, LoadPath::registered, LoadPath::pageable};
+  return {LoadPath::registered, LoadPath::pinned_ring, LoadPath::pageable};
+}
 
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options, cudaStream_t stream) {
   CopyTask task{file.mapping(), file.grid().grid_offset(), file.grid().data_bytes()};

@@ -18,10 +18,21 @@
 
 namespace weir {
 
+/// Below this a plain copy is done before page-locking has begun.
+inline constexpr std::uint64_t kSmallGrid = 32ULL << 20U;
+/// Threads of the machine from which on the pinned ring is faster than page-locking the file's own pages. On 16 cores
+/// and an H200 it reached 0.93 of the device's rate, page-locking 0.30 to 0.54 (docs/performance.md); each thread of
+/// the ring brings about 8 GB/s, of 55.
+inline constexpr unsigned kThreadsForRing = 8;
+
+/// The ways to try for a cached grid of that many bytes, the fastest first.
+std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads);
+
 struct LoadOptions {
-  /// Only this way, and Error(io) with the reason where it is refused; else: direct_storage where the system has it
-  /// and the file is not in the page cache, registered, pinned_ring, pageable.
+  /// Only this way, and Error(io) with the reason where it is refused; else direct_storage where the system has it and
+  /// the file is not in the page cache, then load_paths.
   std::optional<LoadPath> only = std::nullopt;
+  std::vector<LoadPath> order = {};           ///< to try instead of those of load_paths; empty: those
   std::uint64_t chunk_bytes = 128ULL << 20U;  ///< of the file page-locked, or read, at a time by each thread
   int threads = 2;                            ///< that populate and page-lock chunks
   /// Leaves the grid in host memory, page-locked, where kernels read it over the bus: for grids larger than the

@@ -123,9 +123,21 @@ TEST_F(GridLoader, EveryWayBringsTheGridWithoutItsPadding) {
   }
 }
 
-TEST_F(GridLoader, TakesTheRegisteredPipelineByDefault) {
+TEST_F(GridLoader, TriesTheFastestWayFirst) {
+  using enum LoadPath;
+  EXPECT_EQ(load_paths(kSmallGrid - 1, 64), (std::vector{pageable, pinned_ring, registered}));
+  EXPECT_EQ(load_paths(kSmallGrid, kThreadsForRing), (std::vector{pinned_ring, registered, pageable}));
+  EXPECT_EQ(load_paths(kSmallGrid, kThreadsForRing - 1), (std::vector{registered, pinned_ring, pageable}));
   const NvdbFile file(write(40));
   const DeviceGrid grid = load_grid(file, {});
+  EXPECT_EQ(load_path_name(grid.report().path), "pageable");
+  EXPECT_EQ(grid.report().note, "");
+  EXPECT_TRUE(holds(grid, file));
+}
+
+TEST_F(GridLoader, TellsTheStagesOfTheRegisteredPipeline) {
+  const NvdbFile file(write(40));
+  const DeviceGrid grid = load_grid(file, {}, {.only = LoadPath::registered});
   EXPECT_EQ(load_path_name(grid.report().path), "registered");
   EXPECT_EQ(grid.report().note, "");
   EXPECT_GT(grid.report().stages.register_s, 0);

@@ -68,9 +68,13 @@ const char* cudaGetErrorName(cudaError_t code) {
 }
 const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
 
-cudaError_t cudaMalloc(void** memory, std::size_t bytes) {
-  WEIR_ENTER("cudaMalloc");
+cudaError_t cudaMallocAsync(void** memory, std::size_t bytes, cudaStream_t) {
+  WEIR_ENTER("cudaMallocAsync");
   return allocate(memory, bytes);
+}
+cudaError_t cudaFreeAsync(void* memory, cudaStream_t) {
+  WEIR_ENTER("cudaFreeAsync");
+  return release(memory);
 }
 cudaError_t cudaFree(void* memory) {
   WEIR_ENTER("cudaFree");

@@ -52,7 +52,8 @@ class GridLoaderFault : public testing::Test {
     return "none";
   }
 
-  static constexpr LoadOptions kOptions{.only = {}, .chunk_bytes = 65536, .threads = 2};
+  static inline const LoadOptions kOptions{
+      .order = {LoadPath::registered, LoadPath::pinned_ring, LoadPath::pageable}, .chunk_bytes = 65536, .threads = 2};
   const TemporaryDirectory directory_;
 };
 
@@ -130,7 +131,7 @@ TEST_F(GridLoaderFault, TheBufferIsStillTheCallersAfterAFailure) {
 
 TEST_F(GridLoaderFault, SaysThatTheDeviceHasNoRoom) {
   const NvdbFile grid_file = file();
-  runtime().fail("cudaMalloc", 0, cudaErrorMemoryAllocation);
+  runtime().fail("cudaMallocAsync", 0, cudaErrorMemoryAllocation);
   EXPECT_EQ(refusal(grid_file), cat("allocating ", format_bytes(grid_file.grid().data_bytes()),
                                     " of device memory: cudaErrorMemoryAllocation, pretended"));
 }
@@ -163,7 +164,7 @@ TEST_F(GridLoaderFault, KeepsTheRingForTheNextLoad) {
   DeviceGrid grid = load_grid(grid_file, {}, options);
   grid = load_grid(grid_file, std::move(grid).take_buffer(), options);
   EXPECT_EQ(runtime().calls("cudaHostAlloc"), 1U);
-  EXPECT_EQ(runtime().calls("cudaMalloc"), 1U);
+  EXPECT_EQ(runtime().calls("cudaMallocAsync"), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+// A dense volume on one device: a texture and its macrocells.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "gpu/cuda/device_macrocells.h"
+#include "gpu/cuda/texture.h"
+#include "gpu/dense_volume.h"
+
+namespace weir {
+
+struct DenseTexture {
+  /// Copies all voxels of `volume` (host memory) to the current device.
+  DenseTexture(const DenseView& volume, const std::vector<MinMax>& bounds) : texture(volume.extent), cells(bounds) {
+    const std::int64_t plane = static_cast<std::int64_t>(volume.extent.x) * volume.extent.y;
+    const auto planes = static_cast<std::int32_t>(std::clamp<std::int64_t>(kVoxelsAtOnce / plane, 1, volume.extent.z));
+    for (std::int32_t z = 0; z < volume.extent.z; z += planes) {
+      texture.upload(volume.values + plane * z, z, std::min(planes, volume.extent.z - z));
+    }
+  }
+
+  Texture texture;
+  DeviceMacrocells cells;
+
+ private:
+  static constexpr std::int64_t kVoxelsAtOnce = std::int64_t{1} << 26;
+};
+
+}  // namespace weir
