@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "format/index.h"
@@ -35,6 +36,7 @@ class TestGrid {
   TestGrid(const Box& box, const Value& value, const TestGridOptions& options = {});
 
   const NvdbGrid& grid() const { return *grid_; }
+  std::span<const std::byte> file() const { return file_; }  ///< as on disk
 
  private:
   std::vector<std::byte> file_;

@@ -129,6 +129,25 @@ TEST_F(Render, Refusals) {
                      "position, up, zoom");
 }
 
+TEST_F(Render, AnEnvironmentLightsIt) {
+  const std::string scene = directory_ / "s.toml";
+  write_file(scene, "[lighting]\nenvironment = \"sky.hdr\"\nbackground = \"environment\"\n");
+  const std::string sky = directory_ / "sky.hdr";
+  write_file(sky, "#?RADIANCE\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x20\x40\x80\x81");
+  EXPECT_EQ(run_weir(arguments("a.exr", {"--scene", scene})).exit_code, 0);
+  EXPECT_EQ(run_weir(arguments("b.exr")).exit_code, 0);
+  EXPECT_FALSE(read_file(out_ + "/a.exr") == read_file(out_ + "/b.exr"));
+  std::filesystem::remove(out_ + "/a.exr");
+  std::filesystem::remove(out_ + "/b.exr");
+  write_file(sky, "#?RADIANCE\n\n-Y 1 +X 3\n");
+  expect_refused(arguments("a.png", {"--scene", scene}), 3,
+                 sky + ": 3 x 1 pixels; a latitude-longitude picture is twice as wide as high");
+  std::filesystem::remove(sky);
+  const CommandResult missing = run_weir(arguments("a.png", {"--scene", scene}));
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_EQ(missing.err, "weir: " + sky + ": cannot open: No such file or directory\n");
+}
+
 TEST_F(Render, UnwritableOutputIsKnownBeforeTheWork) {
   const CommandResult result = run_weir({"render", volume_, "-o", directory_ / "missing/a.png", "--spp", "1000000"});
   EXPECT_EQ(result.exit_code, 5);
