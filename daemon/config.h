@@ -28,12 +28,12 @@ struct ServiceConfig {
   int threads = 0;                                ///< of each job; 0: all of the machine's
   int nice = 0;                                   ///< of the jobs, 0 to 19
   IoClass io_class = IoClass::none;               ///< of the jobs
-  std::uint64_t bandwidth = 0;                    ///< bytes per second that all jobs together may read; 0: no limit
-  std::string work_dir;                           ///< spill files; empty: a hidden directory beside each output
-  double grace_s = 30;                            ///< what a running job is given after SIGTERM
-  double history_days = 90;                       ///< that jobs of deleted sources are kept for after their end
-  std::string log_file;                           ///< key `log`; empty: stderr
-  std::string log_level = "info";                 ///< trace, debug, info, warn, error or off
+  std::uint64_t bandwidth = 0;     ///< bytes per second that all conversions together may read and write; 0: no limit
+  std::string work_dir;            ///< spill files; empty: a hidden directory beside each output
+  double grace_s = 30;             ///< what a running job is given after SIGTERM
+  double history_days = 90;        ///< that jobs of deleted sources are kept for after their end
+  std::string log_file;            ///< key `log`; empty: stderr
+  std::string log_level = "info";  ///< trace, debug, info, warn, error or off
   std::uint64_t log_size = std::uint64_t{10} << 20;  ///< bytes at which the log file is rotated; 0: never
   int log_files = 5;                                 ///< rotated files kept
 };

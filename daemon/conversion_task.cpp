@@ -1,5 +1,6 @@
 #include "daemon/conversion_task.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "format/text.h"
@@ -22,6 +23,7 @@ std::string options_text(const WatchConfig& watch) {
 
 ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
                          const Job& job) {
+  const auto jobs = static_cast<std::uint64_t>(service.jobs);
   ConversionTask task;
   task.program = program;
   task.source = job.source;
@@ -29,6 +31,8 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.output = cat(output_directory(watch, job.source), '/', watch.name);
   task.convert_options = watch.convert_options;
   task.memory = job_memory(service);
+  // Limited it stays, also where a share is less than a byte.
+  if (service.bandwidth != 0) task.bandwidth = std::max<std::uint64_t>(1, service.bandwidth / jobs);
   task.threads = service.threads;
   task.nice = service.nice;
   task.io_class = service.io_class;

@@ -17,6 +17,7 @@ struct ConversionTask {
   std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
   std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
   std::uint64_t memory = 0;                  ///< bytes, of each process
+  std::uint64_t bandwidth = 0;               ///< bytes per second that the conversion may read and write; 0: no limit
   int threads = 0;
   int nice = 0;
   IoClass io_class = IoClass::none;

@@ -48,7 +48,7 @@ class Scheduler {
 
   void started(const std::string& label);
   /// A job that began at `begin` has read `bytes`. Where that was faster than the bandwidth allows, nothing
-  /// starts until it is not: the cap holds for the mean over jobs, not within one.
+  /// starts until it is not: many short jobs keep to the cap, too, which each conversion keeps to by itself.
   void finished(std::uint64_t bytes, Time begin);
   /// When the bandwidth allows the next start; none where it does now.
   std::optional<Time> bandwidth_until(Time now) const;

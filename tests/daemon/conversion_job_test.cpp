@@ -56,6 +56,16 @@ class ConversionJobTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
+TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
+  ConversionTask limited = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
+  limited.thumbnails = false;
+  limited.bandwidth = 4 << 20U;
+  const TaskReport report = run(limited);
+  EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  const std::uint64_t moved = report.result.bytes_read + report.result.bytes_written;
+  EXPECT_GT(report.result.seconds, 0.75 * static_cast<double>(moved) / static_cast<double>(limited.bandwidth));
+}
+
 TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
   const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
   const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";

@@ -23,6 +23,7 @@ TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
   ServiceConfig service;
   service.memory = kDaemonMemory + (std::uint64_t{256} << 20U);
   service.jobs = 2;
+  service.bandwidth = 1001;
   service.threads = 3;
   service.nice = 4;
   service.io_class = IoClass::idle;
@@ -37,11 +38,20 @@ TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
   EXPECT_EQ(task.output, "/out/deep/");
   EXPECT_EQ(task.convert_options, std::vector<std::string>{"--rate=4"});
   EXPECT_EQ(task.memory, std::uint64_t{128} << 20U);
+  EXPECT_EQ(task.bandwidth, 500U);
   EXPECT_EQ(task.threads, 3);
   EXPECT_EQ(task.nice, 4);
   EXPECT_EQ(task.io_class, IoClass::idle);
   EXPECT_EQ(task.work_dir, "/spill");
   EXPECT_TRUE(task.delete_after.empty());
+}
+
+TEST(ConversionTask, AShareOfTheBandwidthIsNeverNoLimit) {
+  ServiceConfig service;
+  service.jobs = 8;
+  EXPECT_EQ(make_task("", service, make_watch(), {}).bandwidth, 0U);
+  service.bandwidth = 7;
+  EXPECT_EQ(make_task("", service, make_watch(), {}).bandwidth, 1U);
 }
 
 TEST(ConversionTask, DeletesTheMarkerWithTheSource) {
