@@ -8,15 +8,16 @@
 
 namespace weir {
 
-std::unique_ptr<Backend> make_backend(const std::string& name, int threads) {
+std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
 #ifdef WEIR_HAVE_CUDA
-  if (name == "cuda" || (name == "auto" && device_count() > 0)) return make_cuda_backend({});
+  if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0))
+    return make_cuda_backend({.devices = choice.devices, .load = {}});
 #else
-  if (name == "cuda") {
+  if (choice.name == "cuda") {
     throw Error(ErrorKind::usage, "--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
   }
 #endif
-  return make_cpu_backend(threads);
+  return make_cpu_backend(choice.threads);
 }
 
 }  // namespace weir

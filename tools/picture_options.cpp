@@ -1,5 +1,6 @@
 #include "tools/picture_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +21,7 @@ constexpr std::int64_t kMaxEdge = 32768;       // pixels
 constexpr std::int64_t kMaxPixels = 1 << 28;   // 3 GiB of picture
 constexpr std::int64_t kMaxSamples = 1 << 20;  // the mean is a sum of floats
 constexpr std::int64_t kMaxThreads = 4096;
+constexpr std::int64_t kMaxDevices = 64;
 
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
 
@@ -81,6 +83,18 @@ void parse_range(const std::string& text, SceneVolume& volume) {
   volume.range = range;
 }
 
+std::vector<int> parse_devices(const std::string& text) {
+  std::vector<int> devices;
+  for (const std::string& part : split(text, ',')) {
+    const std::optional<std::int64_t> number = parse_int(part);
+    const bool valid = number && *number >= 0 && *number < kMaxDevices &&
+                       std::find(devices.begin(), devices.end(), *number) == devices.end();
+    if (!valid) throw usage(cat("--devices is \"", text, "\", it must be numbers of CUDA devices, each once"));
+    devices.push_back(static_cast<int>(*number));
+  }
+  return devices;
+}
+
 // The scene file first, the command line over it.
 Scene make_scene(const PictureArguments& arguments) {
   Scene scene = arguments.scene.empty() ? Scene{} : load_scene(arguments.scene);
@@ -108,6 +122,8 @@ void add_picture_options(CLI::App& command, PictureArguments& arguments) {
   command.add_option("--backend", arguments.backend, "auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
+  command.add_option("--devices", arguments.devices, "N,N,...: CUDA devices that share the samples")
+      ->capture_default_str();
   command
       .add_option("--mode", arguments.mode,
                   "path: multiple scattering; dvr: emission and absorption; iso: surface; mip: largest value")
@@ -132,8 +148,8 @@ void add_picture_options(CLI::App& command, PictureArguments& arguments) {
 
 PictureRequest parse_picture(const PictureArguments& arguments) {
   PictureRequest request;
-  request.threads = static_cast<int>(parse_count("--threads", arguments.threads, 0, kMaxThreads));
-  request.backend = arguments.backend;
+  request.backend = {arguments.backend, parse_devices(arguments.devices),
+                     static_cast<int>(parse_count("--threads", arguments.threads, 0, kMaxThreads))};
   request.scene = make_scene(arguments);
   parse_size(arguments.size, request.options);
   const std::map<std::string, Filter> filters{

@@ -7,6 +7,7 @@
 
 #include "format/scene.h"
 #include "gpu/backend.h"
+#include "tools/backend_choice.h"
 
 namespace weir {
 
@@ -15,6 +16,7 @@ struct PictureArguments {
   std::string scene;
   std::string mode;
   std::string backend = "auto";
+  std::string devices = "0";
   std::string filter = "trilinear";
   std::string size = "960x720";
   std::string colormap;
@@ -26,7 +28,8 @@ struct PictureArguments {
   std::string threads = "0";
 };
 
-/// Adds --backend, --mode, --size, --spp, --seed, --scene, --filter, --colormap, --range, --iso, --camera and
+/// Adds --backend, --devices, --mode, --size, --spp, --seed, --scene, --filter, --colormap, --range, --iso, --camera
+/// and
 /// --threads, stored in `arguments`, which must live as long as the command.
 void add_picture_options(CLI::App& command, PictureArguments& arguments);
 
@@ -35,8 +38,7 @@ struct PictureRequest {
   Scene scene;
   RenderOptions options;   ///< with the scene's environment, loaded
   SampleOptions sampling;  ///< cancelled by interrupt_flag()
-  std::string backend;
-  int threads = 0;
+  BackendChoice backend;
 
   std::uint64_t pixel_samples() const {
     return static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * sampling.samples;

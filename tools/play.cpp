@@ -116,7 +116,7 @@ void play_series(const PlayArguments& arguments) {
   check_output(arguments);
   PictureRequest request = parse_picture(arguments.picture);
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
-  const std::unique_ptr<Backend> backend = make_backend(request.backend, request.threads);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   const FrameWriter write = open_output(arguments, *files, volumes.size());
   fix_look(request, volumes);

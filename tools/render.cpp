@@ -59,7 +59,7 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
 
 void render(const RenderArguments& arguments) {
   PictureRequest request = parse_picture(arguments.picture);
-  const std::unique_ptr<Backend> backend = make_backend(request.backend, request.threads);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<LoadedVolume> volume =

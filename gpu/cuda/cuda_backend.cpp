@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "format/error.h"
+#include "format/text.h"
 #include "gpu/cuda/check.h"
 #include "gpu/cuda/dense_texture.h"
 #include "gpu/cuda/device_environment.h"
@@ -24,6 +25,19 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLaunchSeconds = 0.05;  // how long one launch may keep a cancellation waiting, roughly
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Why a grid cannot lie on the current device, of which `held` bytes are kept for it already; "" where it can.
+std::string reason_for_zero_copy(const NvdbGrid& grid, std::uint64_t held) {
+  std::size_t free = 0;
+  std::size_t total = 0;
+  check_cuda(cudaMemGetInfo(&free, &total), "asking for the device's memory");
+  const auto blocks = static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
+  const std::uint64_t table = blocks * (grid.type() == GridType::float32 ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
+  const std::uint64_t needed = grid.data_bytes() + table + kSpareDeviceBytes;
+  if (needed <= free + held) return "";
+  return cat("the grid needs ", format_bytes(needed), " of device memory and ", format_bytes(free + held),
+             " are free, so it stays in host memory");
+}
 
 /// A file's grid, or a dense volume, on every device of the back end, in its order.
 class CudaVolume : public LoadedVolume {
@@ -110,10 +124,19 @@ class CudaBackend : public Backend {
     if (!stored.cells.empty() && stored.apron >= 1) {
       merged = std::async(std::launch::async, [&grid, edge] { return MacrocellGrid(grid, edge); });
     }
-    DeviceGrid loaded = load_grid(*file, std::move(buffer), options_.load, cudaStreamPerThread);
+    std::string note;
+    LoadOptions how = options_.load;
+    if (!how.zero_copy) note = reason_for_zero_copy(grid, buffer.capacity());
+    how.zero_copy = how.zero_copy || !note.empty();
+    if (how.zero_copy && options_.devices.size() > 1) {
+      throw Error(ErrorKind::usage,
+                  cat(note.empty() ? "a grid in host memory" : note, "; several devices cannot share it, use one"));
+    }
+    DeviceGrid loaded = load_grid(*file, std::move(buffer), how, cudaStreamPerThread);
     const LoadReport& report = loaded.report();
-    LoadSummary summary{std::string(load_path_name(report.path)) + (report.zero_copy ? ", zero-copy" : ""),
-                        report.bytes, report.seconds, report.note};
+    if (!report.note.empty()) note += cat(note.empty() ? "" : "; ", report.note);
+    LoadSummary summary{cat(load_path_name(report.path), report.zero_copy ? ", zero-copy" : ""), report.bytes,
+                        report.seconds, note};
 
     const NodeLattice lattice = make_lattice(grid.index_bbox(), edge);
     std::vector<MinMax> bounds;  // none: the first device gathers them

@@ -6,12 +6,6 @@
 
 namespace weir {
 
-namespace {
-
-constexpr std::uint64_t kSpare = 512ULL << 20U;  // device bytes left for pictures, environments and others
-
-}  // namespace
-
 GridBytes::GridBytes(const GridBytes& other, int other_device, int device) : copy_(other.bytes()) {
   check_cuda(cudaMemcpyPeer(copy_.data(), device, other.data(), other_device, other.bytes()),
              "copying a grid to another device");
@@ -43,7 +37,7 @@ DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLatt
 const BrickAtlas* DeviceVolume::atlas() {
   if (!atlas_ && atlas_refusal_.empty()) {
     try {
-      atlas_.emplace(with_table([](const auto& table) { return BrickAtlas(table, kSpare); }));
+      atlas_.emplace(with_table([](const auto& table) { return BrickAtlas(table, kSpareDeviceBytes); }));
     } catch (const Error& error) {
       atlas_refusal_ = error.what();
     }

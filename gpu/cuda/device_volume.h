@@ -12,6 +12,9 @@
 
 namespace weir {
 
+/// Device memory left for pictures, environments and other programs.
+inline constexpr std::uint64_t kSpareDeviceBytes = 512ULL << 20U;
+
 /// A grid's bytes on a device: loaded from its file, or copied from another device.
 class GridBytes {
  public:
