@@ -104,6 +104,10 @@ TEST_F(Render, Refusals) {
   expect_refused(arguments("a.png", {"--backend", "cuda"}), 2,
                  "--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
 #endif
+  for (const std::string devices : {"0,0", "-1", "x", ""}) {
+    expect_refused(arguments("a.png", {"--devices=" + devices}), 2,
+                   "--devices is \"" + devices + "\", it must be numbers of CUDA devices, each once");
+  }
   expect_refused(arguments("a.jpg"), 2, out_ + "/a.jpg: an image's name must end in .png or .exr");
   expect_refused(arguments("a.png", {"--colormap", "jet"}), 2,
                  "unknown colormap \"jet\"; use one of gray, white, heat, cool-warm, dusk, ct, water");
