@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -25,6 +26,8 @@ FakeRuntime& FakeRuntime::instance() {
 void FakeRuntime::reset() {
   const std::lock_guard lock(mutex_);
   registered_.clear();
+  // What a device that failed for good did not take back.
+  for (const auto& [address, bytes] : allocated_) std::free(reinterpret_cast<void*>(address));
   allocated_.clear();
   faults_.clear();
   calls_.clear();

@@ -114,7 +114,8 @@ TEST_F(GridLoaderFault, AFailureOfEarlierWorkIsNotTakenForARefusal) {
   const NvdbFile grid_file = file();
   runtime().fail("cudaHostRegister", 2, cudaErrorNotSupported, true);
   const std::string message = refusal(grid_file);
-  EXPECT_EQ(message.rfind("registering ", 0), 0U) << message;
+  // Whichever thread calls first after the failure sees it, so what it was about to do differs.
+  EXPECT_EQ(message.find("cannot be brought to the device"), std::string::npos) << message;
   EXPECT_NE(message.find(": cudaErrorNotSupported, pretended"), std::string::npos) << message;
 }
 
