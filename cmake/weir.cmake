@@ -101,6 +101,7 @@ function(weir_tests name)
   target_link_libraries(weir_tests_${name} PRIVATE ${library} GTest::gtest GTest::gtest_main
                                                    ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
   target_compile_definitions(weir_tests_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(weir_tests_${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)  # a quarter less time to compile
   gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120)
 endfunction()
 

@@ -6,7 +6,7 @@
 #   the ThreadSanitizer build, and clang-tidy; three more builds of everything, an hour on two cores.
 # Logs are in build/checks/. The last line is `N passed, N failed, N skipped`; failed and skipped checks are named
 # above it. Exits with 1 where anything failed.
-#   WEIR_FUZZ_SECONDS   for each fuzzer, default 30
+#   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -95,7 +95,7 @@ run_fuzzers() {
     local seeds=tests/fuzz/corpus/$name
     [[ -d $seeds ]] || seeds=
     # New inputs are kept in the first folder; the seeds only start the search.
-    check "fuzz $name" "$fuzzer" -max_total_time="${WEIR_FUZZ_SECONDS:-30}" -timeout=10 -rss_limit_mb=2048 \
+    check "fuzz $name" "$fuzzer" -max_total_time="${WEIR_FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 \
       -artifact_prefix="$logs/" "$corpus" ${seeds:+"$seeds"} || true
   done
 }
