@@ -7,7 +7,7 @@
 
 namespace weir {
 
-/// The ways from a file to the device, the fastest from the page cache first.
+/// The ways from a file to the device; load_paths (gpu/cuda/grid_loader.h) says which is the fastest where.
 enum class LoadPath {
   registered,      ///< the mapping's own pages, page-locked chunk by chunk while the chunk before copies
   pinned_ring,     ///< page-locked buffers filled by parallel preads

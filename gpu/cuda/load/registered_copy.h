@@ -1,4 +1,4 @@
-// The fastest way from the page cache to the device: its own pages are copied from.
+// From the page cache to the device without a copy in host memory: its own pages are locked and copied from.
 #pragma once
 
 #include "gpu/cuda/load/copy_task.h"
