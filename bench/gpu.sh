@@ -38,11 +38,11 @@ frames() {
 }
 
 nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader
-"$bin/weir_tests_cuda" --gtest_brief=1 || failed=1
+timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 || failed=1
 if command -v compute-sanitizer >/dev/null; then
   for tool in memcheck racecheck; do
     echo "compute-sanitizer $tool"
-    compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
+    timeout 300 compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
       --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*' |
       tail -n 3 || failed=1
   done

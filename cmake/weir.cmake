@@ -102,7 +102,11 @@ function(weir_tests name)
                                                    ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
   target_compile_definitions(weir_tests_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_compile_options(weir_tests_${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)  # a quarter less time to compile
-  gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120)
+  set(properties)
+  if(name STREQUAL "daemon")  # some change the machine's limits of inotify for a moment
+    set(properties PROPERTIES RESOURCE_LOCK inotify)
+  endif()
+  gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120 ${properties})
 endfunction()
 
 # weir_loader_tests(): the grid loader and its tests with the pretended CUDA runtime of tests/fake_cuda/, as the program

@@ -11,6 +11,7 @@
 #include "format/nanovdb_layout.h"
 #include "format/text.h"
 #include "gpu/cuda/check.h"
+#include "gpu/cuda/load/load_stream.h"
 #include "gpu/cuda/load/pageable_copy.h"
 #include "gpu/cuda/load/registered_copy.h"
 
@@ -82,7 +83,8 @@ std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads)
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options, cudaStream_t stream) {
   CopyTask task{file.mapping(), file.grid().grid_offset(), file.grid().data_bytes()};
   check_cuda(cudaGetDevice(&task.device), "asking for the current device");
-  task.stream = stream;
+  const LoadStream own(stream);
+  task.stream = own.get();
   task.chunk_bytes = std::max(options.chunk_bytes, kLeastChunkBytes);
   task.threads = std::max(options.threads, 1);
   task.cancel = options.cancel;

@@ -85,10 +85,7 @@ class GridLoader : public testing::Test {
   }
 
   // Skips direct storage where the system does not offer it.
-  static bool offered(LoadPath path) {
-    std::string why;
-    return path != LoadPath::direct_storage || DirectStorage::open(why).has_value();
-  }
+  static bool offered(LoadPath path) { return path != LoadPath::direct_storage || DirectStorage::offered(); }
 
   const TemporaryDirectory directory_;
 };

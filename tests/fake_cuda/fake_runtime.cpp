@@ -19,8 +19,12 @@ std::uint64_t sum(const std::map<std::uintptr_t, std::uint64_t>& ranges) {
 }  // namespace
 
 FakeRuntime& FakeRuntime::instance() {
-  static FakeRuntime runtime;
-  return runtime;
+  static FakeRuntime* const runtime = [] {
+    static FakeRuntime made;
+    made.reset();
+    return &made;
+  }();
+  return *runtime;
 }
 
 void FakeRuntime::reset() {

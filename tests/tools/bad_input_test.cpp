@@ -184,9 +184,8 @@ TEST_F(BadInput, OutputIsTheInput) {
 
 TEST_F(BadInput, OutputIsADirectory) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
-  for (const std::string& output : {out_.string(), out_.string() + "/"})
-    expect_refused({"convert", path, "-o", output, "--overwrite"}, 2,
-                   output + ": is a directory; name a file in it with -o");
+  expect_refused({"convert", path, "-o", out_.string(), "--overwrite"}, 2,
+                 out_.string() + ": is a directory; name a file in it with -o");
 }
 
 TEST_F(BadInput, OutputDirectoryReadOnly) {

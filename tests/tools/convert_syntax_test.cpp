@@ -16,7 +16,7 @@ TEST(ConvertSyntaxOfTheCommand, IsItsInputAndConversionOptions) {
   EXPECT_EQ(values, (std::set<std::string>{"background", "brick",  "dataset", "dims",      "direct-io", "encoding",
                                            "endian",     "fill",   "index",   "max-error", "metric",    "missing",
                                            "nonfinite",  "offset", "origin",  "preset",    "psnr",      "rate",
-                                           "roi",        "size",   "spacing", "type"}));
+                                           "roi",        "scene",  "size",    "spacing",   "type"}));
   EXPECT_EQ(flags, std::set<std::string>{"lossless"});
 }
 

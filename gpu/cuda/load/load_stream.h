@@ -1,0 +1,25 @@
+// The stream of one load, behind what another stream has to do.
+#pragma once
+
+#include "gpu/cuda/check.h"
+
+namespace weir {
+
+/// A stream of its own, since the default stream may be another one in each of the threads that share a load.
+class LoadStream {
+ public:
+  explicit LoadStream(cudaStream_t behind) {
+    check_cuda(cudaStreamSynchronize(behind), "work before a load");
+    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
+  }
+  ~LoadStream() { cudaStreamDestroy(stream_); }
+  LoadStream(const LoadStream&) = delete;
+  LoadStream& operator=(const LoadStream&) = delete;
+
+  cudaStream_t get() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+}  // namespace weir
