@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <map>
 
 #include "format/error.h"
@@ -83,8 +84,10 @@ std::vector<std::string> read_convert_options(TomlReader& reader, const toml::ta
       if (set == nullptr) reader.fail(*node, cat(key, " must be true or false"));
       if (set->get()) arguments.push_back(cat("--", option.name));
     } else {
+      std::string value = value_text(*node, key, reader);
+      if (option.path) value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
       // One word, so that a negative number is never taken for an option.
-      arguments.push_back(cat("--", option.name, "=", value_text(*node, key, reader)));
+      arguments.push_back(cat("--", option.name, "=", value));
     }
   }
   try {

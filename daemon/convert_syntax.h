@@ -16,6 +16,7 @@ struct ConvertSyntax {
   struct Option {
     std::string name;  ///< without dashes: "max-error"
     bool flag;         ///< takes no value
+    bool path;         ///< is a file, looked for beside the configuration
   };
   std::vector<Option> options;  ///< those that a watch may set
   /// Throws Error(usage) where `weir convert` would refuse `arguments`, such as {"--rate=8", "--stack"}.

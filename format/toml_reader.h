@@ -34,6 +34,8 @@ class TomlReader {
   TomlReader(const toml::table& table, std::string name, const std::string& path)
       : table_(table), name_(std::move(name)), path_(path) {}
 
+  const std::string& path() const { return path_; }
+
   /// The node of `key`, null where absent; the key counts as known from now on.
   const toml::node* find(std::string_view key);
   /// Each leaves `value` alone where the key is absent and returns whether it was there.

@@ -45,7 +45,8 @@ ConvertSyntax convert_syntax() {
   ConvertSyntax syntax;
   const WatchedConversion all;
   for (const CLI::Option* option : all.command.get_options()) {
-    syntax.options.push_back({option->get_lnames().front(), option->get_expected_max() == 0});
+    const std::string& name = option->get_lnames().front();
+    syntax.options.push_back({name, option->get_expected_max() == 0, name == "scene"});
   }
   syntax.check = check;
   syntax.least_memory = kLeastMemory;

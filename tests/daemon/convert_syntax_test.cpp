@@ -5,12 +5,16 @@
 namespace weir {
 namespace {
 
-const std::string kPath = "c.toml";
+const std::string kPath = "/etc/weir/c.toml";
 using Arguments = std::vector<std::string>;
 
 ConvertSyntax syntax(const std::string& refusal = "", ErrorKind kind = ErrorKind::usage) {
   ConvertSyntax syntax;
-  syntax.options = {{"max-error", false}, {"dims", false}, {"lossless", true}, {"rate", false}};
+  syntax.options = {{"max-error", false, false},
+                    {"dims", false, false},
+                    {"lossless", true, false},
+                    {"rate", false, false},
+                    {"scene", false, true}};
   syntax.check = [refusal, kind](const Arguments&) {
     if (!refusal.empty()) throw Error(kind, refusal);
   };
@@ -42,6 +46,12 @@ TEST(ConvertSyntax, KeysAreOptions) {
   EXPECT_EQ(read("lossless = false"), Arguments{});
 }
 
+TEST(ConvertSyntax, FilesAreBesideTheConfiguration) {
+  EXPECT_EQ(read("scene = 'looks/a.toml'"), Arguments{"--scene=/etc/weir/looks/a.toml"});
+  EXPECT_EQ(read("scene = '../a.toml'"), Arguments{"--scene=/etc/a.toml"});
+  EXPECT_EQ(read("scene = '/a.toml'"), Arguments{"--scene=/a.toml"});
+}
+
 TEST(ConvertSyntax, NumbersKeepAllTheirDigits) {
   EXPECT_EQ(read("rate = 9007199254740993"), Arguments{"--rate=9007199254740993"});
   EXPECT_EQ(read("rate = -0.1"), Arguments{"--rate=-0.1"});
@@ -53,21 +63,22 @@ TEST(ConvertSyntax, NumbersKeepAllTheirDigits) {
 }
 
 TEST(ConvertSyntax, OtherTypesAreRefused) {
-  EXPECT_EQ(refusal("lossless = 1"), "c.toml:1:12: lossless must be true or false");
-  EXPECT_EQ(refusal("max_error = true"), "c.toml:1:13: max_error must be a string, a number or an array of them");
-  EXPECT_EQ(refusal("dims = []"), "c.toml:1:8: dims must be a string, a number or an array of them");
-  EXPECT_EQ(refusal("dims = [[1], 2]"), "c.toml:1:9: dims must not be an array of arrays");
-  EXPECT_EQ(refusal("dims = 1979-05-27"), "c.toml:1:8: dims must be a string, a number or an array of them");
+  EXPECT_EQ(refusal("lossless = 1"), "/etc/weir/c.toml:1:12: lossless must be true or false");
+  EXPECT_EQ(refusal("max_error = true"),
+            "/etc/weir/c.toml:1:13: max_error must be a string, a number or an array of them");
+  EXPECT_EQ(refusal("dims = []"), "/etc/weir/c.toml:1:8: dims must be a string, a number or an array of them");
+  EXPECT_EQ(refusal("dims = [[1], 2]"), "/etc/weir/c.toml:1:9: dims must not be an array of arrays");
+  EXPECT_EQ(refusal("dims = 1979-05-27"), "/etc/weir/c.toml:1:8: dims must be a string, a number or an array of them");
   EXPECT_EQ(refusal("max-error = 1"),
-            "c.toml:1:1: unknown key \"max-error\" in [[watch]]; there are dims, lossless, max_error, rate");
+            "/etc/weir/c.toml:1:1: unknown key \"max-error\" in [[watch]]; there are dims, lossless, max_error, rate");
 }
 
 TEST(ConvertSyntax, ARefusalIsSaidOfTheKeyThatCausedIt) {
   const ConvertSyntax known = syntax("--rate, --max-error and --max exclude each other --lossless");
   const std::string message = "rate, max_error and --max exclude each other lossless";
-  EXPECT_EQ(refusal("max_error = 1\nrate = 8\ndims = 3", known), "c.toml:2:8: " + message);
-  EXPECT_EQ(refusal("rate = 8\nmax_error = 1\ndims = 3", known), "c.toml:2:13: " + message);
-  EXPECT_EQ(refusal("dims = 3", known), "c.toml:1:1: " + message);
+  EXPECT_EQ(refusal("max_error = 1\nrate = 8\ndims = 3", known), "/etc/weir/c.toml:2:8: " + message);
+  EXPECT_EQ(refusal("rate = 8\nmax_error = 1\ndims = 3", known), "/etc/weir/c.toml:2:13: " + message);
+  EXPECT_EQ(refusal("dims = 3", known), "/etc/weir/c.toml:1:1: " + message);
 }
 
 TEST(ConvertSyntax, OtherErrorsPass) {

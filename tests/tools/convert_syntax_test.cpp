@@ -12,7 +12,10 @@ namespace {
 TEST(ConvertSyntaxOfTheCommand, IsItsInputAndConversionOptions) {
   std::set<std::string> values;
   std::set<std::string> flags;
-  for (const auto& [name, flag] : convert_syntax().options) (flag ? flags : values).insert(name);
+  for (const auto& [name, flag, path] : convert_syntax().options) {
+    (flag ? flags : values).insert(name);
+    EXPECT_EQ(path, name == "scene") << name;
+  }
   EXPECT_EQ(values, (std::set<std::string>{"background", "brick",  "dataset", "dims",      "direct-io", "encoding",
                                            "endian",     "fill",   "index",   "max-error", "metric",    "missing",
                                            "nonfinite",  "offset", "origin",  "preset",    "psnr",      "rate",
