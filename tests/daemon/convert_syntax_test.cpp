@@ -69,8 +69,9 @@ TEST(ConvertSyntax, OtherTypesAreRefused) {
   EXPECT_EQ(refusal("dims = []"), "/etc/weir/c.toml:1:8: dims must be a string, a number or an array of them");
   EXPECT_EQ(refusal("dims = [[1], 2]"), "/etc/weir/c.toml:1:9: dims must not be an array of arrays");
   EXPECT_EQ(refusal("dims = 1979-05-27"), "/etc/weir/c.toml:1:8: dims must be a string, a number or an array of them");
-  EXPECT_EQ(refusal("max-error = 1"),
-            "/etc/weir/c.toml:1:1: unknown key \"max-error\" in [[watch]]; there are dims, lossless, max_error, rate");
+  EXPECT_EQ(
+      refusal("max-error = 1"),
+      "/etc/weir/c.toml:1:1: unknown key \"max-error\" in [[watch]]; there are dims, lossless, max_error, rate, scene");
 }
 
 TEST(ConvertSyntax, ARefusalIsSaidOfTheKeyThatCausedIt) {
