@@ -186,7 +186,9 @@ class JsonReader {
   template <typename T, typename Fields>
   void optional_object(const char* key, std::optional<T>& value, const Fields& fields) {
     value.reset();
-    if (at_->contains(key)) object(key, [&] { fields(value.emplace()); });
+    if (!at_->contains(key)) return;
+    value = T();
+    object(key, [&] { fields(*value); });
   }
 
   template <typename T>
