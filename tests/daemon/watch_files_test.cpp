@@ -188,7 +188,7 @@ TEST(WatchManyFiles, TwoThousandAtOnceThroughATinyQueue) {
   constexpr int kFiles = 2000;
   const std::string volume = ServiceHarness::volume(3).substr(0, 8 * 8 * 8);
   for (int i = 0; i < kFiles; ++i) write_file(service.in(cat("f", i, "_8x8x8_uint8.raw")), volume);
-  ASSERT_TRUE(service.eventually_done(kFiles, std::chrono::seconds(240))) << service.get("/api/status");
+  ASSERT_TRUE(service.eventually_done(kFiles, std::chrono::seconds(900))) << service.get("/api/status");
   EXPECT_GT(service.get("/api/status")["watches"][0]["overflows"], 0);
   EXPECT_EQ(service.logged(" start "), static_cast<std::size_t>(kFiles));
   EXPECT_EQ(service.difference("f1234_8x8x8_uint8.raw", "f1234_8x8x8_uint8.nvdb"), "");
