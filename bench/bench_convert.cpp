@@ -22,6 +22,7 @@
 
 #include "compressor/conversion.h"
 #include "format/descriptor.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
 #include "ingest/synthetic/synthetic.h"
@@ -74,10 +75,6 @@ class RawVolume {
  private:
   std::filesystem::path path_;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// One single-threaded pass over a cached file into a buffer that stays warm.
 void read_plainly(const std::string& path) {

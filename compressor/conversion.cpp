@@ -29,6 +29,7 @@
 #include "format/nvdb_type.h"
 #include "format/output_files.h"
 #include "format/process_memory.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "ingest/block_plan.h"
 
@@ -79,8 +80,6 @@ std::string amplification_notice(const VolumeSource& source, const MemoryPlan& m
              format_bytes(ceiling), " leaves, so that each is decoded ", std::round(plan.amplification * 10) / 10,
              " times in a pass; --memory ", (enough >> 20U) + 1, "MiB decodes it once");
 }
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 StreamOptions stream_options(const ConversionControl& control) {
   StreamOptions options;

@@ -2,9 +2,7 @@
 // volumes, several at a time if asked, and makes pictures of them.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,12 +11,13 @@
 #include "gpu/dense_volume.h"
 #include "gpu/image.h"
 #include "gpu/render_setup.h"
+#include "gpu/sample_options.h"
 
 namespace weir {
 
 /// How a volume came in.
 struct LoadSummary {
-  std::string way;          ///< "mapped"; of the device "registered", "pinned ring", ...
+  std::string way;          ///< "mapped"; of the device a load_path_name
   std::uint64_t bytes = 0;  ///< of the grid, tail padding left out
   double seconds = 0;       ///< of the transfer alone
   std::string note;         ///< why a faster way was refused; empty: none was
@@ -30,13 +29,6 @@ class LoadedVolume {
   virtual ~LoadedVolume() = default;
   virtual const VolumeInfo& info() const = 0;
   virtual const LoadSummary& load_summary() const = 0;
-};
-
-struct SampleOptions {
-  std::uint32_t samples = 1;                  ///< per pixel
-  const std::atomic<bool>* cancel = nullptr;  ///< looked at every few milliseconds of work
-  /// Called with the pixel samples done so far, from any thread, one at a time.
-  std::function<void(std::uint64_t)> progress;
 };
 
 struct Picture {
@@ -53,8 +45,7 @@ class Backend {
   /// fastest here. `reuse` (may be null), a volume of this back end that nobody needs any more, lends its memory.
   virtual std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
                                              std::unique_ptr<LoadedVolume> reuse) = 0;
-  /// A volume that is held voxel by voxel; `volume` stays as long as it is needed. Throws Error(usage) where this back
-  /// end renders none.
+  /// A volume that is held voxel by voxel; `volume` stays as long as it is needed.
   virtual std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) = 0;
   /// `volume` must be this back end's. May run while another volume is loaded from another thread. Throws
   /// Error(interrupted) where `cancel` was set, and as RenderSetup.

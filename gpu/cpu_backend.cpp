@@ -1,6 +1,7 @@
 #include <chrono>
 #include <utility>
 
+#include "format/seconds_since.h"
 #include "gpu/backend.h"
 #include "gpu/cpu_renderer.h"
 #include "gpu/leaf_table.h"
@@ -8,10 +9,6 @@
 namespace weir {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 class CpuVolume : public LoadedVolume {
  public:
@@ -82,8 +79,7 @@ class CpuBackend : public Backend {
 
   Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
                  const SampleOptions& sampling) override {
-    return static_cast<const CpuVolume&>(volume).render(
-        scene, options, {sampling.samples, threads_, sampling.cancel, sampling.progress});
+    return static_cast<const CpuVolume&>(volume).render(scene, options, {sampling, threads_});
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "gpu/narrow.h"
 
 namespace weir {
 
@@ -14,10 +15,6 @@ namespace {
 constexpr std::int64_t kMaxBlocks = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxExtent = std::int64_t{1} << 30;
 constexpr std::uint64_t kMaxEntry = std::numeric_limits<std::uint32_t>::max();
-
-Int3 narrow(const Index3& i) {
-  return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
-}
 
 }  // namespace
 

@@ -20,6 +20,12 @@ WEIR_HOST_DEVICE inline std::int32_t upper(std::int32_t i, bool up, std::int32_t
   return up && i + 1 < extent ? i + 1 : i;
 }
 
+/// Position of `i`, 0 <= i < count, in a table of count.x * count.y * count.z entries, 2^31 at most, x fastest.
+WEIR_HOST_DEVICE inline std::uint32_t table_index(const Int3& i, const Int3& count) {
+  const auto wide = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };
+  return wide(i.x) + wide(count.x) * (wide(i.y) + wide(count.y) * wide(i.z));
+}
+
 /// A block's entry resolved: the leaf's bytes, or null and the value of the whole block.
 struct LeafBlock {
   const std::byte* leaf = nullptr;
@@ -40,9 +46,7 @@ struct LeafTableView {
 
   /// The block that covers a voxel given as coordinates from the first block's corner.
   WEIR_HOST_DEVICE LeafBlock block(const Int3& v) const {
-    const auto blocks = [](std::int32_t i) { return static_cast<std::uint32_t>(i) >> 3U; };
-    const auto pitch = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };  // 2^31 blocks at most in all
-    const std::uint32_t entry = entries[blocks(v.x) + pitch(count.x) * (blocks(v.y) + pitch(count.y) * blocks(v.z))];
+    const std::uint32_t entry = entries[table_index({v.x >> 3, v.y >> 3, v.z >> 3}, count)];
     if (entry < tile_count) return {nullptr, tile_values[entry]};
     return {leaves + 32 * static_cast<std::size_t>(entry - tile_count), 0.0F};
   }

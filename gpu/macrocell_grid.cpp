@@ -4,6 +4,7 @@
 #include <array>
 
 #include "format/macrocells.h"
+#include "gpu/narrow.h"
 
 namespace weir {
 
@@ -12,10 +13,6 @@ namespace {
 // Bounds of nothing: any value widens them, and max_opacity takes them as unknown.
 constexpr MinMax kNothing{kInfinity, -kInfinity};
 
-Int3 narrow(const Index3& i) {
-  return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
-}
-
 // Cells that a box of voxels touches.
 Box cells_of(const Box& voxels, std::int64_t edge) {
   return {floor_div(voxels.lo, edge), floor_div(voxels.hi - Index3{1, 1, 1}, edge) + Index3{1, 1, 1}};
@@ -23,9 +20,20 @@ Box cells_of(const Box& voxels, std::int64_t edge) {
 
 }  // namespace
 
-MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
+bool has_macrocells(const NvdbGrid& grid) {
   const MacrocellView file = grid.macrocells();
-  if (!file.cells.empty() && file.apron >= 1) {
+  return !file.cells.empty() && file.apron >= 1;
+}
+
+CellLattice cell_lattice(const NodeLattice& lattice) {
+  return {.count = narrow(lattice.count),
+          .shift = narrow(lattice.domain.lo - lattice.first * lattice.dim),
+          .edge = static_cast<float>(lattice.dim)};
+}
+
+MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
+  if (has_macrocells(grid)) {
+    const MacrocellView file = grid.macrocells();
     lattice_ = file.lattice;
     cells_.assign(file.cells.begin(), file.cells.end());
   } else {
@@ -38,12 +46,6 @@ MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
 
 MacrocellGrid::MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells)
     : lattice_(lattice), cells_(std::move(cells)) {}
-
-CellLattice MacrocellGrid::lattice() const {
-  return {.count = narrow(lattice_.count),
-          .shift = narrow(lattice_.domain.lo - lattice_.first * lattice_.dim),
-          .edge = static_cast<float>(lattice_.dim)};
-}
 
 std::vector<float> MacrocellGrid::majorants(const TransferFunction& transfer) const {
   std::vector<float> result(cells_.size());

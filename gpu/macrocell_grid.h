@@ -12,6 +12,12 @@
 
 namespace weir {
 
+/// Whether a file's own macrocells bound filtered lookups.
+bool has_macrocells(const NvdbGrid& grid);
+
+/// Cells as a tracer walks them.
+CellLattice cell_lattice(const NodeLattice& lattice);
+
 class MacrocellGrid {
  public:
   /// Cells of at least `edge` voxels over grid.index_bbox(): the file's, merged eight to one until
@@ -20,7 +26,7 @@ class MacrocellGrid {
   /// Given bounds; `cells` has lattice.size() entries.
   MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells);
 
-  CellLattice lattice() const;
+  CellLattice lattice() const { return cell_lattice(lattice_); }
   const std::vector<MinMax>& bounds() const { return cells_; }
   /// Boxes (voxels, inside the domain) that hold all cells `shows` is true for, called with a position in
   /// `bounds`: one from the first to the last of each row in x. The domain where there is no such cell.

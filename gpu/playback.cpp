@@ -5,13 +5,13 @@
 #include <memory>
 #include <utility>
 
+#include "format/seconds_since.h"
+
 namespace weir {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // What `work` returns, and its time added to `seconds`: each stage has a sum of its own.
 template <class Work>

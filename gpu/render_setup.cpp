@@ -5,6 +5,7 @@
 #include "format/error.h"
 #include "format/text.h"
 #include "gpu/colormap.h"
+#include "gpu/narrow.h"
 #include "gpu/scene_transfer.h"
 
 namespace weir {
@@ -31,10 +32,6 @@ ModeDefaults defaults_of(RenderMode mode) {
       break;
   }
   return {"gray", 1, {0, 0, 0}, 1};
-}
-
-Float3 narrow(const Double3& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
 // The grid's range where it is one; NaN policies of other writers may leave none, then the cells'.

@@ -6,6 +6,7 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "gpu/narrow.h"
 
 namespace weir {
 
@@ -22,9 +23,6 @@ Double3 cross(const Double3& a, const Double3& b) {
 }
 double length(const Double3& a) { return std::hypot(a[0], a[1], a[2]); }
 Double3 unit(const Double3& a) { return a * (1 / length(a)); }
-Float3 narrow(const Double3& a) {
-  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
-}
 Double3 as_double(const Index3& i) {
   return {static_cast<double>(i.x), static_cast<double>(i.y), static_cast<double>(i.z)};
 }

@@ -11,6 +11,7 @@
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/nvdb_file.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "gpu/image_output.h"
 #include "ingest/source_registry.h"
@@ -34,10 +35,6 @@ struct RenderArguments {
   ProgressOptions progress;
   bool json = false;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::unique_ptr<LoadedVolume> load_file(Backend& backend, const RenderArguments& arguments) {
   if (const std::string option = given_input_option(arguments.source); !option.empty()) {

@@ -16,6 +16,7 @@
 #include "format/error.h"
 #include "format/partial_file.h"
 #include "format/process_memory.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "gpu/image_output.h"
 #include "ingest/source_registry.h"
@@ -49,8 +50,6 @@ struct SweepArguments {
 };
 
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// The directory of the results: made where it is missing, and removed again where nothing came to lie in it.
 class ResultDirectory {

@@ -19,6 +19,7 @@
 #include "format/file_system.h"
 #include "format/nvdb_file.h"
 #include "format/text.h"
+#include "gpu/cuda/dense_texture.h"
 #include "gpu/cuda/device_samplers.h"
 #include "gpu/cuda/device_volume.h"
 #include "gpu/cuda/render_kernel.h"
@@ -113,17 +114,11 @@ double time_of(const Work& work) {
 
 Texture dense_texture(const Options& options) {
   const FileMapping file(options.source, ".raw");
-  Texture texture(options.extent);
   const auto plane = static_cast<std::size_t>(options.extent.x) * static_cast<std::size_t>(options.extent.y);
   if (file.bytes().size() != plane * static_cast<std::size_t>(options.extent.z) * sizeof(float)) {
     throw Error(ErrorKind::input, cat(options.source, ": is not a float32 volume of the extent given"));
   }
-  const auto* voxels = reinterpret_cast<const float*>(file.bytes().data());
-  const auto planes = static_cast<std::int32_t>(std::max<std::size_t>(1, (std::size_t{1} << 26U) / plane));
-  for (std::int32_t z = 0; z < options.extent.z; z += planes) {
-    texture.upload(voxels + plane * static_cast<std::size_t>(z), z, std::min(planes, options.extent.z - z));
-  }
-  return texture;
+  return make_texture({reinterpret_cast<const float*>(file.bytes().data()), options.extent});
 }
 
 class Bench {

@@ -51,12 +51,7 @@ struct BlockTable {
   Int3 extent;                        ///< voxels of the domain
 
   /// Position of a block, 0 <= b < count.
-  WEIR_HOST_DEVICE std::uint32_t index(const Int3& b) const {
-    return static_cast<std::uint32_t>(b.x) +
-           static_cast<std::uint32_t>(count.x) *
-               (static_cast<std::uint32_t>(b.y) +
-                static_cast<std::uint32_t>(count.y) * static_cast<std::uint32_t>(b.z));
-  }
+  WEIR_HOST_DEVICE std::uint32_t index(const Int3& b) const { return table_index(b, count); }
   WEIR_HOST_DEVICE float value(const Block& block, std::uint32_t i) const {
     if (block.units == 0) return block.tile_value();
     return block.leaf_voxel(leaves + 32 * static_cast<std::size_t>(block.units), i);

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kThreads = 256;
 constexpr std::int32_t kBrickVoxels = kBrickEdge * kBrickEdge * kBrickEdge;
-constexpr std::uint32_t kMaxAcross = 16384 / kBrickEdge;  // bricks along x and y: the largest 3-D texture's
-constexpr std::uint32_t kMaxLayers = 1023;                // along z: an entry's bits
+constexpr std::uint32_t kMaxAcross = kMaxTextureEdge / kBrickEdge;  // bricks along x and y
+constexpr std::uint32_t kMaxLayers = 1023;                          // along z: an entry's bits
 
 /// Bricks along each axis of the texture; brick (0, 0, 0) stays empty, since its entry means none.
 struct AtlasShape {

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <future>
 #include <mutex>
-#include <numeric>
 #include <utility>
 
 #include "format/error.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "gpu/cuda/check.h"
 #include "gpu/cuda/dense_texture.h"
@@ -23,8 +23,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLaunchSeconds = 0.05;  // how long one launch may keep a cancellation waiting, roughly
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Why a grid cannot lie on the current device, of which `held` bytes are kept for it already; "" where it can.
 std::string reason_for_zero_copy(const NvdbGrid& grid, std::uint64_t held) {
@@ -120,8 +118,7 @@ class CudaBackend : public Backend {
     reuse.reset();
     // The file's macrocells are merged while the grid is on its way.
     std::future<MacrocellGrid> merged;
-    const MacrocellView stored = grid.macrocells();
-    if (!stored.cells.empty() && stored.apron >= 1) {
+    if (has_macrocells(grid)) {
       merged = std::async(std::launch::async, [&grid, edge] { return MacrocellGrid(grid, edge); });
     }
     std::string note;

@@ -72,10 +72,7 @@ struct AtlasSampler {
     const Float3 q{lowest(p.x, extent.x, shift.x), lowest(p.y, extent.y, shift.y), lowest(p.z, extent.z, shift.z)};
     const Int3 b{static_cast<std::int32_t>(q.x) >> 3, static_cast<std::int32_t>(q.y) >> 3,
                  static_cast<std::int32_t>(q.z) >> 3};
-    const BrickEntry entry = entries[static_cast<std::uint32_t>(b.x) +
-                                     static_cast<std::uint32_t>(count.x) *
-                                         (static_cast<std::uint32_t>(b.y) +
-                                          static_cast<std::uint32_t>(count.y) * static_cast<std::uint32_t>(b.z))];
+    const BrickEntry entry = entries[table_index(b, count)];
     if (entry.brick == 0) return entry.value;
     const Int3 corner = entry.corner();
     const Float3 at{q.x + static_cast<float>(corner.x - 8 * b.x) + 0.5F,

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "gpu/leaf_table.h"
+#include "gpu/narrow.h"
 
 namespace weir {
 
@@ -58,10 +59,6 @@ __global__ void fill(TreeView tree, std::int64_t count, Block* blocks) {
   blocks[i] = find<Block>(tree, static_cast<std::int32_t>(i % tree.block_count.x) + tree.first_block.x,
                           static_cast<std::int32_t>(i / tree.block_count.x % tree.block_count.y) + tree.first_block.y,
                           static_cast<std::int32_t>(i / plane) + tree.first_block.z);
-}
-
-Int3 narrow(const Index3& i) {
-  return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
 }
 
 std::vector<RootCell> root_cells(const NvdbGrid& grid, const NodeLattice& roots) {

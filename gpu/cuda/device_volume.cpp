@@ -28,10 +28,9 @@ std::variant<DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> make_table(co
 DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells)
     : bytes_(std::move(bytes)),
       table_(make_table(grid, bytes_.data())),
-      host_cells_(cells.empty() ? with_table([&](const auto& table) {
-        return gather_macrocells(table, MacrocellGrid(lattice, {}).lattice());
-      })
-                                : std::move(cells)),
+      host_cells_(cells.empty()
+                      ? with_table([&](const auto& table) { return gather_macrocells(table, cell_lattice(lattice)); })
+                      : std::move(cells)),
       cells_(host_cells_) {}
 
 const BrickAtlas* DeviceVolume::atlas() {

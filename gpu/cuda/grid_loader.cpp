@@ -1,10 +1,9 @@
 #include "gpu/cuda/grid_loader.h"
 
-#include <thread>
-
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "format/error.h"

@@ -10,16 +10,12 @@
 
 namespace weir {
 
-namespace {
-
-constexpr std::int32_t kMaxEdge = 16384;  // of a 3-D texture on every device since compute capability 5.0
-
-}  // namespace
-
 Texture::Texture(const Int3& size) : size_(size) {
   const std::string extent = cat(size.x, " x ", size.y, " x ", size.z);
-  if (max_component({static_cast<float>(size.x), static_cast<float>(size.y), static_cast<float>(size.z)}) > kMaxEdge) {
-    throw Error(ErrorKind::input, cat("a texture of ", extent, " voxels, at most ", kMaxEdge, " an axis can be"));
+  if (max_component({static_cast<float>(size.x), static_cast<float>(size.y), static_cast<float>(size.z)}) >
+      kMaxTextureEdge) {
+    throw Error(ErrorKind::input,
+                cat("a texture of ", extent, " voxels, at most ", kMaxTextureEdge, " an axis can be"));
   }
   const cudaChannelFormatDesc format = cudaCreateChannelDesc<float>();
   const cudaExtent texels{static_cast<std::size_t>(size.x), static_cast<std::size_t>(size.y),

@@ -10,6 +10,9 @@
 
 namespace weir {
 
+/// Texels along an axis of a 3-D texture, on every device since compute capability 5.0.
+inline constexpr std::int32_t kMaxTextureEdge = 16384;
+
 class Texture {
  public:
   Texture() = default;

@@ -6,20 +6,12 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "tests/cuda/refusal.h"
 
 namespace weir {
 namespace {
 
-template <class Call>
-std::string refusal(ErrorKind kind, Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    return error.what();
-  }
-  return "none";
-}
+using test::refusal;
 
 TEST(CheckCuda, SaysWhatFailedAndWhatCudaCallsIt) {
   check_cuda(cudaSuccess, "nothing");

@@ -18,6 +18,7 @@
 #include "format/text.h"
 #include "gpu/cuda/check.h"
 #include "tests/cuda/grid_file.h"
+#include "tests/cuda/refusal.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -61,16 +62,7 @@ auto open_descriptors() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
 }
 
-template <class Call>
-std::string refusal(ErrorKind kind, Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    return error.what();
-  }
-  return "none";
-}
+using test::refusal;
 
 class GridLoader : public testing::Test {
  protected:

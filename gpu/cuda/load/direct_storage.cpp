@@ -108,8 +108,6 @@ std::optional<DirectStorage> DirectStorage::open(std::string& refusal) {
 }
 
 CopyOutcome DirectStorage::copy(const CopyTask& task) const {
-  // cuFile knows no streams.
-  check_cuda(cudaStreamSynchronize(task.stream), "work before a load");
   const Descriptor direct = open_direct(task.file);
   if (!direct) return {cat("GPUDirect Storage: no direct reads of ", task.file.path(), ": ", std::strerror(errno)), {}};
   const FileHandle handle(*library_, direct.get());

@@ -1,0 +1,13 @@
+// Wall-clock seconds for reports.
+#pragma once
+
+#include <chrono>
+
+namespace weir {
+
+/// Between `start` and now.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace weir

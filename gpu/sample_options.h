@@ -1,0 +1,17 @@
+// How much of a picture to render, and how to be told of it and stopped.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+namespace weir {
+
+struct SampleOptions {
+  std::uint32_t samples = 1;                  ///< per pixel
+  const std::atomic<bool>* cancel = nullptr;  ///< looked at every few milliseconds of work
+  /// Called with the pixel samples done so far, from any thread, one at a time.
+  std::function<void(std::uint64_t)> progress;
+};
+
+}  // namespace weir
