@@ -32,13 +32,21 @@ constexpr std::array kCt{Stop{0.00F, {176, 92, 76}}, Stop{0.25F, {222, 154, 124}
 // Water: deep blue to foam.
 constexpr std::array kWater{Stop{0.00F, {8, 24, 58}}, Stop{0.35F, {20, 84, 140}}, Stop{0.70F, {84, 176, 204}},
                             Stop{1.00F, {240, 252, 252}}};
+// "magma" of matplotlib (Smith and van der Walt, CC0): within 1/255 of its 256 colours.
+constexpr std::array kMagma{
+    Stop{0.0000F, {0, 0, 4}},      Stop{0.0235F, {2, 2, 13}},      Stop{0.0784F, {14, 11, 43}},
+    Stop{0.1451F, {36, 18, 83}},   Stop{0.1882F, {54, 16, 107}},   Stop{0.2275F, {71, 16, 120}},
+    Stop{0.2902F, {96, 24, 128}},  Stop{0.4078F, {144, 42, 129}},  Stop{0.5059F, {184, 55, 121}},
+    Stop{0.5961F, {220, 72, 105}}, Stop{0.6549F, {238, 91, 94}},   Stop{0.7059F, {247, 114, 92}},
+    Stop{0.7569F, {252, 138, 98}}, Stop{0.8235F, {254, 170, 116}}, Stop{0.9216F, {254, 216, 154}},
+    Stop{1.0000F, {252, 253, 191}}};
 
 struct Map {
   std::string_view name;
   std::span<const Stop> stops;
 };
-constexpr std::array kMaps{Map{"gray", kGray}, Map{"white", kWhite}, Map{"heat", kHeat},  Map{"cool-warm", kCoolWarm},
-                           Map{"dusk", kDusk}, Map{"ct", kCt},       Map{"water", kWater}};
+constexpr std::array kMaps{Map{"gray", kGray}, Map{"white", kWhite}, Map{"heat", kHeat},   Map{"cool-warm", kCoolWarm},
+                           Map{"dusk", kDusk}, Map{"ct", kCt},       Map{"water", kWater}, Map{"magma", kMagma}};
 
 }  // namespace
 

@@ -19,6 +19,7 @@ void add_log_level(CLI::App& command);
 // Error for everything that goes wrong and weir::ExitStatus (below) to end with a code and no message.
 void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_flip(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_render(CLI::App& app);

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     weir::add_play(app);
     weir::add_sample(app);
     weir::add_compare(app);
+    weir::add_flip(app);
     weir::add_sweep(app);
     weir::add_watch(app);
     weir::add_jobs(app);
