@@ -1,0 +1,71 @@
+"""The report: report.md with each experiment's tables in their places, and the same figures as CSV and JSON."""
+
+import csv
+import json
+import pathlib
+import shutil
+
+IMAGES = "images/evaluation"  # relative to the report
+NOT_MEASURED = "*Not measured yet.*"
+
+
+def write_report(experiments, measured, directory):
+    """Writes evaluation.md, evaluation.json, a CSV for each experiment and the pictures into `directory`."""
+    directory = pathlib.Path(directory)
+    text = (pathlib.Path(__file__).parent / "report.md").read_text()
+    rows = {}
+    for experiment in experiments:
+        has_any = bool(measured.records(experiment.name))
+        text = text.replace(f"@{experiment.name}@", experiment.text(measured) if has_any else NOT_MEASURED)
+        if not has_any:
+            continue
+        rows[experiment.name] = experiment.rows(measured)
+        write_csv(directory / f"{experiment.name}.csv", rows[experiment.name])
+        (directory / IMAGES).mkdir(parents=True, exist_ok=True)
+        for name, path in experiment.pictures(measured, directory).items():
+            shutil.copyfile(path, directory / IMAGES / name)
+    text = text.replace("@promises@", promises_text(broken_promises(experiments, measured)))
+    text = text.replace("@origin@", origin_text(measured.records()))
+    (directory / "evaluation.md").write_text(text)
+    (directory / "evaluation.json").write_text(json.dumps(rows, indent=1) + "\n")
+
+
+def broken_promises(experiments, measured):
+    """A line for each thing that must hold and does not."""
+    return [f"{e.name}: {line}" for e in experiments if measured.records(e.name) for line in e.broken_promises(measured)]
+
+
+def promises_text(broken):
+    if not broken:
+        return ("The run checked: sizes are met to the byte, no error is above that of the paper's preset, noise stays below "
+                "its bound, no voxel's error is above --max-error, lossless is lossless, memory stays below its ceiling.")
+    return "**Promises that are not kept:**\n\n" + "\n".join(f"* {line}" for line in broken)
+
+
+def write_csv(path, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def origin_text(records):
+    """When, on what and by which version the measurements were made, a line for each combination."""
+    groups = {}
+    for record in records:
+        groups.setdefault((record["machine"], record["weir"]), []).append(record)
+    lines = []
+    for (machine, version), group in groups.items():
+        dates = sorted(record["date"][:10] for record in group)
+        names = ", ".join(sorted({record["experiment"] for record in group}))
+        when = dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}"
+        lines.append(f"* {when}, {version}, {machine}: {names}")
+    return "\n".join(lines)
+
+
+def publish(directory, docs):
+    """Copies the report and its pictures to where users read them."""
+    directory, docs = pathlib.Path(directory), pathlib.Path(docs)
+    shutil.copyfile(directory / "evaluation.md", docs / "evaluation.md")
+    shutil.rmtree(docs / IMAGES, ignore_errors=True)
+    shutil.copytree(directory / IMAGES, docs / IMAGES)

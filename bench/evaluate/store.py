@@ -1,0 +1,47 @@
+"""Measurements on disk: a JSON file for each, so that what is finished is never done twice.
+
+DIR/state/EXPERIMENT/NAME.json holds {"experiment", "name", "date", "machine", "weir", "result"}; `result` is whatever
+the experiment measured. A file appears whole or not at all.
+"""
+
+import datetime
+import json
+import os
+import pathlib
+import re
+import sys
+
+
+class Store:
+    """The measurements of one directory.
+
+    `origin` says of every new measurement where it is from ("machine", "weir"); with `again`, measurements that are
+    there already are made anew, once a run.
+    """
+
+    def __init__(self, directory, origin=None, again=False):
+        self._state = pathlib.Path(directory) / "state"
+        self._origin = origin or {}
+        self._again = again
+
+    def measure(self, experiment, name, function):
+        """The result of `experiment`'s measurement `name`: as stored, else what `function()` returns, stored."""
+        path = self._state / experiment / (re.sub(r"[^A-Za-z0-9._-]", "_", name) + ".json")
+        if path.exists() and not self._again:
+            return json.loads(path.read_text())["result"]
+        print(f"{experiment}: {name}", file=sys.stderr, flush=True)
+        record = {"experiment": experiment, "name": name, **self._origin, "result": function()}
+        record["date"] = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_suffix(".partial")
+        partial.write_text(json.dumps(record, indent=1) + "\n")
+        os.replace(partial, path)
+        return record["result"]
+
+    def records(self, experiment="*"):
+        """All records of an experiment, in the order in which they were named."""
+        paths = self._state.glob(f"{experiment}/*.json")
+        return sorted((json.loads(path.read_text()) for path in paths), key=lambda r: (r["experiment"], r["name"]))
+
+    def results(self, experiment):
+        return [record["result"] for record in self.records(experiment)]

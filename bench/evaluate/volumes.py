@@ -1,0 +1,168 @@
+"""The volumes that are measured: real ones of ../shared/data, and stand-ins of the paper's by `weir sample`.
+
+The paper is S. Zellmann, M. Jaros, J. Amstutz, I. Wald, GPU Volume Rendering with Hierarchical Compression Using VDB,
+EGPGV 2025.
+"""
+
+import array
+import contextlib
+import dataclasses
+import lzma
+import os
+import pathlib
+import shutil
+import sys
+
+_TYPE_CODES = {"uint8": "B", "int16": "h", "uint16": "H", "float32": "f"}
+_LARGE_BYTES = 1 << 30  # deleted again after each use
+
+
+@dataclasses.dataclass(frozen=True)
+class Volume:
+    name: str
+    extent: tuple  # voxels x, y, z
+    type: str
+    kind: str = ""  # of weir sample; empty: a real one, unpacked
+    note: str = ""  # what it is, for the report
+
+    @property
+    def file_name(self):
+        return f"{self.name}_{self.size_text}_{self.type}.raw"
+
+    @property
+    def size_text(self):
+        return "x".join(str(n) for n in self.extent)
+
+    @property
+    def voxels(self):
+        return self.extent[0] * self.extent[1] * self.extent[2]
+
+    @property
+    def dense_bytes(self):
+        """As float32, which is what rates refer to."""
+        return 4 * self.voxels
+
+
+def scaled(name, extent, kind, note, scale):
+    return Volume(name, tuple(max(1, round(n / scale)) for n in extent), "float32", kind, note)
+
+
+def wdas_like(scale):
+    note = "the WDAS cloud's place: a sparse cumulus, exact zero around it"
+    return scaled("wdas-like", (1987, 1351, 2449), "cloud", note, scale)
+
+
+def vorticity_like(scale):
+    note = "the vorticity's place: turbulence of both signs in a part of the box, exact zero around it"
+    return scaled("vorticity-like", (2450, 1162, 4000), "signed", note, scale)
+
+
+def magnetic_like(edge):
+    note = "the magnetic field's place: dense turbulence of magnitude 1e-16"
+    return Volume("magnetic-like", (edge, edge, edge), "float32", "tiny", note)
+
+
+def cube(kind, edge):
+    return Volume(kind, (edge, edge, edge), "float32", kind)
+
+
+_REAL = (
+    Volume("aneurism", (256, 256, 256), "uint8", note="rotational angiography, very sparse (Philips Research)"),
+    Volume("mni152_2009", (193, 229, 193), "int16", note="average of 152 heads, magnetic resonance (MNI ICBM152 2009)"),
+    Volume("tooth", (103, 94, 161), "uint8", note="computed tomography, noisy background that is not zero (GE)"),
+    Volume("wmag", (91, 91, 91), "float32", note="vortex tubes of a turbulent flow, smooth and dense (NCAR, SPERR)"),
+)
+
+
+def small_set():
+    """For the tests: a moment each."""
+    return [wdas_like(16), magnetic_like(96)]
+
+
+def report_set(scale):
+    """What the tables of errors show."""
+    return [
+        *_REAL,
+        wdas_like(scale),
+        Volume("heptane-like", (302, 302, 302), "uint8", "cloud", "the heptane fire's place: a sparse plume of 8 bits"),
+        vorticity_like(scale),
+        magnetic_like(256),
+    ]
+
+
+def full_set():
+    """At the paper's extents: 26 GB and 46 GB."""
+    return [wdas_like(1), vorticity_like(1)]
+
+
+class VolumeFiles:
+    """Makes the files of volumes where they are missing; they stay in DIR/volumes, large ones only while used."""
+
+    def __init__(self, directory, data, weir):
+        self.directory = pathlib.Path(directory) / "volumes"
+        self._data = pathlib.Path(data)
+        self._weir = weir
+
+    def available(self, volume):
+        """Whether it can be made; says so where not."""
+        if volume.kind or self._archive(volume).exists():
+            return True
+        print(f"{volume.name}: skipped, {self._archive(volume)} is missing", file=sys.stderr)
+        return False
+
+    @contextlib.contextmanager
+    def file(self, volume):
+        """The path of `volume` as its raw file."""
+        path = self.directory / volume.file_name
+        self._make(path, lambda partial: self._fill(volume, partial))
+        try:
+            yield path
+        finally:
+            if volume.dense_bytes > _LARGE_BYTES:
+                path.unlink(missing_ok=True)
+
+    @contextlib.contextmanager
+    def float32_file(self, volume):
+        """The same values as float32, for programs that read nothing else."""
+        with self.file(volume) as path:
+            if volume.type == "float32":
+                yield path
+                return
+            wide = dataclasses.replace(volume, type="float32")
+            wide_path = self.directory / wide.file_name
+            self._make(wide_path, lambda partial: _widen(path, volume.type, partial))
+            yield wide_path
+
+    def data_file(self, name):
+        """Another file of the real ones; None, said, where it is missing."""
+        path = self._data / name
+        if path.exists():
+            return path
+        print(f"skipped, {path} is missing", file=sys.stderr)
+        return None
+
+    def _archive(self, volume):
+        return self._data / (volume.file_name + ".xz")
+
+    def _make(self, path, fill):
+        if path.exists():
+            return
+        self.directory.mkdir(parents=True, exist_ok=True)
+        partial = path.with_name("." + path.name)
+        partial.unlink(missing_ok=True)
+        fill(partial)
+        os.replace(partial, path)
+
+    def _fill(self, volume, partial):
+        if volume.kind:
+            dims = ",".join(str(n) for n in volume.extent)
+            self._weir.run("sample", volume.kind, "--dims", dims, "--type", volume.type, "-o", partial)
+            return
+        with lzma.open(self._archive(volume)) as packed, open(partial, "wb") as raw:
+            shutil.copyfileobj(packed, raw, 1 << 20)
+
+
+def _widen(path, scalar_type, partial):
+    with open(path, "rb") as narrow, open(partial, "wb") as wide:
+        while block := narrow.read(1 << 22):
+            array.array("f", array.array(_TYPE_CODES[scalar_type], block)).tofile(wide)

@@ -1,0 +1,102 @@
+// bench/evaluate.sh --quick: the evaluation runs, goes on where it was, keeps its promises, and reports them.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/python.h"
+#include "tests/support/sanitized.h"
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Evaluation : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (kSanitized) GTEST_SKIP() << "hundreds of conversions, which other tests run sanitized";
+  }
+
+  // In the test's directory.
+  CommandResult evaluate(std::vector<std::string> options) {
+    std::vector<std::string> command{kPython,  "-B",         std::string(WEIR_SOURCE_DIR) + "/bench/evaluate",
+                                     "--weir", WEIR_COMMAND, directory_.path().string()};
+    command.insert(command.end(), options.begin(), options.end());
+    CommandOptions run;
+    run.timeout = std::chrono::minutes(5);  // of a busy machine
+    return run_command(command, run);
+  }
+
+  std::string report() { return read_file(directory_ / "evaluation.md"); }
+  Json figures() { return Json::parse(read_file(directory_ / "evaluation.json")); }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
+  const CommandResult run = evaluate({"--quick"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, (directory_ / "evaluation.md") + "\n");
+
+  const Json all = figures();
+  EXPECT_EQ(all["sizes"].size(), 2 * 2 * 4U);  // volumes, methods, rates
+  for (const Json& row : all["sizes"]) EXPECT_EQ(row["bytes_got"], row["bytes_asked"]) << row;
+  ASSERT_EQ(all["worst_case"].size(), 2U);
+  EXPECT_EQ(all["worst_case"][0]["bytes"], 446752);
+  EXPECT_EQ(all["worst_case"][0]["fixed_bytes"], 4096 + 800 + 32 + 270400 + 33856 + 288);
+  EXPECT_EQ(all["worst_case"][1]["bytes"], 1407712);
+  EXPECT_EQ(all["errors"].size(), 2 * 4 * 10U);  // volumes, methods, shares
+  EXPECT_EQ(all["metrics"].size(), 2 * 2 * 4 * 2U);
+  EXPECT_GE(all["speed"].size(), 2 * 2U);  // leaves, caches; more where there are threads to compare
+
+  const std::string text = report();
+  for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## ZFP",
+                            "## There and back", "## Time and memory"}) {
+    EXPECT_NE(text.find(title), std::string::npos) << title;
+  }
+  EXPECT_NE(text.find("| 32^3 | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos) << text;
+  for (const auto& [name, rows] : all.items()) {
+    EXPECT_EQ(text.find("@" + name + "@"), std::string::npos) << name << " is no place in report.md";
+  }
+  EXPECT_EQ(text.find("Promises that are not kept"), std::string::npos);
+  EXPECT_TRUE(fs::exists(directory_ / "images/evaluation/wdas-like_psnr.png"));
+  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "speed"}) {
+    EXPECT_TRUE(fs::exists(directory_ / (std::string(name) + ".csv"))) << name;
+  }
+}
+
+TEST_F(Evaluation, GoesOnWhereItWasAndSaysWhatIsBroken) {
+  ASSERT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032\nworst_case: noise_0064\n");
+  EXPECT_NE(report().find("*Not measured yet.*"), std::string::npos);
+  const fs::path state = directory_.path() / "state/worst_case";
+  fs::remove(state / "noise_0032.json");
+  EXPECT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032\n");
+
+  Json record = Json::parse(read_file(state / "noise_0064.json"));
+  record["result"]["bytes"] = 1500000;
+  write_file(state / "noise_0064.json", record.dump());
+  const CommandResult run = evaluate({"--report"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err,
+            "worst_case: noise of 64^3 takes 1500000 bytes, the format says 1407712\n"
+            "worst_case: noise of 64^3 takes 1500000 bytes, the bound is 1415719\n");
+  EXPECT_NE(report().find("* worst_case: noise of 64^3 takes 1500000 bytes, the format says 1407712\n"),
+            std::string::npos);
+}
+
+TEST_F(Evaluation, NamesItsExperiments) {
+  const CommandResult run = evaluate({"--only", "sizes,speeds"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("bench/evaluate.sh: error: --only names speeds; there are sizes, worst_case, errors"),
+            std::string::npos)
+      << run.err;
+}
+
+}  // namespace
+}  // namespace weir
