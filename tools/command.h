@@ -30,6 +30,8 @@ void add_watch(CLI::App& app);
 void add_jobs(CLI::App& app);
 void add_status(CLI::App& app);
 void add_retry(CLI::App& app);
+void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 
 /// Thrown by a subcommand that has already said what it found (verify, compare).
 struct ExitStatus {

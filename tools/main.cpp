@@ -71,6 +71,8 @@ int main(int argc, char** argv) {
     weir::add_jobs(app);
     weir::add_status(app);
     weir::add_retry(app);
+    weir::add_completion(app);
+    weir::add_man(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) {
       return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
