@@ -1,4 +1,5 @@
-# weir_cuda, the library of gpu/cuda/: grid loader and CUDA renderer, where nvcc is found.
+# Of gpu/cuda/, where nvcc is found: weir_cuda, also called weir::cuda, grid loader and kernels, which another program
+# embeds (docs/embedding.md), and weir_cuda_backend, which makes them a back end of weir render.
 # At file scope: enable_language does not work inside a function.
 
 include(CheckLanguage)
@@ -21,21 +22,29 @@ if(CMAKE_CUDA_COMPILER)
   find_package(CUDAToolkit REQUIRED)
   file(GLOB_RECURSE WEIR_CUDA_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp
                                                         ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
-  if(WEIR_EMBED)  # the back end of weir render reads scenes and images
-    list(FILTER WEIR_CUDA_SOURCES EXCLUDE REGEX "/cuda_backend\\.cpp$")
-  endif()
+  list(FILTER WEIR_CUDA_SOURCES EXCLUDE REGEX "/cuda_backend\\.cpp$")
   add_library(weir_cuda STATIC ${WEIR_CUDA_SOURCES})
+  add_library(weir::cuda ALIAS weir_cuda)
+  set_target_properties(weir_cuda PROPERTIES EXPORT_NAME cuda)
+  set(WEIR_CUDA_HEADERS check device_array device_buffer grid_loader load/copy_task load/direct_storage load/load_report
+                        load/pinned_memory load/pinned_ring load/registered_range load/zero_copy)
+  list(TRANSFORM WEIR_CUDA_HEADERS REPLACE ".+" "${PROJECT_SOURCE_DIR}/gpu/cuda/\\0.h")
+  target_sources(weir_cuda PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${WEIR_CUDA_HEADERS})
   target_compile_options(weir_cuda INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>)  # where CMake does not know it
-  target_link_libraries(weir_cuda PUBLIC $<IF:$<BOOL:${WEIR_EMBED}>,weir_gpu_core,weir_gpu> CUDA::cudart_static ${CMAKE_DL_LIBS} Threads::Threads)
+  target_link_libraries(weir_cuda PUBLIC weir_gpu_core CUDA::cudart_static ${CMAKE_DL_LIBS} Threads::Threads)
   target_compile_definitions(weir_cuda PUBLIC WEIR_HAVE_CUDA)
   # Each thread has a default stream of its own: one loads while another renders.
   target_compile_definitions(weir_cuda PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
+  if(NOT WEIR_EMBED)
+    add_library(weir_cuda_backend STATIC ${PROJECT_SOURCE_DIR}/gpu/cuda/cuda_backend.cpp)
+    target_link_libraries(weir_cuda_backend PUBLIC weir_cuda weir_gpu)
+  endif()
   if(WEIR_BUILD_BENCH AND NOT WEIR_EMBED)
     # As few shared libraries as it uses: it runs on machines that have a device and little else.
     foreach(name load frames)
       add_executable(weir_bench_${name} ${PROJECT_SOURCE_DIR}/bench/gpu/bench_${name}.cpp)
       target_link_options(weir_bench_${name} PRIVATE -Wl,--as-needed)
-      target_link_libraries(weir_bench_${name} PRIVATE weir_cuda weir_format)
+      target_link_libraries(weir_bench_${name} PRIVATE weir_cuda_backend weir_format)
       set_target_properties(weir_bench_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
     endforeach()
   endif()

@@ -2,13 +2,15 @@
 # there are: a folder as a library, a tests/ folder as one test program.
 
 add_library(weir_options INTERFACE)
-target_include_directories(weir_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(weir_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+set_target_properties(weir_options PROPERTIES EXPORT_NAME options)
 target_compile_features(weir_options INTERFACE cxx_std_20)
 # A decoded value is two roundings everywhere: never let the compiler fuse them.
 target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
                                               $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
 if(NOT WEIR_EMBED)  # another program chooses its own warnings
-  target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow>)
+  target_compile_options(weir_options INTERFACE
+                         $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Wall$<SEMICOLON>-Wextra$<SEMICOLON>-Wconversion$<SEMICOLON>-Wshadow>>)
 endif()
 # A compiler newer than those weir is checked with brings warnings of its own: shown, but no failure.
 if(WEIR_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
@@ -17,7 +19,7 @@ elseif(WEIR_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMP
   set(WEIR_WERROR OFF)
 endif()
 if(WEIR_WERROR)
-  target_compile_options(weir_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
+  target_compile_options(weir_options INTERFACE $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Werror>>)
 endif()
 
 if(WEIR_TIDY)
@@ -26,15 +28,22 @@ if(WEIR_TIDY)
   # A changed configuration changes the command line, so that every file is looked at again.
   set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS .clang-tidy)
   file(SHA256 ${PROJECT_SOURCE_DIR}/.clang-tidy tidy_digest)
-  target_compile_definitions(weir_options INTERFACE WEIR_TIDY_CONFIGURATION="${tidy_digest}")
+  target_compile_definitions(weir_options INTERFACE $<BUILD_INTERFACE:WEIR_TIDY_CONFIGURATION="${tidy_digest}">)
 endif()
 
-# weir_core(NAME FILES name... LINKS target...): those files of NAME/, which need no library, as weir_NAME_core: what
-# another program embeds (docs/embedding.md).
+# weir_core(NAME FILES name... HEADERS name... LINKS target...): those files of NAME/, which need no library, and headers
+# without a source, as weir_NAME_core, also called weir::NAME_core: what another program embeds (docs/embedding.md).
 function(weir_core name)
-  cmake_parse_arguments(ARG "" "" "FILES;LINKS" ${ARGN})
-  list(TRANSFORM ARG_FILES REPLACE ".+" "${PROJECT_SOURCE_DIR}/${name}/\\0.cpp")
-  add_library(weir_${name}_core STATIC ${ARG_FILES})
+  cmake_parse_arguments(ARG "" "" "FILES;HEADERS;LINKS" ${ARGN})
+  set(folder ${PROJECT_SOURCE_DIR}/${name})
+  set(sources ${ARG_FILES})
+  list(TRANSFORM sources REPLACE ".+" "${folder}/\\0.cpp")
+  set(headers ${ARG_FILES} ${ARG_HEADERS})
+  list(TRANSFORM headers REPLACE ".+" "${folder}/\\0.h")
+  add_library(weir_${name}_core STATIC ${sources})
+  add_library(weir::${name}_core ALIAS weir_${name}_core)
+  set_target_properties(weir_${name}_core PROPERTIES EXPORT_NAME ${name}_core)
+  target_sources(weir_${name}_core PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
   target_link_libraries(weir_${name}_core PUBLIC weir_options ${ARG_LINKS})
 endfunction()
 
@@ -89,14 +98,24 @@ function(weir_tests name)
   file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
   add_executable(weir_tests_${name} ${sources} ${support})
   set(library weir_${name})
+  if(name STREQUAL "cuda")  # they try the renderer too
+    set(library weir_cuda_backend)
+  endif()
   if(name STREQUAL "tools" OR name STREQUAL "daemon")  # they run the command
     set(library weir_tools)
     add_dependencies(weir_tests_${name} weir)
+    set(installs)
+    if(TARGET weir_share)
+      add_dependencies(weir_tests_${name} weir_share)
+      set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}")
+    endif()
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
-    # Of the one that builds a program itself, with the tools weir is built with.
-    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/embedding_test.cpp PROPERTY COMPILE_DEFINITIONS
+    # Of those that build a program themselves, with the tools weir is built with, or install weir.
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/embedded_example.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install_test.cpp
+                        ${PROJECT_SOURCE_DIR}/tests/tools/embedding_test.cpp PROPERTY COMPILE_DEFINITIONS
                  WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_CXX="${CMAKE_CXX_COMPILER}"
-                 WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}")
+                 WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}"
+                 WEIR_VERSION="${PROJECT_VERSION}" ${installs})
   endif()
   target_link_libraries(weir_tests_${name} PRIVATE ${library} GTest::gtest GTest::gtest_main
                                                    ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)

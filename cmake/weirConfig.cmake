@@ -1,0 +1,10 @@
+# find_package(weir): weir::format_core and weir::gpu_core, and weir::cuda where weir was built with CUDA and the project
+# compiles CUDA (enable_language(CUDA) before find_package).
+
+include(${CMAKE_CURRENT_LIST_DIR}/weirTargets.cmake)
+if(CMAKE_CUDA_COMPILER AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/weirCudaTargets.cmake)
+  include(CMakeFindDependencyMacro)
+  find_dependency(Threads)
+  find_dependency(CUDAToolkit)
+  include(${CMAKE_CURRENT_LIST_DIR}/weirCudaTargets.cmake)
+endif()

@@ -1,0 +1,196 @@
+// What cmake --install brings: exactly these files, a command that runs, libraries that another build takes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "format/text.h"
+#include "tests/tools/embedded_example.h"
+#include "tests/tools/run_command.h"
+
+#ifdef WEIR_INSTALLS  // not in builds with sanitizers
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Installation : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    directory_ = std::make_unique<TemporaryDirectory>();
+    const CommandResult installed =
+        run_command({WEIR_CMAKE, "--install", WEIR_INSTALLS, "--strip", "--prefix", prefix()});
+    ASSERT_EQ(installed.exit_code, 0) << installed.out << installed.err;
+  }
+  static void TearDownTestSuite() { directory_.reset(); }
+
+  static std::string prefix() { return *directory_ / "weir"; }
+  static bool has_cuda() { return !std::string(WEIR_NVCC).empty(); }
+
+ private:
+  static inline std::unique_ptr<TemporaryDirectory> directory_;
+};
+
+/// The files (no directories) below `root`, as paths below `as`.
+void add_files(const fs::path& root, const std::string& as, std::set<std::string>& files) {
+  for (const std::string& path : list_directory(root)) {
+    if (!path.ends_with('/')) files.insert(cat(as, "/", path));
+  }
+}
+
+std::set<std::string> headers() {
+  std::set<std::string> files;
+  for (const char* name : {"descriptor", "error", "file_mapping", "host_device", "index", "leaf_decode", "macrocells",
+                           "nanovdb_layout", "nvdb_blind", "nvdb_bytes", "nvdb_file", "nvdb_grid", "nvdb_header",
+                           "nvdb_tree", "nvdb_type", "range_max", "text"}) {
+    files.insert(cat("include/weir/format/", name, ".h"));
+  }
+  for (const char* name : {"colormap", "dda", "environment_view", "iso_surface", "leaf_table", "lighting",
+                           "macrocell_grid", "max_projection", "medium", "path_tracer", "phase", "portable", "random",
+                           "ray", "ray_march", "tracking", "transfer_function", "vector3", "volume_sampler"}) {
+    files.insert(cat("include/weir/gpu/", name, ".h"));
+  }
+  return files;
+}
+
+std::set<std::string> cuda_files() {
+  std::set<std::string> files{"lib/libweir_cuda.a", "lib/cmake/weir/weirCudaTargets.cmake",
+                              "lib/cmake/weir/weirCudaTargets-release.cmake"};
+  for (const char* name :
+       {"check", "device_array", "device_buffer", "grid_loader", "load/copy_task", "load/direct_storage",
+        "load/load_report", "load/pinned_memory", "load/pinned_ring", "load/registered_range", "load/zero_copy"}) {
+    files.insert(cat("include/weir/gpu/cuda/", name, ".h"));
+  }
+  return files;
+}
+
+TEST_F(Installation, HasExactlyTheseFiles) {
+  std::set<std::string> expected{
+      "bin/weir",
+      "lib/libweir_format_core.a",
+      "lib/libweir_gpu_core.a",
+      "lib/cmake/weir/weirConfig.cmake",
+      "lib/cmake/weir/weirConfigVersion.cmake",
+      "lib/cmake/weir/weirTargets.cmake",
+      "lib/cmake/weir/weirTargets-release.cmake",
+      "lib/systemd/system/weir@.service",
+      "lib/sysusers.d/weir.conf",
+      "share/bash-completion/completions/weir",
+      "share/fish/vendor_completions.d/weir.fish",
+      "share/zsh/vendor-completions/_weir",
+      "share/weir/sidecar.schema.json",
+      "share/doc/weir/README.md",
+      "share/doc/weir/CHANGELOG.md",
+      "share/doc/weir/CONTRIBUTING.md",
+      "share/doc/weir/LICENSE",
+      "share/doc/weir/format/FORMAT.md",
+      "share/doc/weir/format/sidecar.schema.json",
+  };
+  expected.merge(headers());
+  if (has_cuda()) expected.merge(cuda_files());
+  add_files(WEIR_SOURCE_DIR "/docs", "share/doc/weir/docs", expected);
+  add_files(WEIR_SOURCE_DIR "/examples", "share/doc/weir/examples", expected);
+  const TemporaryDirectory pages;
+  ASSERT_EQ(run_weir({"man", pages.path()}).exit_code, 0);
+  for (const std::string& page : list_directory(pages.path())) expected.insert(cat("share/man/man1/", page, ".gz"));
+
+  std::set<std::string> found;
+  add_files(prefix(), "", found);
+  std::set<std::string> relative;
+  for (const std::string& path : found) relative.insert(path.substr(1));
+  EXPECT_EQ(relative, expected);
+}
+
+TEST_F(Installation, TheCommandRuns) {
+  const std::string weir = prefix() + "/bin/weir";
+  EXPECT_EQ(run_command({weir, "--version"}).out, WEIR_VERSION "\n");
+  const TemporaryDirectory work;
+  const std::string raw = work / "a_40x30x20_float32.raw";
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"sample", "cloud", "-o", raw},
+                                             {"convert", raw, "--lossless", "-o", work / "a.nvdb"},
+                                             {"verify", work / "a.nvdb"},
+                                             {"render", work / "a.nvdb", "-o", work / "a.png", "--size", "20x20"}}) {
+    std::vector<std::string> all{weir};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const CommandResult result = run_command(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+}
+
+TEST_F(Installation, TheUnitLeadsToThisPrefix) {
+  const std::string unit = read_file(prefix() + "/lib/systemd/system/weir@.service");
+  EXPECT_NE(unit.find(cat("\nExecStart=", prefix(), "/bin/weir watch /etc/weir/%i.toml\n")), std::string::npos) << unit;
+  EXPECT_NE(unit.find(cat("file://", prefix(), "/share/doc/weir/docs/operations.md\n")), std::string::npos);
+  EXPECT_EQ(unit.find("/usr/"), std::string::npos);
+}
+
+TEST_F(Installation, LinksOfTheDocumentsLeadSomewhere) {
+  const fs::path documents = prefix() + "/share/doc/weir";
+  const std::regex link("\\]\\(([^)#:]+)(#[^)]*)?\\)");
+  std::size_t links = 0;
+  for (const std::string& name : list_directory(documents)) {
+    if (!name.ends_with(".md")) continue;
+    const std::string text = read_file(documents / name);
+    for (auto at = std::sregex_iterator(text.begin(), text.end(), link); at != std::sregex_iterator(); ++at) {
+      if (at->str(1).ends_with(".h")) continue;  // FORMAT.md says where in the sources
+      ++links;
+      EXPECT_TRUE(fs::exists((documents / name).parent_path() / at->str(1))) << name << ": " << at->str(1);
+    }
+  }
+  EXPECT_GT(links, 10U);
+}
+
+TEST_F(Installation, ManualAndCompletionAreThoseOfTheCommand) {
+  const CommandResult page = run_command({"gzip", "-dc", prefix() + "/share/man/man1/weir-convert.1.gz"});
+  EXPECT_EQ(page.out.rfind(".TH \"WEIR\\-CONVERT\" 1 \"\" \"weir " WEIR_VERSION "\" \"User Commands\"\n", 0), 0U);
+  const std::string share = prefix() + "/share";
+  EXPECT_EQ(read_file(share + "/bash-completion/completions/weir"), run_weir({"completion", "bash"}).out);
+  EXPECT_EQ(read_file(share + "/zsh/vendor-completions/_weir"), run_weir({"completion", "zsh"}).out);
+  EXPECT_EQ(read_file(share + "/fish/vendor_completions.d/weir.fish"), run_weir({"completion", "fish"}).out);
+}
+
+TEST_F(Installation, AnotherBuildFindsTheLibraries) {
+  const EmbeddedExample example({"-DWEIR_INSTALLED=ON", "-DCMAKE_PREFIX_PATH=" + prefix(), "-DCMAKE_CUDA_COMPILER="});
+  const CommandResult sampled = example.run("sample_host", {example.file(), "8", "5.5", "3.25"});
+  EXPECT_EQ(sampled.exit_code, 0) << sampled.err;
+  EXPECT_EQ(sampled.out, "1207.5\n");
+  EXPECT_FALSE(example.has("sample_device"));
+}
+
+TEST_F(Installation, AnotherBuildFindsTheDeviceLibrary) {
+  if (!has_cuda()) GTEST_SKIP() << "no nvcc";
+  const EmbeddedExample example({"-DWEIR_INSTALLED=ON", "-DCMAKE_PREFIX_PATH=" + prefix(),
+                                 "-DCMAKE_CUDA_COMPILER=" WEIR_NVCC, "-DCMAKE_CUDA_ARCHITECTURES=90"});
+  EXPECT_TRUE(example.has("sample_device"));
+}
+
+// Each alone, so that none relies on what another one includes.
+TEST_F(Installation, EveryHeaderCompilesAlone) {
+  const TemporaryDirectory work;
+  for (const std::string& header : headers()) {
+    const std::string name = header.substr(std::string("include/weir/").size());
+    write_file(work / "a.cpp", cat("#include \"", name, "\"\n"));
+    const CommandResult compiled = run_command({WEIR_CXX, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror",
+                                                "-I" + prefix() + "/include/weir", work / "a.cpp"});
+    EXPECT_EQ(compiled.exit_code, 0) << name << '\n' << compiled.err;
+  }
+}
+
+TEST(Changelog, NamesTheVersionFirst) {
+  const std::string text = read_file(WEIR_SOURCE_DIR "/CHANGELOG.md");
+  const std::size_t heading = text.find("\n## [" WEIR_VERSION "] - 20");
+  ASSERT_NE(heading, std::string::npos) << "CMakeLists.txt has version " WEIR_VERSION;
+  const std::string before = text.substr(0, heading);
+  EXPECT_TRUE(before.find("\n## ") == std::string::npos || before.find("\n## [Unreleased]") == before.rfind("\n## "));
+}
+
+}  // namespace
+}  // namespace weir
+
+#endif
