@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "compressor/background.h"
-#include "compressor/encode.h"
-#include "compressor/encoding_choice.h"
-#include "compressor/leaf_errors.h"
+#include "compressor/encode_attempts.h"
 #include "compressor/leaf_reach.h"
 #include "compressor/memory_plan.h"
+#include "compressor/resume.h"
 #include "compressor/selection.h"
 #include "compressor/survey.h"
 #include "compressor/tree_plan.h"
@@ -98,6 +97,12 @@ void check_cancel(const ConversionControl& control) {
 void start_pass(const ConversionControl& control, const std::string& name, std::uint64_t voxels) {
   check_cancel(control);
   if (control.pass_started) control.pass_started(name, voxels * sizeof(float));
+}
+
+std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
+  std::int64_t voxels = 0;
+  for (const Box& box : leaves.boxes()) voxels += plan.voxel_box(box).voxels();
+  return static_cast<std::uint64_t>(voxels);
 }
 
 void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
@@ -201,72 +206,6 @@ std::optional<Visibility> visibility_of(const ConversionOptions& options, const 
                     promise ? Visibility::Weighing::alike : Visibility::Weighing::by_picture);
 }
 
-// A file whose leaves are written, and what they lose.
-struct EncodedFile {
-  FilePlan file;
-  std::unique_ptr<RecordStore> records;
-  LeafErrors errors;
-  LeafErrors seen_errors;  // of those that can be seen
-};
-
-// Plans and encodes once.
-EncodedFile encode_once(VolumeSource& source, const ReadingPlan& reading, const FileRequest& request,
-                        const RowStore& rows, WorkDirectory& work, const StreamOptions& stream,
-                        const ConversionControl& control, OutputFiles& output) {
-  EncodedFile encoded{plan_file(request, rows, work), nullptr, {}, {}};
-  check_cancel(control);
-  const FilePlan& file = encoded.file;
-  if (!output.reserve(file.size.bytes) && control.notice) {
-    control.notice(
-        cat(output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
-  }
-  encoded.records = std::make_unique<RecordStore>(work.spill(), file.plan.layout.counts.leaves);
-  start_pass(control, "encode", static_cast<std::uint64_t>(request.domain.voxels()));
-  const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
-  encode_leaves(source, reading.encode,
-                {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                 output.volume(), *encoded.records},
-                stream, reading.reading);
-  encoded.errors = sum_leaf_errors(*file.tree, *encoded.records);
-  encoded.seen_errors = request.rule.visibility == nullptr
-                            ? encoded.errors
-                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get());
-  return encoded;
-}
-
-// Whether another attempt should be made at an error target, and with which expected error. Expectations come from
-// the survey's estimates; decoded values decide. A file within 2 % of the error asked is small enough.
-bool adjust_target(const EncodedFile& encoded, double target, int attempt, FileRequest& request) {
-  if (encoded.file.encoding == Encoding::float32) return false;  // exact
-  constexpr int kMostAttempts = 6;
-  if (request.budget.kind == Budget::Kind::max_error) {
-    if (encoded.seen_errors.max_abs <= request.budget.target) return false;
-    request.encoding = Encoding::float32;
-    return true;
-  }
-  const double error = encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
-  const bool met = error <= target;
-  if (met && (attempt >= 2 || error >= 0.98 * target || !(error > 0))) return false;
-  if (attempt + 1 >= kMostAttempts) {
-    request.encoding = Encoding::float32;
-    return !met;
-  }
-  // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
-  request.squared_error *= target / error * (met ? 0.995 : 1 - std::ldexp(0.002, 2 * attempt));
-  return true;
-}
-
-EncodedFile encode_file(VolumeSource& source, const ReadingPlan& reading, FileRequest request, const RowStore& rows,
-                        WorkDirectory& work, const StreamOptions& stream, const ConversionControl& control,
-                        OutputFiles& output) {
-  const double target = request.squared_error;
-  for (int attempt = 0;; ++attempt) {
-    EncodedFile encoded = encode_once(source, reading, request, rows, work, stream, control, output);
-    if (!request.budget.by_error() || !adjust_target(encoded, target, attempt, request)) return encoded;
-    output.volume().clear();
-  }
-}
-
 }  // namespace
 
 std::string metric_name(Metric metric) {
@@ -297,16 +236,17 @@ std::string policy_name(NonFinitePolicy policy) {
   throw Error(ErrorKind::internal, "unknown policy for non-finite values");
 }
 
-Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                       FileSystem& files) {
+namespace {
+
+// All of it but what comes after an error.
+Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+                   OutputFiles& output, WorkDirectory& work, Journal* journal) {
   const Clock::time_point started = Clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
   const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
-  OutputFiles output(files, options.output, options.overwrite);
-  WorkDirectory work(files, options.output, options.work_dir);
   const MemoryPlan memory = plan_memory(options.memory, resident_bytes() + source.working_bytes(), threads, domain);
   const ReadingPlan reading = plan_reading(source, memory);
   const StreamOptions stream = stream_options(control);
@@ -316,19 +256,39 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
 
   // Survey.
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());
-  start_pass(control, "survey", voxels);
+  const NodeLattice& leaves = reading.survey.lattice;
+  SurveyState from_nothing;
+  SurveyState& surveyed = journal == nullptr ? from_nothing : journal->state.survey;
+  Pauses pauses;
+  if (journal != nullptr) {
+    pauses = {[&] { return journal->due(); }, [&] { journal->save(); }};
+    if (journal->resumable() && control.notice) {
+      control.notice(continued_notice(options.output, journal->state, leaves.size()));
+    }
+  }
+  start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey));
   const std::optional<Visibility> visibility = visibility_of(options, domain);
-  RowStore rows(work.spill(), reading.survey.lattice, memory.segment_regions);
+  const auto spill = [&](const char* name) -> std::shared_ptr<File> {
+    if (journal != nullptr) return journal->open(name);
+    return work.spill();
+  };
+  RowStore rows(spill("rows"), leaves, memory.segment_regions);
   std::optional<LeafStore<LeafFaces>> faces;
-  if (visibility) faces.emplace(work.spill(), reading.survey.lattice);
+  if (visibility) faces.emplace(spill("faces"), leaves);
   const bool widths = options.encoding != Encoding::float32 && options.metric == Metric::sse;
-  const Survey survey =
-      survey_volume(source, reading.survey, rows, stream, reading.reading, widths, faces ? &*faces : nullptr);
+  const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading, widths,
+                                      faces ? &*faces : nullptr, &surveyed, pauses);
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   Background background;
   Sidecar sidecar = describe_source(info, survey, options);
-  tbb::parallel_invoke([&] { background = choose_background(options, survey, rows, source, reading.survey, stream); },
-                       [&] { sidecar.source.digest = source_digest(rows); });
+  const bool known = journal != nullptr && journal->state.background;
+  tbb::parallel_invoke(
+      [&] {
+        background = known ? *journal->state.background
+                           : choose_background(options, survey, rows, source, reading.survey, stream);
+      },
+      [&] { sidecar.source.digest = source_digest(rows); });
+  if (journal != nullptr) journal->state.background = background;
   FileRequest request = request_for(options, survey, background.value, domain);
   Shown shown;
   if (visibility) {
@@ -343,7 +303,9 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   check_cancel(control);
   const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded = encode_file(source, reading, std::move(request), rows, work, stream, control, output);
+  const EncodedFile encoded = encode_file({source, reading.encode, reading.reading, rows, work, output, journal, stream,
+                                           [&] { start_pass(control, "encode", voxels); }, control.notice},
+                                          std::move(request));
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
@@ -392,6 +354,23 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   sidecar.timing.peak_rss_bytes = peak_resident_bytes();
   output.commit(to_json_text(sidecar));
   return sidecar;
+}
+
+}  // namespace
+
+Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+                       FileSystem& files) {
+  OutputFiles output(files, options.output, options.overwrite);
+  WorkDirectory work(files, options.output, options.work_dir);
+  const std::unique_ptr<Journal> journal = open_journal(source.info(), options, control, output, files);
+  try {
+    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get());
+    if (journal) journal->discard();
+    return sidecar;
+  } catch (const Error& error) {
+    if (!journal) throw;
+    throw ended_with(error, *journal);
+  }
 }
 
 }  // namespace weir

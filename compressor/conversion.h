@@ -26,6 +26,10 @@ struct SceneFile {
   std::string path;
 };
 
+/// Whether an interrupted conversion can be continued. automatic: where the volume has a GiB of float32 or more, and
+/// the output does not lie on a memory file system.
+enum class Resume { automatic, on, off };
+
 struct ConversionOptions {
   std::string output;      ///< path of the .nvdb
   bool overwrite = false;  ///< replace an existing output
@@ -41,7 +45,9 @@ struct ConversionOptions {
   std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process
   std::size_t threads = 0;                           ///< workers, 0: one per core
   std::string work_dir;                              ///< for spill files; empty: a hidden directory beside the output
-  Sidecar::Weir provenance;                          ///< recorded as it is
+  Resume resume = Resume::automatic;
+  double save_interval_s = 5;  ///< between two points that it can be continued from; 0: after every block, for tests
+  Sidecar::Weir provenance;    ///< recorded as it is
 };
 
 /// What a caller can watch and stop.
@@ -52,8 +58,9 @@ struct ConversionControl {
   std::function<void(const std::string& line)> notice;
 };
 
-/// Converts and returns the sidecar that was written. Throws Error; then nothing is left of the output
-/// and what was there before is untouched.
+/// Converts and returns the sidecar that was written. Throws Error; then what was there before is untouched, and of the
+/// output nothing is left but, where it can be continued (journal.h), what the hidden directory beside it holds: the
+/// same call goes on from there and ends with the same bytes.
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                        FileSystem& files);
 

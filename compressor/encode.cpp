@@ -193,22 +193,43 @@ void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEa
 }  // namespace
 
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options, Reading reading) {
+                   const StreamOptions& options, Reading reading, BoxSet* done, const Pauses& pauses) {
   const TreeRegions& tree = target.tree;
+  BoxSet nothing;
+  BoxSet& known = done == nullptr ? nothing : *done;
+  std::vector<Box> parts;  // what is not done
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
+  std::vector<std::size_t> part_of;  // by leaf box
   for (std::int64_t i = 0; i < plan.size(); ++i) {
-    const Box kept = trim_to_kept(tree, target.choices, plan.leaf_box(i));
-    if (kept.empty()) continue;
-    leaf_boxes.push_back(kept);
-    voxel_boxes.push_back(plan.voxel_box(kept));
+    for (const Box& part : known.missing_from(plan.leaf_box(i))) {
+      parts.push_back(part);
+      const Box kept = trim_to_kept(tree, target.choices, part);
+      if (kept.empty()) continue;
+      leaf_boxes.push_back(kept);
+      voxel_boxes.push_back(plan.voxel_box(kept));
+      part_of.push_back(parts.size() - 1);
+    }
+  }
+  std::size_t told = 0;
+  const auto tell = [&](std::size_t boxes_done) {
+    const std::size_t end = boxes_done == part_of.size() ? parts.size() : part_of[boxes_done];
+    for (; told < end; ++told) known.add(parts[told]);
+  };
+  StreamOptions stream = options;
+  if (pauses.due) {
+    stream.at_rest = [&](std::size_t boxes_done) {
+      if (!pauses.due()) return;
+      tell(boxes_done);
+      pauses.save();
+    };
   }
   tbb::enumerable_thread_specific<LeafEncoder> encoders;
   if (reading == Reading::in_place) {
     const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
       for (std::int64_t i = begin; i < end; ++i) action(i);
     };
-    work_in_place(source, voxel_boxes, options, [&](const Block& block) {
+    work_in_place(source, voxel_boxes, stream, [&](const Block& block) {
       const Box& leaf_box = leaf_boxes[block.index];
       LeafEncoder& encoder = encoders.local();
       for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
@@ -216,12 +237,13 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       });
       encoder.finish(target);
     });
+    tell(voxel_boxes.size());
     return;
   }
   const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
     tbb::parallel_for(begin, end, action);
   };
-  stream_blocks(source, voxel_boxes, options, [&](const Block& block) {
+  stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
     for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
       LeafEncoder& encoder = encoders.local();
@@ -229,6 +251,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       encoder.finish(target);
     });
   });
+  tell(voxel_boxes.size());
 }
 
 }  // namespace weir

@@ -7,8 +7,10 @@
 #include "compressor/fill.h"
 #include "compressor/leaf_choice.h"
 #include "compressor/leaf_record.h"
+#include "compressor/pauses.h"
 #include "compressor/quantised_leaf.h"
 #include "compressor/tree_regions.h"
+#include "format/box_set.h"
 #include "format/file_system.h"
 #include "format/nvdb_type.h"
 #include "format/tree_layout.h"
@@ -28,8 +30,11 @@ struct EncodeTarget {
   RecordStore& records;
 };
 
-/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads.
+/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, says
+/// for which positions of the leaf lattice that has been done already, by any plan, is brought up to date when `pauses`
+/// ask for it, and in the end is the whole lattice.
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options, Reading reading = Reading::ahead);
+                   const StreamOptions& options, Reading reading = Reading::ahead, BoxSet* done = nullptr,
+                   const Pauses& pauses = {});
 
 }  // namespace weir

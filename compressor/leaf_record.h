@@ -38,7 +38,7 @@ LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box
 /// Records by leaf ordinal. Thread-safe for different leaves.
 class RecordStore {
  public:
-  RecordStore(std::unique_ptr<File> file, std::uint64_t leaves) : file_(std::move(file)) {
+  RecordStore(std::shared_ptr<File> file, std::uint64_t leaves) : file_(std::move(file)) {
     file_->preallocate(leaves * sizeof(LeafRecord));
   }
   void write(std::uint64_t first, std::span<const LeafRecord> records) {
@@ -51,7 +51,7 @@ class RecordStore {
   }
 
  private:
-  std::unique_ptr<File> file_;
+  std::shared_ptr<File> file_;
 };
 
 }  // namespace weir

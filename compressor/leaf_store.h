@@ -21,7 +21,7 @@ class LeafStore {
 
  public:
   /// Reserves the records of `leaves` in `file`; a full disk is known here.
-  LeafStore(std::unique_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
+  LeafStore(std::shared_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
     file_->preallocate(static_cast<std::uint64_t>(leaves.size()) * sizeof(Record));
   }
 
@@ -63,7 +63,7 @@ class LeafStore {
     }
   }
 
-  std::unique_ptr<File> file_;
+  std::shared_ptr<File> file_;
   NodeLattice leaves_;
 };
 

@@ -118,6 +118,16 @@ void RangeHistogram::merge(const RangeHistogram& other) {
   }
 }
 
+RangeHistogram RangeHistogram::restored(int exponent, double base, std::span<const std::uint64_t> counts) {
+  RangeHistogram histogram;
+  histogram.exponent_ = exponent;
+  histogram.scale_ = std::ldexp(1.0, -exponent);
+  histogram.base_ = base;
+  histogram.bins_ = counts.size();
+  std::copy(counts.begin(), counts.end(), histogram.even_.begin());
+  return histogram;
+}
+
 double RangeHistogram::bin_width() const { return std::ldexp(1.0, exponent_); }
 
 double RangeHistogram::first_edge() const { return std::ldexp(base_, exponent_); }

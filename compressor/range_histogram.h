@@ -30,6 +30,12 @@ class RangeHistogram {
   double first_edge() const;
   /// Counts of the covered bins.
   std::vector<std::uint64_t> counts() const;
+
+  /// All there is to it: of restored(h.exponent(), h.base(), h.counts()) and h nobody can tell which is which.
+  int exponent() const { return exponent_; }  ///< bins are 2^exponent wide
+  double base() const { return base_; }       ///< first_edge() in bin widths, an integer
+  static RangeHistogram restored(int exponent, double base, std::span<const std::uint64_t> counts);
+
   /// Bin that a value inside the range falls into.
   std::size_t bin_of(float value) const;
 

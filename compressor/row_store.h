@@ -16,7 +16,7 @@ namespace weir {
 class RowStore : public LeafStore<LeafRow> {
  public:
   /// A walk over regions holds the rows of up to `segment_regions` of them per thread.
-  RowStore(std::unique_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions)
+  RowStore(std::shared_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions)
       : LeafStore(std::move(file), leaves), segment_regions_(segment_regions) {}
 
   std::int64_t segment_regions() const { return segment_regions_; }

@@ -7,15 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "compressor/leaf_summary.h"
 #include "format/digest.h"
 
 namespace weir {
 namespace {
-
-constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
 
 // Smallest value and number of values of an 8- or 16-bit integer type; zero values where they are scaled, and for
 // wider types.
@@ -40,33 +37,9 @@ ValueTable value_table(const SourceInfo& info) {
   }
 }
 
-// What one thread has seen; every member merges without regard to order.
-struct Tally {
-  float min = std::numeric_limits<float>::infinity();
-  float max = -std::numeric_limits<float>::infinity();
-  std::uint64_t finite = 0;
-  std::uint64_t missing = 0;
-  std::uint64_t non_finite = 0;
-  std::int64_t first_non_finite = kNowhere;  // linear voxel index in the domain
-  float first_non_finite_value = 0;
-  RangeHistogram histogram;
-  std::vector<std::uint64_t> value_counts;
+// What one thread has seen.
+struct Tally : SurveyTally {
   UniformDigest uniform;
-
-  void merge(const Tally& other) {
-    // Of -0.0 and 0.0 either may be met first: adding 0.0 makes both 0.0.
-    min = std::min(min, other.min) + 0.0F;
-    max = std::max(max, other.max) + 0.0F;
-    finite += other.finite;
-    missing += other.missing;
-    non_finite += other.non_finite;
-    if (other.first_non_finite < first_non_finite) {
-      first_non_finite = other.first_non_finite;
-      first_non_finite_value = other.first_non_finite_value;
-    }
-    histogram.merge(other.histogram);
-    for (std::size_t i = 0; i < other.value_counts.size(); ++i) value_counts[i] += other.value_counts[i];
-  }
 };
 
 // Surveys the leaves of one block.
@@ -183,19 +156,46 @@ class BlockSurvey {
 }  // namespace
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading, bool widths, LeafStore<LeafFaces>* faces) {
+                     Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
+                     const Pauses& pauses) {
   const NodeLattice& leaves = plan.lattice;
   const ValueTable table = value_table(source.info());
   Tally fresh;
   fresh.value_counts.resize(table.size);
   tbb::enumerable_thread_specific<Tally> tallies(fresh);
+  SurveyState from_nothing;
+  SurveyState& known = state == nullptr ? from_nothing : *state;
+  const SurveyTally before = known.tally;
+  const auto total = [&] {
+    SurveyTally sum = before;
+    sum.merge(fresh);
+    for (const Tally& tally : tallies) sum.merge(tally);
+    return sum;
+  };
 
-  std::vector<Box> boxes(static_cast<std::size_t>(plan.size()));
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    boxes[i] = plan.voxel_box(plan.leaf_box(static_cast<std::int64_t>(i)));
+  std::vector<Box> leaf_boxes;
+  for (std::int64_t i = 0; i < plan.size(); ++i) {
+    for (const Box& part : known.done.missing_from(plan.leaf_box(i))) leaf_boxes.push_back(part);
+  }
+  std::vector<Box> boxes;
+  boxes.reserve(leaf_boxes.size());
+  for (const Box& box : leaf_boxes) boxes.push_back(plan.voxel_box(box));
+
+  StreamOptions stream = options;
+  std::size_t told = 0;
+  const auto tell = [&](std::size_t boxes_done) {
+    for (; told < boxes_done; ++told) known.done.add(leaf_boxes[told]);
+    known.tally = total();
+  };
+  if (pauses.due) {
+    stream.at_rest = [&](std::size_t boxes_done) {
+      if (!pauses.due()) return;
+      tell(boxes_done);
+      pauses.save();
+    };
   }
   const auto survey_block = [&](const Block& block, const auto& for_rows) {
-    const Box leaf_box = plan.leaf_box(static_cast<std::int64_t>(block.index));
+    const Box& leaf_box = leaf_boxes[block.index];
     const Index3 extent = leaf_box.extent();
     std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
     std::vector<LeafFaces> block_faces(faces == nullptr ? 0 : block_rows.size());
@@ -204,17 +204,17 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
              [&](std::int64_t row, Tally& tally) { work.leaf_row(row % extent.y, row / extent.y, tally); });
     rows.write_box(leaf_box, block_rows);
     if (faces != nullptr) faces->write_box(leaf_box, block_faces);
+    tallies.local().loss.add(block.loss);
   };
-  Survey survey;
   if (reading == Reading::in_place) {
-    survey.loss = work_in_place(source, boxes, options, [&](const Block& block) {
+    work_in_place(source, boxes, stream, [&](const Block& block) {
       survey_block(block, [&](std::int64_t count, const auto& on_row) {
         Tally& tally = tallies.local();
         for (std::int64_t row = 0; row < count; ++row) on_row(row, tally);
       });
     });
   } else {
-    survey.loss = stream_blocks(source, boxes, options, [&](const Block& block) {
+    stream_blocks(source, boxes, stream, [&](const Block& block) {
       survey_block(block, [&](std::int64_t count, const auto& on_row) {
         tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count), [&](const auto& range) {
           Tally& tally = tallies.local();
@@ -223,22 +223,24 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
       });
     });
   }
+  tell(boxes.size());
 
-  Tally total = fresh;
-  for (const Tally& tally : tallies) total.merge(tally);
-  survey.finite = total.finite;
-  survey.missing = total.missing;
-  survey.non_finite = total.non_finite;
-  if (total.finite > 0) {
-    survey.min = total.min;
-    survey.max = total.max;
+  const SurveyTally& counted = known.tally;
+  Survey survey;
+  survey.loss = counted.loss;
+  survey.finite = counted.finite;
+  survey.missing = counted.missing;
+  survey.non_finite = counted.non_finite;
+  if (counted.finite > 0) {
+    survey.min = counted.min;
+    survey.max = counted.max;
   }
-  if (total.non_finite > 0) {
-    survey.first_non_finite = leaves.domain.lo + index_at(total.first_non_finite, leaves.domain.extent());
-    survey.first_non_finite_value = total.first_non_finite_value;
+  if (counted.non_finite > 0) {
+    survey.first_non_finite = leaves.domain.lo + index_at(counted.first_non_finite, leaves.domain.extent());
+    survey.first_non_finite_value = counted.first_non_finite_value;
   }
-  survey.histogram = std::move(total.histogram);
-  survey.value_counts = std::move(total.value_counts);
+  survey.histogram = counted.histogram;
+  survey.value_counts = counted.value_counts;
   survey.value_offset = table.offset;
   for (std::size_t i = 0; i < survey.value_counts.size(); ++i) {
     survey.histogram.add(static_cast<float>(table.offset + static_cast<int>(i)), survey.value_counts[i]);

@@ -9,8 +9,10 @@
 
 #include "compressor/leaf_faces.h"
 #include "compressor/leaf_store.h"
+#include "compressor/pauses.h"
 #include "compressor/range_histogram.h"
 #include "compressor/row_store.h"
+#include "compressor/survey_tally.h"
 #include "ingest/block_plan.h"
 #include "ingest/block_stream.h"
 #include "ingest/volume_source.h"
@@ -37,9 +39,11 @@ struct Survey {
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
 /// number of threads, nor on the way of reading. `widths` asks for what each
 /// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `faces`, where
-/// given, gets the outer layers of each leaf (leaf_reach.h).
+/// given, gets the outer layers of each leaf (leaf_reach.h). `state`, where given, says what of all this is done
+/// already, by any plan, is brought up to date when `pauses` ask for it, and in the end is of the whole volume.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr);
+                     Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr,
+                     SurveyState* state = nullptr, const Pauses& pauses = {});
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

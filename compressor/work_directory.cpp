@@ -6,6 +6,11 @@
 
 namespace weir {
 
+std::string hidden_directory_of(const std::string& output) {
+  const std::size_t slash = output.rfind('/');
+  return directory_of(output) + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
+}
+
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
@@ -29,8 +34,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const
     }
     return;
   }
-  const std::size_t slash = output.rfind('/');
-  path_ = directory + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
+  path_ = hidden_directory_of(output);
   files_.make_directory(path_);
   made_ = true;
 }

@@ -10,6 +10,9 @@
 
 namespace weir {
 
+/// ".OUT.nvdb.work" beside OUT.nvdb.
+std::string hidden_directory_of(const std::string& output);
+
 class WorkDirectory {
  public:
   /// `chosen` is --work-dir or empty. Throws Error(usage) where `chosen` is missing or in memory, and

@@ -39,6 +39,8 @@ class FileSystem {
   /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it; a lock
   /// held by another process is Error(io) "is being written by another process".
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
+  /// The same, but what the file holds stays.
+  virtual std::unique_ptr<File> open(const std::string& path) = 0;
   /// A file in `directory` without a name: nothing of it outlives the process.
   virtual std::unique_ptr<File> create_unnamed(const std::string& directory) = 0;
   virtual void rename(const std::string& from, const std::string& to) = 0;

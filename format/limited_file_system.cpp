@@ -35,6 +35,7 @@ class LimitedFileSystem final : public FileSystem {
   LimitedFileSystem(FileSystem& files, Bandwidth& bandwidth) : files_(files), bandwidth_(bandwidth) {}
 
   std::unique_ptr<File> create(const std::string& path) override { return limit(files_.create(path)); }
+  std::unique_ptr<File> open(const std::string& path) override { return limit(files_.open(path)); }
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     return limit(files_.create_unnamed(directory));
   }

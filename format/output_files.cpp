@@ -1,6 +1,7 @@
 #include "format/output_files.h"
 
 #include <span>
+#include <utility>
 
 #include "format/error.h"
 #include "format/sidecar.h"
@@ -25,8 +26,10 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
       throw Error(ErrorKind::usage, cat(existing, ": exists; choose another output with -o or pass --overwrite"));
     }
   }
-  volume_ = files_.create(path_ + ".partial");
+  partial_ = files_.create(path_ + ".partial");
 }
+
+void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }
 
 OutputFiles::~OutputFiles() {
   if (committed_) return;
@@ -53,10 +56,10 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
 //   7. directory flushed                the new pair, durable
 // A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
 void OutputFiles::commit(const std::string& sidecar_text) {
-  const std::string volume_partial = path_ + ".partial";
+  const std::string volume_partial = volume().path();
   const std::string sidecar_partial = sidecar_ + ".partial";
   const std::string previous = sidecar_ + ".previous";
-  volume_->sync();  // 1
+  volume().sync();  // 1
   {
     const std::unique_ptr<File> file = files_.create(sidecar_partial);  // 2
     file->write_at(0, std::as_bytes(std::span(sidecar_text)));
@@ -92,6 +95,7 @@ void OutputFiles::commit(const std::string& sidecar_text) {
     throw;
   }
   committed_ = true;
+  if (volume_) remove_quietly(path_ + ".partial");
   if (replaces) remove_quietly(previous);  // 6
   files_.sync_directory(directory_);       // 7
 }

@@ -24,9 +24,13 @@ class OutputFiles {
   /// Directory of the output, "." where the path has none.
   const std::string& directory() const { return directory_; }
 
+  /// The volume's bytes are those of `file`, on the same file system, and not of OUT.nvdb.partial, which stays the
+  /// lock. A failure leaves `file`, which is its owner's to remove.
+  void write_to(std::shared_ptr<File> file);
+
   /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
-  bool reserve(std::uint64_t bytes) { return volume_->preallocate(bytes); }
-  File& volume() { return *volume_; }
+  bool reserve(std::uint64_t bytes) { return volume().preallocate(bytes); }
+  File& volume() { return volume_ ? *volume_ : *partial_; }
 
   /// The protocol's end, see the numbered steps in the source. After it returned, both files are
   /// durable under their names.
@@ -41,7 +45,8 @@ class OutputFiles {
   std::string directory_;
   bool overwrite_;
   bool committed_ = false;
-  std::unique_ptr<File> volume_;
+  std::unique_ptr<File> partial_;
+  std::shared_ptr<File> volume_;  // where not partial_
 };
 
 /// Directory part of a path, "." where there is none.

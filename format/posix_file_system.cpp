@@ -88,6 +88,12 @@ class PosixFile final : public File {
 class PosixFileSystem final : public FileSystem {
  public:
   std::unique_ptr<File> create(const std::string& path) override {
+    std::unique_ptr<File> file = open(path);
+    file->clear();
+    return file;
+  }
+
+  std::unique_ptr<File> open(const std::string& path) override {
     for (;;) {
       const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
       if (descriptor < 0) throw io_error(path, "create", errno);
@@ -97,12 +103,11 @@ class PosixFileSystem final : public FileSystem {
                     cat(path, ": is being written by another process; wait for it or choose another output"));
       }
       // Between open and lock the writer before us may have renamed this very file to its result:
-      // truncating it then would destroy that.
+      // writing to it then would destroy that.
       struct stat mine {};
       struct stat named {};
       if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
       if (::stat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
-      if (::ftruncate(descriptor, 0) != 0) throw io_error(path, "truncate", errno);
       return file;
     }
   }

@@ -86,6 +86,15 @@ void throw_if_cancelled(const StreamOptions& options) {
   }
 }
 
+// Boxes from `first` on that are worked on between two rests.
+std::size_t end_of_group(std::span<const Box> boxes, std::size_t first) {
+  constexpr std::int64_t kGroupVoxels = std::int64_t{64} << 20U;
+  std::int64_t voxels = 0;
+  std::size_t end = first;
+  while (end < boxes.size() && voxels < kGroupVoxels) voxels += boxes[end++].voxels();
+  return end;
+}
+
 }  // namespace
 
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
@@ -107,11 +116,12 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
     return buffers[i % kBuffers].floats().first(static_cast<std::size_t>(boxes[i].voxels()));
   };
 
+  std::array<ConversionLoss, kBuffers> losses;
   Handover handover;
   const Reader reader(handover, [&] {
     try {
       for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
-        loss.add(source.read(boxes[i], values(i)));
+        losses[i % kBuffers] = source.read(boxes[i], values(i));
         handover.publish_read();
       }
     } catch (...) {
@@ -123,10 +133,13 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     handover.wait_read(i);
     throw_if_cancelled(options);
-    work({i, boxes[i], values(i)});
+    const ConversionLoss lost = losses[i % kBuffers];
+    loss.add(lost);
+    work({i, boxes[i], values(i), lost});
     handover.publish_worked();
     done += boxes[i].voxels();
     if (options.progress) options.progress(done, total);
+    if (options.at_rest) options.at_rest(i + 1);
     throw_if_cancelled(options);
   }
   return loss;
@@ -145,17 +158,23 @@ ConversionLoss work_in_place(VolumeSource& source, std::span<const Box> boxes, c
   std::mutex mutex;
   const std::size_t bytes = static_cast<std::size_t>(largest) * sizeof(float);
   tbb::enumerable_thread_specific<PageBuffer> buffers([bytes] { return PageBuffer(bytes); });
-  tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t i) {
-    throw_if_cancelled(options);
+  const auto work_on = [&](std::size_t i) {
+    if (!options.at_rest) throw_if_cancelled(options);
     const std::span<float> values = buffers.local().floats().first(static_cast<std::size_t>(boxes[i].voxels()));
     const ConversionLoss lost = source.read_alone(boxes[i], values);
-    work({i, boxes[i], values});
+    work({i, boxes[i], values, lost});
     const std::lock_guard lock(mutex);
     loss.add(lost);
     done += boxes[i].voxels();
     if (options.progress) options.progress(done, total);
-  });
-  throw_if_cancelled(options);
+  };
+  for (std::size_t first = 0; first < boxes.size();) {
+    const std::size_t end = options.at_rest ? end_of_group(boxes, first) : boxes.size();
+    tbb::parallel_for(first, end, work_on);
+    if (options.at_rest) options.at_rest(end);
+    throw_if_cancelled(options);
+    first = end;
+  }
   return loss;
 }
 

@@ -17,6 +17,7 @@ struct Block {
   std::size_t index = 0;          ///< position in the list given to stream_blocks
   Box voxels;                     ///< index space
   std::span<const float> values;  ///< x fastest over `voxels`; valid during the call only
+  ConversionLoss loss;            ///< of reading it
 };
 
 /// stream_blocks or work_in_place.
@@ -26,6 +27,10 @@ struct StreamOptions {
   const std::atomic<bool>* cancel = nullptr;  ///< set by another thread or a signal handler
   /// Called on the calling thread after each block with the voxels done and the voxels of all boxes.
   std::function<void(std::int64_t done, std::int64_t total)> progress;
+  /// Where given, called on the calling thread while no work is in progress, with the number of boxes, from the first
+  /// on, whose work is done: after each block, or in place after each 256 MiB of them, which then are also what a set
+  /// `cancel` waits for, so that it loses nothing.
+  std::function<void(std::size_t boxes_done)> at_rest;
 };
 
 /// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of

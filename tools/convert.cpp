@@ -39,6 +39,8 @@ struct ConvertArguments {
   ConversionArguments conversion;
   RunArguments run;
   std::string work_dir;
+  std::string resume = "auto";
+  double save_interval_s = ConversionOptions{}.save_interval_s;
   std::string bandwidth;  ///< a size, per second
   bool overwrite = false;
   bool skip_done = false;
@@ -180,6 +182,8 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   options.memory = parse_memory(a.run);
   options.threads = static_cast<std::size_t>(a.run.threads);
   options.work_dir = a.work_dir;
+  options.save_interval_s = a.save_interval_s;
+  options.resume = a.resume == "auto" ? Resume::automatic : a.resume == "on" ? Resume::on : Resume::off;
   options.provenance = {WEIR_VERSION, WEIR_COMMIT, given_options(command)};
   SourceOptions source_options = parse_input(a.source);
   source_options.memory = options.memory;
@@ -227,6 +231,22 @@ void add_convert(CLI::App& app) {
       ->group("Run");
   command->add_option("--work-dir", a->work_dir,
                       "for spill files, on a disk; default: a hidden directory beside the output");
+  command
+      ->add_option("--resume", a->resume,
+                   "keep the work of an interrupted or failed conversion in a hidden directory beside the output "
+                   "(.OUT.nvdb.work): the same command continues it, with the same bytes in the end. auto: for volumes "
+                   "of 1 GiB of float32 or more")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->type_name("auto|on|off")
+      ->group("Run")
+      ->capture_default_str();
+  command
+      ->add_option("--save-interval", a->save_interval_s,
+                   "between two points that an interrupted conversion can be continued from; 0: as many as there are")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("SECONDS")
+      ->group("Run")
+      ->capture_default_str();
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");
   command->add_flag("--skip-done", a->skip_done,
                     "leave an output that this very conversion made of the same source; convert it again where the "

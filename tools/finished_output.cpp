@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "compressor/conversion_identity.h"
 #include "format/error.h"
 #include "format/nvdb_checksum.h"
 #include "format/nvdb_file.h"
@@ -13,19 +14,13 @@ namespace {
 
 using Options = std::map<std::string, std::string>;
 
-Options deciding(Options options) {
-  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "direct-io", "overwrite"})
-    options.erase(name);
-  return options;
-}
-
 // `source` and `options` as a sidecar gives them back: JSON does not hold every byte that a path may.
 Sidecar expected_record(const SourceInfo& source, const Options& options) {
   Sidecar record;
   record.source.path = source.path;
   record.source.dataset = source.dataset;
   record.source.mtime = utc_text(source.mtime_ns);
-  record.weir.options = deciding(options);
+  record.weir.options = deciding_options(options);
   return parse_sidecar(to_json_text(record), source.path);
 }
 
@@ -40,7 +35,7 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
       found.source.format != source.format || found.source.extent != source.extent) {
     return cat("made of another volume of ", source.path);
   }
-  if (deciding(found.weir.options) != expected.weir.options) return "made with other options";
+  if (deciding_options(found.weir.options) != expected.weir.options) return "made with other options";
   return {};
 }
 

@@ -8,7 +8,8 @@ namespace weir {
 namespace {
 
 // They say how a command reports, or whether it runs at all.
-constexpr std::array<std::string_view, 6> kSilent{"help", "json", "progress", "progress-fd", "log-level", "skip-done"};
+constexpr std::array<std::string_view, 8> kSilent{"help",      "json",      "progress", "progress-fd",
+                                                  "log-level", "skip-done", "resume",   "save-interval"};
 
 }  // namespace
 

@@ -8,54 +8,59 @@
 #include "format/text.h"
 
 namespace weir::test {
-namespace {
+
+struct MemoryFileSystem::Stored {
+  std::mutex mutex;
+  Bytes bytes;
+  Bytes flushed;
+};
 
 class MemoryFile final : public File {
  public:
-  MemoryFile(std::shared_ptr<MemoryFileSystem::Bytes> bytes, std::string path)
-      : bytes_(std::move(bytes)), path_(std::move(path)) {}
+  MemoryFile(std::shared_ptr<MemoryFileSystem::Stored> stored, std::string path)
+      : stored_(std::move(stored)), path_(std::move(path)) {}
 
   const std::string& path() const override { return path_; }
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(stored_->mutex);
     if (bytes.empty()) return;
-    if (bytes_->size() < offset + bytes.size()) bytes_->resize(offset + bytes.size());
-    std::memcpy(bytes_->data() + offset, bytes.data(), bytes.size());
+    if (stored_->bytes.size() < offset + bytes.size()) stored_->bytes.resize(offset + bytes.size());
+    std::memcpy(stored_->bytes.data() + offset, bytes.data(), bytes.size());
   }
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(stored_->mutex);
     if (bytes.empty()) return;
-    if (bytes_->size() < offset + bytes.size()) throw Error(ErrorKind::io, cat(path_, ": too short"));
-    std::memcpy(bytes.data(), bytes_->data() + offset, bytes.size());
+    if (stored_->bytes.size() < offset + bytes.size()) throw Error(ErrorKind::io, cat(path_, ": too short"));
+    std::memcpy(bytes.data(), stored_->bytes.data() + offset, bytes.size());
   }
   bool preallocate(std::uint64_t bytes) override {
-    const std::scoped_lock lock(mutex_);
-    if (bytes_->size() < bytes) bytes_->resize(bytes);
+    const std::scoped_lock lock(stored_->mutex);
+    if (stored_->bytes.size() < bytes) stored_->bytes.resize(bytes);
     return true;
   }
   void clear() override {
-    const std::scoped_lock lock(mutex_);
-    bytes_->clear();
+    const std::scoped_lock lock(stored_->mutex);
+    stored_->bytes.clear();
   }
   void start_writeback() override {}
-  void sync() override {}
+  void sync() override {
+    const std::scoped_lock lock(stored_->mutex);
+    stored_->flushed = stored_->bytes;
+  }
   std::uint64_t size() override {
-    const std::scoped_lock lock(mutex_);
-    return bytes_->size();
+    const std::scoped_lock lock(stored_->mutex);
+    return stored_->bytes.size();
   }
 
  private:
-  std::mutex mutex_;
-  std::shared_ptr<MemoryFileSystem::Bytes> bytes_;
+  std::shared_ptr<MemoryFileSystem::Stored> stored_;
   std::string path_;
 };
-
-}  // namespace
 
 MemoryFileSystem::Bytes MemoryFileSystem::content(const std::string& path) const {
   const std::scoped_lock lock(mutex_);
   const auto found = files_.find(path);
-  return found == files_.end() ? Bytes{} : *found->second;
+  return found == files_.end() ? Bytes{} : found->second->bytes;
 }
 
 std::vector<std::string> MemoryFileSystem::names() const {
@@ -65,15 +70,27 @@ std::vector<std::string> MemoryFileSystem::names() const {
   return names;
 }
 
+void MemoryFileSystem::lose_unflushed() {
+  const std::scoped_lock lock(mutex_);
+  for (const auto& [name, stored] : files_) stored->bytes = stored->flushed;
+}
+
 std::unique_ptr<File> MemoryFileSystem::create(const std::string& path) {
   const std::scoped_lock lock(mutex_);
-  auto bytes = std::make_shared<Bytes>();
-  files_[path] = bytes;
-  return std::make_unique<MemoryFile>(bytes, path);
+  auto stored = std::make_shared<Stored>();
+  files_[path] = stored;
+  return std::make_unique<MemoryFile>(stored, path);
+}
+
+std::unique_ptr<File> MemoryFileSystem::open(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  std::shared_ptr<Stored>& stored = files_[path];
+  if (stored == nullptr) stored = std::make_shared<Stored>();
+  return std::make_unique<MemoryFile>(stored, path);
 }
 
 std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& directory) {
-  return std::make_unique<MemoryFile>(std::make_shared<Bytes>(), directory + " (temporary file)");
+  return std::make_unique<MemoryFile>(std::make_shared<Stored>(), directory + " (temporary file)");
 }
 
 void MemoryFileSystem::rename(const std::string& from, const std::string& to) {

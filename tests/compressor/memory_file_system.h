@@ -22,7 +22,11 @@ class MemoryFileSystem final : public FileSystem {
   Bytes content(const std::string& path) const;
   std::vector<std::string> names() const;
 
+  /// As if the machine had lost power: every file holds what it held when it was last flushed.
+  void lose_unflushed();
+
   std::unique_ptr<File> create(const std::string& path) override;
+  std::unique_ptr<File> open(const std::string& path) override;
   std::unique_ptr<File> create_unnamed(const std::string& directory) override;
   void rename(const std::string& from, const std::string& to) override;
   void rename_new(const std::string& from, const std::string& to) override;
@@ -36,8 +40,11 @@ class MemoryFileSystem final : public FileSystem {
   std::uint64_t free_bytes(const std::string& directory) override;
 
  private:
+  friend class MemoryFile;
+  struct Stored;
+
   mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Bytes>> files_;
+  std::map<std::string, std::shared_ptr<Stored>> files_;
 };
 
 }  // namespace weir::test

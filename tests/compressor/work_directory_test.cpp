@@ -20,6 +20,7 @@ class Directories final : public FileSystem {
   std::vector<std::string> in_memory;
 
   std::unique_ptr<File> create(const std::string& path) override { return files_.create(path); }
+  std::unique_ptr<File> open(const std::string& path) override { return files_.open(path); }
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     return files_.create_unnamed(directory);
   }

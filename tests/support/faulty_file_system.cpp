@@ -43,14 +43,14 @@ class FaultyFile final : public File {
 
 }  // namespace
 
-FaultyFileSystem::FaultyFileSystem(FileSystem& real, int fail_at, int errno_value)
-    : real_(real), fail_at_(fail_at), errno_value_(errno_value) {}
+FaultyFileSystem::FaultyFileSystem(FileSystem& real, int fail_at, int errno_value, After after)
+    : real_(real), fail_at_(fail_at), errno_value_(errno_value), after_(after) {}
 
 void FaultyFileSystem::count(const std::string& call, const std::string& path) {
   const std::scoped_lock lock(mutex_);
   const auto number = static_cast<int>(calls_.size());
   calls_.push_back(call);
-  if (number != fail_at_) return;
+  if (number != fail_at_ && !(failed_ && after_ == After::fails)) return;
   failed_ = true;
   throw io_error(path, "do call " + std::to_string(number) + " (" + call + ")", errno_value_);
 }
@@ -63,6 +63,11 @@ std::vector<std::string> FaultyFileSystem::calls() const {
 std::unique_ptr<File> FaultyFileSystem::create(const std::string& path) {
   count("create", path);
   return std::make_unique<FaultyFile>(*this, real_.create(path));
+}
+
+std::unique_ptr<File> FaultyFileSystem::open(const std::string& path) {
+  count("open", path);
+  return std::make_unique<FaultyFile>(*this, real_.open(path));
 }
 
 std::unique_ptr<File> FaultyFileSystem::create_unnamed(const std::string& directory) {

@@ -15,14 +15,19 @@ namespace weir {
 /// Counts the calls that change something or ask for room, files' included, from several threads.
 class FaultyFileSystem final : public FileSystem {
  public:
+  enum class After {
+    works,  ///< the calls after the one that failed
+    fails   ///< as if the process had been killed: nothing changes any more
+  };
   /// Call number `fail_at` (0 is the first) fails with `errno_value`; none where it is negative.
-  FaultyFileSystem(FileSystem& real, int fail_at, int errno_value);
+  FaultyFileSystem(FileSystem& real, int fail_at, int errno_value, After after = After::works);
 
   /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
   std::vector<std::string> calls() const;
   bool failed() const { return failed_; }
 
   std::unique_ptr<File> create(const std::string& path) override;
+  std::unique_ptr<File> open(const std::string& path) override;
   std::unique_ptr<File> create_unnamed(const std::string& directory) override;
   void rename(const std::string& from, const std::string& to) override;
   void rename_new(const std::string& from, const std::string& to) override;
@@ -42,6 +47,7 @@ class FaultyFileSystem final : public FileSystem {
   FileSystem& real_;
   int fail_at_;
   int errno_value_;
+  After after_;
   mutable std::mutex mutex_;
   std::vector<std::string> calls_;
   std::atomic<bool> failed_{false};

@@ -1,10 +1,11 @@
-// Signals during a conversion: exit code 130, and the output's directory keeps nothing of it, or what it held
-// before.
+// Signals during a conversion: exit code 130, and the output's directory keeps nothing of it but what the same
+// command continues, with the same bytes in the end; what it held before stays.
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
@@ -19,9 +20,12 @@ using Names = std::vector<std::string>;
 
 /// Converts `volume` to out/volume.nvdb below `directory` and sends `signal` as soon as `now` holds.
 CommandResult interrupt(const TemporaryDirectory& directory, const std::string& volume, int signal,
-                        const std::function<bool()>& now) {
-  ChildProcess child({WEIR_COMMAND, "convert", volume, "-o", directory / "out/volume.nvdb", "--lossless", "--overwrite",
-                      "--threads", "1", "--memory", "256MiB"});
+                        const std::function<bool()>& now, const Names& options = {}) {
+  Names command{WEIR_COMMAND, "convert",     volume,      "-o", directory / "out/volume.nvdb",
+                "--lossless", "--overwrite", "--threads", "1",  "--memory",
+                "256MiB"};
+  command.insert(command.end(), options.begin(), options.end());
+  ChildProcess child(command);
   while (child.running() && !now()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_TRUE(child.running()) << "the conversion was over before it could be interrupted";
   child.send_signal(signal);
@@ -36,6 +40,13 @@ bool written_at(const fs::path& path, std::streamoff offset) {
   return piece.find_first_not_of('\0') != std::string::npos;
 }
 
+std::string noise(std::size_t bytes) {
+  std::string values(bytes, '\0');
+  std::minstd_rand random;
+  for (char& value : values) value = static_cast<char>(random() >> 16U);
+  return values;
+}
+
 bool is_one_line(const std::string& text, std::string_view beginning) {
   return text.starts_with(beginning) && text.find('\n') == text.size() - 1;
 }
@@ -48,8 +59,8 @@ TEST(Interrupt, InTheSurveyLeavesNothing) {
   write_file(volume, "");
   fs::resize_file(volume, std::uintmax_t{1} << 30U);
   for (const int signal : {SIGINT, SIGTERM}) {
-    const CommandResult result =
-        interrupt(directory, volume, signal, [&] { return !list_directory(directory / "out").empty(); });
+    const CommandResult result = interrupt(
+        directory, volume, signal, [&] { return !list_directory(directory / "out").empty(); }, {"--resume", "off"});
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_TRUE(is_one_line(result.err, "weir: interrupted")) << result.err;
     EXPECT_EQ(list_directory(directory / "out"), Names{});
@@ -60,10 +71,7 @@ TEST(Interrupt, InTheEncodePassKeepsWhatWasThere) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
   const std::string volume = directory / "noise_512x512x128_uint8.raw";
-  std::string noise(std::size_t{512} * 512 * 128, '\0');
-  std::minstd_rand random;
-  for (char& value : noise) value = static_cast<char>(random() >> 16U);
-  write_file(volume, noise);
+  write_file(volume, noise(std::size_t{512} * 512 * 128));
   write_file(directory / "out/volume.nvdb", "the old volume");
   write_file(directory / "out/volume.nvdb.json", "the old sidecar");
 
@@ -75,6 +83,66 @@ TEST(Interrupt, InTheEncodePassKeepsWhatWasThere) {
   EXPECT_EQ(list_directory(directory / "out"), (Names{"volume.nvdb", "volume.nvdb.json"}));
   EXPECT_EQ(read_file(directory / "out/volume.nvdb"), "the old volume");
   EXPECT_EQ(read_file(directory / "out/volume.nvdb.json"), "the old sidecar");
+}
+
+TEST(Interrupt, KeepsALargeConversionThatTheSameCommandContinues) {
+  const TemporaryDirectory directory;
+  fs::create_directory(directory / "out");
+  const std::string volume = directory / "zeros_1024x1024x1024_uint8.raw";
+  write_file(volume, "");
+  fs::resize_file(volume, std::uintmax_t{1} << 30U);
+  const CommandResult result =
+      interrupt(directory, volume, SIGINT, [&] { return fs::exists(directory / "out/.volume.nvdb.work/journal"); },
+                {"--save-interval", "0"});
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "weir: interrupted; what is done is kept in " + (directory / "out/.volume.nvdb.work") +
+                            ", the same command continues it\n");
+  EXPECT_EQ(list_directory(directory / "out"),
+            (Names{".volume.nvdb.work/", ".volume.nvdb.work/journal", ".volume.nvdb.work/rows"}));
+}
+
+TEST(Interrupt, KilledAgainAndAgainItEndsWithTheSameBytes) {
+  const TemporaryDirectory directory;
+  fs::create_directory(directory / "out");
+  const std::string volume = directory / "noise_512x512x512_uint8.raw";
+  write_file(volume, noise(std::size_t{512} * 512 * 512));
+  const Names command{"convert", volume, "--overwrite", "--lossless", "--json", "-o"};
+  const auto convert_to = [&](const std::string& output, const Names& options) {
+    Names arguments = command;
+    arguments.push_back(directory / output);
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_weir(arguments);
+  };
+  const CommandResult expected = convert_to("expected.nvdb", {});
+  ASSERT_EQ(expected.exit_code, 0) << expected.err;
+
+  const fs::path work = directory / "out/.volume.nvdb.work";
+  const Names resumable{"--resume", "on", "--save-interval", "0"};
+  const auto kill = [&](const std::function<bool()>& now) {
+    const CommandResult result = interrupt(directory, volume, SIGKILL, now, resumable);
+    EXPECT_EQ(result.exit_code, 128 + SIGKILL);
+    EXPECT_FALSE(fs::exists(directory / "out/volume.nvdb"));
+    return result.err;
+  };
+  kill([&] { return fs::exists(work / "journal"); });
+  // The encode pass saves once, when it is half way through z; in the file regions follow each other along z first,
+  // 2.4 MiB each from 2.4 MiB on.
+  kill([&] { return written_at(work / "volume", 4 << 20); });
+  EXPECT_NE(kill([&] { return written_at(work / "volume", 11 << 20); }).find("continues a conversion"),
+            std::string::npos);
+  const CommandResult result = convert_to("out/volume.nvdb", {"--resume", "on", "--memory", "300MiB"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("continues a conversion that was interrupted, survey 100 %, encode "), std::string::npos);
+  EXPECT_EQ(list_directory(directory / "out"), (Names{"volume.nvdb", "volume.nvdb.json"}));
+  EXPECT_TRUE(read_file(directory / "out/volume.nvdb") == read_file(directory / "expected.nvdb"));
+  nlohmann::json done = nlohmann::json::parse(result.out);
+  nlohmann::json whole = nlohmann::json::parse(expected.out);
+  EXPECT_LT(done["timing"]["bytes_read"].get<std::uint64_t>(), whole["timing"]["bytes_read"].get<std::uint64_t>() / 2);
+  for (nlohmann::json* record : {&done, &whole}) {
+    record->erase("timing");
+    (*record)["weir"].erase("options");
+  }
+  EXPECT_EQ(done, whole);
 }
 
 }  // namespace

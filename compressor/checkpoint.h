@@ -1,0 +1,46 @@
+// How far a conversion has come: what, together with the files it names, is
+// enough to go on from there and end with the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compressor/background.h"
+#include "compressor/encoding.h"
+#include "compressor/survey_tally.h"
+#include "format/box_set.h"
+#include "format/digest.h"
+
+namespace weir {
+
+/// What a conversion is, by name: two with the same entries give the same bytes.
+using ConversionIdentity = std::map<std::string, std::string>;
+
+struct Checkpoint {
+  /// An attempt at an error target: the request that the encode pass works on.
+  struct Attempt {
+    int number = 0;
+    double squared_error = 0;  ///< FileRequest::squared_error
+    Encoding encoding = Encoding::float32;
+  };
+
+  ConversionIdentity identity;
+  std::string spill_directory;
+  std::map<std::string, std::uint64_t> files;  ///< name to bytes, of those that all below stands on
+  SurveyState survey;
+  std::optional<Background> background;  ///< once it is found
+  std::optional<Attempt> attempt;
+  Digest plan;     ///< of the file that is being encoded (encode_attempts.h)
+  BoxSet encoded;  ///< positions of the leaf lattice whose leaves and records are written
+};
+
+/// A line with version and digest, then JSON.
+std::string to_text(const Checkpoint& checkpoint);
+
+/// Nothing where `text` is not a whole one of this version.
+std::optional<Checkpoint> parse_checkpoint(std::string_view text);
+
+}  // namespace weir

@@ -1,0 +1,66 @@
+#include "compressor/conversion_identity.h"
+
+#include <sstream>
+
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+// All digits: what differs in the last of them is another conversion.
+std::string exact(double value) {
+  std::ostringstream text;
+  text << std::hexfloat << value;
+  return text.str();
+}
+
+std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
+
+std::string budget_text(const Budget& budget) {
+  return cat(static_cast<int>(budget.kind), ' ', exact(budget.rate), ' ', budget.bytes, ' ', exact(budget.target));
+}
+
+std::string mapping_text(const ValueMapping& mapping) {
+  std::string text = cat(exact(mapping.scale), ' ', exact(mapping.offset));
+  for (const StoredValue& value : mapping.missing) text += cat(' ', stored_value_text(value));
+  return text;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options) {
+  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "direct-io", "overwrite"})
+    options.erase(name);
+  return options;
+}
+
+ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options) {
+  std::string index;
+  for (const std::int64_t i : source.index) index += cat(i, ' ');
+  ConversionIdentity identity{
+      {"source", source.path},
+      {"source bytes", cat(source.file_bytes)},
+      {"source modified (ns)", cat(source.mtime_ns)},
+      {"format", source.format},
+      {"dataset", source.dataset},
+      {"index", index},
+      {"extent", position(source.extent)},
+      {"index origin", position(source.index_origin)},
+      {"type", std::string(scalar_name(source.type))},
+      {"value mapping", mapping_text(source.mapping)},
+      {"budget", budget_text(options.budget)},
+      {"encoding", encoding_name(options.encoding)},
+      {"metric", metric_name(options.metric)},
+      {"fill", fill_name(options.fill)},
+      {"brick", cat(options.brick)},
+      {"scene", options.scene ? options.scene->path : ""},
+      {"background", options.background ? exact(static_cast<double>(*options.background)) : "found"},
+      {"paper background", options.paper_background ? "yes" : "no"},
+      {"nonfinite", policy_name(options.non_finite)},
+      {"weir", cat(options.provenance.version, ' ', options.provenance.commit)},
+  };
+  for (const auto& [name, value] : deciding_options(options.provenance.options)) identity["--" + name] = value;
+  return identity;
+}
+
+}  // namespace weir

@@ -1,0 +1,21 @@
+// What decides the bytes of a conversion, as text: by it an interrupted one is
+// known again.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "compressor/checkpoint.h"
+#include "compressor/conversion.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+/// Of the options of a command line, as Sidecar::Weir has them, those that change the volume's bytes: not memory,
+/// threads and places.
+std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options);
+
+/// Source (path, size, modification time, dataset, type, extent), all of `options` that has a say, and the program.
+ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options);
+
+}  // namespace weir

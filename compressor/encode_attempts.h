@@ -1,0 +1,45 @@
+// From a surveyed volume to a file whose leaves are written: once for a size, as
+// often as an error target takes.
+#pragma once
+
+#include <memory>
+
+#include "compressor/encoding_choice.h"
+#include "compressor/journal.h"
+#include "compressor/leaf_errors.h"
+#include "compressor/leaf_record.h"
+#include "compressor/row_store.h"
+#include "compressor/work_directory.h"
+#include "format/output_files.h"
+#include "ingest/block_plan.h"
+#include "ingest/block_stream.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+/// A file whose leaves are written, and what they lose.
+struct EncodedFile {
+  FilePlan file;
+  std::unique_ptr<RecordStore> records;
+  LeafErrors errors;
+  LeafErrors seen_errors;  ///< of those that can be seen
+};
+
+/// What the attempts work with; all of it outlives them.
+struct EncodeJob {
+  VolumeSource& source;
+  const BlockPlan& plan;
+  Reading reading;
+  const RowStore& rows;
+  WorkDirectory& work;
+  OutputFiles& output;
+  Journal* journal;  ///< null: what is interrupted is lost
+  const StreamOptions& stream;
+  std::function<void()> pass_started;                   ///< may throw Error(interrupted)
+  std::function<void(const std::string& line)> notice;  ///< may be empty
+};
+
+/// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.
+EncodedFile encode_file(const EncodeJob& job, FileRequest request);
+
+}  // namespace weir

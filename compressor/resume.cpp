@@ -1,0 +1,58 @@
+#include "compressor/resume.h"
+
+#include "compressor/conversion_identity.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+// Below, a conversion takes two seconds from memory, and what a disk takes for it it would take again.
+constexpr std::uint64_t kResumableBytes = std::uint64_t{1} << 30U;
+
+bool is_final(const Error& error) {
+  return error.kind() == ErrorKind::input || error.kind() == ErrorKind::budget || error.kind() == ErrorKind::internal;
+}
+
+}  // namespace
+
+std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
+                                      const ConversionControl& control, const OutputFiles& output, FileSystem& files) {
+  const bool in_memory = files.is_memory(output.directory());
+  if (options.resume == Resume::on && in_memory) {
+    throw Error(ErrorKind::usage, cat("--resume on: ", options.output,
+                                      " lies on a memory file system; choose an output on a disk or --resume off"));
+  }
+  const bool large = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float) >= kResumableBytes;
+  if (options.resume == Resume::off || in_memory || (options.resume == Resume::automatic && !large)) {
+    if (remove_leftovers(files, options.output) && control.notice) {
+      control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
+    }
+    return nullptr;
+  }
+  return std::make_unique<Journal>(
+      files, options.output, identify_conversion(info, options),
+      JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.notice});
+}
+
+std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves) {
+  return cat(output, ": continues a conversion that was interrupted, survey ", 100 * state.survey.done.size() / leaves,
+             " %, encode ", 100 * state.encoded.size() / leaves, " % done");
+}
+
+Error ended_with(const Error& error, Journal& journal) {
+  if (is_final(error)) {
+    journal.discard();
+    return error;
+  }
+  const bool interrupted = error.kind() == ErrorKind::interrupted;
+  try {
+    if (interrupted && !journal.state.survey.done.empty()) journal.save_now();
+  } catch (const Error&) {
+    // What was saved before it counts.
+  }
+  if (!journal.resumable()) return error;
+  return {error.kind(), cat(interrupted ? "interrupted" : error.what(), "; what is done is kept in ",
+                            journal.directory(), ", the same command continues it")};
+}
+
+}  // namespace weir

@@ -1,0 +1,29 @@
+// Which conversions can be continued, and what is said about it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "compressor/conversion.h"
+#include "compressor/journal.h"
+#include "format/error.h"
+#include "format/file_system.h"
+#include "format/output_files.h"
+
+namespace weir {
+
+/// The journal of a conversion, with what an interrupted one left in it. Null where `options` or the volume's size say
+/// that an interruption is to lose everything; then what was left goes too, with a notice. Throws Error(usage) for
+/// Resume::on where the output's file system keeps nothing.
+std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
+                                      const ConversionControl& control, const OutputFiles& output, FileSystem& files);
+
+/// "OUT.nvdb: continues a conversion that was interrupted, survey 100 %, encode 37 % done".
+std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves);
+
+/// Saves what is done after `error`, or discards it where the same conversion would end the same way. Returns the error
+/// to report.
+Error ended_with(const Error& error, Journal& journal);
+
+}  // namespace weir
