@@ -2,13 +2,14 @@
 # Measures what the README and docs/evaluation.md claim: sizes, errors, ZFP and the paper's method at equal bytes, pictures,
 # time and memory. Each finished measurement is a file, so that an interrupted run goes on where it was.
 #
-#   bench/evaluate.sh [OPTION...] [DIR]       DIR: default build/evaluation
+#   bench/evaluate.sh [OPTION...] [DIR]       DIR: default build/evaluation, or build/evaluation-quick
 #
 #   --only NAME,...   these experiments only: sizes, worst_case, errors, metrics, zfp, round_trip, pictures, speed
 #   --again           measure anew what is there already
 #   --report          no measurement, only the report of those there are
 #   --scale N         divides the extents of the paper's large sets, default 4
-#   --full            besides, the large sets at the paper's extents and a cube of 2048^3: 100 GB of disk
+#   --full            besides, the large sets at the paper's extents and a cube of 2048^3, where the disk has room:
+#                     2.2 times 26 and 46 GB, 43 GB
 #   --quick           small volumes only, for the tests: a minute
 #   --publish         copies report and pictures to docs/ as well
 #   --weir FILE       the command to measure; default: build/release/weir, built first

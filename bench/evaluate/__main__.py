@@ -25,7 +25,8 @@ EXPERIMENTS = (Sizes(), WorstCase(), Errors(), Metrics(), Zfp(), RoundTrip(), Pi
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="bench/evaluate.sh", description="Measures what docs/evaluation.md claims.")
-    parser.add_argument("directory", nargs="?", default=ROOT / "build/evaluation", type=pathlib.Path)
+    parser.add_argument("directory", nargs="?", type=pathlib.Path, help="default: build/evaluation, or "
+                        "build/evaluation-quick with --quick")
     parser.add_argument("--only", default="", help="experiments, between commas: "
                         + ", ".join(experiment.name for experiment in EXPERIMENTS))
     parser.add_argument("--again", action="store_true", help="measure anew what is there already")
@@ -41,6 +42,7 @@ def parse(arguments):
         if name not in [experiment.name for experiment in EXPERIMENTS]:
             parser.error(f"--only names {name}; there are "
                          + ", ".join(experiment.name for experiment in EXPERIMENTS))
+    given.directory = given.directory or ROOT / ("build/evaluation-quick" if given.quick else "build/evaluation")
     given.experiments = [e for e in EXPERIMENTS if not wanted or e.name in wanted]
     return given
 

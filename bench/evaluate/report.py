@@ -5,6 +5,8 @@ import json
 import pathlib
 import shutil
 
+from behind import behind_text
+
 IMAGES = "images/evaluation"  # relative to the report
 NOT_MEASURED = "*Not measured yet.*"
 
@@ -25,6 +27,7 @@ def write_report(experiments, measured, directory):
         for name, path in experiment.pictures(measured, directory).items():
             shutil.copyfile(path, directory / IMAGES / name)
     text = text.replace("@promises@", promises_text(broken_promises(experiments, measured)))
+    text = text.replace("@behind@", behind_text(measured))
     text = text.replace("@origin@", origin_text(measured.records()))
     (directory / "evaluation.md").write_text(text)
     (directory / "evaluation.json").write_text(json.dumps(rows, indent=1) + "\n")

@@ -1,7 +1,7 @@
 """Measurements on disk: a JSON file for each, so that what is finished is never done twice.
 
-DIR/state/EXPERIMENT/NAME.json holds {"experiment", "name", "date", "machine", "weir", "result"}; `result` is whatever
-the experiment measured. A file appears whole or not at all.
+DIR/state/EXPERIMENT/NAME.json holds {"experiment", "name", "date", "machine", "weir", "load", "result"}; `load` is the
+machine's load average of a minute before, `result` whatever the experiment measured. A file appears whole or not at all.
 """
 
 import datetime
@@ -30,7 +30,8 @@ class Store:
         if path.exists() and not self._again:
             return json.loads(path.read_text())["result"]
         print(f"{experiment}: {name}", file=sys.stderr, flush=True)
-        record = {"experiment": experiment, "name": name, **self._origin, "result": function()}
+        load = os.getloadavg()[0]  # before: of what else the machine does
+        record = {"experiment": experiment, "name": name, **self._origin, "load": load, "result": function()}
         record["date"] = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
         path.parent.mkdir(parents=True, exist_ok=True)
         partial = path.with_suffix(".partial")

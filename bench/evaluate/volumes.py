@@ -103,12 +103,17 @@ class VolumeFiles:
         self._data = pathlib.Path(data)
         self._weir = weir
 
-    def available(self, volume):
-        """Whether it can be made; says so where not."""
-        if volume.kind or self._archive(volume).exists():
-            return True
-        print(f"{volume.name}: skipped, {self._archive(volume)} is missing", file=sys.stderr)
-        return False
+    def available(self, volume, copies=2.2):
+        """Whether it can be made, and files of `copies` times its size in all be there at once; says so where not."""
+        if not volume.kind and not self._archive(volume).exists():
+            print(f"{volume.name}: skipped, {self._archive(volume)} is missing", file=sys.stderr)
+            return False
+        free = shutil.disk_usage(self.directory.parent).free
+        if volume.dense_bytes > _LARGE_BYTES and free < copies * volume.dense_bytes:
+            print(f"{volume.name}: skipped, {volume.size_text} needs {copies * volume.dense_bytes / 1e9:.0f} GB of disk, "
+                  f"{free / 1e9:.0f} are free", file=sys.stderr)
+            return False
+        return True
 
     @contextlib.contextmanager
     def file(self, volume):

@@ -55,9 +55,12 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   EXPECT_EQ(all["metrics"].size(), 2 * 2 * 4 * 2U);
   EXPECT_GE(all["speed"].size(), 2 * 2U);  // leaves, caches; more where there are threads to compare
 
+  ASSERT_GE(all["pictures"].size(), 1 + 2 * 2U);  // another seed; methods, rates; ZFP's where its command is installed
+  for (const Json& row : all["pictures"]) EXPECT_EQ(row["flip_mean"] == 0, row["lossless"] && !row["rate"].is_null());
+
   const std::string text = report();
   for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## ZFP",
-                            "## There and back", "## Time and memory"}) {
+                            "## There and back", "## Pictures", "## Time and memory"}) {
     EXPECT_NE(text.find(title), std::string::npos) << title;
   }
   EXPECT_NE(text.find("| 32^3 | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos) << text;
@@ -66,7 +69,12 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   }
   EXPECT_EQ(text.find("Promises that are not kept"), std::string::npos);
   EXPECT_TRUE(fs::exists(directory_ / "images/evaluation/wdas-like_psnr.png"));
-  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "speed"}) {
+  const std::string sheet = directory_ / "images/evaluation/cloud_path.png";
+  const CommandResult flip = run_weir({"flip", sheet, sheet, "--json"});
+  ASSERT_EQ(flip.exit_code, 0) << flip.err;
+  EXPECT_EQ(Json::parse(flip.out)["width"], 3 * 64 + 2 * 4);  // pictures and the gaps between them
+  EXPECT_EQ(Json::parse(flip.out)["height"], 7 * 48 + 6 * 4);
+  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "pictures", "speed"}) {
     EXPECT_TRUE(fs::exists(directory_ / (std::string(name) + ".csv"))) << name;
   }
 }

@@ -8,6 +8,7 @@ import sys
 import png
 import volumes
 from experiment import Experiment, remove_volume
+from experiments.sizes import cells
 from experiments.zfp import zfp_statistics
 from markdown import command, table
 from programs import ProgramFailed
@@ -35,9 +36,9 @@ class Pictures(Experiment):
     @staticmethod
     def _scenes(bench):
         if bench.quick:
-            return [Scene("cloud_path", volumes.wdas_like(16), 2)], (8, 4)
+            return [Scene("cloud_path", volumes.wdas_like(16), 2)], (10, 5)
         by_name = {volume.name: volume for volume in bench.volumes()}
-        wanted = (("cloud_path", "wdas-like", 64), ("vessels_path", "aneurism", 64), ("brain_iso", "mni152_2009", 4),
+        wanted = (("cloud_path", "wdas-like", 32), ("vessels_path", "aneurism", 32), ("brain_iso", "mni152_2009", 4),
                   ("tooth_iso", "tooth", 4), ("vortices_iso", "wmag", 4))
         return [Scene(name, by_name[volume], samples) for name, volume, samples in wanted if volume in by_name], RATES
 
@@ -105,8 +106,8 @@ class Pictures(Experiment):
                 "lossless": made["error"]["lossless"], "bytes": made["file"]["bytes"]}
 
     def _by_zfp(self, bench, scene, method, rate):
-        """Rounded to whole bits a block, as a fixed rate is; the decoded volume is rendered as a dense one."""
-        block_bits = 32 * 64 // rate
+        """With the most whole bits a block that the asked bytes hold; the decoded volume is rendered as a dense one."""
+        block_bits = 8 * -(-scene.volume.dense_bytes // rate) // cells(scene.volume.extent, 4)
         if block_bits < LEAST_ZFP_BITS:
             return None
         decoded = bench.scratch(dataclasses.replace(scene.volume, type="float32").file_name)

@@ -10,7 +10,8 @@ LOWER_BYTES = 33856
 FRAME_BYTES = 4096 + 800  # file header, GridData, TreeData, RootData
 
 
-def _cells(extent, edge):
+def cells(extent, edge):
+    """Cubes of `edge` voxels that cover the extent."""
     count = 1
     for voxels in extent:
         count *= -(-voxels // edge)
@@ -19,8 +20,8 @@ def _cells(extent, edge):
 
 def share_of_blocks_bytes(extent, rate):
     """Bytes of a float tree in which every `rate`-th 8^3 block is a leaf: what a rate means where it counts blocks."""
-    leaves = -(-_cells(extent, 8) // rate)
-    return (FRAME_BYTES + (UPPER_BYTES + 32) * _cells(extent, 4096) + LOWER_BYTES * _cells(extent, 128)
+    leaves = -(-cells(extent, 8) // rate)
+    return (FRAME_BYTES + (UPPER_BYTES + 32) * cells(extent, 4096) + LOWER_BYTES * cells(extent, 128)
             + LEAF_BYTES * leaves)
 
 

@@ -63,7 +63,8 @@ class Speed(Experiment):
 
     def _one(self, bench, edge, encoding, cache, threads):
         name = f"cloud_{edge:04}_{encoding}_{cache}_{threads:03}"
-        bench.store.measure(self.name, name, lambda: self._convert(bench, edge, encoding, cache, threads))
+        if bench.files.available(volumes.cube("cloud", edge), 1 + 2 / RATE):
+            bench.store.measure(self.name, name, lambda: self._convert(bench, edge, encoding, cache, threads))
 
     @staticmethod
     def _convert(bench, edge, encoding, cache, threads):
@@ -97,7 +98,9 @@ class Speed(Experiment):
     def text(self, measured):
         by = {(r["edge"], r["encoding"], r["cache"], r["threads"]): r for r in self.rows(measured)}
         most = max(threads for *_, threads in by)
-        return "\n\n".join((self._size_table(by, most), self._thread_table(by), command(
+        loads = [record["load"] for record in measured.records(self.name)]
+        load = f"Load average of the machine before each measurement: {min(loads):.1f} to {max(loads):.1f}."
+        return "\n\n".join((load, self._size_table(by, most), self._thread_table(by), command(
             "bench/evaluate.sh --only speed --again           # on a machine that does nothing else",
             "weir convert cloud_512x512x512_float32.raw --rate 8 --encoding fpn --threads 2   # one figure")))
 

@@ -2,26 +2,23 @@
 
 import volumes
 from experiment import Experiment, remove_volume
-from experiments.sizes import FRAME_BYTES, LEAF_BYTES, LOWER_BYTES, UPPER_BYTES
+from experiments.sizes import FRAME_BYTES, LEAF_BYTES, LOWER_BYTES, UPPER_BYTES, cells
 from markdown import command, table, whole
 
 BOUND = 1.055  # of the dense bytes, besides the fixed part
 BLIND_RECORD_BYTES = 288
 
 
-def _cells(edge, cell):
-    return (-(-edge // cell)) ** 3
-
-
 def fixed_bytes(edge):
     """What does not grow with the voxels: header, root, upper nodes of 4096^3, one lower node, the macrocells' record."""
-    return FRAME_BYTES + (UPPER_BYTES + 32) * _cells(edge, 4096) + LOWER_BYTES + BLIND_RECORD_BYTES
+    return FRAME_BYTES + (UPPER_BYTES + 32) * cells((edge,) * 3, 4096) + LOWER_BYTES + BLIND_RECORD_BYTES
 
 
 def expected_bytes(edge):
     """By the format's formula, all of the cube's leaves kept as float32."""
-    macrocells = -(-8 * _cells(edge, 16) // 32) * 32
-    return (fixed_bytes(edge) + LOWER_BYTES * (_cells(edge, 128) - 1) + LEAF_BYTES * _cells(edge, 8) + macrocells)
+    extent = (edge, edge, edge)
+    macrocells = -(-8 * cells(extent, 16) // 32) * 32
+    return (fixed_bytes(edge) + LOWER_BYTES * (cells(extent, 128) - 1) + LEAF_BYTES * cells(extent, 8) + macrocells)
 
 
 class WorstCase(Experiment):
@@ -30,6 +27,8 @@ class WorstCase(Experiment):
     def measure(self, bench):
         edges = (32, 64) if bench.quick else (32, 64, 128, 256, 512, 1024)
         for edge in edges:
+            if not bench.files.available(volumes.cube("noise", edge)):
+                continue
             bench.store.measure(self.name, f"noise_{edge:04}", lambda edge=edge: self._convert(bench, edge))
 
     def _convert(self, bench, edge):
