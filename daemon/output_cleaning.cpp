@@ -5,11 +5,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <thread>
 
+#include "compressor/journal.h"
+#include "daemon/file_identity.h"
 #include "format/descriptor.h"
+#include "format/error.h"
+#include "format/file_system.h"
 #include "format/text.h"
 
 namespace weir {
@@ -17,6 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+/// An interrupted conversion that nobody continues; it may hold as much disk as its result.
+constexpr std::chrono::hours kKeptFor{7 * 24};
 
 constexpr std::string_view kWork = ".nvdb.work";
 constexpr std::string_view kPrevious = ".nvdb.json.previous";
@@ -42,6 +51,17 @@ void remove_spills(const fs::path& work) {
   }
 }
 
+// Whether the journal says of a source that it is still what it was.
+bool is_of_this_source(const Checkpoint& checkpoint) {
+  const auto entry = [&](const char* name) {
+    const auto at = checkpoint.identity.find(name);
+    return at == checkpoint.identity.end() ? std::string() : at->second;
+  };
+  const auto source = identify(entry("source"));
+  return source && cat(source->bytes) == entry("source bytes") &&
+         cat(source->mtime_ns) == entry("source modified (ns)");
+}
+
 class Cleaner {
  public:
   explicit Cleaner(std::chrono::milliseconds patience) : deadline_(Clock::now() + patience) {}
@@ -55,10 +75,7 @@ class Cleaner {
     } else if (name.ends_with(kPrevious) && entry.is_regular_file(error)) {
       restore(path);
     } else if (name.starts_with('.') && name.ends_with(kWork) && entry.is_directory(error)) {
-      const std::string partial = name.substr(1, name.size() - 1 - std::string_view(".work").size()) + ".partial";
-      if (!wait_for_writer(path.parent_path() / partial)) return;
-      remove_spills(path);
-      remove(path);
+      clean_work(path, path.parent_path() / name.substr(1, name.size() - 1 - std::string_view(".work").size()));
     }
   }
 
@@ -71,6 +88,22 @@ class Cleaner {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return true;
+  }
+
+  void clean_work(const fs::path& work, const fs::path& output) {
+    if (!wait_for_writer(output.string() + ".partial")) return;
+    try {
+      const std::optional<Checkpoint> interrupted = read_journal(*files_, output);
+      std::error_code ignored;
+      const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
+      if (interrupted && !old && is_of_this_source(*interrupted)) return;
+      remove_leftovers(*files_, output);
+    } catch (const Error& error) {
+      leave(work, error.what());
+      return;
+    }
+    remove_spills(work);
+    remove(work);
   }
 
   void remove(const fs::path& path) {
@@ -96,6 +129,7 @@ class Cleaner {
   }
 
   Clock::time_point deadline_;
+  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
 };
 
 }  // namespace

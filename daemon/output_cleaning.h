@@ -15,9 +15,10 @@ struct CleaningReport {
 
 /// Removes from `directory` (and below it, where `recursive`; a missing one is no error): X.nvdb.partial and
 /// X.nvdb.json.partial, hidden thumbnails that were being written (.X.nvdb.png.PID.partial) and work directories
-/// (.X.nvdb.work). X.nvdb.json.previous becomes X.nvdb.json again where that is missing. A partial file that a
-/// living process writes is locked by it: it is waited for, `patience` altogether (the children of a daemon that
-/// was killed die a moment after it), and then left, with its work directory.
+/// (.X.nvdb.work), but not one that a conversion of a source that has not changed can be continued from and that was
+/// written to in the last seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing. A partial
+/// file that a living process writes is locked by it: it is waited for, `patience` altogether (the children of a daemon
+/// that was killed die a moment after it), and then left, with its work directory.
 CleaningReport clean_outputs(const std::string& directory, bool recursive, std::chrono::milliseconds patience);
 
 }  // namespace weir

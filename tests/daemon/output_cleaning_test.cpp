@@ -6,7 +6,10 @@
 #include <future>
 #include <thread>
 
+#include "compressor/journal.h"
+#include "daemon/file_identity.h"
 #include "format/file_system.h"
+#include "format/text.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -38,6 +41,65 @@ TEST(OutputCleaning, RemovesWhatAKilledConversionLeavesAndNothingElse) {
   EXPECT_EQ(read_file(directory / "lost.nvdb.json"), "lost.nvdb.json.previous") << "the record came back";
   clean_outputs(directory.path().string(), true, milliseconds(0));
   EXPECT_EQ(list_directory(directory / "deep"), Names{});
+}
+
+// What an interrupted conversion of `source` to "a.nvdb" leaves, spill files in `spills` or beside it.
+void leave_interrupted(const TemporaryDirectory& directory, const std::string& source, const std::string& spills = "") {
+  const auto identity = identify(source);
+  ASSERT_TRUE(identity);
+  const auto files = make_posix_file_system();
+  Journal journal(
+      *files, directory / "a.nvdb",
+      {{"source", source}, {"source bytes", cat(identity->bytes)}, {"source modified (ns)", cat(identity->mtime_ns)}},
+      {spills, 0, nullptr, {}});
+  journal.open("rows")->preallocate(100);
+  journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
+  journal.save_now();
+}
+
+TEST(OutputCleaning, KeepsWhatCanBeContinuedAsLongAsItsSourceIsThere) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory sources;
+  const std::string source = sources / "a.raw";
+  write_file(source, "source");
+  const auto clean = [&] { return clean_outputs(directory.path().string(), false, milliseconds(0)); };
+  const Names kept{".a.nvdb.work/", ".a.nvdb.work/journal", ".a.nvdb.work/rows"};
+
+  leave_interrupted(directory, source);
+  write_file(directory / "a.nvdb.partial", "");
+  EXPECT_EQ(clean().removed, Names{directory / "a.nvdb.partial"}) << "the lock of a process that is dead";
+  EXPECT_EQ(list_directory(directory.path()), kept);
+
+  write_file(source, "another source");
+  EXPECT_EQ(clean().removed, Names{directory / ".a.nvdb.work"});
+  EXPECT_EQ(list_directory(directory.path()), Names{});
+
+  leave_interrupted(directory, source);
+  fs::remove(source);
+  EXPECT_EQ(clean().removed, Names{directory / ".a.nvdb.work"});
+
+  write_file(source, "source");
+  leave_interrupted(directory, source);
+  fs::last_write_time(directory / ".a.nvdb.work", fs::file_time_type::clock::now() - std::chrono::hours(8 * 24));
+  EXPECT_EQ(clean().removed, Names{directory / ".a.nvdb.work"}) << "for a week";
+
+  leave_interrupted(directory, source);
+  fs::resize_file(directory / ".a.nvdb.work/rows", 99);
+  EXPECT_EQ(clean().removed, Names{directory / ".a.nvdb.work"}) << "worth nothing";
+  EXPECT_EQ(list_directory(directory.path()), Names{});
+}
+
+TEST(OutputCleaning, RemovesSpillFilesWhereverTheyAre) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory elsewhere;
+  write_file(elsewhere / "a.raw", "source");
+  fs::create_directory(elsewhere / "spills");
+  leave_interrupted(directory, elsewhere / "a.raw", elsewhere / "spills");
+  EXPECT_EQ(list_directory(elsewhere / "spills").size(), 2U) << "a directory of its own and the rows";
+  fs::remove(elsewhere / "a.raw");
+  EXPECT_EQ(clean_outputs(directory.path().string(), false, milliseconds(0)).removed,
+            Names{directory / ".a.nvdb.work"});
+  EXPECT_EQ(list_directory(elsewhere / "spills"), Names{});
 }
 
 TEST(OutputCleaning, AMissingDirectoryHasNothingToRemove) {
