@@ -1,15 +1,32 @@
 #!/usr/bin/env bash
-# The GPU's figures on this machine: checks the CUDA part, then prints one table of loading and one of frames a second
-# against a dense texture. Needs a CUDA device, and for the largest volume 40 GB of memory and of disk.
+# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, of frames a second against a
+# dense texture, and of whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
 #
-#   bench/gpu.sh [BIN] [LARGEST]     BIN: a folder with weir, weir_tests_cuda, weir_bench_load and weir_bench_frames,
-#                                    default: build/release, built first; LARGEST: edge of the largest cloud, default 2048
+#   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
+#     --bin    a folder with weir, weir_tests_cuda, weir_bench_load and weir_bench_frames; default: build/release, built
+#     --edge   of the largest cloud, default 2048
+#     STEP     checks, load, frames, pictures, largest; default: all of them
 #
 # Exit code 1 where a check fails, or loading is below 0.8 of the device's rate.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bin=${1:-}
-largest=${2:-2048}
+bin=
+edge=2048
+while [[ ${1:-} == --* ]]; do
+  case $1 in
+    --bin) bin=$2 ;;
+    --edge) edge=$2 ;;
+    *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+[ $# -gt 0 ] || set -- checks load frames pictures largest
+for step; do
+  case $step in
+    checks | load | frames | pictures | largest) ;;
+    *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
+  esac
+done
 if [ -z "$bin" ]; then
   tools/build.sh release weir weir_tests_cuda weir_bench_load weir_bench_frames
   mkdir -p build/gpu
@@ -23,42 +40,102 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/weir-gpu.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 failed=0
 
-quiet() { "$@" --progress never --log-level warn; }
-# volumes KIND EDGE: KINDEDGE.raw and, at rate 8, KINDEDGE.f.nvdb and .n.nvdb (quantised) in the work folder.
-volumes() {
+quiet() { "$@" --progress never --log-level error; }
+# volume KIND EDGE ENCODING BUDGET...: KINDEDGE.raw where it is missing, and KINDEDGE.ENCODING.nvdb in the work folder.
+volume() {
   local dims=$2,$2,$2 name=$work/$1$2
-  quiet "$bin/weir" sample "$1" --dims "$dims" -o "$name.raw"
-  quiet "$bin/weir" convert "$name.raw" --dims "$dims" --type float32 --rate 8 --memory 8GiB --encoding float -o "$name.f.nvdb"
-  quiet "$bin/weir" convert "$name.raw" --dims "$dims" --type float32 --rate 8 --memory 8GiB --encoding fpn -o "$name.n.nvdb"
+  [ -e "$name.raw" ] || quiet "$bin/weir" sample "$1" --dims "$dims" -o "$name.raw"
+  quiet "$bin/weir" convert "$name.raw" --dims "$dims" --type float32 --memory 8GiB --encoding "$3" "${@:4}" \
+    -o "$name.$3.nvdb"
 }
-frames() {
-  volumes "$1" "$2"
-  "$bin/weir_bench_frames" "$work/$1$2.raw" "$2,$2,$2" "$work/$1$2.f.nvdb" "$work/$1$2.n.nvdb" "${@:3}" || failed=1
-  rm "$work/$1$2".*
+# table KIND EDGE ARGUMENTS...: frames a second of KINDEDGE.float.nvdb and .fpn.nvdb.
+table() {
+  local name=$work/$1$2
+  echo "== $1 $2"
+  "$bin/weir_bench_frames" "$name.raw" "$2,$2,$2" "$name.float.nvdb" "$name.fpn.nvdb" "${@:3}" || failed=1
+  rm "$name".*
 }
+# An eighth of the dense size.
+cloud() {
+  volume cloud "$1" float --rate 8
+  volume cloud "$1" fpn --rate 8
+  table cloud "$@"
+}
+# Files that keep all leaves, since noise without some of them is another picture; quantised with 8 to 16 bits.
+noise() {
+  volume noise "$1" float --lossless
+  volume noise "$1" fpn --rate 1.9
+  table noise "$@"
+}
+# picture NAME ARGUMENTS: a line with the seconds of a picture of 1024 x 1024 pixels.
+picture() {
+  "$bin/weir" render "$work/cloud1024.float.nvdb" -o "$work/p.png" --size 1024x1024 --json --progress never \
+    --log-level error "${@:2}" >"$work/p.json" || failed=1
+  printf '%-44s %s\n' "$1" "$(grep -E '"(render_s|way)"' "$work/p.json" | tr -d '\n' | tr -s ' ')"
+}
+devices() { nvidia-smi --query-gpu=index --format=csv,noheader | wc -l; }
 
-nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader
-timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 || failed=1
-if command -v compute-sanitizer >/dev/null; then
+checks() {
+  timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 || failed=1
+  # Threads of a load meet in other ways each time.
+  timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_repeat=30 --gtest_break_on_failure \
+    --gtest_filter='GridLoader.Every*:GridLoader.Reuses*:GridLoader.Stops*' >"$work/log" || { tail "$work/log"; failed=1; }
+  command -v compute-sanitizer >/dev/null || return 0
   for tool in memcheck racecheck; do
     echo "compute-sanitizer $tool"
     timeout 300 compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
       --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*' |
       tail -n 3 || failed=1
   done
-fi
+}
 
-dims=1024,1024,1024
-quiet "$bin/weir" sample noise --dims $dims -o "$work/noise.raw"
-quiet "$bin/weir" convert "$work/noise.raw" --dims $dims --type float32 --rate 1 --memory 8GiB --encoding float -o "$work/noise.nvdb"
-rm "$work/noise.raw"
-"$bin/weir_bench_load" "$work/noise.nvdb" || failed=1
-rm "$work/noise.nvdb"
+load() {
+  volume noise 1024 float --rate 1
+  rm "$work/noise1024.raw"
+  "$bin/weir_bench_load" "$work/noise1024.float.nvdb" || failed=1
+  rm "$work"/noise1024.*
+}
 
-frames cloud 256
-frames cloud 512
-frames cloud 1024 --cells 32,16,64
-frames noise 512
-frames noise 1024
-frames cloud "$largest"
+frames() {
+  cloud 256
+  cloud 512
+  cloud 1024 --cells 32,16,64
+  noise 256
+  noise 512
+  noise 1024
+}
+
+pictures() {
+  volume cloud 1024 float --rate 8
+  # A Radiance picture of 16 x 8 pixels: a sky, and in one of them a sun 2^10 times as bright.
+  {
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n'
+    for ((i = 0; i < 128; ++i)); do
+      if [ "$i" = 37 ]; then printf '\200\200\200\213'; else printf '\200\200\200\201'; fi
+    done
+  } >"$work/sky.hdr"
+  printf '[lighting]\nenvironment = "sky.hdr"\nbackground = "environment"\n' >"$work/sky.toml"
+  echo "== whole pictures of cloud 1024, 256 samples a pixel, path tracing, seconds"
+  picture "stochastic, plain scene" --spp 256 --filter stochastic
+  picture "stochastic, environment" --spp 256 --filter stochastic --scene "$work/sky.toml"
+  picture "trilinear atlas, plain scene" --spp 256
+  for ((n = 2; n <= $(devices); n *= 2)); do
+    picture "stochastic, plain scene, $n devices" --spp 256 --filter stochastic --devices "$(seq -s , 0 $((n - 1)))"
+    picture "stochastic, plain scene, 2048 samples, 1 device" --spp 2048 --filter stochastic
+    picture "stochastic, plain scene, 2048 samples, $n devices" --spp 2048 --filter stochastic \
+      --devices "$(seq -s , 0 $((n - 1)))"
+  done
+  rm "$work"/*
+}
+
+nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader
+for step; do
+  case $step in
+    checks) checks ;;
+    load) load ;;
+    frames) frames ;;
+    pictures) pictures ;;
+    largest) cloud "$edge" ;;
+  esac
+done
 exit "$failed"

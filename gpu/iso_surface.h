@@ -18,7 +18,7 @@ template <class Volume>
 WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso, float step) {
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
-  while (walk.next(span)) {
+  while (walk.next(medium.cells, ray, span)) {
     const MinMax& bounds = medium.cell_values[span.cell];
     if (iso < bounds.min || iso > bounds.max) continue;
     float a = span.t0;

@@ -20,12 +20,6 @@ WEIR_HOST_DEVICE inline std::int32_t upper(std::int32_t i, bool up, std::int32_t
   return up && i + 1 < extent ? i + 1 : i;
 }
 
-/// Position of `i`, 0 <= i < count, in a table of count.x * count.y * count.z entries, 2^31 at most, x fastest.
-WEIR_HOST_DEVICE inline std::uint32_t table_index(const Int3& i, const Int3& count) {
-  const auto wide = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };
-  return wide(i.x) + wide(count.x) * (wide(i.y) + wide(count.y) * wide(i.z));
-}
-
 /// A block's entry resolved: the leaf's bytes, or null and the value of the whole block.
 struct LeafBlock {
   const std::byte* leaf = nullptr;

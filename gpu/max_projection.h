@@ -16,7 +16,7 @@ WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, f
   float best = -kInfinity;
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
-  while (walk.next(span)) {
+  while (walk.next(medium.cells, ray, span)) {
     if (medium.cell_values[span.cell].max <= best) continue;  // false where the bound is NaN, unknown
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {

@@ -5,6 +5,7 @@
 
 #include "format/nvdb_grid.h"
 #include "gpu/dda.h"
+#include "gpu/random.h"
 #include "gpu/transfer_function.h"
 #include "gpu/vector3.h"
 
@@ -38,6 +39,11 @@ struct MediumProperties {
 template <class Volume>
 struct Medium : MediumProperties {
   Volume volume;
+
+  /// At a position inside the domain; filters may draw numbers.
+  WEIR_HOST_DEVICE Rgba colour(const Float3& position, Random& random) const {
+    return transfer.at(volume.sample(position, random));
+  }
 };
 
 /// Colour of a table entry without its opacity.

@@ -30,7 +30,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   const float jitter = random.uniform();
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
-  while (walk.next(span)) {
+  while (walk.next(medium.cells, ray, span)) {
     if (!(medium.majorant(span.cell) > 0.0F)) continue;
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {

@@ -12,6 +12,48 @@ namespace weir {
 /// the extinction over thousands of mean free paths: it counts as absorbed.
 inline constexpr int kMaxTentative = 1 << 16;
 
+/// The tentative collisions along a ray: where it would collide if the extinction were the majorant everywhere. Where
+/// majorants are given by cells, the optical depth that remains at a border carries over, since it is memoryless.
+class TentativeCollisions {
+ public:
+  /// Along [0, length] of `ray`, which lies inside the volume. Draws one number.
+  WEIR_HOST_DEVICE TentativeCollisions(const CellLattice& cells, const Ray& ray, float length, Random& random)
+      : walk_(cells, ray, 0.0F, length), depth_(free_depth(random.uniform())) {}
+
+  /// Moves on to the next one; false behind the last. `redraw` first where there was one.
+  template <class Volume>
+  WEIR_HOST_DEVICE bool next(const Medium<Volume>& medium, const Ray& ray) {
+    for (;;) {
+      const float left = majorant_ * (end_ - t_);
+      if (depth_ < left) {
+        ++count_;
+        t_ += depth_ / majorant_;
+        return true;
+      }
+      if (majorant_ > 0.0F) depth_ -= left;
+      CellSpan span;
+      if (!walk_.next(medium.cells, ray, span)) return false;
+      majorant_ = medium.majorant(span.cell);
+      t_ = span.t0;
+      end_ = span.t1;
+    }
+  }
+  WEIR_HOST_DEVICE void redraw(Random& random) { depth_ = free_depth(random.uniform()); }
+
+  WEIR_HOST_DEVICE float t() const { return t_; }
+  WEIR_HOST_DEVICE float majorant() const { return majorant_; }
+  /// Whether there were more than kMaxTentative.
+  WEIR_HOST_DEVICE bool endless() const { return count_ > kMaxTentative; }
+
+ private:
+  CellWalk walk_;
+  float depth_ = 0;
+  float majorant_ = 0;
+  float t_ = 0;
+  float end_ = 0;
+  int count_ = 0;
+};
+
 enum class FlightEnd { escaped, collided, absorbed };
 
 struct Flight {
@@ -20,31 +62,18 @@ struct Flight {
   Rgba colour;  ///< of the medium there
 };
 
-/// Flies along [0, length] of `ray`, which lies inside the volume. Where majorants are given
-/// by cells, the optical depth that remains at a border carries over, since it is memoryless.
+/// Flies along [0, length] of `ray`, which lies inside the volume.
 template <class Volume>
 WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray, float length, Random& random) {
-  CellWalk walk(medium.cells, ray, 0.0F, length);
-  CellSpan span;
-  float depth = free_depth(random.uniform());
-  int tentative = 0;
-  while (walk.next(span)) {
-    const float majorant = medium.majorant(span.cell);
-    if (!(majorant > 0.0F)) continue;
-    float t = span.t0;
-    for (;;) {
-      const float left = majorant * (span.t1 - t);
-      if (!(depth < left)) {
-        depth -= left;
-        break;
-      }
-      if (++tentative > kMaxTentative) return {FlightEnd::absorbed, t, {}};
-      t += depth / majorant;
-      const Rgba colour = medium.transfer.at(medium.volume.sample(ray.at(t), random));
-      // Strictly less: a random number of 0 does not collide with vacuum.
-      if (random.uniform() * majorant < medium.extinction(colour.a)) return {FlightEnd::collided, t, colour};
-      depth = free_depth(random.uniform());
+  TentativeCollisions tentative(medium.cells, ray, length, random);
+  while (tentative.next(medium, ray)) {
+    if (tentative.endless()) return {FlightEnd::absorbed, tentative.t(), {}};
+    const Rgba colour = medium.colour(ray.at(tentative.t()), random);
+    // Strictly less: a random number of 0 does not collide with vacuum.
+    if (random.uniform() * tentative.majorant() < medium.extinction(colour.a)) {
+      return {FlightEnd::collided, tentative.t(), colour};
     }
+    tentative.redraw(random);
   }
   return {};
 }
@@ -52,32 +81,18 @@ WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray
 /// An estimate in [0, 1] whose expectation is the transmittance along [0, length] of `ray`.
 template <class Volume>
 WEIR_HOST_DEVICE float ratio_track(const Medium<Volume>& medium, const Ray& ray, float length, Random& random) {
-  CellWalk walk(medium.cells, ray, 0.0F, length);
-  CellSpan span;
-  float depth = free_depth(random.uniform());
+  TentativeCollisions tentative(medium.cells, ray, length, random);
   float transmittance = 1.0F;
-  int tentative = 0;
-  while (walk.next(span)) {
-    const float majorant = medium.majorant(span.cell);
-    if (!(majorant > 0.0F)) continue;
-    float t = span.t0;
-    for (;;) {
-      const float left = majorant * (span.t1 - t);
-      if (!(depth < left)) {
-        depth -= left;
-        break;
-      }
-      if (++tentative > kMaxTentative) return 0.0F;
-      t += depth / majorant;
-      const Rgba colour = medium.transfer.at(medium.volume.sample(ray.at(t), random));
-      transmittance *= greater(0.0F, 1.0F - medium.extinction(colour.a) / majorant);
-      if (transmittance <= 0.0F) return 0.0F;
-      if (transmittance < 0.1F) {  // Russian roulette: the rest hardly matters and may be long
-        if (random.uniform() >= 0.5F) return 0.0F;
-        transmittance *= 2.0F;
-      }
-      depth = free_depth(random.uniform());
+  while (tentative.next(medium, ray)) {
+    if (tentative.endless()) return 0.0F;
+    const Rgba colour = medium.colour(ray.at(tentative.t()), random);
+    transmittance *= greater(0.0F, 1.0F - medium.extinction(colour.a) / tentative.majorant());
+    if (transmittance <= 0.0F) return 0.0F;
+    if (transmittance < 0.1F) {  // Russian roulette: the rest hardly matters and may be long
+      if (random.uniform() >= 0.5F) return 0.0F;
+      transmittance *= 2.0F;
     }
+    tentative.redraw(random);
   }
   return transmittance;
 }

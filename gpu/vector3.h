@@ -22,6 +22,12 @@ struct Int3 {
   friend constexpr bool operator==(const Int3&, const Int3&) = default;
 };
 
+/// Position of `i`, 0 <= i < count, in a table of count.x * count.y * count.z entries, 2^31 at most, x fastest.
+WEIR_HOST_DEVICE inline std::uint32_t table_index(const Int3& i, const Int3& count) {
+  const auto wide = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };
+  return wide(i.x) + wide(count.x) * (wide(i.y) + wide(count.y) * wide(i.z));
+}
+
 WEIR_HOST_DEVICE constexpr Float3 operator+(const Float3& a, const Float3& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

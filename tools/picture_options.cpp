@@ -11,6 +11,7 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "gpu/colormap.h"
 #include "tools/command.h"
 
 namespace weir {
@@ -116,34 +117,45 @@ Scene make_scene(const PictureArguments& arguments) {
 // Enough that a default picture is clean; the other modes only have edges to smooth.
 std::int64_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 32 : 4; }
 
+std::string colormap_list() {
+  std::string list;
+  for (const std::string_view name : colormap_names()) list += cat(list.empty() ? "" : "|", name);
+  return list;
+}
+
 }  // namespace
 
 void add_picture_options(CLI::App& command, PictureArguments& arguments) {
   command.add_option("--backend", arguments.backend, "auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
-  command.add_option("--devices", arguments.devices, "N,N,...: CUDA devices that share the samples")
+  command.add_option("--devices", arguments.devices, "CUDA devices that share the samples")
+      ->type_name("N,N,...")
       ->capture_default_str();
   command
       .add_option("--mode", arguments.mode,
                   "path: multiple scattering; dvr: emission and absorption; iso: surface; mip: largest value")
       ->check(CLI::IsMember({"path", "dvr", "iso", "mip"}));
-  command.add_option("--size", arguments.size, "WxH in pixels")->capture_default_str();
-  command.add_option("--spp", arguments.samples, "samples a pixel; default 32 for path, 4 for the others");
+  command.add_option("--size", arguments.size, "in pixels")->type_name("WxH")->capture_default_str();
+  command.add_option("--spp", arguments.samples, "samples a pixel; default 32 for path, 4 for the others")
+      ->type_name("N");
   command.add_option("--seed", arguments.seed, "of the random numbers; the same seed gives the same picture")
+      ->type_name("N")
       ->capture_default_str();
-  command.add_option("--scene", arguments.scene, "SCENE.toml: camera, transfer function, medium, light");
+  command.add_option("--scene", arguments.scene, "camera, transfer function, medium, light")->type_name("SCENE.toml");
   command
       .add_option("--filter", arguments.filter,
-                  "trilinear, stochastic (path: as exact, less memory traffic) or nearest")
+                  "trilinear; stochastic: one voxel a look-up, drawn by its weight; or nearest")
       ->check(CLI::IsMember({"trilinear", "stochastic", "nearest"}))
       ->capture_default_str();
-  command.add_option("--colormap", arguments.colormap, "by name; a wrong one lists them");
-  command.add_option("--range", arguments.range,
-                     "LOW,HIGH: values at the ends of colours and opacity; default: those there are");
-  command.add_option("--iso", arguments.iso, "value of the surface; default: 35 % of the way from the background");
-  command.add_option("--camera", arguments.camera, "AZIMUTH,ELEVATION[,ZOOM] in degrees; default 35,20,1");
-  command.add_option("--threads", arguments.threads, "0: all of the machine's")->capture_default_str();
+  command.add_option("--colormap", arguments.colormap, "of the values")->type_name(colormap_list());
+  command.add_option("--range", arguments.range, "values at the ends of colours and opacity; default: those there are")
+      ->type_name("LOW,HIGH");
+  command.add_option("--iso", arguments.iso, "of the surface; default: 35 % of the way from the background")
+      ->type_name("VALUE");
+  command.add_option("--camera", arguments.camera, "where it stands, in degrees; default 35,20,1")
+      ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
+  command.add_option("--threads", arguments.threads, "0: all of the machine's")->type_name("N")->capture_default_str();
 }
 
 PictureRequest parse_picture(const PictureArguments& arguments) {

@@ -2,6 +2,7 @@
 
 #include "format/error.h"
 #include "gpu/cuda/brick_atlas.h"
+#include "gpu/cuda/device_memory.h"
 
 namespace weir {
 
@@ -122,9 +123,7 @@ BrickAtlas::BrickAtlas(const BlockTable<Block>& table, std::uint64_t spare) {
   const AtlasShape shape = shape_for(bricks);
   const std::uint64_t needed =
       shape.size() * kBrickVoxels * sizeof(float) + static_cast<std::uint64_t>(count) * sizeof(BrickEntry);
-  std::size_t free = 0;
-  std::size_t total = 0;
-  check_cuda(cudaMemGetInfo(&free, &total), "asking for the device's memory");
+  const std::uint64_t free = free_device_bytes(needed + spare);
   if (needed + spare > free) {
     throw Error(ErrorKind::io, cat("a brick atlas needs ", format_bytes(needed), " of device memory, ",
                                    format_bytes(free), " are free"));

@@ -12,6 +12,7 @@
 #include "gpu/cuda/check.h"
 #include "gpu/cuda/dense_texture.h"
 #include "gpu/cuda/device_environment.h"
+#include "gpu/cuda/device_memory.h"
 #include "gpu/cuda/device_samplers.h"
 #include "gpu/cuda/device_volume.h"
 #include "gpu/cuda/render_kernel.h"
@@ -26,14 +27,12 @@ constexpr double kLaunchSeconds = 0.05;  // how long one launch may keep a cance
 
 /// Why a grid cannot lie on the current device, of which `held` bytes are kept for it already; "" where it can.
 std::string reason_for_zero_copy(const NvdbGrid& grid, std::uint64_t held) {
-  std::size_t free = 0;
-  std::size_t total = 0;
-  check_cuda(cudaMemGetInfo(&free, &total), "asking for the device's memory");
   const auto blocks = static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
   const std::uint64_t table = blocks * (grid.type() == GridType::float32 ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
   const std::uint64_t needed = grid.data_bytes() + table + kSpareDeviceBytes;
-  if (needed <= free + held) return "";
-  return cat("the grid needs ", format_bytes(needed), " of device memory and ", format_bytes(free + held),
+  const std::uint64_t there = free_device_bytes(needed > held ? needed - held : 0) + held;
+  if (needed <= there) return "";
+  return cat("the grid needs ", format_bytes(needed), " of device memory and ", format_bytes(there),
              " are free, so it stays in host memory");
 }
 

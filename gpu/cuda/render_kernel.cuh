@@ -11,9 +11,13 @@ namespace weir {
 inline constexpr unsigned kTileWidth = 8;
 inline constexpr unsigned kTileHeight = 16;
 
+/// Blocks of threads that a multiprocessor holds at once while it traces paths, which wait for memory most of the time:
+/// 64 registers a thread and some of them spilled do better than all of them and fewer threads.
+inline constexpr unsigned kPathBlocks = 8;
+
 /// Path tracing has a kernel of its own: the other modes' registers would cost it threads.
 template <class Volume, bool kPath>
-__global__ void __launch_bounds__(kTileWidth* kTileHeight)
+__global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks : 1)
     render_kernel(const __grid_constant__ RenderTask<Volume> task, std::uint32_t first, std::uint32_t last,
                   Float3* sums) {
   const auto x = static_cast<std::int32_t>(blockIdx.x * kTileWidth + threadIdx.x);

@@ -6,9 +6,14 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <memory>
+#include <regex>
 
 #include "format/error.h"
 #include "gpu/cuda/check.h"
+#include "gpu/cuda/device_memory.h"
+#include "gpu/cuda/device_volume.h"
 #include "tests/cuda/device_reads.h"
 #include "tests/gpu/test_grid.h"
 #include "tests/support/temporary_directory.h"
@@ -244,6 +249,28 @@ TEST_F(CudaBackendTest, AnInterruptionIsAnError) {
     EXPECT_EQ(error.kind(), ErrorKind::interrupted);
     EXPECT_STREQ(error.what(), "interrupted; no image was written");
   }
+}
+
+TEST_F(CudaBackendTest, AGridThatTheDeviceHasNoRoomForStaysInHostMemory) {
+  const auto cuda = make_cuda_backend({});
+  const auto grid = file(TestGrid({{0, 0, 0}, {41, 41, 41}}, ball));
+  const Image expected = picture(*cuda, grid, {}, Filter::stochastic, 1, 16);
+  const auto others = [&] {  // leaves half of what a back end wants to be left alone
+    const std::uint64_t free = free_device_bytes(std::numeric_limits<std::uint64_t>::max());
+    void* memory = nullptr;
+    check_cuda(cudaMalloc(&memory, free - kSpareDeviceBytes / 2), "test");
+    return std::unique_ptr<void, cudaError_t (*)(void*)>(memory, cudaFree);
+  }();
+  const auto volume = cuda->load(grid, 16, nullptr);
+  const LoadSummary& summary = volume->load_summary();
+  EXPECT_TRUE(summary.way.ends_with(", zero-copy")) << summary.way;
+  const std::regex note(
+      "the grid needs 51\\d\\.\\d+ MiB of device memory and 25\\d\\.\\d+ MiB are free, "
+      "so it stays in host memory.*");
+  EXPECT_TRUE(std::regex_match(summary.note, note)) << summary.note;
+  EXPECT_EQ(picture(*cuda, grid, {}, Filter::stochastic, 1, 16).pixels, expected.pixels);
+  EXPECT_EQ(picture(*cuda, grid, {}, Filter::trilinear, 1, 16).pixels.size(), expected.pixels.size())
+      << "without room for an atlas";
 }
 
 TEST_F(CudaBackendTest, SeveralDevicesDrawTheSamePicture) {

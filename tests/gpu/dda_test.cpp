@@ -17,7 +17,7 @@ std::vector<CellSpan> walk(const CellLattice& lattice, const Ray& ray, float t0,
   std::vector<CellSpan> spans;
   CellWalk cells(lattice, ray, t0, t1);
   CellSpan span;
-  while (cells.next(span)) {
+  while (cells.next(lattice, ray, span)) {
     spans.push_back(span);
     if (spans.size() > 1000) ADD_FAILURE() << "endless walk";
     if (spans.size() > 1000) break;
@@ -115,10 +115,11 @@ TEST(CellWalk, ShiftedLattice) {
 
 TEST(CellWalk, OneVoxelThickNeedle) {
   const CellLattice needle{{1, 1, 6250}, {0, 0, 0}, 16};
-  CellWalk cells(needle, {{0.5F, 0.5F, 0}, {0, 0, 1}}, 0, 1e5F);
+  const Ray ray{{0.5F, 0.5F, 0}, {0, 0, 1}};
+  CellWalk cells(needle, ray, 0, 1e5F);
   CellSpan span;
   std::int64_t steps = 0;
-  while (cells.next(span)) EXPECT_EQ(span.cell, steps++);
+  while (cells.next(needle, ray, span)) EXPECT_EQ(span.cell, steps++);
   EXPECT_EQ(steps, 6250);
 }
 
