@@ -127,8 +127,8 @@ void compare(const CompareArguments& arguments) {
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "Computes the exact error of a volume against its source");
-  command->add_option("input", arguments->input, "the source")->required();
-  command->add_option("volume", arguments->volume, "the .nvdb file made from it")->required();
+  command->add_option("input", arguments->input, "the source")->type_name("INPUT")->required();
+  command->add_option("volume", arguments->volume, "the .nvdb file made from it")->type_name("OUT.nvdb")->required();
   add_input_options(*command, arguments->source);
   add_run_options(*command, arguments->run);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");

@@ -127,27 +127,42 @@ void parse_method(const ConversionArguments& a, ConversionOptions& options) {
 }  // namespace
 
 void add_conversion_options(CLI::App& command, ConversionArguments& a) {
-  command.add_option("--nonfinite", a.non_finite, "NaN and infinite voxels: error, background or keep; default error");
-  command.add_option("--size", a.size, "the file is exactly that long, 64MiB for instance");
-  command.add_option("--rate", a.rate, "the file is exactly ceil(float32 bytes of the volume / RATE) long; default 8");
-  command.add_option("--psnr", a.psnr, "the smallest file of at least that many dB, checked on decoded values");
-  command.add_option("--max-error", a.max_error,
-                     "the smallest file in which every voxel is within that of its value, checked on decoded values");
+  command.add_option("--nonfinite", a.non_finite, "what becomes of NaN and infinite voxels; default error")
+      ->type_name("error|background|keep");
+  command.add_option("--size", a.size, "the file is exactly that long, 64MiB for instance")->type_name("SIZE");
+  command.add_option("--rate", a.rate, "the file is exactly ceil(float32 bytes of the volume / RATE) long; default 8")
+      ->type_name("RATE");
+  command.add_option("--psnr", a.psnr, "the smallest file of at least that many dB, checked on decoded values")
+      ->type_name("DB");
+  command
+      .add_option("--max-error", a.max_error,
+                  "the smallest file in which every voxel is within that of its value, checked on decoded values")
+      ->type_name("ABS");
   command.add_flag("--lossless", a.lossless, "as long as every bit of every voxel needs");
-  command.add_option("--encoding", a.encoding,
-                     "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, "
-                     "chosen for each leaf), fp4, fp8 or fp16; default auto");
-  command.add_option("--metric", a.metric,
-                     "what the budget is spent on: sse (squared error saved per byte), farthest, closest or median "
-                     "(the paper's distances from a brick's range to the background); default sse");
-  command.add_option("--fill", a.fill, "what dropped blocks read: mean or background; default mean");
-  command.add_option("--background", a.background, "auto (the most frequent value) or a value; default auto");
-  command.add_option("--brick", a.brick, "granularity of the paper's metrics in voxels: 8, 16 or 32; default 8");
-  command.add_option("--preset", a.preset,
-                     "paper: --encoding float --metric farthest --fill background and the paper's background");
-  command.add_option("--scene", a.scene,
-                     "scene file (as for weir render) that decides what matters: blocks that its opacity, iso value or "
-                     "region cannot show become tiles, errors count by what it shows of them");
+  command
+      .add_option("--encoding", a.encoding,
+                  "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, "
+                  "chosen for each leaf), fp4, fp8 or fp16; default auto")
+      ->type_name("auto|float|fpn|fp4|fp8|fp16");
+  command
+      .add_option("--metric", a.metric,
+                  "what the budget is spent on: sse (squared error saved per byte), farthest, closest or median "
+                  "(the paper's distances from a brick's range to the background); default sse")
+      ->type_name("sse|farthest|closest|median");
+  command.add_option("--fill", a.fill, "what dropped blocks read; default mean")->type_name("mean|background");
+  command.add_option("--background", a.background, "auto (the most frequent value) or a value; default auto")
+      ->type_name("VALUE");
+  command.add_option("--brick", a.brick, "granularity of the paper's metrics in voxels; default 8")
+      ->type_name("8|16|32");
+  command
+      .add_option("--preset", a.preset,
+                  "paper: --encoding float --metric farthest --fill background and the paper's background")
+      ->type_name("paper");
+  command
+      .add_option("--scene", a.scene,
+                  "scene file (as for weir render) that decides what matters: blocks that its opacity, iso value or "
+                  "region cannot show become tiles, errors count by what it shows of them")
+      ->type_name("SCENE.toml");
 }
 
 ConversionOptions parse_conversion(const ConversionArguments& a) {

@@ -226,8 +226,10 @@ void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand("inspect",
                                          "Shows header, tree, budget, certificate and histogram of a .nvdb file, or "
                                          "lists what an input holds and the command to convert it");
-  command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")->required();
-  command->add_option("--plot", arguments->plot, "also draws the histogram as FILE.png");
+  command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--plot", arguments->plot, "also draws the histogram as FILE.png")->type_name("FILE.png");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_input_options(*command, arguments->source);
   add_progress_options(*command, arguments->progress);

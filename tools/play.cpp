@@ -162,9 +162,11 @@ void add_play(CLI::App& app) {
   command
       ->add_option("input", arguments->inputs,
                    "NanoVDB files, or patterns in quotes, 'out/*.nvdb'; step_9 comes before step_10")
+      ->type_name("OUT.nvdb")
       ->required();
-  command->add_option("-o,--output", arguments->output, "DIR for frame_00000.png and so on");
-  command->add_option("--raw", arguments->raw, "-: frames on stdout, 8-bit sRGB, 3 bytes a pixel, for an encoder");
+  command->add_option("-o,--output", arguments->output, "for frame_00000.png and so on")->type_name("DIR");
+  command->add_option("--raw", arguments->raw, "-: frames on stdout, 8-bit sRGB, 3 bytes a pixel, for an encoder")
+      ->type_name("-");
   add_picture_options(*command, arguments->picture);
   add_progress_options(*command, arguments->progress);
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");

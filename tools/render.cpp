@@ -100,8 +100,11 @@ void add_render(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Renders a picture of a NanoVDB file, or of a source.");
   command->add_option("input", arguments->input, "NanoVDB file, OUT.nvdb; with --volume dense any input of convert")
+      ->type_name("INPUT")
       ->required();
-  command->add_option("-o,--output", arguments->output, "IMAGE.png (sRGB) or IMAGE.exr (linear)")->required();
+  command->add_option("-o,--output", arguments->output, ".png (sRGB) or .exr (linear)")
+      ->type_name("IMAGE.png")
+      ->required();
   command
       ->add_option("--volume", arguments->volume,
                    "file: a NanoVDB file in place; dense: a source, all of its voxels in memory")

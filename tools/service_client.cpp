@@ -122,11 +122,14 @@ class Exchange {
 }  // namespace
 
 void add_service_options(CLI::App& command, ServiceOptions& options) {
-  auto* address =
-      command.add_option("--address", options.address, "HOST:PORT of the service")->default_str("127.0.0.1:8470");
-  command.add_option("--config", options.config, "CONFIG.toml of the service, for its address and token")
+  auto* address = command.add_option("--address", options.address, "of the service")
+                      ->type_name("HOST:PORT")
+                      ->default_str("127.0.0.1:8470");
+  command.add_option("--config", options.config, "of the service, for its address and token")
+      ->type_name("CONFIG.toml")
       ->excludes(address);
-  command.add_option("--token-file", options.token_file, "a file with the service's token; else WEIR_TOKEN is it");
+  command.add_option("--token-file", options.token_file, "with the service's token; else WEIR_TOKEN is it")
+      ->type_name("FILE");
 }
 
 ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.1", 8470} {

@@ -271,13 +271,20 @@ void add_sweep(CLI::App& app) {
   auto a = std::make_shared<SweepArguments>();
   CLI::App* command =
       app.add_subcommand("sweep", "Measures error, size and time against rate, ZFP's and the paper's too");
-  command->add_option("input", a->input, "volume file, NAME_XxYxZ_TYPE.raw for instance")->required();
-  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, psnr_bits.png, psnr_seconds.png")
+  command->add_option("input", a->input, "volume file, NAME_XxYxZ_TYPE.raw for instance")
+      ->type_name("INPUT")
       ->required();
-  command->add_option("--rates", a->rates, "dense float32 bytes / file bytes, between commas")->capture_default_str();
-  command->add_option("--methods", a->methods, cat("between commas, of ", sweep_method_names()))->capture_default_str();
-  command->add_option("--nonfinite", a->non_finite,
-                      "NaN and infinite voxels: error, background or keep; default error");
+  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, psnr_bits.png, psnr_seconds.png")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--rates", a->rates, "dense float32 bytes / file bytes, between commas")
+      ->type_name("R,R,...")
+      ->capture_default_str();
+  command->add_option("--methods", a->methods, cat("between commas, of ", sweep_method_names()))
+      ->type_name("METHOD,...")
+      ->capture_default_str();
+  command->add_option("--nonfinite", a->non_finite, "what becomes of NaN and infinite voxels; default error")
+      ->type_name("error|background|keep");
   command->add_flag("--keep", a->keep, "keep the converted volumes, METHOD_rateRATE.nvdb, in the directory");
   command->add_flag("--overwrite", a->overwrite, "replace existing results");
   add_input_options(*command, a->source);

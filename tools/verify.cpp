@@ -118,7 +118,9 @@ void run(const VerifyArguments& arguments) {
 void add_verify(CLI::App& app) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = app.add_subcommand("verify", "Checks structure, checksum, digest and sidecar of a volume");
-  command->add_option("volume", arguments->path, "the .nvdb file; its sidecar lies beside it")->required();
+  command->add_option("volume", arguments->path, "the .nvdb file; its sidecar lies beside it")
+      ->type_name("OUT.nvdb")
+      ->required();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_progress_options(*command, arguments->progress);
   add_log_level(*command);

@@ -37,7 +37,9 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
 void add_watch(CLI::App& app) {
   CLI::App* command = app.add_subcommand("watch", "Convert what appears in directories, as a configuration says");
   const auto a = std::make_shared<WatchArguments>();
-  command->add_option("config", a->config, "CONFIG.toml; docs/operations.md has its keys")->required();
+  command->add_option("config", a->config, "what to watch; docs/operations.md has its keys")
+      ->type_name("CONFIG.toml")
+      ->required();
   command->add_flag("--check", a->check, "only validate the configuration and print what it asks for");
   add_log_level(*command);
   command->callback([command, a] { watch_directories(*command, *a); });
