@@ -67,7 +67,7 @@ class Band {
       : filters_(filters),
         width_(static_cast<std::size_t>(image.width)),
         margin_(filters.radius()),
-        contrast_(4, Rows(width_, static_cast<std::size_t>(last - first) + 2 * margin_)),
+        contrast_(4, Rows(width_, static_cast<std::size_t>(last) - static_cast<std::size_t>(first) + 2 * margin_)),
         feature_(3, contrast_[0]) {
     const auto reach = static_cast<std::int32_t>(margin_);
     for (std::int32_t y = first - reach; y < last + reach; ++y) {

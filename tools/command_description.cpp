@@ -7,25 +7,26 @@
 namespace weir {
 namespace {
 
-/// What follows the placeholder in an option's type, one for each check of its value: "{a,b,c}", "INT in [0 - 9]".
+/// What follows the placeholder in an option's type, one for each check of its value, the last one first: "{a,b,c}",
+/// "INT in [0 - 9]".
 std::vector<std::string> checks_of(CLI::Option& option) {
   std::vector<std::string> checks;
   try {
     for (int i = 0;; ++i) checks.push_back(option.get_validator(i)->get_description());
   } catch (const CLI::OptionNotFound&) {  // the parser's way to say that there are no more
   }
+  std::reverse(checks.begin(), checks.end());
   return checks;
 }
 
 void describe_value(CLI::Option& option, OptionDescription& description) {
   if (option.get_type_size() == 0) return;
   std::string placeholder = option.get_type_name();
-  const std::vector<std::string> checks = checks_of(option);
-  for (auto check = checks.rbegin(); check != checks.rend(); ++check) {
-    const std::string suffix = ":" + *check;
-    if (!check->empty() && placeholder.ends_with(suffix)) placeholder.resize(placeholder.size() - suffix.size());
-    if (check->starts_with('{') && check->ends_with('}')) {
-      description.choices = split(check->substr(1, check->size() - 2), ',');
+  for (const std::string& check : checks_of(option)) {
+    const std::string suffix = ":" + check;
+    if (!check.empty() && placeholder.ends_with(suffix)) placeholder.resize(placeholder.size() - suffix.size());
+    if (check.starts_with('{') && check.ends_with('}')) {
+      description.choices = split(check.substr(1, check.size() - 2), ',');
     }
   }
   if (!description.choices.empty()) {

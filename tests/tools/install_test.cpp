@@ -1,8 +1,8 @@
 // What cmake --install brings: exactly these files, a command that runs, libraries that another build takes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <regex>
 #include <set>
 #include <string>

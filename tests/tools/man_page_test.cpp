@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "format/text.h"
 #include "tests/tools/described_app.h"
 #include "tests/tools/run_command.h"
