@@ -107,7 +107,7 @@ function(weir_tests name)
     set(installs)
     if(TARGET weir_share)
       add_dependencies(weir_tests_${name} weir_share)
-      set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}")
+      set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}" WEIR_CPACK="${CMAKE_CPACK_COMMAND}")
     endif()
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
     # Of those that build a program themselves, with the tools weir is built with, or install weir.

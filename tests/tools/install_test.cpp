@@ -69,7 +69,7 @@ std::set<std::string> cuda_files() {
   return files;
 }
 
-TEST_F(Installation, HasExactlyTheseFiles) {
+std::set<std::string> installed_files(bool has_cuda) {
   std::set<std::string> expected{
       "bin/weir",
       "lib/libweir_format_core.a",
@@ -92,18 +92,53 @@ TEST_F(Installation, HasExactlyTheseFiles) {
       "share/doc/weir/format/sidecar.schema.json",
   };
   expected.merge(headers());
-  if (has_cuda()) expected.merge(cuda_files());
+  if (has_cuda) expected.merge(cuda_files());
   add_files(WEIR_SOURCE_DIR "/docs", "share/doc/weir/docs", expected);
   add_files(WEIR_SOURCE_DIR "/examples", "share/doc/weir/examples", expected);
   const TemporaryDirectory pages;
-  ASSERT_EQ(run_weir({"man", pages.path()}).exit_code, 0);
+  EXPECT_EQ(run_weir({"man", pages.path()}).exit_code, 0);
   for (const std::string& page : list_directory(pages.path())) expected.insert(cat("share/man/man1/", page, ".gz"));
+  return expected;
+}
 
+std::set<std::string> files_below(const fs::path& root) {
+  std::set<std::string> files;
+  for (const std::string& path : list_directory(root)) {
+    if (!path.ends_with('/')) files.insert(path);
+  }
+  return files;
+}
+
+TEST_F(Installation, HasExactlyTheseFiles) { EXPECT_EQ(files_below(prefix()), installed_files(has_cuda())); }
+
+TEST_F(Installation, ThePackageHasThemToo) {
+  for (const char* program : {"dpkg-shlibdeps", "file"}) {
+    if (run_command({"sh", "-c", cat("command -v ", program)}).exit_code != 0) {
+      GTEST_SKIP() << program << " is not installed";
+    }
+  }
+  const TemporaryDirectory work;
+  const CommandResult packed =
+      run_command({WEIR_CPACK, "--config", WEIR_INSTALLS "/CPackConfig.cmake", "-B", work.path()});
+  ASSERT_EQ(packed.exit_code, 0) << packed.out << packed.err;
+  const std::string architecture = run_command({"dpkg", "--print-architecture"}).out;
+  const std::string package =
+      work / cat("weir_" WEIR_VERSION "_", architecture.substr(0, architecture.size() - 1), ".deb");
+  ASSERT_EQ(run_command({"dpkg-deb", "--extract", package, work / "content"}).exit_code, 0);
+
+  std::set<std::string> expected = installed_files(has_cuda());
+  expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and wants these two:
+  expected.insert({"share/doc/weir/changelog.gz", "share/doc/weir/copyright"});
   std::set<std::string> found;
-  add_files(prefix(), "", found);
-  std::set<std::string> relative;
-  for (const std::string& path : found) relative.insert(path.substr(1));
-  EXPECT_EQ(relative, expected);
+  for (const std::string& path : files_below(work / "content")) found.insert(path.substr(path.find('/') + 1));
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(run_command({work / "content/usr/bin/weir", "--version"}).out, WEIR_VERSION "\n");
+  const std::string unit = read_file(work / "content/usr/lib/systemd/system/weir@.service");
+  EXPECT_EQ(unit, read_file(WEIR_SOURCE_DIR "/daemon/weir@.service")) << "written for /usr";
+  const std::string needs = run_command({"dpkg-deb", "--field", package, "Depends"}).out;
+  for (const char* library : {"libc6 (", "libhdf5-", "libopenvdb", "libtbb", "libsqlite3-0"}) {
+    EXPECT_NE(needs.find(library), std::string::npos) << needs;
+  }
 }
 
 TEST_F(Installation, TheCommandRuns) {
