@@ -3,6 +3,7 @@
 import argparse
 import os
 import pathlib
+import signal
 import sys
 
 import programs
@@ -49,12 +50,13 @@ def parse(arguments):
 
 def main(arguments):
     given = parse(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     given.directory.mkdir(parents=True, exist_ok=True)
     if given.report:
         measured = Store(given.directory)
     else:
         weir = programs.Weir(given.weir.resolve())
-        measured = Store(given.directory, {"machine": programs.machine(), "weir": weir.version(ROOT)}, given.again)
+        measured = Store(given.directory, {"machine": programs.machine(), "weir": weir.version()}, given.again)
         files = VolumeFiles(given.directory, os.environ.get("WEIR_DATA", ROOT.parent / "shared/data"), weir)
         bench = Bench(given.directory, weir, measured, files, given.scale, given.quick, given.full)
         for experiment in given.experiments:

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import os
 import platform
+import signal
 import subprocess
 import tempfile
 import time
@@ -34,8 +35,8 @@ def run(command):
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
         try:
             _, status, usage = os.wait4(process.pid, 0)
-        except BaseException:  # interrupted: the program goes too
-            process.kill()
+        except BaseException:  # interrupted: the program is too, and clears up behind itself
+            process.send_signal(signal.SIGINT)
             process.wait()
             raise
         seconds = time.monotonic() - start
@@ -54,13 +55,13 @@ class Weir:
     def __init__(self, path):
         self.path = str(path)
 
-    def version(self, checkout):
-        """Its own, and the commit of the checkout that it is taken to be built of."""
-        version = "weir " + run([self.path, "--version"]).out.strip()
-        try:
-            return version + " of " + run(["git", "-C", checkout, "rev-parse", "--short=12", "HEAD"]).out.strip()
-        except (OSError, ProgramFailed):  # an unpacked archive
-            return version
+    def version(self):
+        """Its version and the commit it was built of, as it writes them beside every file it makes."""
+        with tempfile.TemporaryDirectory() as directory:
+            volume, output = f"{directory}/volume_8x8x8_uint8.raw", f"{directory}/volume.nvdb"
+            self.run("sample", "cloud", "-o", volume)
+            made = self.report("convert", volume, "-o", output, "--lossless")["weir"]
+        return " of ".join(["weir " + made["version"], *([made["commit"]] if made["commit"] else [])])
 
     def run(self, *arguments):
         return run([self.path, *arguments, "--progress", "never", "--log-level", "error"])

@@ -16,6 +16,8 @@ def write_report(experiments, measured, directory):
     directory = pathlib.Path(directory)
     text = (pathlib.Path(__file__).parent / "report.md").read_text()
     rows = {}
+    shutil.rmtree(directory / IMAGES, ignore_errors=True)  # what an experiment no longer gives
+    (directory / IMAGES).mkdir(parents=True)
     for experiment in experiments:
         has_any = bool(measured.records(experiment.name))
         text = text.replace(f"@{experiment.name}@", experiment.text(measured) if has_any else NOT_MEASURED)
@@ -23,7 +25,6 @@ def write_report(experiments, measured, directory):
             continue
         rows[experiment.name] = experiment.rows(measured)
         write_csv(directory / f"{experiment.name}.csv", rows[experiment.name])
-        (directory / IMAGES).mkdir(parents=True, exist_ok=True)
         for name, path in experiment.pictures(measured, directory).items():
             shutil.copyfile(path, directory / IMAGES / name)
     text = text.replace("@promises@", promises_text(broken_promises(experiments, measured)))
@@ -35,13 +36,15 @@ def write_report(experiments, measured, directory):
 
 def broken_promises(experiments, measured):
     """A line for each thing that must hold and does not."""
-    return [f"{e.name}: {line}" for e in experiments if measured.records(e.name) for line in e.broken_promises(measured)]
+    return [f"{experiment.name}: {line}" for experiment in experiments if measured.records(experiment.name)
+            for line in experiment.broken_promises(measured)]
 
 
 def promises_text(broken):
     if not broken:
-        return ("The run checked: sizes are met to the byte, no error is above that of the paper's preset, noise stays below "
-                "its bound, no voxel's error is above --max-error, lossless is lossless, memory stays below its ceiling.")
+        return ("Checked, of what is measured here: sizes are met to the byte, no error is above that of the paper's\n"
+                "preset, more bytes are never more error, noise stays below its bound, no voxel's error is above\n"
+                "`--max-error`, lossless is lossless and looks so, memory stays below its ceiling.")
     return "**Promises that are not kept:**\n\n" + "\n".join(f"* {line}" for line in broken)
 
 

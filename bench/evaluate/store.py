@@ -1,7 +1,8 @@
 """Measurements on disk: a JSON file for each, so that what is finished is never done twice.
 
 DIR/state/EXPERIMENT/NAME.json holds {"experiment", "name", "date", "machine", "weir", "load", "result"}; `load` is the
-machine's load average of a minute before, `result` whatever the experiment measured. A file appears whole or not at all.
+machine's load average of the minute before, `result` whatever the experiment measured. A file appears whole or not at
+all.
 """
 
 import datetime

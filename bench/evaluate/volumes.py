@@ -110,7 +110,8 @@ class VolumeFiles:
             return False
         free = shutil.disk_usage(self.directory.parent).free
         if volume.dense_bytes > _LARGE_BYTES and free < copies * volume.dense_bytes:
-            print(f"{volume.name}: skipped, {volume.size_text} needs {copies * volume.dense_bytes / 1e9:.0f} GB of disk, "
+            needed = copies * volume.dense_bytes
+            print(f"{volume.name}: skipped, {volume.size_text} needs {needed / 1e9:.0f} GB of disk, "
                   f"{free / 1e9:.0f} are free", file=sys.stderr)
             return False
         return True

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/support/python.h"
@@ -96,6 +98,21 @@ TEST_F(Evaluation, GoesOnWhereItWasAndSaysWhatIsBroken) {
             "worst_case: noise of 64^3 takes 1500000 bytes, the bound is 1415719\n");
   EXPECT_NE(report().find("* worst_case: noise of 64^3 takes 1500000 bytes, the format says 1407712\n"),
             std::string::npos);
+}
+
+TEST_F(Evaluation, EndsWithItsProgramWhenInterrupted) {
+  ChildProcess child({kPython, "-B", std::string(WEIR_SOURCE_DIR) + "/bench/evaluate", "--weir", WEIR_COMMAND,
+                      directory_.path().string(), "--quick", "--only", "errors"});
+  const fs::path state = directory_.path() / "state/errors";
+  const std::string first = "wdas-like_124x84x153_float32.raw.json";
+  while (child.running() && !fs::exists(state / first)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  child.send_signal(SIGTERM);  // the second volume is being measured
+  const CommandResult result = child.wait();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("bench/evaluate.sh: interrupted; what is measured is kept, run it again to go on\n"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(list_directory(state), std::vector<std::string>{first});
 }
 
 TEST_F(Evaluation, NamesItsExperiments) {

@@ -60,7 +60,8 @@ class Errors(Experiment):
         lines.append(["lossless from", "", sizes["float"], "", sizes["float"], "", sizes["auto"], "", ""])
         title = f"**{result['volume']}**, {size_text(result['extent'])}, {result['type']}: {result['note']}"
         header = ["of dense", "paper's: MSE", "dB", "float: MSE", "dB", "auto: MSE", "dB", "ZFP: MSE", "dB"]
-        return f"{title}\n\n{table(header, lines)}\n\n![PSNR against bits per voxel](images/evaluation/{self._image(result)})"
+        plot = f"![PSNR against bits per voxel](images/evaluation/{self._image(result)})"
+        return f"{title}\n\n{table(header, lines)}\n\n{plot}"
 
     @staticmethod
     def _image(result):
@@ -81,4 +82,13 @@ class Errors(Experiment):
                     if ours["bytes_got"] and paper["bytes_got"] and ours["mse"] > paper["mse"]:
                         broken.append(f"{result['volume']} at {share} %: {method} has an MSE of {ours['mse']}, the "
                                       f"paper's preset {paper['mse']}")
+            for method in ("float", "auto"):
+                rows = [by[(method, share)] for share in SHARES if by[(method, share)]["bytes_got"]]
+                for before, after in zip(rows, rows[1:]):
+                    if after["mse"] > before["mse"]:
+                        broken.append(f"{result['volume']}: {method} has more error at {after['share']} % than at "
+                                      f"{before['share']} %")
+            if any(by[("auto", share)]["mse"] > by[("float", share)]["mse"] for share in SHARES
+                   if by[("auto", share)]["bytes_got"]):
+                broken.append(f"{result['volume']}: auto has more error than float")
         return broken

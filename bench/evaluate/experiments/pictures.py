@@ -1,4 +1,4 @@
-"""What one sees: path-traced and iso pictures of ours, the paper's and ZFP's at equal bytes, against those of the source."""
+"""What one sees: pictures of ours, the paper's and ZFP's volumes of equal bytes against those of the source."""
 
 import dataclasses
 import pathlib
@@ -76,7 +76,8 @@ class Pictures(Experiment):
 
     def _judged(self, bench, scene, name, result):
         directory = self._directory(bench, scene)
-        flip = bench.weir.flip(directory / "source.png", directory / f"{name}.png", "-o", directory / f"{name}_flip.png")
+        flip = bench.weir.flip(directory / "source.png", directory / f"{name}.png", "-o",
+                               directory / f"{name}_flip.png")
         return {"scene": scene.name, "volume": scene.volume.name, "samples": scene.samples, **result,
                 "flip_mean": flip["mean"], "flip_third_quartile": flip["third_weighted_quartile"],
                 "flip_max": flip["max"]}
@@ -119,7 +120,8 @@ class Pictures(Experiment):
             bench.weir.run("convert", decoded, "-o", lossless, "--overwrite", "--lossless")
             error = bench.weir.report("compare", path, lossless)
         remove_volume(lossless)
-        self._render(bench, scene, decoded, self._directory(bench, scene) / f"{method}_{rate:02}.png", "--volume", "dense")
+        picture = self._directory(bench, scene) / f"{method}_{rate:02}.png"
+        self._render(bench, scene, decoded, picture, "--volume", "dense")
         decoded.unlink()
         return {"method": method, "rate": rate, "psnr_db": error["psnr_db"], "lossless": error["lossless"],
                 "bytes": int(theirs["zfp"])}
@@ -171,11 +173,13 @@ class Pictures(Experiment):
 
     @staticmethod
     def _sheet(folder):
-        """The source's picture, then a row of pictures and one of their maps for each method; columns are rates."""
+        """The source's picture, one by another seed and its map; then for each method a row of pictures and one of
+        maps, whose columns are rates."""
         source = png.read_png(folder / "source.png")
         step_x, step_y = source.width + GAP, source.height + GAP
         sheet = png.blank(len(SHEET_RATES) * step_x - GAP, (1 + 2 * len(METHODS)) * step_y - GAP)
-        png.paste(sheet, source, 0, 0)
+        for column, name in enumerate(("source.png", "seed.png", "seed_flip.png")):
+            png.paste(sheet, png.read_png(folder / name), column * step_x, 0)
         for row, method in enumerate(METHODS):
             for column, rate in enumerate(SHEET_RATES):
                 for below, name in enumerate((f"{method}_{rate:02}.png", f"{method}_{rate:02}_flip.png")):

@@ -20,7 +20,8 @@ class RoundTrip(Experiment):
         if source is None:
             return
         for budget in BUDGETS:
-            bench.store.measure(self.name, f"weir {' '.join(budget)}", lambda budget=budget: self._weir(bench, source, budget))
+            bench.store.measure(self.name, f"weir {' '.join(budget)}",
+                                lambda budget=budget: self._weir(bench, source, budget))
         if shutil.which("nanovdb_convert"):
             bench.store.measure(self.name, "stock", lambda: self._stock(bench, source))
 

@@ -1,7 +1,7 @@
 """ZFP: at equal bytes in its fixed-rate mode, and in its fixed-accuracy mode against --max-error.
 
-The fixed rates are those that `weir sweep` measured for the tables of errors. The accuracies are by the `zfp` command of
-libzfp's authors, which holds the whole volume in memory.
+The fixed rates are those that `weir sweep` measured for the tables of errors. The accuracies are by the `zfp` command
+of libzfp's authors, which holds the whole volume in memory.
 """
 
 import math
