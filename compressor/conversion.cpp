@@ -83,6 +83,7 @@ std::string amplification_notice(const VolumeSource& source, const MemoryPlan& m
 StreamOptions stream_options(const ConversionControl& control) {
   StreamOptions options;
   options.cancel = control.cancel;
+  options.trace = control.trace;
   options.progress = [&control](std::int64_t done, std::int64_t) {
     if (control.pass_advanced) control.pass_advanced(static_cast<std::uint64_t>(done) * sizeof(float));
   };
@@ -276,8 +277,11 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   std::optional<LeafStore<LeafFaces>> faces;
   if (visibility) faces.emplace(spill("faces"), leaves);
   const bool widths = options.encoding != Encoding::float32 && options.metric == Metric::sse;
+  std::optional<TraceSpan> span;
+  span.emplace(control.trace, "survey pass", voxels * sizeof(float));
   const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading, widths,
                                       faces ? &*faces : nullptr, &surveyed, pauses);
+  span.emplace(control.trace, "background");
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   Background background;
   Sidecar sidecar = describe_source(info, survey, options);
@@ -300,6 +304,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   sidecar.timing.survey_s = seconds_since(started);
 
   // Selection and encoding.
+  span.reset();
   check_cancel(control);
   const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
@@ -311,6 +316,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
   const TreeLayout& layout = file.plan.layout;
   const GridType type = grid_type_of(file.encoding);
+  span.emplace(control.trace, "write tree");
   // Most of the file goes to the device while the rest is made.
   const std::jthread writeback([&output] { output.volume().start_writeback(); });
   check_cancel(control);
@@ -325,6 +331,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   check_cancel(control);
 
   // Finish.
+  span.emplace(control.trace, "digest", size.bytes);
   sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, domain};
   sidecar.background = {static_cast<double>(background.value), background.method, background.share};
   sidecar.budget.kind = size.kind;
@@ -352,6 +359,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   sidecar.timing.bytes_read = source.bytes_read();
   sidecar.timing.bytes_written = layout.content_end;
   sidecar.timing.peak_rss_bytes = peak_resident_bytes();
+  span.emplace(control.trace, "commit", size.bytes);
   output.commit(to_json_text(sidecar));
   return sidecar;
 }

@@ -16,6 +16,7 @@
 #include "format/file_system.h"
 #include "format/scene.h"
 #include "format/sidecar.h"
+#include "format/trace.h"
 #include "ingest/volume_source.h"
 
 namespace weir {
@@ -56,6 +57,7 @@ struct ConversionControl {
   std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   std::function<void(const std::string& line)> notice;
+  Trace* trace = nullptr;  ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
 };
 
 /// Converts and returns the sidecar that was written. Throws Error; then what was there before is untouched, and of the

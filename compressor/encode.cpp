@@ -93,6 +93,7 @@ class LeafEncoder {
       do {
         size += leaf_bytes(leaves_[end++].width);
       } while (end < leaves_.size() && leaves_[end].ordinal == leaves_[end - 1].ordinal + 1);
+      const TraceSpan span(target.trace, "write", size);
       target.out.write_at(leaves_[first].offset, bytes.subspan(at, size));
       target.records.write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
       at += size;
@@ -233,6 +234,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       const Box& leaf_box = leaf_boxes[block.index];
       LeafEncoder& encoder = encoders.local();
       for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
+        const TraceSpan span(target.trace, "encode");
         encoder.add_layer(target, block, leaf_box, region, places, x);
       });
       encoder.finish(target);
@@ -246,6 +248,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
     for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
+      const TraceSpan span(target.trace, "encode");
       LeafEncoder& encoder = encoders.local();
       encoder.add_layer(target, block, leaf_box, region, places, x);
       encoder.finish(target);

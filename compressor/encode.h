@@ -13,6 +13,7 @@
 #include "format/box_set.h"
 #include "format/file_system.h"
 #include "format/nvdb_type.h"
+#include "format/trace.h"
 #include "format/tree_layout.h"
 #include "ingest/block_plan.h"
 #include "ingest/block_stream.h"
@@ -28,6 +29,7 @@ struct EncodeTarget {
   Fit fit;        ///< of quantised leaves
   File& out;
   RecordStore& records;
+  Trace* trace = nullptr;
 };
 
 /// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, says

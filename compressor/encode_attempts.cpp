@@ -56,7 +56,11 @@ std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
 }
 
 EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
-  EncodedFile encoded{plan_file(request, job.rows, job.work), nullptr, {}, {}};
+  EncodedFile encoded;
+  {
+    const TraceSpan span(job.stream.trace, "select");
+    encoded.file = plan_file(request, job.rows, job.work);
+  }
   const FilePlan& file = encoded.file;
   std::shared_ptr<File> records = open_targets(job, file);
   if (!job.output.reserve(file.size.bytes) && job.notice) {
@@ -65,12 +69,13 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   }
   encoded.records = std::make_unique<RecordStore>(std::move(records), file.plan.layout.counts.leaves);
   job.pass_started();
+  const TraceSpan span(job.stream.trace, "encode pass");
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
   Pauses pauses;
   if (job.journal != nullptr) pauses = {[&] { return job.journal->due(); }, [&] { job.journal->save(); }};
   encode_leaves(job.source, job.plan,
                 {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                 job.output.volume(), *encoded.records},
+                 job.output.volume(), *encoded.records, job.stream.trace},
                 job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
   encoded.errors = sum_leaf_errors(*file.tree, *encoded.records);
   encoded.seen_errors = request.rule.visibility == nullptr

@@ -200,6 +200,7 @@ void Journal::wait() {
 
 // The numbered steps in the header.
 void Journal::write(const std::vector<std::shared_ptr<File>>& open, const std::string& text) {
+  const TraceSpan span(options_.trace, "save");
   for (const std::shared_ptr<File>& file : open) file->sync();  // 1
   {
     const std::unique_ptr<File> file = files_.create(in(directory_, kNewJournal));  // 2

@@ -25,6 +25,7 @@
 
 #include "compressor/checkpoint.h"
 #include "format/file_system.h"
+#include "format/trace.h"
 
 namespace weir {
 
@@ -32,6 +33,7 @@ struct JournalOptions {
   std::string work_dir;   ///< where spill files go; empty: beside the output
   double interval_s = 0;  ///< between two saves; 0: whenever there is something to save, and each is waited for
   const std::atomic<bool>* cancel = nullptr;            ///< once set, everything is saved at the next pause
+  Trace* trace = nullptr;                               ///< gets a "save" of each
   std::function<void(const std::string& line)> notice;  ///< may be empty
 };
 

@@ -31,7 +31,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
   }
   return std::make_unique<Journal>(
       files, options.output, identify_conversion(info, options),
-      JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.notice});
+      JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.trace, control.notice});
 }
 
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves) {

@@ -202,6 +202,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
     const BlockSurvey work(leaves, table, widths, block, leaf_box, block_rows, block_faces);
     for_rows(extent.y * extent.z,
              [&](std::int64_t row, Tally& tally) { work.leaf_row(row % extent.y, row / extent.y, tally); });
+    const TraceSpan span(options.trace, "write", std::span(block_rows).size_bytes());
     rows.write_box(leaf_box, block_rows);
     if (faces != nullptr) faces->write_box(leaf_box, block_faces);
     tallies.local().loss.add(block.loss);
@@ -209,6 +210,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
   if (reading == Reading::in_place) {
     work_in_place(source, boxes, stream, [&](const Block& block) {
       survey_block(block, [&](std::int64_t count, const auto& on_row) {
+        const TraceSpan span(options.trace, "survey");
         Tally& tally = tallies.local();
         for (std::int64_t row = 0; row < count; ++row) on_row(row, tally);
       });
@@ -217,6 +219,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
     stream_blocks(source, boxes, stream, [&](const Block& block) {
       survey_block(block, [&](std::int64_t count, const auto& on_row) {
         tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count), [&](const auto& range) {
+          const TraceSpan span(options.trace, "survey");
           Tally& tally = tallies.local();
           for (std::int64_t row = range.begin(); row < range.end(); ++row) on_row(row, tally);
         });

@@ -121,6 +121,7 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
   const Reader reader(handover, [&] {
     try {
       for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
+        const TraceSpan span(options.trace, "read", values(i).size_bytes());
         losses[i % kBuffers] = source.read(boxes[i], values(i));
         handover.publish_read();
       }
@@ -161,7 +162,10 @@ ConversionLoss work_in_place(VolumeSource& source, std::span<const Box> boxes, c
   const auto work_on = [&](std::size_t i) {
     if (!options.at_rest) throw_if_cancelled(options);
     const std::span<float> values = buffers.local().floats().first(static_cast<std::size_t>(boxes[i].voxels()));
-    const ConversionLoss lost = source.read_alone(boxes[i], values);
+    const ConversionLoss lost = [&] {
+      const TraceSpan span(options.trace, "read", values.size_bytes());
+      return source.read_alone(boxes[i], values);
+    }();
     work({i, boxes[i], values, lost});
     const std::lock_guard lock(mutex);
     loss.add(lost);

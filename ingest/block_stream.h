@@ -9,6 +9,7 @@
 #include <span>
 
 #include "format/index.h"
+#include "format/trace.h"
 #include "ingest/volume_source.h"
 
 namespace weir {
@@ -31,6 +32,7 @@ struct StreamOptions {
   /// on, whose work is done: after each block, or in place after each 256 MiB of them, which then are also what a set
   /// `cancel` waits for, so that it loses nothing.
   std::function<void(std::size_t boxes_done)> at_rest;
+  Trace* trace = nullptr;  ///< gets a "read" of each box
 };
 
 /// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of

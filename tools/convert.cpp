@@ -27,6 +27,7 @@
 #include "tools/input_options.h"
 #include "tools/progress.h"
 #include "tools/run_options.h"
+#include "tools/trace_option.h"
 
 namespace weir {
 namespace {
@@ -40,6 +41,7 @@ struct ConvertArguments {
   RunArguments run;
   std::string work_dir;
   std::string resume = "auto";
+  std::string trace;
   double save_interval_s = ConversionOptions{}.save_interval_s;
   std::string bandwidth;  ///< a size, per second
   bool overwrite = false;
@@ -133,7 +135,8 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
 }
 
 Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
-                     const Sidecar* first, bool skip_done, Bandwidth* bandwidth, const ProgressOptions& shown) {
+                     const Sidecar* first, bool skip_done, Bandwidth* bandwidth, Trace* trace,
+                     const ProgressOptions& shown) {
   source_options.dataset = step.dataset;
   source_options.index = step.index;
   std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
@@ -147,6 +150,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   Progress progress(shown);
   ConversionControl control;
   control.cancel = &interrupt_flag();
+  control.trace = trace;
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
@@ -197,13 +201,18 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   }
   std::optional<Bandwidth> bandwidth;
   if (const auto bytes_per_s = parse_bandwidth(a.bandwidth)) bandwidth.emplace(*bytes_per_s, &interrupt_flag());
+  std::vector<std::string> places;
+  for (const SeriesStep& step : steps) places.push_back(step.path);
+  for (const std::string& output : outputs) places.insert(places.end(), {output, sidecar_path(output)});
+  const std::unique_ptr<Trace> trace = open_trace(a.trace, places);
   std::vector<Sidecar> sidecars;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
     sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(),
-                                    a.skip_done, bandwidth ? &*bandwidth : nullptr, a.run.progress));
+                                    a.skip_done, bandwidth ? &*bandwidth : nullptr, trace.get(), a.run.progress));
   }
+  if (trace) trace->close();
   if (a.json) print_json(sidecars);
 }
 
@@ -247,6 +256,7 @@ void add_convert(CLI::App& app) {
       ->type_name("SECONDS")
       ->group("Run")
       ->capture_default_str();
+  add_trace_option(*command, a->trace);
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");
   command->add_flag("--skip-done", a->skip_done,
                     "leave an output that this very conversion made of the same source; convert it again where the "

@@ -8,8 +8,8 @@ namespace weir {
 namespace {
 
 // They say how a command reports, or whether it runs at all.
-constexpr std::array<std::string_view, 8> kSilent{"help",      "json",      "progress", "progress-fd",
-                                                  "log-level", "skip-done", "resume",   "save-interval"};
+constexpr std::array<std::string_view, 9> kSilent{"help",      "json",   "progress",      "progress-fd", "log-level",
+                                                  "skip-done", "resume", "save-interval", "trace"};
 
 }  // namespace
 

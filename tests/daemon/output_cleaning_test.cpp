@@ -51,7 +51,7 @@ void leave_interrupted(const TemporaryDirectory& directory, const std::string& s
   Journal journal(
       *files, directory / "a.nvdb",
       {{"source", source}, {"source bytes", cat(identity->bytes)}, {"source modified (ns)", cat(identity->mtime_ns)}},
-      {spills, 0, nullptr, {}});
+      {spills, 0, nullptr, nullptr, {}});
   journal.open("rows")->preallocate(100);
   journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
   journal.save_now();

@@ -1,0 +1,19 @@
+// The option --trace of the commands that stream a volume.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "format/trace.h"
+
+namespace weir {
+
+/// Adds --trace FILE, stored in `path`, which must live as long as the command.
+void add_trace_option(CLI::App& command, std::string& path);
+
+/// Null where `path` is empty. Throws Error(usage) where it is one of `others`, the files that the command is about.
+std::unique_ptr<Trace> open_trace(const std::string& path, std::span<const std::string> others);
+
+}  // namespace weir
