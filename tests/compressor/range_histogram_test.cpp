@@ -133,6 +133,21 @@ TEST_P(RangeHistogramTest, IsTheSameInAnyOrderAndPartition) {
   }
 }
 
+TEST_P(RangeHistogramTest, GoesOnAsItWasWhenRestored) {
+  const std::vector<float>& values = GetParam().values;
+  const std::size_t half = values.size() / 2;
+  RangeHistogram histogram;
+  if (half > 0) add(histogram, std::span(values).first(half));
+  RangeHistogram restored = RangeHistogram::restored(histogram.exponent(), histogram.base(), histogram.counts());
+  RangeHistogram merged = restored;
+  add(restored, std::span(values).subspan(half));
+  expect_histogram(restored, expected_histogram(values));
+  RangeHistogram rest;
+  add(rest, std::span(values).subspan(half));
+  merged.merge(rest);
+  expect_histogram(merged, expected_histogram(values));
+}
+
 TEST_P(RangeHistogramTest, IsTheSameValueByValue) {
   RangeHistogram histogram;
   for (const float v : GetParam().values) histogram.add(v, 3);

@@ -157,6 +157,28 @@ TEST_F(OutputFilesTest, TakesOverThePartialFileOfADeadProcess) {
   EXPECT_EQ(listing(), written_);
 }
 
+TEST_F(OutputFilesTest, AVolumeInAnotherPlaceIsLeftThereUntilItIsCommitted) {
+  const std::string other = directory_ / "half";
+  const auto write = [&](bool commits) {
+    OutputFiles output_files(*real_, output(), false);
+    output_files.write_to(real_->open(other));
+    output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+    EXPECT_EQ(listing().at("out.nvdb.partial"), "") << "the lock";
+    if (commits) output_files.commit("sidecar");
+  };
+  write(false);
+  EXPECT_EQ(listing(), (Listing{{"half", "volume"}}));
+  write(true);
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, OpenKeepsWhatAFileHoldsAndCreateDoesNot) {
+  put("file", "content");
+  EXPECT_EQ(real_->open(directory_ / "file")->size(), 7U);
+  EXPECT_EQ(real_->open(directory_ / "new")->size(), 0U);
+  EXPECT_EQ(real_->create(directory_ / "file")->size(), 0U);
+}
+
 TEST_F(OutputFilesTest, SaysThatTheDirectoryIsMissing) {
   const std::string path = directory_ / "absent/out.nvdb";
   try {

@@ -204,5 +204,62 @@ TEST(BlockStream, CancelFromAnotherThread) {
   EXPECT_EQ(worked, 101U);
 }
 
+TEST(BlockStream, RestsAfterEachBlockAndKnowsItsLoss) {
+  CountingSource source({5, 3, 40});
+  StreamOptions options;
+  std::size_t worked = 0;
+  std::size_t rests = 0;
+  options.at_rest = [&](std::size_t done) {
+    EXPECT_EQ(done, worked);
+    ++rests;
+  };
+  stream_blocks(source, slabs(40), options, [&](const Block& block) {
+    EXPECT_EQ(block.loss.overflow, block.index) << "of this block, whatever has been read meanwhile";
+    EXPECT_EQ(block.loss.inexact, 15U);
+    ++worked;
+  });
+  EXPECT_EQ(rests, 40U);
+}
+
+// Groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
+TEST(BlockStream, InPlaceRestsBetweenGroupsAndCancelsThere) {
+  class Empty final : public VolumeSource {
+   public:
+    const SourceInfo& info() const override { return info_; }
+    AccessShape access() const override { return {}; }
+    std::uint64_t bytes_read() const override { return 0; }
+    ConversionLoss read(const Box&, std::span<float>) override { return {1, 0, 0}; }
+
+   private:
+    SourceInfo info_;
+  };
+  Empty source;
+  std::vector<Box> boxes;
+  for (std::int64_t z = 0; z < 5; ++z) boxes.push_back({{0, 0, 32 * z}, {1024, 1024, 32 * (z + 1)}});
+  std::atomic<std::size_t> worked{0};
+  std::atomic<bool> cancel{false};
+  std::vector<std::size_t> rests;
+  StreamOptions options;
+  options.cancel = &cancel;
+  options.at_rest = [&](std::size_t done) {
+    EXPECT_EQ(done, worked);
+    rests.push_back(done);
+  };
+  EXPECT_EQ(work_in_place(source, boxes, options, [&](const Block&) { ++worked; }).inexact, 5U);
+  EXPECT_EQ(rests, (std::vector<std::size_t>{2, 4, 5}));
+  rests.clear();
+  worked = 0;
+  EXPECT_EQ(message_of_error(ErrorKind::interrupted,
+                             [&] {
+                               work_in_place(source, boxes, options, [&](const Block&) {
+                                 ++worked;
+                                 cancel = true;
+                               });
+                             }),
+            "interrupted");
+  EXPECT_EQ(rests, std::vector<std::size_t>{2});
+  EXPECT_EQ(worked, 2U);
+}
+
 }  // namespace
 }  // namespace weir
