@@ -80,10 +80,20 @@ class Reader {
   std::jthread thread_;
 };
 
+bool is_cancelled(const StreamOptions& options) {
+  return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+}
+
 void throw_if_cancelled(const StreamOptions& options) {
-  if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
-    throw Error(ErrorKind::interrupted, "interrupted");
-  }
+  if (is_cancelled(options)) throw Error(ErrorKind::interrupted, "interrupted");
+}
+
+// Between two blocks. A `cancel` that is set meanwhile is found at the next rest: whoever is asked last before the end
+// knows that it is the end.
+void rest(const StreamOptions& options, std::size_t boxes_done) {
+  const bool ends = is_cancelled(options);
+  if (options.at_rest && boxes_done > 0) options.at_rest(boxes_done);
+  if (ends) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
 // Boxes from `first` on that are worked on between two rests.
@@ -133,15 +143,14 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
   std::int64_t done = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     handover.wait_read(i);
-    throw_if_cancelled(options);
+    if (is_cancelled(options)) rest(options, i);
     const ConversionLoss lost = losses[i % kBuffers];
     loss.add(lost);
     work({i, boxes[i], values(i), lost});
     handover.publish_worked();
     done += boxes[i].voxels();
     if (options.progress) options.progress(done, total);
-    if (options.at_rest) options.at_rest(i + 1);
-    throw_if_cancelled(options);
+    rest(options, i + 1);
   }
   return loss;
 }
@@ -175,8 +184,7 @@ ConversionLoss work_in_place(VolumeSource& source, std::span<const Box> boxes, c
   for (std::size_t first = 0; first < boxes.size();) {
     const std::size_t end = options.at_rest ? end_of_group(boxes, first) : boxes.size();
     tbb::parallel_for(first, end, work_on);
-    if (options.at_rest) options.at_rest(end);
-    throw_if_cancelled(options);
+    rest(options, end);
     first = end;
   }
   return loss;

@@ -148,6 +148,7 @@ class Sweep {
     options.overwrite = arguments_.overwrite;
     options.budget = {Budget::Kind::rate, row.rate, 0};
     options.memory = memory_;
+    options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
     options.threads = static_cast<std::size_t>(arguments_.run.threads);
     options.provenance = {WEIR_VERSION, WEIR_COMMIT, given_};
     options.provenance.options.insert(method.options.begin(), method.options.end());

@@ -221,6 +221,23 @@ TEST(BlockStream, RestsAfterEachBlockAndKnowsItsLoss) {
   EXPECT_EQ(rests, 40U);
 }
 
+TEST(BlockStream, WhoeverIsAskedLastKnowsThatItIsTheEnd) {
+  CountingSource source({5, 3, 40});
+  std::atomic<bool> cancel{false};
+  std::vector<std::size_t> rests;
+  StreamOptions options;
+  options.cancel = &cancel;
+  options.at_rest = [&](std::size_t done) {
+    rests.push_back(done);
+    if (done == 3) cancel = true;  // as a signal that comes after the look at the flag
+  };
+  std::size_t worked = 0;
+  message_of_error(ErrorKind::interrupted,
+                   [&] { stream_blocks(source, slabs(40), options, [&](const Block&) { ++worked; }); });
+  EXPECT_EQ(rests, (std::vector<std::size_t>{1, 2, 3, 3}));
+  EXPECT_EQ(worked, 3U);
+}
+
 // Groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
 TEST(BlockStream, InPlaceRestsBetweenGroupsAndCancelsThere) {
   class Empty final : public VolumeSource {
