@@ -180,12 +180,14 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
   tbb::enumerable_thread_specific<Tally> tallies;
   StreamOptions stream;
   stream.cancel = options.cancel;
+  stream.trace = options.trace;
   if (options.progress) {
     stream.progress = [&](std::int64_t done, std::int64_t) {
       options.progress(static_cast<std::uint64_t>(done) * sizeof(float));
     };
   }
   const ConversionLoss loss = stream_blocks(source, boxes, stream, [&](const Block& block) {
+    const TraceSpan span(options.trace, "compare", block.values.size_bytes());
     for_each_leaf(plan.lattice, plan.leaf_box(static_cast<std::int64_t>(block.index)), options.release_pages,
                   [&](const Index3& leaf) { tallies.local().add_leaf(block, grid, plan.lattice, leaf); });
   });

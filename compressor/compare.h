@@ -11,6 +11,7 @@
 #include "compressor/certificate.h"
 #include "format/index.h"
 #include "format/nvdb_grid.h"
+#include "format/trace.h"
 #include "ingest/volume_source.h"
 
 namespace weir {
@@ -21,6 +22,7 @@ struct CompareOptions {
   std::function<void(std::uint64_t done_bytes)> progress;  ///< float32 bytes of the source, of volume * 4
   /// Called when some tens of MiB of the grid may have become resident; a mapped file lets them go.
   std::function<void()> release_pages;
+  Trace* trace = nullptr;  ///< gets a "read" and a "compare" of each block
 };
 
 struct Comparison {

@@ -1,6 +1,7 @@
 // weir compare: the exact error of a NanoVDB file against its source.
 #include <spdlog/spdlog.h>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -11,12 +12,14 @@
 #include "format/error.h"
 #include "format/nvdb_file.h"
 #include "format/process_memory.h"
+#include "format/sidecar.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
 #include "ingest/staging.h"
 #include "tools/command.h"
 #include "tools/input_options.h"
 #include "tools/run_options.h"
+#include "tools/trace_option.h"
 
 namespace weir {
 namespace {
@@ -32,6 +35,7 @@ struct CompareArguments {
   std::string volume;
   InputArguments source;
   RunArguments run;
+  std::string trace;
   bool json = false;
 };
 
@@ -103,11 +107,15 @@ void compare(const CompareArguments& arguments) {
   options.block_bytes = block_bytes(memory, source->working_bytes());
   options.cancel = &interrupt_flag();
   options.release_pages = [&] { file.mapping().release_pages(); };
+  const std::unique_ptr<Trace> trace =
+      open_trace(arguments.trace, std::array{arguments.input, arguments.volume, sidecar_path(arguments.volume)});
+  options.trace = trace.get();
   Progress progress(arguments.run.progress);
   progress.start("compare", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   options.progress = [&](std::uint64_t done) { progress.update(done); };
   const Comparison comparison = compare_volumes(*source, file.grid(), arguments.volume, options);
   progress.finish();
+  if (trace) trace->close();
 
   if (comparison.loss.inexact > 0) {
     spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", arguments.input,
@@ -131,6 +139,7 @@ void add_compare(CLI::App& app) {
   command->add_option("volume", arguments->volume, "the .nvdb file made from it")->type_name("OUT.nvdb")->required();
   add_input_options(*command, arguments->source);
   add_run_options(*command, arguments->run);
+  add_trace_option(*command, arguments->trace);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
   command->callback([arguments] { compare(*arguments); });

@@ -20,7 +20,7 @@ std::unique_ptr<Trace> open_trace(const std::string& path, std::span<const std::
   for (const std::string& other : others) {
     std::error_code ignored;
     if (path == other || std::filesystem::equivalent(path, other, ignored)) {
-      throw Error(ErrorKind::usage, cat("--trace ", path, ": is a file of this conversion; choose another"));
+      throw Error(ErrorKind::usage, cat("--trace ", path, ": is an input or an output; choose another"));
     }
   }
   return std::make_unique<Trace>(path);

@@ -118,6 +118,16 @@ TEST_F(TraceOption, TellsWhatIsReadSurveyedEncodedAndWritten) {
   expect_whole("on");
 }
 
+TEST_F(TraceOption, TellsWhatIsCompared) {
+  ASSERT_EQ(run_weir({"convert", input_, "-o", directory_ / "o.nvdb"}).exit_code, 0);
+  ASSERT_EQ(run_weir({"compare", input_, directory_ / "o.nvdb", "--trace", trace_}).exit_code, 0);
+  const Threads threads = read_trace(trace_);
+  EXPECT_EQ(bytes_of(threads, "read"), 4 * kVoxels);
+  EXPECT_EQ(bytes_of(threads, "compare"), 4 * kVoxels);
+  EXPECT_EQ(names_of(threads.at(0)), Names{"compare"});
+  EXPECT_EQ(run_weir({"compare", input_, directory_ / "o.nvdb", "--trace", input_}).exit_code, 2);
+}
+
 TEST_F(TraceOption, IsWholeWhereTheConversionIsNot) {
   EXPECT_EQ(run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--size", "1", "--trace", trace_}).exit_code, 4);
   Threads threads = read_trace(trace_);
@@ -145,7 +155,7 @@ TEST_F(TraceOption, IsNoFileOfTheConversion) {
     const CommandResult result =
         run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--overwrite", "--trace", file});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(result.err, "weir: --trace " + file + ": is a file of this conversion; choose another\n");
+    EXPECT_EQ(result.err, "weir: --trace " + file + ": is an input or an output; choose another\n");
   }
   EXPECT_EQ(std::filesystem::file_size(input_), static_cast<std::uintmax_t>(4 * kVoxels));
 }
