@@ -1,6 +1,7 @@
 // bench/evaluate.sh --quick: the evaluation runs, goes on where it was, keeps its promises, and reports them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -56,6 +57,11 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   EXPECT_EQ(all["errors"].size(), 2 * 4 * 10U);  // volumes, methods, shares
   EXPECT_EQ(all["metrics"].size(), 2 * 2 * 4 * 2U);
   EXPECT_GE(all["speed"].size(), 2 * 2U);  // leaves, caches; more where there are threads to compare
+  for (const char* stage : {"read", "survey", "encode", "select", "commit"}) {
+    EXPECT_EQ(std::ranges::count(all["stages"], stage, [](const Json& row) { return row["stage"]; }), 2 * 2) << stage;
+  }
+  ASSERT_EQ(all["headline"].size(), 1U);
+  EXPECT_TRUE(all["headline"][0]["same_bytes"]);
 
   ASSERT_GE(all["pictures"].size(), 1 + 2 * 2U);  // another seed; methods, rates; ZFP's where its command is installed
   for (const Json& row : all["pictures"]) EXPECT_EQ(row["flip_mean"] == 0, row["lossless"] && !row["rate"].is_null());
@@ -76,7 +82,7 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   ASSERT_EQ(flip.exit_code, 0) << flip.err;
   EXPECT_EQ(Json::parse(flip.out)["width"], 3 * 64 + 2 * 4);  // pictures and the gaps between them
   EXPECT_EQ(Json::parse(flip.out)["height"], 7 * 48 + 6 * 4);
-  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "pictures", "speed"}) {
+  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "pictures", "speed", "stages", "headline"}) {
     EXPECT_TRUE(fs::exists(directory_ / (std::string(name) + ".csv"))) << name;
   }
 }

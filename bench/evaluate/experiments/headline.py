@@ -1,0 +1,112 @@
+"""One large conversion, cold, with all that follows it; and the same killed half-way and continued."""
+
+import json
+import signal
+import subprocess
+import time
+
+import volumes
+from experiment import Experiment, remove_volume, size_text
+from experiments.speed import forget
+from markdown import command, table
+
+RATE = 8
+MEMORY = "512MiB"
+CEILING_BYTES = 512 << 20
+READ_BYTES = 8 << 20
+
+
+def read_cold(path):
+    """Seconds to read all of a file that is in no cache, once."""
+    forget(path)
+    buffer = memoryview(bytearray(READ_BYTES))
+    start = time.monotonic()
+    with open(path, "rb", buffering=0) as file:
+        while file.readinto(buffer):
+            pass
+    return time.monotonic() - start
+
+
+class Headline(Experiment):
+    name = "headline"
+
+    def measure(self, bench):
+        volume = volumes.wdas_like(1 if bench.full else 8 if bench.quick else bench.scale)
+        if bench.files.available(volume, 1 + 3 / RATE):
+            bench.store.measure(self.name, f"{volume.name}_{volume.size_text}", lambda: self._run(bench, volume))
+
+    def _run(self, bench, volume):
+        whole, again = bench.scratch("headline.nvdb"), bench.scratch("headline_again.nvdb")
+        for output in (whole, again):
+            remove_volume(output)
+        with bench.files.file(volume) as path:
+            result = {"extent": list(volume.extent), "dense_bytes": volume.dense_bytes, "read_cold_s": read_cold(path)}
+            forget(path)
+            arguments = ["convert", path, "--rate", RATE, "--memory", MEMORY, "--resume", "on", "--json", "-o"]
+            run = bench.weir.run(*arguments, whole)
+            sidecar = json.loads(run.out)
+            result.update(seconds=run.seconds, cpu_s=run.cpu_s, peak_rss_bytes=run.peak_rss_bytes,
+                          bytes_read=sidecar["timing"]["bytes_read"], survey_s=sidecar["timing"]["survey_s"],
+                          file_bytes=sidecar["budget"]["file_bytes"], psnr_db=sidecar["error"]["psnr_db"])
+            for name, more in (("verify", [whole]), ("compare", [path, whole]),
+                               ("render", [whole, "-o", bench.scratch("headline.png"), "--spp", 8, "--size", "320x240"])):
+                result[f"{name}_s"] = bench.weir.run(name, *more).seconds
+            forget(path)
+            result["killed_after_s"] = self._kill(bench, [*arguments, again], run.seconds / 2)
+            forget(path)
+            rest = bench.weir.run(*arguments, again)
+            second = json.loads(rest.out)
+            result.update(rest_s=rest.seconds, rest_bytes_read=second["timing"]["bytes_read"],
+                          same_bytes=second["file"]["digest"] == sidecar["file"]["digest"])
+        for output in (whole, again):
+            remove_volume(output)
+        return result
+
+    @staticmethod
+    def _kill(bench, arguments, seconds):
+        """Ends a conversion without a word after so many seconds; returns those it had."""
+        command_line = [bench.weir.path, *(str(a) for a in arguments), "--progress", "never", "--log-level", "error"]
+        start = time.monotonic()
+        process = subprocess.Popen(command_line, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+        process.wait()
+        return time.monotonic() - start
+
+    def rows(self, measured):
+        return [{**r, "extent": "x".join(map(str, r["extent"]))} for r in measured.results(self.name)]
+
+    def text(self, measured):
+        r = max(measured.results(self.name), key=lambda result: result["dense_bytes"])
+        rate = r["dense_bytes"] / 1e9
+        of_disk = r["bytes_read"] / r["dense_bytes"] * r["read_cold_s"]
+        lines = [
+            ["the file read once, plainly", f"{r['read_cold_s']:.1f}", f"{rate / r['read_cold_s']:.2f} GB/s"],
+            [f"`weir convert --rate {RATE} --memory {MEMORY}`", f"{r['seconds']:.1f}",
+             f"{rate / r['seconds']:.2f} GB/s; {r['bytes_read'] / r['dense_bytes']:.2f} times read, in "
+             f"{r['seconds'] / of_disk:.2f} of the time that reading as much takes plainly"],
+            ["of it the survey", f"{r['survey_s']:.1f}", f"{rate / r['survey_s']:.2f} GB/s"],
+            ["`weir verify`", f"{r['verify_s']:.1f}", ""],
+            ["`weir compare`", f"{r['compare_s']:.1f}", "the certificate's PSNR, measured again"],
+            ["`weir render`, 320 x 240, 8 samples", f"{r['render_s']:.1f}", ""],
+            ["killed by SIGKILL", f"{r['killed_after_s']:.1f}", "the same conversion again, to another file"],
+            ["continued by the same command", f"{r['rest_s']:.1f}",
+             f"{r['rest_bytes_read'] / r['dense_bytes']:.2f} times read; "
+             + ("the same bytes" if r["same_bytes"] else "**other bytes**")],
+        ]
+        head = (f"{size_text(r['extent'])} voxels, {rate:.2f} GB, nothing of it in the page cache. The file has "
+                f"{r['file_bytes']:,} bytes and {r['psnr_db']:.1f} dB; the process held "
+                f"{r['peak_rss_bytes'] / 2**20:.0f} MiB at most.")
+        return "\n\n".join((head, table(["", "seconds", ""], lines),
+                            command("bench/evaluate.sh --only headline --again --full")))
+
+    def broken_promises(self, measured):
+        broken = []
+        for row in self.rows(measured):
+            if not row["same_bytes"]:
+                broken.append(f"{row['extent']}: continued to other bytes")
+            if row["peak_rss_bytes"] > CEILING_BYTES:
+                broken.append(f"{row['extent']}: {row['peak_rss_bytes']} bytes resident, the ceiling is {CEILING_BYTES}")
+        return broken
