@@ -292,7 +292,11 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
                            : choose_background(options, survey, rows, source, reading.survey, stream);
       },
       [&] { sidecar.source.digest = source_digest(rows); });
-  if (journal != nullptr) journal->state.background = background;
+  if (journal != nullptr) {
+    journal->state.background = background;
+    // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
+    if (journal->resumable()) journal->save();
+  }
   FileRequest request = request_for(options, survey, background.value, domain);
   Shown shown;
   if (visibility) {
