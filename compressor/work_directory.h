@@ -1,6 +1,6 @@
 // Where spill files go: a hidden directory beside the output, made for one
 // conversion, or the directory the user names. Spill files have no names, so
-// that nothing of them outlives the process.
+// that nothing of them outlives the process; those that are to are the journal's.
 #pragma once
 
 #include <memory>
