@@ -88,7 +88,7 @@ function(weir_tests name)
   if(NOT sources)
     return()
   endif()
-  if(name STREQUAL "ingest")  # NanoVDB files are an input too
+  if(name MATCHES "^(ingest|tools)$")  # NanoVDB files of other writers are an input too
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/format/stock_nvdb.cpp)
   elseif(name STREQUAL "cuda")  # they load and render the same small grids
     list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/gpu/test_grid.cpp)

@@ -20,6 +20,7 @@ void add_log_level(CLI::App& command);
 void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_flip(CLI::App& app);
+void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_render(CLI::App& app);

@@ -66,6 +66,7 @@ int main(int argc, char** argv) {
     weir::add_sample(app);
     weir::add_compare(app);
     weir::add_flip(app);
+    weir::add_export(app);
     weir::add_sweep(app);
     weir::add_watch(app);
     weir::add_jobs(app);

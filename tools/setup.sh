@@ -10,7 +10,7 @@ packages=(
   zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
   libzfp-dev libsqlite3-dev
   # to test
-  libgtest-dev libbenchmark-dev libnanovdb-tools python3-jsonschema xz-utils
+  libgtest-dev libbenchmark-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
   hdf5-filter-plugin-zfp-serial groff-base zsh fish dpkg-dev file
   # to check
