@@ -9,8 +9,10 @@ if(WEIR_NVCC AND NOT CMAKE_CUDA_COMPILER)
 endif()
 check_language(CUDA)
 if(CMAKE_CUDA_COMPILER)
-  # Machine code for Hopper, and what any newer or older device's driver can compile.
-  set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real CACHE STRING "Compute capabilities to compile for")
+  if(NOT DEFINED ENV{CUDAARCHS})
+    # Machine code for Hopper, and what any newer or older device's driver can compile.
+    set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real CACHE STRING "Compute capabilities to compile for")
+  endif()
   enable_language(CUDA)
   if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know that nvcc 12 and later have it
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
