@@ -11,6 +11,7 @@
 #include <string>
 
 #include "format/error.h"
+#include "format/nanovdb_layout.h"
 #include "format/nvdb_file.h"
 #include "format/partial_file.h"
 #include "format/process_memory.h"
@@ -43,8 +44,11 @@ std::uint32_t compression_flags(const std::string& name) {
   return name == "blosc" ? kVdbBlosc : name == "zip" ? kVdbZip : 0;
 }
 
-void require_memory(std::uint64_t memory) {
-  const std::uint64_t needed = resident_bytes() + kWorkingBytes;
+// The nodes above the leaves are looked at all together when the file is opened.
+void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
+  const auto [leaves, lower, upper] = grid.node_counts();
+  const std::uint64_t needed =
+      resident_bytes() + std::max(kWorkingBytes, lower * nvdb::kLowerBytes + upper * nvdb::kUpperBytes);
   if (memory >= needed) return;
   throw Error(ErrorKind::usage,
               cat("--memory ", format_bytes(memory), " is too small; give at least ", (needed >> 20U) + 1, "MiB"));
@@ -115,7 +119,7 @@ void export_volume(const ExportArguments& arguments) {
   const auto threads = limit_threads(arguments.run);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
-  require_memory(memory);
+  require_memory(file.grid(), memory);
   warn_of_other_grids(file);
 
   VdbWriterOptions options;
@@ -167,9 +171,11 @@ void add_export(CLI::App& app) {
   add_run_options(*command, arguments->run);
   add_log_level(*command);
   command->footer(
-      "Values, tiles and active states are those of the volume, bit for bit. The file is written node by node: 80 MiB\n"
-      "do for a volume of any size. A program that loads it builds OpenVDB's tree, more than 2 KiB for each leaf; the\n"
-      "report says how much that is.");
+      "Values, tiles and active states are those of the volume, bit for bit. The file is written node by node: "
+      "--memory\n"
+      "80MiB does for 2 x 10^9 voxels, 16 MiB more for each further 10^9. A program that loads it builds OpenVDB's "
+      "tree,\n"
+      "more than 2 KiB for each leaf; the report says how much that is.");
   command->callback([arguments] { export_volume(*arguments); });
 }
 

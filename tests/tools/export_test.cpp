@@ -1,12 +1,16 @@
 // weir export from outside: volumes that weir made, read by OpenVDB and by its stock tool.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -192,6 +196,24 @@ TEST_F(ExportCommand, MemoryDoesNotGrowWithTheVolume) {
   }
 }
 
+TEST_F(ExportCommand, InterruptedItLeavesNothing) {
+  sample("noise", "300,300,200", {"--lossless"});
+  ChildProcess child({WEIR_COMMAND, "export", nvdb_, "-o", vdb_, "--compression", "zip", "--threads", "1"});
+  const std::filesystem::path partial = vdb_ + ".partial";
+  std::error_code absent;
+  const auto begun = [&] {
+    const auto bytes = std::filesystem::file_size(partial, absent);
+    return !absent && bytes > 0;
+  };
+  while (child.running() && !begun()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(child.running());
+  child.send_signal(SIGINT);
+  const CommandResult result = child.wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "weir: interrupted\n");
+  EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"v.nvdb", "v.nvdb.json", "v.raw"}));
+}
+
 TEST_F(ExportCommand, OnlyTheFirstOfSeveralGrids) {
   test::write_whole(nvdb_, test::StockNvdb(GridType::float32).file_of_two());
   const CommandResult result = run_weir({"export", nvdb_, "-o", vdb_});
@@ -204,6 +226,8 @@ TEST_F(ExportCommand, Refusals) {
   sample("huge", "20,20,20", {"--lossless"});
   expect_refused({"export", nvdb_, "-o", directory_ / "v.usd"}, 2,
                  "--output is \"" + (directory_ / "v.usd") + "\", it must end in .vdb");
+  expect_refused({"export", nvdb_, "-o", vdb_, "--memory", "1MiB"}, 2,
+                 "--memory is \"1MiB\", it must be a size of at least 64.0 MiB, like 512MiB");
   expect_refused({"export", directory_ / "none.nvdb", "-o", vdb_}, 3,
                  (directory_ / "none.nvdb") + ": cannot open: No such file or directory");
   expect_refused({"export", nvdb_, "-o", directory_ / "no/v.vdb"}, 5,
