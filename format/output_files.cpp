@@ -21,12 +21,27 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
     throw Error(ErrorKind::io,
                 cat(path, ": the directory ", directory_, " does not exist; make it or choose another output"));
   }
-  for (const std::string& existing : {path_, sidecar_}) {
-    if (!overwrite_ && files_.exists(existing)) {
-      throw Error(ErrorKind::usage, cat(existing, ": exists; choose another output with -o or pass --overwrite"));
-    }
+  if (!overwrite_) {
+    const bool cut_short = files_.exists(path_ + ".partial");
+    refuse_existing(path_);
+    if (!cut_short) refuse_existing(sidecar_);
   }
   partial_ = files_.create(path_ + ".partial");
+  if (overwrite_ || !files_.exists(sidecar_)) return;
+  // A commit that was killed between its steps 4 and 5. Under the lock nobody is between them; who was may have come
+  // to its end meanwhile.
+  try {
+    refuse_existing(path_);
+    files_.remove(sidecar_);
+  } catch (const Error&) {
+    remove_quietly(path_ + ".partial");
+    throw;
+  }
+}
+
+void OutputFiles::refuse_existing(const std::string& path) {
+  if (!files_.exists(path)) return;
+  throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
 }
 
 void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }
@@ -50,7 +65,9 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
 //   2. sidecar.partial written, flushed the same
 //   3. old sidecar linked to .previous  the same, and a second name of the old sidecar
 //   4. sidecar renamed into place       new sidecar beside no volume or the old one: its size and head
-//                                       checksum do not agree, so `verify` and the daemon see "not done"
+//                                       checksum do not agree, so `verify` and the daemon see "not done"; no
+//                                       volume beside OUT.nvdb.partial, the lock that a kill leaves: the next
+//                                       conversion replaces the sidecar
 //   5. volume renamed into place        the new pair
 //   6. .previous removed                the new pair alone
 //   7. directory flushed                the new pair, durable

@@ -14,7 +14,8 @@ namespace weir {
 class OutputFiles {
  public:
   /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
-  /// missing or not writable, the output exists and `overwrite` is false, or another process writes it.
+  /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
+  /// false. A sidecar that a killed commit left without its volume is no output, and is removed.
   OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
   /// Removes what was not committed.
   ~OutputFiles();
@@ -37,6 +38,7 @@ class OutputFiles {
   void commit(const std::string& sidecar_text);
 
  private:
+  void refuse_existing(const std::string& path);
   void remove_quietly(const std::string& path) noexcept;
 
   FileSystem& files_;

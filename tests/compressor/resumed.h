@@ -137,12 +137,12 @@ class ResumeTest : public ::testing::Test {
       MemoryFileSystem memory;
       if (!killed(options, memory, at)) continue;
       if (i % 2 == 0) memory.lose_unflushed();
-      // Every third one is killed a second time. Where it was killed between the two renames, or later, the user is
-      // told to pass --overwrite.
-      otherwise.overwrite = !memory.content("out.nvdb.json").empty();
+      // Every third one is killed a second time. Where it was killed after the last rename, the user is told to pass
+      // --overwrite.
+      otherwise.overwrite = !memory.content("out.nvdb").empty();
       if (i % 3 == 0 && killed(otherwise, memory, calls / 5)) memory.lose_unflushed();
       ConversionOptions again = i % 4 == 0 ? options : otherwise;
-      again.overwrite = !memory.content("out.nvdb.json").empty();
+      again.overwrite = !memory.content("out.nvdb").empty();
       const Result result = run(again, memory);
       EXPECT_EQ(memory.names(), kResult);
       EXPECT_TRUE(memory.content("out.nvdb") == expected.file);

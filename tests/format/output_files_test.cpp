@@ -124,6 +124,34 @@ TEST_F(OutputFilesTest, RefusesAnExistingOutput) {
   EXPECT_EQ(listing(), (Listing{{"out.nvdb", "old volume"}}));
 }
 
+// Killed between the two renames: the lock's file tells its sidecar from one that somebody keeps.
+TEST_F(OutputFilesTest, ReplacesASidecarThatAKilledCommitLeft) {
+  put("out.nvdb.json", "sidecar of a killed commit");
+  put("out.nvdb.partial", "volume");
+  EXPECT_EQ(write_output(*real_, false), "");
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, KeepsASidecarThatNoCommitLeft) {
+  put("out.nvdb.json", "kept");
+  try {
+    OutputFiles output_files(*real_, output(), false);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), output() + ".json: exists; choose another output with -o or pass --overwrite");
+  }
+  EXPECT_EQ(listing(), (Listing{{"out.nvdb.json", "kept"}}));
+}
+
+TEST_F(OutputFilesTest, ALivingCommitKeepsItsSidecar) {
+  const OutputFiles first(*real_, output(), false);
+  put("out.nvdb.json", "placed");  // as between its two renames
+  EXPECT_EQ(write_output(*real_, false), output() +
+                                             ".partial: is being written by another process; wait for it or choose "
+                                             "another output");
+  EXPECT_EQ(listing().at("out.nvdb.json"), "placed");
+}
+
 TEST_F(OutputFilesTest, DoesNotReplaceWhatAppearedMeanwhile) {
   OutputFiles output_files(*real_, output(), false);
   put("out.nvdb", "somebody else's");
