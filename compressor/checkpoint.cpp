@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 1 ";
+constexpr std::string_view kFormat = "weir checkpoint 2 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -91,7 +91,7 @@ Checkpoint checkpoint_of(const Json& json) {
   if (json.contains("attempt")) {
     const Json& attempt = json["attempt"];
     c.attempt = {attempt.at("number").get<int>(), double_of(attempt.at("squared_error")),
-                 static_cast<Encoding>(attempt.at("encoding").get<int>())};
+                 static_cast<Encoding>(attempt.at("encoding").get<int>()), attempt.at("seen").get<std::string>()};
   }
   return c;
 }
@@ -115,7 +115,8 @@ std::string to_text(const Checkpoint& c) {
   if (c.attempt) {
     json["attempt"] = {{"number", c.attempt->number},
                        {"squared_error", bits(c.attempt->squared_error)},
-                       {"encoding", static_cast<int>(c.attempt->encoding)}};
+                       {"encoding", static_cast<int>(c.attempt->encoding)},
+                       {"seen", c.attempt->seen}};
   }
   // A path may hold any byte.
   const std::string body = json.dump(-1, ' ', false, Json::error_handler_t::replace);

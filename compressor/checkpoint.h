@@ -25,10 +25,11 @@ struct Checkpoint {
     int number = 0;
     double squared_error = 0;  ///< FileRequest::squared_error
     Encoding encoding = Encoding::float32;
+    std::string seen;  ///< visible_values of the scene that it was made for
   };
 
   ConversionIdentity identity;
-  std::string spill_directory;
+  std::string spill_directory;                 ///< absolute; empty: beside the journal
   std::map<std::string, std::uint64_t> files;  ///< name to bytes, of those that all below stands on
   SurveyState survey;
   std::optional<Background> background;  ///< once it is found

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compressor/background.h"
+#include "compressor/conversion_identity.h"
 #include "compressor/encode_attempts.h"
 #include "compressor/leaf_reach.h"
 #include "compressor/memory_plan.h"
@@ -312,7 +313,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   check_cancel(control);
   const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded = encode_file({source, reading.encode, reading.reading, rows, work, output, journal, stream,
+  const EncodedFile encoded = encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
+                                           options.scene ? visible_values(options.scene->scene) : "", stream,
                                            [&] { start_pass(control, "encode", voxels); }, control.notice},
                                           std::move(request));
   const FilePlan& file = encoded.file;

@@ -1,6 +1,8 @@
 #include "compressor/conversion_identity.h"
 
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "format/text.h"
 
@@ -12,6 +14,12 @@ std::string exact(double value) {
   std::ostringstream text;
   text << std::hexfloat << value;
   return text.str();
+}
+
+// Another working directory may hold another file of that name, size and time.
+std::string place_of(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored).string();
 }
 
 std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
@@ -34,11 +42,21 @@ std::map<std::string, std::string> deciding_options(std::map<std::string, std::s
   return options;
 }
 
+std::string visible_values(const Scene& scene) {
+  const SceneVolume& volume = scene.volume;
+  std::string text(render_mode_name(scene.mode));
+  if (volume.iso) text += cat(" iso ", exact(*volume.iso));
+  if (volume.range) text += cat(" range ", exact((*volume.range)[0]), ' ', exact((*volume.range)[1]));
+  if (volume.region) text += cat(" region ", position(volume.region->lo), ' ', position(volume.region->hi));
+  for (const OpacityPoint& point : volume.opacity) text += cat(' ', exact(point.position), ':', exact(point.opacity));
+  return text;
+}
+
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options) {
   std::string index;
   for (const std::int64_t i : source.index) index += cat(i, ' ');
   ConversionIdentity identity{
-      {"source", source.path},
+      {"source", place_of(source.path)},
       {"source bytes", cat(source.file_bytes)},
       {"source modified (ns)", cat(source.mtime_ns)},
       {"format", source.format},

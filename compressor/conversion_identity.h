@@ -15,6 +15,9 @@ namespace weir {
 /// threads and places.
 std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options);
 
+/// What decides which values a scene shows, and so where an error target is met: the file may change under its path.
+std::string visible_values(const Scene& scene);
+
 /// Source (path, size, modification time, dataset, type, extent), all of `options` that has a say, and the program.
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options);
 

@@ -111,14 +111,18 @@ bool adjust_target(const EncodedFile& encoded, double target, int attempt, FileR
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
   const double target = request.squared_error;
   int attempt = 0;
-  if (job.journal != nullptr && job.journal->state.attempt) {
+  const bool continues =
+      job.journal != nullptr && job.journal->state.attempt && job.journal->state.attempt->seen == job.seen;
+  if (continues) {
     const Checkpoint::Attempt& interrupted = *job.journal->state.attempt;
     attempt = interrupted.number;
     request.squared_error = interrupted.squared_error;
     request.encoding = interrupted.encoding;
   }
   for (;; ++attempt) {
-    if (job.journal != nullptr) job.journal->state.attempt = {attempt, request.squared_error, request.encoding};
+    if (job.journal != nullptr) {
+      job.journal->state.attempt = {attempt, request.squared_error, request.encoding, job.seen};
+    }
     EncodedFile encoded = encode_once(job, request);
     if (!request.budget.by_error() || !adjust_target(encoded, target, attempt, request)) return encoded;
   }

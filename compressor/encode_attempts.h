@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "compressor/encoding_choice.h"
 #include "compressor/journal.h"
@@ -34,6 +35,7 @@ struct EncodeJob {
   WorkDirectory& work;
   OutputFiles& output;
   Journal* journal;  ///< null: what is interrupted is lost
+  std::string seen;  ///< visible_values of the scene; empty without one
   const StreamOptions& stream;
   std::function<void()> pass_started;                   ///< may throw Error(interrupted)
   std::function<void(const std::string& line)> notice;  ///< may be empty

@@ -4,15 +4,19 @@
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "compressor/work_directory.h"
 #include "format/digest.h"
 #include "format/error.h"
+#include "format/output_files.h"
 #include "format/text.h"
 
 namespace weir {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view kJournal = "journal";
 constexpr std::string_view kNewJournal = "journal.new";
@@ -24,17 +28,31 @@ bool is_of_encoding(std::string_view name) { return name == "records" || name ==
 std::string in(const std::string& directory, std::string_view name) { return cat(directory, '/', name); }
 
 // Outputs of the same name may have one --work-dir.
-std::string spill_directory_for(const std::string& output, const std::string& work_dir) {
-  if (work_dir.empty()) return hidden_directory_of(output);
-  namespace fs = std::filesystem;
-  const std::string whole = fs::absolute(output).lexically_normal().string();
+std::string spill_name_of(const std::string& output) {
+  const fs::path name = fs::path(output).filename();
+  std::error_code ignored;
+  const std::string whole = (fs::weakly_canonical(directory_of(output), ignored) / name).string();
   const std::string digest = piece_digest(std::as_bytes(std::span(whole))).hex().substr(0, 16);
-  return cat(work_dir, "/.", fs::path(output).filename().string(), '.', digest, ".work");
+  return cat('.', name.string(), '.', digest, ".work");
+}
+
+// Checkpoint::spill_directory: the next process may have another working directory.
+std::string spill_directory_for(const std::string& output, const std::string& work_dir) {
+  if (work_dir.empty()) return {};
+  std::error_code ignored;
+  return (fs::absolute(work_dir, ignored).lexically_normal() / spill_name_of(output)).string();
+}
+
+// A journal that was moved with its output knows spill files that are another output's by now.
+bool has_own_spills(const Checkpoint& checkpoint, const std::string& output) {
+  return checkpoint.spill_directory.empty() || fs::path(checkpoint.spill_directory).filename() == spill_name_of(output);
 }
 
 std::string place_in(const std::string& directory, const std::string& spills, std::string_view name) {
-  return in(name == kVolume ? directory : spills, name);
+  return in(name == kVolume || spills.empty() ? directory : spills, name);
 }
+
+std::string spills_text(const std::string& spills) { return spills.empty() ? "beside the output" : spills; }
 
 std::optional<Checkpoint> read_checkpoint(FileSystem& files, const std::string& path) {
   const std::unique_ptr<File> file = files.open(path);
@@ -70,7 +88,9 @@ bool remove_all(FileSystem& files, const std::string& directory, const std::stri
   bool any = remove_present(files, in(directory, kJournal));
   any = remove_present(files, in(directory, kNewJournal)) || any;
   any = remove_present(files, in(directory, kVolume)) || any;
-  for (const std::string_view name : kSpills) any = remove_present(files, in(spills, name)) || any;
+  for (const std::string_view name : kSpills) {
+    any = remove_present(files, place_in(directory, spills, name)) || any;
+  }
   return any;
 }
 
@@ -104,7 +124,7 @@ Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentit
   identity = as_saved(std::move(identity));
   adopt(output, identity);
   files_.make_directory(directory_);
-  if (spill_directory_ != directory_) files_.make_directory(spill_directory_);
+  if (!spill_directory_.empty()) files_.make_directory(spill_directory_);
   state.identity = std::move(identity);
   state.spill_directory = spill_directory_;
 }
@@ -118,7 +138,8 @@ void Journal::adopt(const std::string& output, const ConversionIdentity& identit
       reason = "its journal is damaged or of another version of weir";
     } else if (reason = difference(found->identity, identity); !reason.empty()) {
     } else if (found->spill_directory != spill_directory_) {
-      reason = cat("its spill files were in ", found->spill_directory, ", now they go to ", spill_directory_);
+      reason = cat("its spill files were in ", spills_text(found->spill_directory), ", now they go to ",
+                   spills_text(spill_directory_));
     } else if (!stands(files_, directory_, *found)) {
       reason = "files that its journal names are missing or shorter";
     } else {
@@ -209,7 +230,7 @@ void Journal::write(const std::vector<std::shared_ptr<File>>& open, const std::s
   }
   files_.rename(in(directory_, kNewJournal), in(directory_, kJournal));  // 3
   files_.sync_directory(directory_);                                     // 4
-  if (spill_directory_ != directory_) files_.sync_directory(spill_directory_);
+  if (!spill_directory_.empty()) files_.sync_directory(spill_directory_);
 }
 
 void Journal::discard() noexcept {
@@ -225,7 +246,7 @@ void Journal::discard() noexcept {
   } catch (const Error&) {
     // The result counts, or the failure that led here; the next conversion of this output removes what is left.
   }
-  remove_directory_quietly(files_, spill_directory_);
+  if (!spill_directory_.empty()) remove_directory_quietly(files_, spill_directory_);
   remove_directory_quietly(files_, directory_);
 }
 
@@ -234,19 +255,20 @@ std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& out
   const std::string path = in(directory, kJournal);
   if (!files.exists(path)) return std::nullopt;
   std::optional<Checkpoint> found = read_checkpoint(files, path);
-  if (!found || !stands(files, directory, *found)) return std::nullopt;
+  if (!found || !has_own_spills(*found, output) || !stands(files, directory, *found)) return std::nullopt;
   return found;
 }
 
 bool remove_leftovers(FileSystem& files, const std::string& output) {
   const std::string directory = hidden_directory_of(output);
   const std::string path = in(directory, kJournal);
-  std::string spills = directory;
+  std::string spills;
   if (files.exists(path)) {
-    if (const std::optional<Checkpoint> found = read_checkpoint(files, path)) spills = found->spill_directory;
+    const std::optional<Checkpoint> found = read_checkpoint(files, path);
+    if (found && has_own_spills(*found, output)) spills = found->spill_directory;
   }
   const bool any = remove_all(files, directory, spills);
-  if (spills != directory) remove_directory_quietly(files, spills);
+  if (!spills.empty()) remove_directory_quietly(files, spills);
   return any;
 }
 

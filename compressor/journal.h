@@ -79,7 +79,7 @@ class Journal {
   FileSystem& files_;
   JournalOptions options_;
   std::string directory_;
-  std::string spill_directory_;
+  std::string spill_directory_;  // Checkpoint::spill_directory
   std::map<std::string, std::shared_ptr<File>> open_;
   Clock::time_point last_save_ = Clock::now();
   std::future<void> saving_;

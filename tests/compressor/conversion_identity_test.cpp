@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -61,6 +62,27 @@ TEST(ConversionIdentity, ChangesWithAllThatDecidesTheBytes) {
     of_options[i](changed);
     EXPECT_NE(identify_conversion(source(), changed), one) << i;
   }
+}
+
+TEST(ConversionIdentity, KnowsASourceByItsPlaceAndNotByItsName) {
+  SourceInfo absolute = source();
+  absolute.path = std::filesystem::current_path() / "a.raw";
+  EXPECT_EQ(identify_conversion(source(), {}), identify_conversion(absolute, {}));
+  EXPECT_EQ(identify_conversion(source(), {}).at("source"), absolute.path);
+}
+
+TEST(ConversionIdentity, NamesAllOfASceneThatDecidesWhatIsSeen) {
+  const auto with = [](const auto& change) {
+    Scene scene;
+    change(scene);
+    return visible_values(scene);
+  };
+  EXPECT_EQ(with([](Scene& s) { s.camera.azimuth = 1; }), visible_values({}));
+  EXPECT_NE(with([](Scene& s) { s.mode = RenderMode::iso; }), visible_values({}));
+  EXPECT_NE(with([](Scene& s) { s.volume.iso = 1; }), visible_values({}));
+  EXPECT_NE(with([](Scene& s) { s.volume.range = {0, 1}; }), visible_values({}));
+  EXPECT_NE(with([](Scene& s) { s.volume.region = Box{{0, 0, 0}, {1, 1, 1}}; }), visible_values({}));
+  EXPECT_NE(with([](Scene& s) { s.volume.opacity = {{0, 1}}; }), visible_values({}));
 }
 
 TEST(ConversionIdentity, IsTheSameOnAnyMachineAndAtAnyPlace) {

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -110,27 +111,69 @@ TEST(Journal, EncodedLeavesStandOnVolumeAndRecords) {
 TEST(Journal, SpillFilesGoWhereTheUserSays) {
   MemoryFileSystem files;
   {
-    Journal journal(files, "o.nvdb", kIdentity, {"scratch", 0, nullptr, nullptr, {}});
+    Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
     begin_survey(journal);
     journal.save();
   }
   const Names names = files.names();
   ASSERT_EQ(names.size(), 2U);
   EXPECT_EQ(names[0], "./.o.nvdb.work/journal");
-  EXPECT_TRUE(names[1].starts_with("scratch/.o.nvdb.") && names[1].ends_with(".work/rows")) << names[1];
+  EXPECT_TRUE(names[1].starts_with("/scratch/.o.nvdb.") && names[1].ends_with(".work/rows")) << names[1];
   std::string said;
   Journal(files, "o.nvdb", kIdentity, {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
   EXPECT_TRUE(
       said.starts_with("o.nvdb: an interrupted conversion of it is not continued: its spill files were in "
-                       "scratch/.o.nvdb."))
+                       "/scratch/.o.nvdb."))
       << said;
   EXPECT_EQ(files.names(), Names{}) << "wherever they are";
+}
+
+// Whoever moves or names it otherwise finds the files beside the journal, not those beside what is at its old place.
+TEST(Journal, StandsOnTheFilesBesideItWhereverItIs) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  namespace fs = std::filesystem;
+  fs::create_directory(directory / "a");
+  const auto interrupt = [&](const std::string& output) {
+    Journal journal(*files, output, kIdentity, {});
+    begin_survey(journal);
+    journal.save();
+  };
+  interrupt(directory / "a/o.nvdb");
+  fs::rename(directory / "a", directory / "b");
+  fs::create_directory(directory / "a");
+  interrupt(directory / "a/o.nvdb");
+  EXPECT_TRUE(Journal(*files, directory / "b/../b/o.nvdb", kIdentity, {}).resumable());
+  EXPECT_TRUE(remove_leftovers(*files, directory / "b/o.nvdb"));
+  EXPECT_FALSE(fs::exists(directory / "b/.o.nvdb.work/rows"));
+  EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
+}
+
+TEST(Journal, LeavesTheSpillFilesOfTheOutputAtItsOldPlace) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  namespace fs = std::filesystem;
+  fs::create_directory(directory / "a");
+  fs::create_directory(directory / "scratch");
+  const JournalOptions scratch{directory / "scratch", 0, nullptr, nullptr, {}};
+  const auto interrupt = [&] {
+    Journal journal(*files, directory / "a/o.nvdb", kIdentity, scratch);
+    begin_survey(journal);
+    journal.save();
+  };
+  interrupt();
+  fs::rename(directory / "a", directory / "b");
+  fs::create_directory(directory / "a");
+  interrupt();
+  EXPECT_FALSE(read_journal(*files, directory / "b/o.nvdb"));
+  EXPECT_FALSE(Journal(*files, directory / "b/o.nvdb", kIdentity, scratch).resumable());
+  EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
 }
 
 TEST(Journal, RemovesLeftoversOnceAndSaysWhetherThereWereAny) {
   MemoryFileSystem files;
   {
-    Journal journal(files, "o.nvdb", kIdentity, {"scratch", 0, nullptr, nullptr, {}});
+    Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
     begin_survey(journal);
     journal.save();
   }

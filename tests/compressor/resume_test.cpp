@@ -114,6 +114,26 @@ TEST_F(ResumeTest, ASceneThatSaysSomethingElseIsEncodedAnew) {
   EXPECT_TRUE(files.content("out.nvdb") == undisturbed(options).file);
 }
 
+TEST_F(ResumeTest, AnErrorTargetIsMetAnewForASceneThatSaysSomethingElse) {
+  ConversionOptions options = base();
+  options.budget = {Budget::Kind::psnr, 0, 0, 45};
+  options.encoding = Encoding::fpn;
+  Scene scene;
+  scene.volume.range = {-100, 110};
+  scene.volume.opacity = {{0, 0}, {0.6, 0}, {0.8, 0.3}, {1, 1}};
+  options.scene = SceneFile{scene, "s.toml"};
+  ConversionOptions edited = options;
+  edited.scene->scene.volume.opacity = {{0, 1}, {0.2, 0}, {1, 0}};
+  const Result expected = undisturbed(edited);
+  const int calls = calls_of(options);
+  for (const int part : {6, 7, 8, 9}) {  // in later attempts, too
+    MemoryFileSystem files;
+    killed(options, files, calls * part / 10);
+    run(edited, files);
+    EXPECT_TRUE(files.content("out.nvdb") == expected.file) << part;
+  }
+}
+
 TEST_F(ResumeTest, DamagedStateStartsAnew) {
   const Result expected = undisturbed(base());
   const auto after = [&](const auto& damage) {
