@@ -1,6 +1,7 @@
 #include "compressor/journal.h"
 
 #include <array>
+#include <exception>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -158,7 +159,7 @@ void Journal::adopt(const std::string& output, const ConversionIdentity& identit
 Journal::~Journal() {
   try {
     wait();
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     // What was saved before it counts.
   }
   try {
@@ -236,7 +237,7 @@ void Journal::write(const std::vector<std::shared_ptr<File>>& open, const std::s
 void Journal::discard() noexcept {
   try {
     wait();
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     // Not needed any more.
   }
   open_.clear();
