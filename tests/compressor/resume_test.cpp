@@ -38,9 +38,9 @@ TEST_F(ResumeTest, InterruptedSurveyReadsTheRestOnly) {
       << result.notices[0];
   EXPECT_TRUE(files.content("out.nvdb") == expected.file);
   EXPECT_EQ(result.record, expected.record);
-  // The block that was being read meanwhile is read twice.
-  EXPECT_LE(volume_.bytes_read() - before, expected.bytes_read + (3 << 20));
-  EXPECT_LE(result.bytes_read, expected.bytes_read - (4 << 20));
+  // The blocks that were being read meanwhile are read twice.
+  EXPECT_LE(volume_.bytes_read() - before, expected.bytes_read + (5 << 20));
+  EXPECT_LE(result.bytes_read, expected.bytes_read - (2 << 20));
 }
 
 TEST_F(ResumeTest, InterruptedEncodePassReadsTheRestOnly) {
@@ -129,6 +129,7 @@ TEST_F(ResumeTest, AnErrorTargetIsMetAnewForASceneThatSaysSomethingElse) {
   for (const int part : {6, 7, 8, 9}) {  // in later attempts, too
     MemoryFileSystem files;
     killed(options, files, calls * part / 10);
+    edited.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
     run(edited, files);
     EXPECT_TRUE(files.content("out.nvdb") == expected.file) << part;
   }
