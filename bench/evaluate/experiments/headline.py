@@ -1,6 +1,8 @@
 """One large conversion, cold, with all that follows it; and the same killed half-way and continued."""
 
 import json
+import mmap
+import os
 import signal
 import subprocess
 import time
@@ -17,13 +19,16 @@ READ_BYTES = 8 << 20
 
 
 def read_cold(path):
-    """Seconds to read all of a file that is in no cache, once."""
+    """Seconds to read all of a file that is in no cache, once, past the page cache: what the disk gives one reader."""
     forget(path)
-    buffer = memoryview(bytearray(READ_BYTES))
+    buffer = mmap.mmap(-1, READ_BYTES)  # aligned, as direct reads want it
     start = time.monotonic()
-    with open(path, "rb", buffering=0) as file:
-        while file.readinto(buffer):
+    file = os.open(path, os.O_RDONLY | os.O_DIRECT)
+    try:
+        while os.readv(file, [buffer]) == READ_BYTES:
             pass
+    finally:
+        os.close(file)
     return time.monotonic() - start
 
 
@@ -83,7 +88,7 @@ class Headline(Experiment):
         rate = r["dense_bytes"] / 1e9
         of_disk = r["bytes_read"] / r["dense_bytes"] * r["read_cold_s"]
         lines = [
-            ["the file read once, plainly", f"{r['read_cold_s']:.1f}", f"{rate / r['read_cold_s']:.2f} GB/s"],
+            ["the file read once, 8 MiB at a time, past the page cache", f"{r['read_cold_s']:.1f}", f"{rate / r['read_cold_s']:.2f} GB/s"],
             [f"`weir convert --rate {RATE} --memory {MEMORY}`", f"{r['seconds']:.1f}",
              f"{rate / r['seconds']:.2f} GB/s; {r['bytes_read'] / r['dense_bytes']:.2f} times read, in "
              f"{r['seconds'] / of_disk:.2f} of the time that reading as much takes plainly"],
