@@ -12,6 +12,7 @@
 #include "format/digest.h"
 #include "format/error.h"
 #include "format/output_files.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 
 namespace weir {
@@ -190,7 +191,7 @@ bool Journal::due() {
     if (saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
     wait();
   }
-  return std::chrono::duration<double>(Clock::now() - last_save_).count() >= options_.interval_s;
+  return seconds_since(last_save_) >= options_.interval_s;
 }
 
 void Journal::save() {

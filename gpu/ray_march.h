@@ -35,7 +35,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
       const Float3 p = ray.at(t);
-      const Rgba colour = medium.transfer.at(medium.volume.sample(p, random));
+      const Rgba colour = medium.colour(p, random);
       const float sigma = medium.extinction(colour.a);
       if (!(sigma > 0.0F)) continue;
       const float through = std::exp(-sigma * step);

@@ -12,6 +12,7 @@
 #include "format/error.h"
 #include "format/nvdb_file.h"
 #include "format/process_memory.h"
+#include "format/seconds_since.h"
 #include "format/sidecar.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
@@ -121,7 +122,7 @@ void compare(const CompareArguments& arguments) {
     spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", arguments.input,
                  comparison.loss.inexact, comparison.loss.max_abs_error);
   }
-  const double total_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double total_s = seconds_since(start);
   if (arguments.json) {
     std::cout << to_json(arguments, comparison, total_s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';

@@ -15,6 +15,7 @@
 #include "format/file_system.h"
 #include "format/partial_file.h"
 #include "format/process_memory.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "ingest/extent.h"
 #include "ingest/raw_name.h"
@@ -177,7 +178,7 @@ void sample(const SampleArguments& arguments) {
   output.commit();
   progress.finish();
 
-  const double total_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double total_s = seconds_since(start);
   if (arguments.json) {
     const nlohmann::json report{{"output", arguments.output},
                                 {"kind", kind.name},

@@ -14,6 +14,7 @@
 #include "compressor/exact_sum.h"
 #include "format/error.h"
 #include "format/process_memory.h"
+#include "format/seconds_since.h"
 #include "format/text.h"
 #include "ingest/block_plan.h"
 #include "ingest/block_stream.h"
@@ -221,7 +222,7 @@ ZfpTrial try_zfp(VolumeSource& source, const ZfpTrialOptions& options, const Con
   const Index3 extent = source.info().extent;
   result.bytes = zfp_stream_bytes(extent, options.block_bits);
   result.nonfinite = trial.compress();
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = seconds_since(start);
   if (result.nonfinite > 0) return result;
   const Tally total = trial.compare();
   result.nonfinite_decoded = total.nonfinite_decoded;

@@ -80,8 +80,6 @@ TEST(Trace, SpansNestAndThreadsDoNotMix) {
   EXPECT_EQ(seen, (std::set<int>{1, 2, 3, 4}));
 }
 
-TEST(Trace, NoTraceIsNoWork) { const TraceSpan span(nullptr, "nothing"); }
-
 TEST(Trace, SaysWhatCannotBeWritten) {
   try {
     const Trace trace("/nowhere/t.json");
