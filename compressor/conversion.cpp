@@ -1,214 +1,19 @@
 #include "compressor/conversion.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
-#include <vector>
 
-#include "compressor/background.h"
-#include "compressor/conversion_identity.h"
-#include "compressor/encode_attempts.h"
-#include "compressor/leaf_reach.h"
+#include "compressor/conversion_control.h"
 #include "compressor/memory_plan.h"
 #include "compressor/resume.h"
-#include "compressor/selection.h"
-#include "compressor/survey.h"
-#include "compressor/tree_plan.h"
-#include "compressor/tree_writer.h"
-#include "compressor/visibility.h"
-#include "compressor/work_directory.h"
-#include "format/digest.h"
+#include "compressor/surveyed_conversion.h"
 #include "format/error.h"
-#include "format/macrocells.h"
-#include "format/nvdb_type.h"
-#include "format/output_files.h"
 #include "format/process_memory.h"
-#include "format/seconds_since.h"
-#include "format/text.h"
-#include "ingest/block_plan.h"
 
 namespace weir {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// How the two passes read.
-struct ReadingPlan {
-  Reading reading = Reading::ahead;
-  BlockPlan survey;
-  BlockPlan encode;
-};
-
-ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
-  const Box domain = source.info().domain();
-  const AccessShape access = source.access();
-  // Read ahead: the survey writes nothing that asks for whole lower nodes, and blocks that stay in the
-  // cache between the read and the work are faster.
-  constexpr std::uint64_t kSurveyBytes = std::uint64_t{8} << 20U;
-  // In place: blocks for the second-level cache; deep ones for the encode pass, whose leaves then lie
-  // together in the output. Larger volumes than this are not taken for cached.
-  constexpr std::uint64_t kInPlaceSurveyBytes = std::uint64_t{1} << 20U;
-  constexpr std::uint64_t kInPlaceEncodeBytes = std::uint64_t{2} << 20U;
-  constexpr std::uint64_t kInPlaceVolumeBytes = std::uint64_t{64} << 30U;
-  const bool in_place = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) <= kInPlaceVolumeBytes &&
-                        kInPlaceEncodeBytes <= memory.worker_bytes && source.in_memory();
-  if (!in_place) {
-    // Chunks are decoded many at a time, and once each where the blocks may be large enough.
-    const bool chunked = access.chunk != Index3{};
-    const std::uint64_t survey_bytes = chunked ? memory.block_bytes : std::min(memory.block_bytes, kSurveyBytes);
-    return {Reading::ahead, plan_blocks(domain, access, survey_bytes), plan_blocks(domain, access, memory.block_bytes)};
-  }
-  return {Reading::in_place, plan_blocks(domain, access, kInPlaceSurveyBytes),
-          plan_blocks(domain, access, kInPlaceEncodeBytes, BlockShape::deep)};
-}
-
-// "each is decoded 4 times in a pass": what a ceiling that is too small for whole chunks costs.
-std::string amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
-                                 const BlockPlan& plan) {
-  const AccessShape access = source.access();
-  std::uint64_t enough = ceiling_for_blocks(memory, ceiling, bytes_for_whole_chunks(source.info().domain(), access));
-  // A source may take more for its own work where there is more: up to an eighth.
-  if (source.working_bytes() > 0) enough = enough / 7 * 8 + 8;
-  return cat(source.info().path, ": its chunks of ", access.chunk.x, " x ", access.chunk.y, " x ", access.chunk.z,
-             " voxels do not fit the blocks of ", format_bytes(plan.block_bytes), " that --memory ",
-             format_bytes(ceiling), " leaves, so that each is decoded ", std::round(plan.amplification * 10) / 10,
-             " times in a pass; --memory ", (enough >> 20U) + 1, "MiB decodes it once");
-}
-
-StreamOptions stream_options(const ConversionControl& control) {
-  StreamOptions options;
-  options.cancel = control.cancel;
-  options.trace = control.trace;
-  options.progress = [&control](std::int64_t done, std::int64_t) {
-    if (control.pass_advanced) control.pass_advanced(static_cast<std::uint64_t>(done) * sizeof(float));
-  };
-  return options;
-}
-
-void check_cancel(const ConversionControl& control) {
-  if (control.cancel != nullptr && *control.cancel)
-    throw Error(ErrorKind::interrupted, "interrupted; nothing was written");
-}
-
-void start_pass(const ConversionControl& control, const std::string& name, std::uint64_t voxels) {
-  check_cancel(control);
-  if (control.pass_started) control.pass_started(name, voxels * sizeof(float));
-}
-
-std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
-  std::int64_t voxels = 0;
-  for (const Box& box : leaves.boxes()) voxels += plan.voxel_box(box).voxels();
-  return static_cast<std::uint64_t>(voxels);
-}
-
-void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
-  if (survey.non_finite == 0) return;
-  const Index3& at = survey.first_non_finite;
-  throw Error(ErrorKind::input,
-              cat(info.path, ": ", survey.non_finite, survey.non_finite == 1 ? " voxel is" : " voxels are",
-                  " NaN or infinite, the first (", survey.first_non_finite_value, ") at ", at.x, ",", at.y, ",", at.z,
-                  "; choose --nonfinite background or --nonfinite keep"));
-}
-
-Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
-                             VolumeSource& source, const BlockPlan& plan, const StreamOptions& stream) {
-  if (options.background) return {*options.background, "user", 0};
-  if (options.paper_background) return paper_background(survey, source, plan, stream);
-  return find_background(survey, rows, source, plan, stream);
-}
-
-// Reads the finished bytes back: what is hashed is what the file system holds.
-Digest digest_of_file(File& file, std::uint64_t bytes) {
-  std::vector<Digest> pieces(piece_count(bytes));
-  tbb::enumerable_thread_specific<std::vector<std::byte>> scratch{std::vector<std::byte>(kDigestScratchBytes)};
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-    const std::uint64_t offset = i * kDigestPieceBytes;
-    pieces[i] = piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
-  });
-  return combine(pieces);
-}
-
-std::array<double, 2> range_of(const Survey& survey) {
-  return {static_cast<double>(survey.min), static_cast<double>(survey.max)};
-}
-
-Sidecar::Histogram histogram_of(const Survey& survey) {
-  const RangeHistogram& h = survey.histogram;
-  if (h.empty()) return {};
-  auto counts = h.counts();
-  const double max = h.first_edge() + static_cast<double>(counts.size()) * h.bin_width();
-  return {h.first_edge(), max, std::move(counts)};
-}
-
-Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
-  Sidecar sidecar;
-  sidecar.source.path = info.path;
-  sidecar.source.format = info.format;
-  sidecar.source.dataset = info.dataset;
-  sidecar.source.extent = info.extent;
-  sidecar.source.type = std::string(scalar_name(info.type));
-  sidecar.source.bytes = info.file_bytes;
-  sidecar.source.mtime = utc_text(info.mtime_ns);
-  sidecar.value_range = range_of(survey);
-  sidecar.nonfinite = {survey.non_finite, policy_name(options.non_finite)};
-  sidecar.source.index = info.index;
-  sidecar.source.axes = info.axis_labels;
-  sidecar.source.units = info.units;
-  sidecar.source.unit_si = info.unit_si;
-  sidecar.source.scale = info.mapping.scale;
-  sidecar.source.offset = info.mapping.offset;
-  sidecar.missing.count = survey.missing;
-  for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
-  sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
-  sidecar.histogram = histogram_of(survey);
-  sidecar.weir = options.provenance;
-  return sidecar;
-}
-
-Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors& leaves, std::uint64_t finite,
-                                       const Survey& survey) {
-  const Certificate c = make_certificate(tiles.squared + leaves.squared, std::max(tiles.max_abs, leaves.max_abs),
-                                         tiles.exact && leaves.exact, finite, survey.min, survey.max);
-  return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
-}
-
-FileRequest request_for(const ConversionOptions& options, const Survey& survey, float background, const Box& domain) {
-  FileRequest request;
-  request.encoding = options.encoding;
-  request.rule.metric = options.metric;
-  request.rule.brick_leaves = options.brick / kLeafDim;
-  request.rule.fill = {options.fill, background, options.non_finite};
-  request.budget = options.budget;
-  request.domain = domain;
-  request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
-  request.path = options.output;
-  return request;
-}
-
-// What the squares over `finite` voxels may sum up to for a PSNR.
-double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
-  const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
-  return range * range * static_cast<double>(finite) / std::pow(10, budget.target / 10);
-}
-
-std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain) {
-  if (!options.scene) return std::nullopt;
-  if (options.metric != Metric::sse) {
-    throw Error(ErrorKind::usage, cat("--scene weighs squared errors, --metric ", metric_name(options.metric),
-                                      " has none; use --metric sse"));
-  }
-  const bool promise = options.budget.by_error() || options.budget.kind == Budget::Kind::lossless;
-  return Visibility(options.scene->scene, options.scene->path, domain,
-                    promise ? Visibility::Weighing::alike : Visibility::Weighing::by_picture);
-}
-
-}  // namespace
 
 std::string metric_name(Metric metric) {
   switch (metric) {
@@ -240,10 +45,16 @@ std::string policy_name(NonFinitePolicy policy) {
 
 namespace {
 
+std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
+  std::int64_t voxels = 0;
+  for (const Box& box : leaves.boxes()) voxels += plan.voxel_box(box).voxels();
+  return static_cast<std::uint64_t>(voxels);
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal) {
-  const Clock::time_point started = Clock::now();
+  const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
   const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
@@ -274,100 +85,15 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     if (journal != nullptr) return journal->open(name);
     return work.spill();
   };
-  RowStore rows(spill("rows"), leaves, memory.segment_regions);
-  std::optional<LeafStore<LeafFaces>> faces;
-  if (visibility) faces.emplace(spill("faces"), leaves);
-  const bool widths = options.encoding != Encoding::float32 && options.metric == Metric::sse;
-  std::optional<TraceSpan> span;
-  span.emplace(control.trace, "survey pass", voxels * sizeof(float));
-  const Survey survey = survey_volume(source, reading.survey, rows, stream, reading.reading, widths,
-                                      faces ? &*faces : nullptr, &surveyed, pauses);
-  span.emplace(control.trace, "background");
-  if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
-  Background background;
-  Sidecar sidecar = describe_source(info, survey, options);
-  const bool known = journal != nullptr && journal->state.background;
-  tbb::parallel_invoke(
-      [&] {
-        background = known ? *journal->state.background
-                           : choose_background(options, survey, rows, source, reading.survey, stream);
-      },
-      [&] { sidecar.source.digest = source_digest(rows); });
-  if (journal != nullptr) {
-    journal->state.background = background;
-    // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
-    if (journal->resumable()) journal->save();
-  }
-  FileRequest request = request_for(options, survey, background.value, domain);
-  Shown shown;
-  if (visibility) {
-    shown = find_reaches(*faces, *visibility, request.rule.fill, work, rows);
-    faces.reset();
-    request.rule.visibility = &*visibility;
-  }
-  request.squared_error = allowed_error(options.budget, survey, visibility ? shown.finite : survey.finite);
-  sidecar.timing.survey_s = seconds_since(started);
-
-  // Selection and encoding.
-  span.reset();
-  check_cancel(control);
-  const Clock::time_point encoding = Clock::now();
-  const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded = encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
-                                           options.scene ? visible_values(options.scene->scene) : "", stream,
-                                           [&] { start_pass(control, "encode", voxels); }, control.notice},
-                                          std::move(request));
-  const FilePlan& file = encoded.file;
-  const FileSize& size = file.size;
-  if (!size.notice.empty() && control.notice) control.notice(size.notice);
-  const TreeLayout& layout = file.plan.layout;
-  const GridType type = grid_type_of(file.encoding);
-  span.emplace(control.trace, "write tree");
-  // Most of the file goes to the device while the rest is made.
-  const std::jthread writeback([&output] { output.volume().start_writeback(); });
-  check_cancel(control);
-  GridHead head;
-  head.type = type;
-  head.breadth_first = type != GridType::fpn;
-  head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
-  head.voxel_size = info.spacing;
-  head.origin = info.origin;
-  const std::uint32_t checksum =
-      write_tree({*file.tree, rows, *file.choices, *encoded.records, file.fill, layout}, head, output.volume());
-  check_cancel(control);
-
-  // Finish.
-  span.emplace(control.trace, "digest", size.bytes);
-  sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, domain};
-  sidecar.background = {static_cast<double>(background.value), background.method, background.share};
-  sidecar.budget.kind = size.kind;
-  if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
-  if (options.budget.by_error()) sidecar.budget.requested = options.budget.target;
-  if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
-  sidecar.budget.file_bytes = size.bytes;
-  sidecar.budget.dense_float32_bytes = dense_bytes;
-  sidecar.budget.rate = static_cast<double>(dense_bytes) / static_cast<double>(size.bytes);
-  sidecar.selection = {metric_name(options.metric),
-                       fill_name(options.fill),
-                       options.brick,
-                       static_cast<std::uint64_t>(file.tree->leaves.size()),
-                       layout.counts.leaves,
-                       file.plan.leaves_by_width};
-  sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
-  if (visibility) {
-    sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
-                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey)};
-  }
-  sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
-  sidecar.timing.encode_s = seconds_since(encoding);
-  sidecar.timing.total_s = seconds_since(started);
-  sidecar.timing.bytes_read = source.bytes_read();
-  sidecar.timing.bytes_written = layout.content_end;
-  sidecar.timing.peak_rss_bytes = peak_resident_bytes();
-  span.emplace(control.trace, "commit", size.bytes);
-  output.commit(to_json_text(sidecar));
-  return sidecar;
+  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions), {}};
+  if (visibility) stores.faces.emplace(spill("faces"), leaves);
+  const Survey survey = [&] {
+    const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
+    return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),
+                         stores.faces ? &*stores.faces : nullptr, &surveyed, pauses);
+  }();
+  return convert_surveyed({source, options, control, output, work, journal, visibility}, reading, survey, stores,
+                          started);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// All of a conversion that comes after the survey: background, selection, the
+// encode pass and the finish, for whoever surveyed the volume.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "compressor/conversion.h"
+#include "compressor/journal.h"
+#include "compressor/leaf_faces.h"
+#include "compressor/leaf_store.h"
+#include "compressor/reading_plan.h"
+#include "compressor/row_store.h"
+#include "compressor/survey.h"
+#include "compressor/visibility.h"
+#include "compressor/work_directory.h"
+#include "format/output_files.h"
+#include "format/sidecar.h"
+#include "ingest/volume_source.h"
+
+namespace weir {
+
+/// What one conversion works with; all of it outlives its steps.
+struct ConversionJob {
+  VolumeSource& source;
+  const ConversionOptions& options;
+  const ConversionControl& control;
+  OutputFiles& output;
+  WorkDirectory& work;
+  Journal* journal;                       ///< null: what is interrupted is lost
+  const std::optional<Visibility>& seen;  ///< of options.scene
+};
+
+/// Of options.scene, for a volume over `domain`. Throws Error(usage) where the metric has no use for it, and as
+/// Visibility does.
+std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain);
+
+/// Whether the survey is to look at the widths of quantised leaves (survey.h).
+bool surveys_widths(const ConversionOptions& options);
+
+/// The files that a survey fills.
+struct SurveyStores {
+  RowStore rows;
+  std::optional<LeafStore<LeafFaces>> faces;  ///< with a scene; given back once it is used
+};
+
+/// Writes the volume that `survey` and `stores` tell of, and its sidecar, which it returns. `started` is when the
+/// survey was: for Sidecar::Timing.
+Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, const Survey& survey,
+                         SurveyStores& stores, std::chrono::steady_clock::time_point started);
+
+}  // namespace weir
