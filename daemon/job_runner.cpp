@@ -9,12 +9,14 @@
 
 #include "daemon/available_memory.h"
 #include "daemon/file_identity.h"
+#include "daemon/output_cleaning.h"
 #include "format/error.h"
 #include "format/text.h"
 
 namespace weir {
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
@@ -26,7 +28,6 @@ constexpr milliseconds kAbandon{5000};
 
 // Of the file system of the nearest directory there is.
 std::uint64_t free_bytes(const std::string& directory) {
-  namespace fs = std::filesystem;
   struct statvfs status {};
   for (fs::path at = directory;; at = at.parent_path()) {
     if (::statvfs(at.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
@@ -165,6 +166,10 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
       record([this, id] { store_.postpone(id, "stopped with the service"); });
       break;
   }
+  record([this, job = run.job, directory = fs::path(run.work->task().output).parent_path().string()] {
+    const std::optional<Job> now = store_.job(job.id);
+    if (now && now->state == JobState::cancelled) discard_work(job, directory);
+  });
   if (watch_of(run.job.watch) == nullptr) forget_other_watches();
   if (stopping_ && running_.empty() && stopped_) {
     grace_timer_.cancel();
@@ -305,6 +310,21 @@ std::string JobRunner::hold() const {
 void JobRunner::abandon(std::int64_t id) {
   const auto at = running_.find(id);
   if (at != running_.end()) at->second.work->stop(kAbandon);
+}
+
+void JobRunner::cancelled(const Job& job) {
+  if (running_.contains(job.id)) {
+    abandon(job.id);
+  } else if (const WatchConfig* watch = watch_of(job.watch)) {
+    discard_work(job, output_directory(*watch, job.source));
+  }
+}
+
+// Whoever cancels wants the disk back; `retry` converts from the beginning.
+void JobRunner::discard_work(const Job& job, const std::string& directory) const {
+  const CleaningReport report = discard_interrupted(directory, job.source);
+  for (const std::string& path : report.removed) log_.info("cleaned", {{"job", job.id}, {"removed", path}});
+  for (const std::string& line : report.left) log_.warn("not-cleaned", {{"job", job.id}, {"reason", line}});
 }
 
 void JobRunner::shut_down(milliseconds grace, std::function<void()> stopped) {

@@ -64,8 +64,10 @@ class JobRunner {
   /// Why the state file cannot be written; empty: it can.
   const std::string& store_fault() const { return store_fault_; }
 
-  /// Ends the job's work, if it runs: it was cancelled, or its source was rewritten.
+  /// Ends the job's work, if it runs: its source was rewritten.
   void abandon(std::int64_t id);
+  /// `job` was cancelled: ends its work, if it runs, and removes what it could be continued from.
+  void cancelled(const Job& job);
   /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
   /// and waits for the next start of the service.
   void shut_down(std::chrono::milliseconds grace, std::function<void()> stopped);
@@ -82,6 +84,7 @@ class JobRunner {
   void start(const WatchConfig& watch, const Job& job);
   void ended(std::int64_t id, const TaskReport& report);
   void source_changed(const Job& job);
+  void discard_work(const Job& job, const std::string& directory) const;
   void done(const RunningJob& run, const TaskReport& report);
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);

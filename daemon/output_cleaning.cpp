@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -27,16 +31,38 @@ using Clock = std::chrono::steady_clock;
 /// An interrupted conversion that nobody continues; it may hold as much disk as its result.
 constexpr std::chrono::hours kKeptFor{7 * 24};
 
-constexpr std::string_view kWork = ".nvdb.work";
-constexpr std::string_view kPrevious = ".nvdb.json.previous";
+constexpr std::string_view kPartial = ".partial";
+constexpr std::string_view kRecordPartial = ".json.partial";
+constexpr std::string_view kPrevious = ".json.previous";
+constexpr std::string_view kWork = ".work";
+constexpr std::string_view kThumbnail = ".png.";
 
-bool is_partial(std::string_view name) {
-  return name.ends_with(".nvdb.partial") || name.ends_with(".nvdb.json.partial") ||
-         (name.starts_with('.') && name.ends_with(".partial") && name.find(".nvdb.png.") != std::string_view::npos);
+// The output that `path` was left by, if it is of a conversion: something.nvdb.
+std::optional<fs::path> output_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const auto without = [&](std::string_view ending, std::size_t from) -> std::optional<fs::path> {
+    if (!name.ends_with(ending) || name.size() < from + ending.size()) return std::nullopt;
+    const std::string output = name.substr(from, name.size() - from - ending.size());
+    if (!output.ends_with(".nvdb")) return std::nullopt;
+    return path.parent_path() / output;
+  };
+  if (name.starts_with('.')) {
+    if (auto output = without(kWork, 1)) return output;
+    const std::size_t thumbnail = name.find(cat(".nvdb", kThumbnail));
+    if (thumbnail != std::string::npos && name.ends_with(kPartial)) {
+      return path.parent_path() / name.substr(1, thumbnail + std::string_view(".nvdb").size() - 1);
+    }
+  }
+  for (const std::string_view ending : {kRecordPartial, kPrevious, kPartial}) {
+    if (auto output = without(ending, 0)) return output;
+  }
+  return std::nullopt;
 }
 
-// The file's lock is its writer's: taking it means that nobody writes.
-bool is_written(const fs::path& path) {
+bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWork); }
+
+// The file's lock is its writer's.
+bool is_written(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   return file && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
@@ -51,53 +77,91 @@ void remove_spills(const fs::path& work) {
   }
 }
 
-// Whether the journal says of a source that it is still what it was.
+fs::path canonical(const fs::path& path) {
+  std::error_code ignored;
+  return fs::weakly_canonical(path, ignored);
+}
+
+std::string entry_of(const Checkpoint& checkpoint, const char* name) {
+  const auto at = checkpoint.identity.find(name);
+  return at == checkpoint.identity.end() ? std::string() : at->second;
+}
+
+bool lies_in(const fs::path& path, const fs::path& directory) {
+  return std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();
+}
+
+// Whether the source is, as far as its first file says, still what it was.
 bool is_of_this_source(const Checkpoint& checkpoint) {
-  const auto entry = [&](const char* name) {
-    const auto at = checkpoint.identity.find(name);
-    return at == checkpoint.identity.end() ? std::string() : at->second;
-  };
-  const auto source = identify(entry("source"));
-  return source && cat(source->bytes) == entry("source bytes") &&
-         cat(source->mtime_ns) == entry("source modified (ns)");
+  const auto source = identify(entry_of(checkpoint, "source"));
+  if (!source) return false;
+  // Size and time are those of all its files together.
+  if (!entry_of(checkpoint, "source files").empty()) return true;
+  return cat(source->bytes) == entry_of(checkpoint, "source bytes") &&
+         cat(source->mtime_ns) == entry_of(checkpoint, "source modified (ns)");
+}
+
+// Without the locks that read_journal takes: of a conversion that may be running.
+std::optional<Checkpoint> glance_at_journal(const fs::path& work) {
+  std::ifstream file(work / "journal", std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return parse_checkpoint(text.str());
 }
 
 class Cleaner {
  public:
   explicit Cleaner(std::chrono::milliseconds patience) : deadline_(Clock::now() + patience) {}
 
-  void clean(const fs::directory_entry& entry) {
-    const fs::path& path = entry.path();
-    const std::string name = path.filename().string();
-    std::error_code error;
-    if (is_partial(name) && entry.is_regular_file(error)) {
-      wait_for_writer(path) ? remove(path) : leave(path, "another process is writing it");
-    } else if (name.ends_with(kPrevious) && entry.is_regular_file(error)) {
-      restore(path);
-    } else if (name.starts_with('.') && name.ends_with(kWork) && entry.is_directory(error)) {
-      clean_work(path, path.parent_path() / name.substr(1, name.size() - 1 - std::string_view(".work").size()));
+  using Worthless = std::function<bool(const fs::path& work, const fs::path& output)>;
+
+  /// Removes `paths`, which are of `output`, work directories only where nobody needs them.
+  void clean(const fs::path& output, const std::vector<fs::path>& paths, const Worthless& worthless) {
+    const std::string lock_path = output.string() + std::string(kPartial);
+    try {
+      const bool was_there = files->exists(lock_path);
+      // Held, so that no conversion begins on what is looked at and removed here.
+      const std::unique_ptr<File> lock = hold(lock_path);
+      if (lock == nullptr) {
+        leave(lock_path, "another process is writing it");
+        return;
+      }
+      for (const fs::path& path : paths) {
+        if (is_work(path)) {
+          clean_work(path, output, worthless);
+        } else if (path.filename().string().ends_with(kPrevious)) {
+          restore(path);
+        } else if (path != lock_path) {
+          remove(path);
+        }
+      }
+      was_there ? remove(lock_path) : files->remove(lock_path);
+    } catch (const Error& error) {
+      leave(paths.front(), error.what());
     }
   }
 
   CleaningReport report;
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
 
  private:
-  bool wait_for_writer(const fs::path& path) const {
-    while (is_written(path)) {
-      if (Clock::now() >= deadline_) return false;
+  // Null where another process has it.
+  std::unique_ptr<File> hold(const std::string& lock_path) const {
+    for (;;) {
+      try {
+        return files->open(lock_path);
+      } catch (const Error&) {
+        if (!is_written(lock_path)) throw;
+        if (Clock::now() >= deadline_) return nullptr;
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return true;
   }
 
-  void clean_work(const fs::path& work, const fs::path& output) {
-    if (!wait_for_writer(output.string() + ".partial")) return;
+  void clean_work(const fs::path& work, const fs::path& output, const Worthless& worthless) {
     try {
-      const std::optional<Checkpoint> interrupted = read_journal(*files_, output);
-      std::error_code ignored;
-      const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
-      if (interrupted && !old && is_of_this_source(*interrupted)) return;
-      remove_leftovers(*files_, output);
+      if (!worthless(work, output)) return;
+      remove_leftovers(*files, output);
     } catch (const Error& error) {
       leave(work, error.what());
       return;
@@ -129,33 +193,61 @@ class Cleaner {
   }
 
   Clock::time_point deadline_;
-  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
 };
+
+template <typename Iterator>
+void list(const std::string& directory, std::map<fs::path, std::vector<fs::path>>& by_output) {
+  std::error_code error;
+  for (auto at = Iterator(directory, fs::directory_options::skip_permission_denied, error); !error && at != end(at);
+       at.increment(error)) {
+    const std::optional<fs::path> output = output_of(at->path());
+    std::error_code ignored;
+    if (output && (is_work(at->path()) ? at->is_directory(ignored) : at->is_regular_file(ignored))) {
+      by_output[*output].push_back(at->path());
+    }
+  }
+}
 
 }  // namespace
 
-CleaningReport clean_outputs(const std::string& directory, bool recursive, std::chrono::milliseconds patience) {
+CleaningReport clean_outputs(const std::string& directory, const std::string& sources, bool recursive,
+                             std::chrono::milliseconds patience) {
   Cleaner cleaner(patience);
+  const fs::path own = canonical(sources);
+  const auto worthless = [&](const fs::path& work, const fs::path& output) {
+    const std::optional<Checkpoint> interrupted = read_journal(*cleaner.files, output);
+    if (!interrupted) return true;
+    // A stack's source is a pattern: no service converts one.
+    if (entry_of(*interrupted, "format") == "stack" || !lies_in(entry_of(*interrupted, "source"), own)) return false;
+    std::error_code ignored;
+    const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
+    return old || !is_of_this_source(*interrupted);
+  };
   // Listed first: what is removed while a directory is read may be listed or not.
-  std::vector<fs::directory_entry> entries;
-  std::error_code error;
-  const auto options = fs::directory_options::skip_permission_denied;
-  if (recursive) {
-    for (auto at = fs::recursive_directory_iterator(directory, options, error); !error && at != end(at);
-         at.increment(error)) {
-      entries.push_back(*at);
-    }
-  } else {
-    for (auto at = fs::directory_iterator(directory, options, error); !error && at != end(at); at.increment(error)) {
-      entries.push_back(*at);
-    }
+  std::map<fs::path, std::vector<fs::path>> by_output;
+  recursive ? list<fs::recursive_directory_iterator>(directory, by_output)
+            : list<fs::directory_iterator>(directory, by_output);
+  for (auto& [output, paths] : by_output) {
+    std::sort(paths.begin(), paths.end());
+    cleaner.clean(output, paths, worthless);
   }
-  std::erase_if(entries, [](const fs::directory_entry& entry) {
-    const std::string name = entry.path().filename().string();
-    return !is_partial(name) && !name.ends_with(kPrevious) && !name.ends_with(kWork);
-  });
-  std::sort(entries.begin(), entries.end());
-  for (const fs::directory_entry& entry : entries) cleaner.clean(entry);
+  return std::move(cleaner.report);
+}
+
+CleaningReport discard_interrupted(const std::string& directory, const std::string& source) {
+  Cleaner cleaner(std::chrono::milliseconds(0));
+  const std::string place = canonical(source).string();
+  const auto of_source = [&](const fs::path& work) {
+    const std::optional<Checkpoint> interrupted = glance_at_journal(work);
+    return interrupted && entry_of(*interrupted, "source") == place;
+  };
+  std::map<fs::path, std::vector<fs::path>> by_output;
+  list<fs::directory_iterator>(directory, by_output);
+  for (auto& [output, paths] : by_output) {
+    std::erase_if(paths, [&](const fs::path& path) { return !is_work(path) || !of_source(path); });
+    if (paths.empty()) continue;
+    cleaner.clean(output, paths, [&](const fs::path& work, const fs::path&) { return of_source(work); });
+  }
   return std::move(cleaner.report);
 }
 

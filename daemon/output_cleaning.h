@@ -15,10 +15,16 @@ struct CleaningReport {
 
 /// Removes from `directory` (and below it, where `recursive`; a missing one is no error): X.nvdb.partial and
 /// X.nvdb.json.partial, hidden thumbnails that were being written (.X.nvdb.png.PID.partial) and work directories
-/// (.X.nvdb.work), but not one that a conversion of a source that has not changed can be continued from and that was
-/// written to in the last seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing. A partial
-/// file that a living process writes is locked by it: it is waited for, `patience` altogether (the children of a daemon
-/// that was killed die a moment after it), and then left, with its work directory.
-CleaningReport clean_outputs(const std::string& directory, bool recursive, std::chrono::milliseconds patience);
+/// (.X.nvdb.work), but not one that a conversion can be continued from: of a source elsewhere than in `sources` as long
+/// as it is there (a user's, who will come back to it), of one in it until that source has gone or changed or the
+/// directory was not written to for seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing.
+/// All that under the output's lock, X.nvdb.partial: one that a living process holds is waited for, `patience`
+/// altogether (the children of a daemon that was killed die a moment after it), and then that output is left alone.
+CleaningReport clean_outputs(const std::string& directory, const std::string& sources, bool recursive,
+                             std::chrono::milliseconds patience);
+
+/// Removes from `directory` what interrupted conversions of the file `source` can be continued from; what a living
+/// process holds is left.
+CleaningReport discard_interrupted(const std::string& directory, const std::string& source);
 
 }  // namespace weir

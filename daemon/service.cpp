@@ -67,7 +67,7 @@ Service::Service(Load load, std::string program, std::string version)
 
 void Service::clean(const DaemonConfig& config, milliseconds patience) const {
   for (const WatchConfig& watch : config.watches) {
-    const CleaningReport report = clean_outputs(watch.output, watch.recursive, patience);
+    const CleaningReport report = clean_outputs(watch.output, watch.directory, watch.recursive, patience);
     for (const std::string& path : report.removed) log_.info("cleaned", {{"removed", path}});
     for (const std::string& line : report.left) log_.warn("not-cleaned", {{"reason", line}});
   }

@@ -83,9 +83,10 @@ std::uint64_t ServiceControl::retry_all_failed() {
 }
 
 JobChange ServiceControl::cancel(std::int64_t id) {
-  if (!store_.job(id)) return JobChange::no_such_job;
+  const std::optional<Job> job = store_.job(id);
+  if (!job) return JobChange::no_such_job;
   if (!store_.cancel(id)) return JobChange::wrong_state;
-  runner_.abandon(id);
+  runner_.cancelled(*job);
   return JobChange::made;
 }
 

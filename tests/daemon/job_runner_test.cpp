@@ -5,7 +5,9 @@
 
 #include <filesystem>
 
+#include "compressor/journal.h"
 #include "daemon/file_identity.h"
+#include "format/file_system.h"
 #include "format/text.h"
 #include "tests/tools/run_command.h"
 
@@ -135,6 +137,42 @@ TEST_F(JobRunnerTest, AbandonEndsACancelledJob) {
   run_until([&] { return idle(); });
   EXPECT_EQ(state(job), JobState::cancelled);
   EXPECT_EQ(list_directory(directory_ / "out"), std::vector<std::string>{});
+}
+
+// Nobody continues it; `retry` begins anew.
+TEST_F(JobRunnerTest, CancelRemovesWhatCouldBeContinued) {
+  config_.watches[0].convert_options = {"--save-interval=0"};
+  runner_.configure(config_);
+  const Job running = add_long();
+  const Job waiting = add("b", "waits");
+  const Job other = add("b", "other");
+  runner_.pause();
+  for (const Job& job : {waiting, other}) {
+    const auto files = make_posix_file_system();
+    const std::string output = directory_ / ("out/" + fs::path(job.source).stem().string() + ".nvdb");
+    fs::create_directories(directory_ / "out");
+    Journal journal(*files, output, {{"source", job.source}}, {"", 0, nullptr, nullptr, {}});
+    journal.open("rows")->preallocate(1);
+    journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
+    journal.save_now();
+  }
+  EXPECT_TRUE(store_.cancel(waiting.id));
+  runner_.cancelled(waiting);
+  const std::vector<std::string> others{".other_24x20x16_uint8.nvdb.work/", ".other_24x20x16_uint8.nvdb.work/journal",
+                                        ".other_24x20x16_uint8.nvdb.work/rows"};
+  EXPECT_EQ(list_directory(directory_ / "out"), others);
+
+  EXPECT_TRUE(store_.cancel(other.id));
+  runner_.resume();
+  const fs::path journal = directory_ / "out/.long_1024x1024x1024_uint8.nvdb.work/journal";
+  run_until([&] { return fs::exists(journal); });
+  EXPECT_TRUE(store_.cancel(running.id));
+  runner_.cancelled(running);
+  run_until([&] { return idle(); });
+  EXPECT_EQ(state(running), JobState::cancelled);
+  EXPECT_EQ(list_directory(directory_ / "out"), others);
+  EXPECT_NE(read_file(config_.service.log_file).find(cat(" info cleaned job=", running.id, " removed=")),
+            std::string::npos);
 }
 
 TEST_F(JobRunnerTest, ShutDownLetsAJobEndWithinTheGrace) {

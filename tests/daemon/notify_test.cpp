@@ -10,7 +10,7 @@
 
 #include "format/descriptor.h"
 #include "format/text.h"
-#include "tests/support/temporary_directory.h"
+#include "tests/tools/run_command.h"
 
 namespace weir {
 namespace {
@@ -53,10 +53,17 @@ TEST(ServiceNotifier, AWatchdogOfAnotherProcessIsNotOurs) {
 }
 
 TEST(ServiceNotifier, DoesNothingWhereNobodyListens) {
+  const Manager another;
   ::unsetenv("NOTIFY_SOCKET");
-  ServiceNotifier::from_environment().send("READY=1");
-  ServiceNotifier("/nowhere/notify", std::nullopt).send("READY=1");
-  ServiceNotifier(std::string(300, 'x'), std::nullopt).send("READY=1");
+  const std::string nowhere = another.directory / "nowhere";
+  const std::string too_long = another.path + std::string(300, 'x');
+  for (const ServiceNotifier& notifier : {ServiceNotifier::from_environment(), ServiceNotifier(nowhere, std::nullopt),
+                                          ServiceNotifier(too_long, std::nullopt)}) {
+    EXPECT_NO_THROW(notifier.send("READY=1"));
+    EXPECT_EQ(notifier.watchdog(), std::nullopt);
+  }
+  EXPECT_EQ(another.received(), "nothing");
+  EXPECT_EQ(list_directory(another.directory.path()), std::vector<std::string>{"notify"}) << "no socket was made";
 }
 
 }  // namespace
