@@ -44,8 +44,8 @@ class LeafSpool {
 
   /// What there is of consecutive leaves from `first` on.
   void read_states(std::int64_t first, std::span<SpooledLeaf> states) const { states_.read(first, states); }
-  /// Values of consecutive spooled leaves from `first` on, 512 each: the in-domain ones of a leaf, x fastest, and then,
-  /// where it overhangs the domain, anything.
+  /// Values of consecutive spooled leaves from `first` on, leaf_bytes() apart: the in-domain ones of a leaf, x fastest,
+  /// and, where it overhangs the domain, anything behind them. The last leaf's may be asked for without that.
   void read_values(std::int64_t first, std::span<std::byte> values) const;
 
   /// Bytes that the values of a leaf take in the file.
@@ -57,7 +57,12 @@ class LeafSpool {
   void unpark(std::int64_t first, std::uint64_t at, std::span<std::byte> bytes) const;
 
  private:
-  void write_row(const Box& row, const Box& box, std::span<const std::byte> values);
+  std::uint64_t place_of(std::int64_t leaf) const { return static_cast<std::uint64_t>(leaf) * leaf_bytes(); }
+  // Leaves from `first` on along x; `row` has room for them.
+  void write_row(const Index3& first, std::span<SpooledLeaf> states, std::span<std::byte> row, const Box& box,
+                 std::span<const std::byte> values);
+  // Some voxels of a leaf, x fastest.
+  void write_part(std::int64_t leaf, const Box& part, const Box& inside, std::span<const std::byte> values);
 
   std::shared_ptr<File> values_;
   LeafStore<SpooledLeaf> states_;

@@ -65,7 +65,7 @@ void RangeHistogram::grow(int exponent, const std::function<Bins(int)>& other) {
     }
     exponent_ = exponent;
     scale_ = std::ldexp(1.0, -exponent);
-    base_ = all.first;
+    base_ = all.first + 0.0;  // of -0.0 and 0.0 either may be the first
     bins_ = static_cast<std::size_t>(all.last - all.first) + 1;
     return;
   }

@@ -213,5 +213,12 @@ TEST(RangeHistogram, FullRangeOfFloat) {
   EXPECT_EQ(histogram.counts().size(), 1024U);
 }
 
+TEST(RangeHistogram, HasNoNegativeZeroForAnEdge) {
+  RangeHistogram histogram;
+  add(histogram, std::vector<float>{-0.0F, 0.0F});
+  EXPECT_FALSE(std::signbit(histogram.base()));
+  EXPECT_FALSE(std::signbit(histogram.first_edge()));
+}
+
 }  // namespace
 }  // namespace weir
