@@ -76,7 +76,9 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
     EXPECT_EQ(text.find("@" + name + "@"), std::string::npos) << name << " is no place in report.md";
   }
   EXPECT_EQ(text.find("Promises that are not kept"), std::string::npos);
-  EXPECT_TRUE(fs::exists(directory_ / "images/evaluation/wdas-like_psnr.png"));
+  for (const char* name : {"wdas-like_124x84x153_psnr.png", "headline.png"}) {
+    EXPECT_TRUE(fs::exists(directory_ / "images/evaluation" / name)) << name;
+  }
   const std::string sheet = directory_ / "images/evaluation/cloud_path.png";
   const CommandResult flip = run_weir({"flip", sheet, sheet, "--json"});
   ASSERT_EQ(flip.exit_code, 0) << flip.err;

@@ -65,7 +65,7 @@ class Errors(Experiment):
 
     @staticmethod
     def _image(result):
-        return f"{result['volume']}_psnr.png"
+        return f"{result['volume']}_{'x'.join(str(n) for n in result['extent'])}_psnr.png"
 
     def pictures(self, measured, directory):
         return {self._image(result): directory / "sweeps" / result["sweep"] / "psnr_bits.png"

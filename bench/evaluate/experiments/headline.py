@@ -16,6 +16,7 @@ RATE = 8
 MEMORY = "512MiB"
 CEILING_BYTES = 512 << 20
 READ_BYTES = 8 << 20
+PICTURE = "headline.png"
 
 
 def read_cold(path):
@@ -54,7 +55,7 @@ class Headline(Experiment):
                           bytes_read=sidecar["timing"]["bytes_read"], survey_s=sidecar["timing"]["survey_s"],
                           file_bytes=sidecar["budget"]["file_bytes"], psnr_db=sidecar["error"]["psnr_db"])
             for name, more in (("verify", [whole]), ("compare", [path, whole]),
-                               ("render", [whole, "-o", bench.scratch("headline.png"), "--spp", 8, "--size", "320x240"])):
+                               ("render", [whole, "-o", bench.directory / PICTURE, "--spp", 8, "--size", "320x240"])):
                 result[f"{name}_s"] = bench.weir.run(name, *more).seconds
             forget(path)
             result["killed_after_s"] = self._kill(bench, [*arguments, again], run.seconds / 2)
@@ -105,7 +106,11 @@ class Headline(Experiment):
                 f"{r['file_bytes']:,} bytes and {r['psnr_db']:.1f} dB; the process held "
                 f"{r['peak_rss_bytes'] / 2**20:.0f} MiB at most.")
         return "\n\n".join((head, table(["", "seconds", ""], lines),
-                            command("bench/evaluate.sh --only headline --again --full")))
+                            command("bench/evaluate.sh --only headline --again --full"),
+                            f"![What weir render makes of it](images/evaluation/{PICTURE})"))
+
+    def pictures(self, measured, directory):
+        return {PICTURE: directory / PICTURE}
 
     def broken_promises(self, measured):
         broken = []

@@ -49,7 +49,7 @@ class Metrics(Experiment):
         for result in measured.results(self.name):
             by = {(row["rate"], row["metric"], row["fill"]): row for row in result["rows"]}
             for rate in RATES:
-                lines.append([result["volume"] if rate == RATES[0] else "", f"1:{rate}",
+                lines.append([f"{result['volume']}, {size_text(result['extent'])}" if rate == RATES[0] else "", f"1:{rate}",
                               *(decibel(by[(rate, metric, fill)]) for metric in METRICS for fill in FILLS)])
         header = ["PSNR in dB", "rate", *(f"{metric}, {fill}" for metric in METRICS for fill in FILLS)]
         return table(header, lines) + "\n\n" + command(
