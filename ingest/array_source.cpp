@@ -176,7 +176,7 @@ std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type)
   return {bytes, bytes * extent.x, bytes * extent.x * extent.y};
 }
 
-std::unique_ptr<VolumeSource> open_array(DenseArray array) {
+SourceInfo array_info(const DenseArray& array) {
   SourceInfo info;
   info.path = kPath;
   info.format = "memory";
@@ -184,20 +184,25 @@ std::unique_ptr<VolumeSource> open_array(DenseArray array) {
   // continued.
   info.mtime_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
   info.file_bytes = checked_volume_bytes(array.extent, scalar_bytes(array.type), info.path);
-  if (array.data == nullptr) throw Error(ErrorKind::usage, cat(kPath, ": the array's data is a null pointer"));
-  check_strides(array);
   check_place(array);
   for (const StoredValue& value : array.missing) {
     if (holds(array.type, value)) continue;
     throw Error(ErrorKind::usage, cat(kPath, ": the missing value is ", stored_value_text(value), ", and no ",
                                       scalar_name(array.type), " is; give a value of that type"));
   }
-  info.dataset = std::move(array.name);
+  info.dataset = array.name;
   info.extent = array.extent;
   info.type = array.type;
-  info.mapping.missing = std::move(array.missing);
+  info.mapping.missing = array.missing;
   info.spacing = array.spacing;
   info.origin = array.origin;
+  return info;
+}
+
+std::unique_ptr<VolumeSource> open_array(const DenseArray& array) {
+  SourceInfo info = array_info(array);
+  if (array.data == nullptr) throw Error(ErrorKind::usage, cat(kPath, ": the array's data is a null pointer"));
+  check_strides(array);
   return std::make_unique<ArraySource>(array, std::move(info));
 }
 

@@ -30,10 +30,14 @@ struct DenseArray {
 /// The strides of an array without gaps, x fastest: Fortran's a(x, y, z), C's a[z][y][x].
 std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type);
 
-/// A source that reads `array` where it is; info().mtime_ns is the time of this call. A conversion of it cannot be
-/// continued (ConversionOptions::resume is to be off). Throws Error(input) where the extent is impossible, Error(usage)
-/// where data is null, the strides lead out of the address space, spacing or origin are no place, or a missing value is
-/// none of the type.
-std::unique_ptr<VolumeSource> open_array(DenseArray array);
+/// What a source of `array` says of it; neither data nor strides are looked at. info().mtime_ns is the time of this
+/// call. Throws Error(input) where the extent is impossible, Error(usage) where spacing or origin are no place, or a
+/// missing value is none of the type.
+SourceInfo array_info(const DenseArray& array);
+
+/// A source that reads `array` where it is. A conversion of it cannot be continued (ConversionOptions::resume is to be
+/// off). Throws what array_info throws, and Error(usage) where data is null or the strides lead out of the address
+/// space.
+std::unique_ptr<VolumeSource> open_array(const DenseArray& array);
 
 }  // namespace weir

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "bindings/c/conversion_options.h"
+#include "bindings/c/status.h"
+#include "bindings/c/versioned_struct.h"
+#include "bindings/c/weir.h"
+#include "compressor/memory_plan.h"
+#include "format/memory_file_system.h"
+#include "format/output_files.h"
+#include "format/process_memory.h"
+#include "format/text.h"
+#include "ingest/source_registry.h"
+
+struct weir_buffer {
+  weir::MemoryFileSystem files;
+  std::span<const std::byte> volume;
+  std::string sidecar;
+};
+
+namespace weir::c {
+namespace {
+
+/// An array of these values.
+std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void* data, const std::int64_t* stride) {
+  DenseArray array = read_volume(volume);
+  array.data = required(data, "data");
+  array.stride = stride == nullptr ? packed_stride(array.extent, array.type)
+                                   : std::array<std::int64_t, 3>{stride[0], stride[1], stride[2]};
+  return open_array(array);
+}
+
+void convert(VolumeSource& source, ConversionOptions options, const weir_convert_options& given, FileSystem& files) {
+  // What the process has already is the caller's; that the rest is too little is said in the caller's figures.
+  const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  plan_memory(options.memory, source.working_bytes(), threads, source.info().domain());
+  options.memory += resident_bytes();
+  options.resume = Resume::off;
+  Callbacks callbacks(given);
+  convert_volume(source, options, callbacks.control(), files);
+}
+
+}  // namespace
+}  // namespace weir::c
+
+using namespace weir;
+using namespace weir::c;
+
+weir_status weir_volume_init(weir_volume* volume, size_t struct_size) { return init_struct(volume, struct_size); }
+weir_status weir_convert_options_init(weir_convert_options* options, size_t struct_size) {
+  return init_struct(options, struct_size);
+}
+weir_status weir_input_options_init(weir_input_options* options, size_t struct_size) {
+  return init_struct(options, struct_size);
+}
+
+weir_status weir_convert(const weir_volume* volume, const void* data, const int64_t stride[3],
+                         const weir_convert_options* options, const char* output, weir_error* error) {
+  return guarded(error, [&] {
+    const auto source = open_values(volume, data, stride);
+    const weir_convert_options given = options_or_defaults(options);
+    ConversionOptions conversion = read_options(given);
+    conversion.output = checked_output(output);
+    convert(*source, std::move(conversion), given, *make_posix_file_system());
+  });
+}
+
+weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, const int64_t stride[3],
+                                   const weir_convert_options* options, weir_buffer** buffer, weir_error* error) {
+  return guarded(error, [&] {
+    required(buffer, "buffer");
+    const auto source = open_values(volume, data, stride);
+    const weir_convert_options given = options_or_defaults(options);
+    ConversionOptions conversion = read_options(given);
+    if (!conversion.work_dir.empty()) {
+      throw usage(cat("work_dir is \"", conversion.work_dir, "\", and nothing goes to a disk; leave it NULL"));
+    }
+    conversion.output = "memory.nvdb";
+    auto made = std::make_unique<weir_buffer>();
+    convert(*source, conversion, given, made->files);
+    made->volume = made->files.content(conversion.output);
+    const auto sidecar = made->files.content(sidecar_path(conversion.output));
+    made->sidecar.assign(reinterpret_cast<const char*>(sidecar.data()), sidecar.size());
+    *buffer = made.release();
+  });
+}
+
+const void* weir_buffer_data(const weir_buffer* buffer) { return buffer == nullptr ? nullptr : buffer->volume.data(); }
+uint64_t weir_buffer_size(const weir_buffer* buffer) { return buffer == nullptr ? 0 : buffer->volume.size(); }
+const char* weir_buffer_sidecar(const weir_buffer* buffer) {
+  return buffer == nullptr ? nullptr : buffer->sidecar.c_str();
+}
+void weir_buffer_free(weir_buffer* buffer) { delete buffer; }
+
+weir_status weir_convert_file(const char* input, const weir_input_options* input_options,
+                              const weir_convert_options* options, const char* output, weir_error* error) {
+  return guarded(error, [&] {
+    const std::string path = required(input, "input");
+    SourceOptions source_options = read_input_options(input_options);
+    const weir_convert_options given = options_or_defaults(options);
+    ConversionOptions conversion = read_options(given);
+    conversion.output = checked_output(output);
+    std::error_code ignored;
+    if (std::filesystem::equivalent(path, conversion.output, ignored)) {
+      throw usage(cat(conversion.output, ": is the input; choose another output"));
+    }
+    source_options.memory = conversion.memory + resident_bytes();
+    source_options.spool_directory =
+        conversion.work_dir.empty() ? directory_of(conversion.output) : conversion.work_dir;
+    const auto source = open_source(path, source_options);
+    convert(*source, std::move(conversion), given, *make_posix_file_system());
+  });
+}

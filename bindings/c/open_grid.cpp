@@ -1,0 +1,41 @@
+#include "bindings/c/open_grid.h"
+
+#include <utility>
+
+#include "bindings/c/status.h"
+#include "format/error.h"
+#include "format/file_mapping.h"
+
+using namespace weir;
+
+weir_grid::weir_grid(const std::string& path) : file_(path) {
+  try {
+    const FileMapping sidecar(sidecar_path(path), ".json");
+    const std::span<const std::byte> bytes = sidecar.bytes();
+    take_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const Error&) {
+    // A volume without its sidecar is a volume all the same: it certifies nothing.
+  }
+}
+
+weir_grid::weir_grid(std::span<const std::byte> bytes, const char* sidecar) : memory_(NvdbGrid::open(bytes, "memory")) {
+  if (sidecar != nullptr) take_sidecar(sidecar);
+}
+
+void weir_grid::take_sidecar(std::string text) {
+  try {
+    Sidecar sidecar = parse_sidecar(text, "sidecar");
+    // That of another volume, after a crash between two renames say, certifies nothing either.
+    if (sidecar.file.bytes != grid().bytes().size() || sidecar.file.head_checksum != grid().head_checksum()) return;
+    sidecar_ = std::move(sidecar);
+    text_ = std::move(text);
+  } catch (const Error&) {
+    // As if there were none.
+  }
+}
+
+const LeafTable& weir_grid::table() const {
+  const std::scoped_lock lock(mutex_);
+  if (!table_) table_.emplace(grid());
+  return *table_;
+}

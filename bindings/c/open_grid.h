@@ -1,0 +1,40 @@
+// What a weir_grid handle is: a grid in a mapped file or in the caller's memory, and what its sidecar certifies.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "bindings/c/weir.h"
+#include "format/nvdb_file.h"
+#include "format/sidecar.h"
+#include "gpu/leaf_table.h"
+
+/// Everything but the table is set by the constructor and then only read.
+struct weir_grid {
+ public:
+  /// Maps `path`. Throws Error(input).
+  explicit weir_grid(const std::string& path);
+  /// Of bytes that outlive it. Throws Error(input).
+  weir_grid(std::span<const std::byte> bytes, const char* sidecar);
+
+  const weir::NvdbGrid& grid() const { return file_ ? file_->grid() : *memory_; }
+  const weir::NvdbFile* file() const { return file_ ? &*file_ : nullptr; }
+  /// Of this very file; null where there is none.
+  const weir::Sidecar* sidecar() const { return sidecar_ ? &*sidecar_ : nullptr; }
+  const char* sidecar_text() const { return sidecar_ ? text_.c_str() : nullptr; }
+  /// Built by the first call. Thread-safe.
+  const weir::LeafTable& table() const;
+
+ private:
+  void take_sidecar(std::string text);
+
+  std::optional<weir::NvdbFile> file_;
+  std::optional<weir::NvdbGrid> memory_;
+  std::string text_;
+  std::optional<weir::Sidecar> sidecar_;
+  mutable std::mutex mutex_;
+  mutable std::optional<weir::LeafTable> table_;
+};

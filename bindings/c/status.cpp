@@ -1,0 +1,41 @@
+#include "bindings/c/status.h"
+
+#include <cstring>
+#include <exception>
+#include <new>
+
+namespace weir::c {
+
+static_assert(WEIR_ERROR_INTERNAL == static_cast<int>(ErrorKind::internal));
+static_assert(WEIR_ERROR_USAGE == static_cast<int>(ErrorKind::usage));
+static_assert(WEIR_ERROR_INPUT == static_cast<int>(ErrorKind::input));
+static_assert(WEIR_ERROR_BUDGET == static_cast<int>(ErrorKind::budget));
+static_assert(WEIR_ERROR_IO == static_cast<int>(ErrorKind::io));
+static_assert(WEIR_INTERRUPTED == static_cast<int>(ErrorKind::interrupted));
+
+weir_status end_call(weir_error* error, weir_status status, const char* message) noexcept {
+  if (error == nullptr) return status;
+  error->status = status;
+  const std::size_t length = strnlen(message, sizeof error->message - 1);
+  std::memcpy(error->message, message, length);
+  error->message[length] = '\0';
+  return status;
+}
+
+weir_status end_with_exception(weir_error* error) noexcept {
+  try {
+    throw;
+  } catch (const Error& e) {
+    return end_call(error, e.exit_code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return end_call(error, WEIR_ERROR_INTERNAL, "out of memory; give less memory to weir, or free some");
+  } catch (const std::exception& e) {
+    return end_call(error, WEIR_ERROR_INTERNAL, e.what());
+  } catch (...) {
+    return end_call(error, WEIR_ERROR_INTERNAL, "a callback let an exception out, which none may");
+  }
+}
+
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+}  // namespace weir::c

@@ -1,0 +1,36 @@
+// How the C functions end: whatever is thrown becomes a status and a line.
+#pragma once
+
+#include <string>
+
+#include "bindings/c/weir.h"
+#include "format/error.h"
+
+namespace weir::c {
+
+/// Sets *error, where there is one, and returns `status`.
+weir_status end_call(weir_error* error, weir_status status, const char* message) noexcept;
+/// The same of the exception in flight.
+weir_status end_with_exception(weir_error* error) noexcept;
+
+/// Runs `call`; nothing that it throws leaves.
+template <typename Call>
+weir_status guarded(weir_error* error, const Call& call) noexcept {
+  try {
+    call();
+  } catch (...) {
+    return end_with_exception(error);
+  }
+  return end_call(error, WEIR_OK, "");
+}
+
+Error usage(const std::string& message);
+
+/// `pointer`, which must not be null; `name` is the parameter's.
+template <typename T>
+T* required(T* pointer, const char* name) {
+  if (pointer == nullptr) throw usage(std::string(name) + " is a null pointer");
+  return pointer;
+}
+
+}  // namespace weir::c

@@ -1,0 +1,43 @@
+// Structs that a program may have been compiled with in an older or a newer form.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "bindings/c/status.h"
+#include "format/text.h"
+
+namespace weir::c {
+
+/// More is no struct of any version, but memory that was never set up.
+inline constexpr std::size_t kMaxStructBytes = 4096;
+
+/// Zeros but for struct_size.
+template <typename T>
+weir_status init_struct(T* target, std::size_t bytes) noexcept {
+  if (target == nullptr || bytes < sizeof(T) || bytes > kMaxStructBytes) return WEIR_ERROR_USAGE;
+  std::memset(static_cast<void*>(target), 0, bytes);
+  target->struct_size = bytes;
+  return WEIR_OK;
+}
+
+/// *given in this library's form; `name` is for messages. Throws Error(usage) where it is null, was not set up, or sets
+/// what a newer header has and this library does not know.
+template <typename T>
+T read_struct(const T* given, const char* name) {
+  const std::size_t bytes = required(given, name)->struct_size;
+  if (bytes < sizeof(T) || bytes > kMaxStructBytes) {
+    throw usage(cat(name, ": struct_size is ", bytes, ", and must be at least ", sizeof(T), "; set it up with ", name,
+                    "_init"));
+  }
+  const auto* const begin = reinterpret_cast<const unsigned char*>(given);
+  if (std::any_of(begin + sizeof(T), begin + bytes, [](unsigned char b) { return b != 0; })) {
+    throw usage(cat(name, ": sets members that are newer than this library, " WEIR_VERSION "; leave them 0"));
+  }
+  T known;
+  std::memcpy(&known, given, sizeof known);
+  return known;
+}
+
+}  // namespace weir::c

@@ -1,0 +1,285 @@
+/* weir's C interface: dense volumes to NanoVDB files of exactly the size that is asked for, out of memory, out of a
+ * file or out of a running simulation, and such files to values. C99; also for C++, and for Fortran by iso_c_binding
+ * (examples/push/weir.f90).
+ *
+ * Errors: every call that can fail returns a weir_status, and describes a failure in *error where error is not NULL.
+ * The message is one line: what, where, the value found, what to do; where it names an option of the command ("choose
+ * --nonfinite keep"), the member of that name is meant. A failed call leaves nothing behind, and its results are not
+ * set. There is no global state and no last error; no C++ exception leaves the library, and none may leave a callback.
+ *
+ * Threads: a call may be made by any thread at any time, and calls with different handles by several threads at once.
+ * What one handle allows is said at its type. Conversions work with threads of their own (oneTBB's); while several run
+ * in one process, all keep to the smallest number of threads that one of them was given.
+ *
+ * Structs: set every struct up by its _init function, with its sizeof, then change members; a member of 0 or NULL is
+ * always its default. A program built with an older weir.h runs with a newer library and, as long as it sets nothing
+ * that the library does not know, the other way round. Strings end with a zero, paths are as the system takes them.
+ * A pointer that is not said to be optional must not be NULL: that is WEIR_ERROR_USAGE, and so is a value out of its
+ * range. Handles are not checked otherwise. Every _free and _close takes NULL.
+ *
+ * Indices and extents are of voxels, in the order x, y, z, x fastest in files and packed arrays. */
+#ifndef WEIR_H
+#define WEIR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define WEIR_API
+#else
+#define WEIR_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Status ---------------------------------------------------------------------------------------------------- */
+
+/* What came of a call: the exit codes of the command weir. */
+typedef int32_t weir_status;
+enum {
+  WEIR_OK = 0,
+  WEIR_ERROR_INTERNAL = 1, /* a fault of weir itself, or no memory left */
+  WEIR_ERROR_USAGE = 2,    /* a wrong argument or option, or a call out of order */
+  WEIR_ERROR_INPUT = 3,    /* bad or unreadable input */
+  WEIR_ERROR_BUDGET = 4,   /* the asked size cannot be met; the message names the smallest */
+  WEIR_ERROR_IO = 5,       /* disk full, permission, device failure */
+  WEIR_INTERRUPTED = 130   /* the cancel callback said so */
+};
+
+#define WEIR_MESSAGE_BYTES 2044
+typedef struct weir_error {
+  weir_status status;
+  char message[WEIR_MESSAGE_BYTES]; /* ends with a zero, cut where it is longer; "" after a success */
+} weir_error;
+
+/* "0.1.0". The string is the library's. */
+WEIR_API const char* weir_version(void);
+
+/* ---- Volumes --------------------------------------------------------------------------------------------------- */
+
+/* Scalar types, in the machine's byte order. */
+enum {
+  WEIR_UINT8 = 1,
+  WEIR_INT8 = 2,
+  WEIR_UINT16 = 3,
+  WEIR_INT16 = 4,
+  WEIR_UINT32 = 5,
+  WEIR_INT32 = 6,
+  WEIR_UINT64 = 7,
+  WEIR_INT64 = 8,
+  WEIR_FLOAT16 = 9,
+  WEIR_FLOAT32 = 10,
+  WEIR_FLOAT64 = 11
+};
+
+/* What a volume is, but for its values. */
+typedef struct weir_volume {
+  size_t struct_size;
+  int64_t extent[3];   /* voxels, each 1 to 2^31 - 1; required */
+  double spacing[3];   /* world units per voxel, > 0; all 0: 1, 1, 1 */
+  double origin[3];    /* world position of voxel (0, 0, 0) */
+  const char* name;    /* of the grid in the file, at most 255 bytes; NULL: "density" */
+  const char* missing; /* the value that stands for "no data", as text ("-9999", "nan"); NULL: none */
+  int32_t type;        /* WEIR_UINT8 ...; required */
+  int32_t reserved;    /* 0 */
+} weir_volume;
+WEIR_API weir_status weir_volume_init(weir_volume* volume, size_t struct_size);
+
+/* ---- Options of a conversion ----------------------------------------------------------------------------------- */
+
+/* What decides the size of the file. */
+enum {
+  WEIR_BUDGET_AUTO = 0,      /* rate 8, or the smallest possible file where that is larger */
+  WEIR_BUDGET_RATE = 1,      /* ceil(float32 bytes of the volume / budget) bytes; budget 2^-20 to 2^60 */
+  WEIR_BUDGET_SIZE = 2,      /* size bytes, at least 1 */
+  WEIR_BUDGET_PSNR = 3,      /* as few bytes as keep budget dB or more */
+  WEIR_BUDGET_MAX_ERROR = 4, /* as few bytes as keep each voxel within budget >= 0, in the values' unit */
+  WEIR_BUDGET_LOSSLESS = 5   /* as many bytes as every bit of every voxel needs */
+};
+/* How leaves are stored. Also of files that are open, where AUTO does not occur. */
+enum {
+  WEIR_ENCODING_AUTO = 0,  /* float32 or FPN, whichever has less error at that size */
+  WEIR_ENCODING_FLOAT = 1, /* 32 bits a voxel */
+  WEIR_ENCODING_FPN = 2,   /* 1, 2, 4, 8 or 16 bits a voxel, chosen for each leaf */
+  WEIR_ENCODING_FP4 = 3,
+  WEIR_ENCODING_FP8 = 4,
+  WEIR_ENCODING_FP16 = 5
+};
+/* What the budget is spent on: squared error, or the distances of a brick's range to the background. */
+enum { WEIR_METRIC_SSE = 0, WEIR_METRIC_FARTHEST = 1, WEIR_METRIC_CLOSEST = 2, WEIR_METRIC_MEDIAN = 3 };
+/* What dropped blocks read. */
+enum { WEIR_FILL_MEAN = 0, WEIR_FILL_BACKGROUND = 1 };
+/* What becomes of NaN and infinite voxels: WEIR_ERROR_INPUT, the background, or they stay. */
+enum { WEIR_NONFINITE_ERROR = 0, WEIR_NONFINITE_BACKGROUND = 1, WEIR_NONFINITE_KEEP = 2 };
+
+typedef struct weir_convert_options {
+  size_t struct_size;
+  double budget;        /* for WEIR_BUDGET_RATE, _PSNR, _MAX_ERROR */
+  uint64_t size;        /* bytes, for WEIR_BUDGET_SIZE */
+  uint64_t memory;      /* bytes that weir may take besides what the process has; 0: 512 MiB. A call with a buffer in
+                           it takes that besides, see there */
+  const char* work_dir; /* for temporary files, on a disk; NULL: a hidden directory beside the output */
+  /* Callbacks, each optional, called with `user` by one thread at a time, which may be another than the caller's, while
+     the call lasts (for weir_push until its end). They must return, soon, and make no call that has the same handle. */
+  void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes); /* float32 bytes */
+  int (*cancel)(void* user); /* asked several times a second in most passes; not 0 ends the call: WEIR_INTERRUPTED */
+  void (*notice)(void* user, const char* line); /* what the user should know and is no error */
+  void* user;
+  int32_t budget_kind; /* WEIR_BUDGET_... */
+  int32_t encoding;    /* WEIR_ENCODING_... */
+  int32_t metric;      /* WEIR_METRIC_...; with an error budget WEIR_METRIC_SSE alone */
+  int32_t brick;       /* voxels, granularity of the other metrics: 8, 16 or 32; 0: 8 */
+  int32_t fill;        /* WEIR_FILL_... */
+  int32_t nonfinite;   /* WEIR_NONFINITE_... */
+  int32_t has_background;
+  float background;  /* finite; without has_background the most frequent value is found */
+  int32_t overwrite; /* not 0: replace an existing output */
+  int32_t threads;   /* 0: one per core */
+} weir_convert_options;
+WEIR_API weir_status weir_convert_options_init(weir_convert_options* options, size_t struct_size);
+
+/* ---- Convert: values in memory, or a file, to a NanoVDB file --------------------------------------------------- */
+
+/* Converts the array at `data`, voxel (0, 0, 0) of `volume`, at any alignment and not changed during the call. Voxel
+ * (x, y, z) is at data + x stride[0] + y stride[1] + z stride[2] bytes; strides may be negative or 0. stride NULL:
+ * packed, x fastest (C's a[z][y][x], Fortran's a(x, y, z)). options NULL: the defaults. Writes `output` and its
+ * sidecar, output.json, both or neither, with the bytes that weir convert gives for the same values. */
+WEIR_API weir_status weir_convert(const weir_volume* volume, const void* data, const int64_t stride[3],
+                                  const weir_convert_options* options, const char* output, weir_error* error);
+
+/* A NanoVDB file in memory. Read by any threads. */
+typedef struct weir_buffer weir_buffer;
+
+/* The same without a file. Besides options->memory the process holds the result, and 1 to 4 % of the volume's float32
+ * bytes, with an encoding other than FLOAT up to the result's size more, in place of temporary files; work_dir must be
+ * NULL. *buffer is the caller's, for weir_buffer_free. */
+WEIR_API weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, const int64_t stride[3],
+                                            const weir_convert_options* options, weir_buffer** buffer,
+                                            weir_error* error);
+/* The file's bytes, aligned to a page, so that a reader may use the grid in place. Until weir_buffer_free. */
+WEIR_API const void* weir_buffer_data(const weir_buffer* buffer);
+WEIR_API uint64_t weir_buffer_size(const weir_buffer* buffer);       /* bytes */
+WEIR_API const char* weir_buffer_sidecar(const weir_buffer* buffer); /* JSON text, as it would be beside the file */
+WEIR_API void weir_buffer_free(weir_buffer* buffer);
+
+enum { WEIR_ENDIAN_AUTO = 0, WEIR_ENDIAN_LITTLE = 1, WEIR_ENDIAN_BIG = 2 };
+
+/* What a file does not say itself. */
+typedef struct weir_input_options {
+  size_t struct_size;
+  int64_t extent[3];    /* of a raw file; all 0: as its name says, NAME_XxYxZ_TYPE.raw */
+  uint64_t offset;      /* bytes before a raw file's first value */
+  const char* dataset;  /* in a file that holds several; NULL: the only one */
+  const int64_t* index; /* index_count positions on the leading axes of an array of more than three */
+  size_t index_count;
+  const char* missing; /* as weir_volume's, besides what the file says */
+  double spacing[3];   /* in place of the file's; all 0: the file's */
+  double origin[3];    /* the same, with has_origin */
+  int64_t roi_min[3];  /* only the voxels from roi_min to before roi_max; both all 0: the whole volume */
+  int64_t roi_max[3];
+  int32_t type;   /* of a raw file, WEIR_UINT8 ...; 0: as its name says */
+  int32_t endian; /* of a raw file, WEIR_ENDIAN_...; AUTO: as its name says, else little */
+  int32_t has_origin;
+  int32_t stack; /* not 0: the path is a pattern, "plane_%05d.raw": one volume from many files along z */
+} weir_input_options;
+WEIR_API weir_status weir_input_options_init(weir_input_options* options, size_t struct_size);
+
+/* Converts a file of any format that weir reads. input_options NULL: the file says all. */
+WEIR_API weir_status weir_convert_file(const char* input, const weir_input_options* input_options,
+                                       const weir_convert_options* options, const char* output, weir_error* error);
+
+/* ---- Push: a volume out of a running simulation ---------------------------------------------------------------- */
+
+/* A volume that is handed over in slabs, and whose values are gone after each call. */
+typedef struct weir_push weir_push;
+
+/* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end. Values
+ * wait in options->memory bytes and in the work directory, compactly, where they do not fit. *push is the caller's, for
+ * weir_push_free. */
+WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
+                                     weir_push** push, weir_error* error);
+/* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed
+ * after the call. Each plane once, in any order, and by any threads at once. After WEIR_ERROR_USAGE (planes that are
+ * not there, or were given) nothing was taken and the push goes on; any other failure is the push's end, and its status
+ * that of every later call. A full disk is such a failure: the call does not wait for room on it. */
+WEIR_API weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* data, const int64_t stride[3],
+                                    weir_error* error);
+/* Writes the file, of the bytes that weir_convert gives for the same values, and its sidecar. WEIR_ERROR_USAGE where
+ * planes are missing; they can still be given. By one thread, after all slabs. */
+WEIR_API weir_status weir_push_end(weir_push* push, weir_error* error);
+/* Ends a push that was not ended without an output, and frees it. By one thread, after all other calls. */
+WEIR_API void weir_push_free(weir_push* push);
+
+/* ---- Load: a NanoVDB file to values ---------------------------------------------------------------------------- */
+
+/* The first grid of a file that weir or another program wrote: float32 or quantised, not compressed. All calls but
+ * weir_close may be made by any threads at once. */
+typedef struct weir_grid weir_grid;
+
+/* Maps the file and checks it whole, but for the values: no later call leaves it, whatever its bytes are. The file must
+ * not be cut while it is open: looking at pages that are gone ends a process by SIGBUS. weir replaces files, it changes
+ * none. *grid is the caller's, for weir_close. */
+WEIR_API weir_status weir_open(const char* path, weir_grid** grid, weir_error* error);
+/* The same of `bytes` bytes in memory, which are not copied: they must stay as they are until weir_close. `sidecar` is
+ * JSON text or NULL. */
+WEIR_API weir_status weir_open_memory(const void* data, uint64_t bytes, const char* sidecar, weir_grid** grid,
+                                      weir_error* error);
+WEIR_API void weir_close(weir_grid* grid);
+
+typedef struct weir_grid_info {
+  size_t struct_size;
+  int64_t extent[3];    /* voxels of the domain, the bounding box of active voxels; all 0: there is none */
+  int64_t index_min[3]; /* of its lowest voxel */
+  double spacing[3];    /* world units per voxel */
+  double origin[3];     /* world position of index (0, 0, 0) */
+  double range[2];      /* of the decoded active values, as the file says */
+  double background;    /* what voxels outside the domain read */
+  uint64_t file_bytes;
+  uint64_t grid_offset; /* bytes before the grid */
+  uint64_t grid_bytes;  /* of the grid, padding included */
+  uint64_t data_bytes;  /* of the grid without padding at its end: what a copy of it needs */
+  /* What the sidecar certifies. certified is 0, and all after it, where there is none or it is another file's. */
+  double psnr_db;         /* infinite where lossless */
+  double mse;             /* mean squared error, of decoded against float32 values */
+  double max_abs_error;   /* largest error of a voxel */
+  double source_range[2]; /* of the finite values of the source */
+  uint64_t nonfinite;     /* NaN and infinite voxels of the source */
+  uint64_t missing;       /* voxels without data */
+  int32_t certified;
+  int32_t lossless;
+  int32_t encoding; /* WEIR_ENCODING_... */
+  int32_t reserved;
+} weir_grid_info;
+WEIR_API weir_status weir_grid_info_init(weir_grid_info* info, size_t struct_size);
+/* Fills *info, which weir_grid_info_init has set up. */
+WEIR_API weir_status weir_get_info(const weir_grid* grid, weir_grid_info* info, weir_error* error);
+/* Until weir_close. */
+WEIR_API const char* weir_grid_name(const weir_grid* grid);
+WEIR_API const char* weir_grid_sidecar(const weir_grid* grid); /* JSON text; NULL where certified is 0 */
+/* The grid itself, data_bytes of it, as NanoVDB's own code takes it: aligned to 32 bytes in files that weir wrote and
+ * in buffers. grid_offset bytes before it begins the file. Until weir_close. */
+WEIR_API const void* weir_grid_data(const weir_grid* grid);
+
+/* The value of voxel `index`, any, as NanoVDB's own accessors give it: outside the domain the background, but what they
+ * hold where the last 8^3 blocks reach beyond its edge. */
+WEIR_API weir_status weir_value(const weir_grid* grid, const int64_t index[3], float* value, weir_error* error);
+/* The same of the voxels from `min` to before `max`, x fastest, into `values`, which has `count` floats, exactly as
+ * many as there are voxels. Uses the calling thread alone. */
+WEIR_API weir_status weir_read_box(const weir_grid* grid, const int64_t min[3], const int64_t max[3], float* values,
+                                   size_t count, weir_error* error);
+
+enum { WEIR_FILTER_NEAREST = 0, WEIR_FILTER_TRILINEAR = 1 };
+
+/* Values at `count` positions (x, y, z), in voxels from the domain's lowest corner: voxel i covers [i, i + 1), its
+ * centre is i + 0.5, a position p of the world is at (p - origin) / spacing - index_min + 0.5. Positions outside are
+ * clamped to the domain; where one is NaN, so is its value. The first call builds a table of 4 bytes per 8^3 voxels. */
+WEIR_API weir_status weir_sample(const weir_grid* grid, int32_t filter, const float* positions, size_t count,
+                                 float* values, weir_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* WEIR_H */

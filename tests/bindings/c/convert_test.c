@@ -1,0 +1,255 @@
+/* Conversions of arrays: whatever type, order and place, the bytes are those of a conversion of a raw file. */
+#include "check.h"
+
+#include <math.h>
+
+static weir_error error;
+
+/* x fastest, as a raw file of that type. */
+static void write_raw(const char* path, const void* values, size_t bytes) {
+  FILE* const file = fopen(path, "wb");
+  if (file == NULL || fwrite(values, 1, bytes, file) != bytes || fclose(file) != 0) abort();
+}
+
+#define FILL(type)                                                             \
+  do {                                                                         \
+    for (int z = 0; z < NZ; ++z) {                                             \
+      for (int y = 0; y < NY; ++y) {                                           \
+        for (int x = 0; x < NX; ++x) {                                         \
+          ((type*)packed)[x + NX * (y + NY * z)] = (type)pattern(x, y, z);     \
+          ((type*)transposed)[z + NZ * (y + NY * x)] = (type)pattern(x, y, z); \
+        }                                                                      \
+      }                                                                        \
+    }                                                                          \
+  } while (0)
+
+static void fill(int32_t type, void* packed, void* transposed) {
+  switch (type) {
+    case WEIR_UINT8:
+      FILL(uint8_t);
+      break;
+    case WEIR_INT8:
+      FILL(int8_t);
+      break;
+    case WEIR_UINT16:
+    case WEIR_FLOAT16: /* of small whole numbers as bits: tiny values */
+      FILL(uint16_t);
+      break;
+    case WEIR_INT16:
+      FILL(int16_t);
+      break;
+    case WEIR_UINT32:
+      FILL(uint32_t);
+      break;
+    case WEIR_INT32:
+      FILL(int32_t);
+      break;
+    case WEIR_UINT64:
+      FILL(uint64_t);
+      break;
+    case WEIR_INT64:
+      FILL(int64_t);
+      break;
+    case WEIR_FLOAT32:
+      FILL(float);
+      break;
+    default:
+      FILL(double);
+  }
+}
+
+static void every_type_in_every_order(void) {
+  static const int bytes_of[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
+  void* const packed = malloc(8 * VOXELS);
+  void* const transposed = malloc(8 * VOXELS);
+  for (int32_t type = WEIR_UINT8; type <= WEIR_FLOAT64; ++type) {
+    const int64_t bytes = bytes_of[type];
+    fill(type, packed, transposed);
+    write_raw(path_of("v.raw"), packed, (size_t)bytes * VOXELS);
+    weir_convert_options options = default_options();
+    options.overwrite = 1;
+    weir_input_options input;
+    CHECK(weir_input_options_init(&input, sizeof input) == WEIR_OK);
+    input.extent[0] = NX;
+    input.extent[1] = NY;
+    input.extent[2] = NZ;
+    input.type = type;
+    CHECK_OK(weir_convert_file(path_of("v.raw"), &input, &options, path_of("raw.nvdb"), &error));
+
+    const weir_volume volume = pattern_volume(type);
+    CHECK_OK(weir_convert(&volume, packed, NULL, &options, path_of("packed.nvdb"), &error));
+    CHECK(same_files(path_of("raw.nvdb"), path_of("packed.nvdb")));
+    CHECK(exists(path_of("packed.nvdb.json")));
+
+    const int64_t z_fastest[3] = {bytes * NZ * NY, bytes * NZ, bytes};
+    weir_buffer* buffer = NULL;
+    CHECK_OK(weir_convert_to_memory(&volume, transposed, z_fastest, NULL, &buffer, &error));
+    size_t size = 0;
+    unsigned char* const file = read_file(path_of("raw.nvdb"), &size);
+    CHECK(weir_buffer_size(buffer) == size && memcmp(weir_buffer_data(buffer), file, size) == 0);
+    CHECK((uintptr_t)weir_buffer_data(buffer) % 4096 == 0);
+    CHECK(strstr(weir_buffer_sidecar(buffer), "\"format\":\"memory\"") != NULL ||
+          strstr(weir_buffer_sidecar(buffer), "\"format\": \"memory\"") != NULL);
+    weir_buffer_free(buffer);
+    free(file);
+  }
+  free(packed);
+  free(transposed);
+}
+
+static uint64_t size_of(const char* path) {
+  size_t bytes = 0;
+  free(read_file(path, &bytes));
+  return bytes;
+}
+
+static weir_grid_info info_of(const char* path) {
+  weir_grid* grid = NULL;
+  weir_grid_info info;
+  CHECK(weir_grid_info_init(&info, sizeof info) == WEIR_OK);
+  CHECK_OK(weir_open(path, &grid, &error));
+  CHECK_OK(weir_get_info(grid, &info, &error));
+  weir_close(grid);
+  CHECK(info.certified == 1);
+  return info;
+}
+
+static void every_budget(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  const char* const output = path_of("budget.nvdb");
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+
+  options.budget_kind = WEIR_BUDGET_SIZE;
+  options.size = 400001;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(size_of(output) == 400001);
+  options.size = 1;
+  CHECK_STATUS(WEIR_ERROR_BUDGET, weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(size_of(output) == 400001);
+  options.size = 0;
+
+  options.budget_kind = WEIR_BUDGET_RATE;
+  options.budget = 1.25;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(size_of(output) == (4 * VOXELS * 4 + 4) / 5);
+
+  options.budget_kind = WEIR_BUDGET_PSNR;
+  options.budget = 40;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(info_of(output).psnr_db >= 40);
+
+  options.budget_kind = WEIR_BUDGET_MAX_ERROR;
+  options.budget = 0.5;
+  options.encoding = WEIR_ENCODING_FPN;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(info_of(output).max_abs_error <= 0.5);
+  CHECK(info_of(output).encoding == WEIR_ENCODING_FPN);
+  options.budget = 0;
+
+  options.budget_kind = WEIR_BUDGET_LOSSLESS;
+  options.encoding = WEIR_ENCODING_FLOAT;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(info_of(output).lossless == 1 && isinf(info_of(output).psnr_db));
+  CHECK(info_of(output).encoding == WEIR_ENCODING_FLOAT);
+
+  options.budget_kind = WEIR_BUDGET_AUTO;
+  options.metric = WEIR_METRIC_FARTHEST;
+  options.fill = WEIR_FILL_BACKGROUND;
+  options.brick = 16;
+  options.has_background = 1;
+  options.background = 3;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, output, &error));
+  CHECK(info_of(output).background == 3);
+  CHECK(info_of(output).source_range[0] == 0 && info_of(output).source_range[1] == 100);
+}
+
+static void values_that_are_none(const float* values) {
+  float* const holed = malloc(sizeof(float) * VOXELS);
+  memcpy(holed, values, sizeof(float) * VOXELS);
+  holed[5] = NAN;
+  holed[VOXELS - 1] = -INFINITY;
+  holed[77] = -9999;
+  weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  volume.missing = "-9999";
+  weir_convert_options options = default_options();
+  CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
+  CHECK_TEXT(
+      "memory: 2 voxels are NaN or infinite, the first (nan) at 5,0,0; choose --nonfinite background or --nonfinite "
+      "keep",
+      error.message);
+  CHECK(!exists(path_of("holed.nvdb")) && !exists(path_of("holed.nvdb.partial")));
+  options.nonfinite = WEIR_NONFINITE_KEEP;
+  CHECK_OK(weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
+  CHECK(info_of(path_of("holed.nvdb")).nonfinite == 2);
+  CHECK(info_of(path_of("holed.nvdb")).missing == 1);
+  free(holed);
+}
+
+struct seen {
+  int survey, encode, asked, stop_after;
+  uint64_t last;
+};
+
+static void see_progress(void* user, const char* pass, uint64_t done, uint64_t total) {
+  struct seen* const seen = user;
+  seen->survey += strcmp(pass, "survey") == 0;
+  seen->encode += strcmp(pass, "encode") == 0;
+  seen->last = done;
+  CHECK(done <= total);
+}
+static int ask_cancel(void* user) {
+  struct seen* const seen = user;
+  return ++seen->asked > seen->stop_after;
+}
+
+static void callbacks(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  struct seen seen = {0, 0, 0, 1 << 30, 0};
+  weir_convert_options options = default_options();
+  options.progress = see_progress;
+  options.cancel = ask_cancel;
+  options.user = &seen;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("seen.nvdb"), &error));
+  CHECK(seen.survey >= 2 && seen.encode >= 1 && seen.asked >= 3);
+  const int calls = seen.asked;
+  for (int stop = 0; stop < calls - 1; ++stop) {
+    seen.asked = 0;
+    seen.stop_after = stop;
+    CHECK_STATUS(WEIR_INTERRUPTED, weir_convert(&volume, values, NULL, &options, path_of("stopped.nvdb"), &error));
+    CHECK(!exists(path_of("stopped.nvdb")) && !exists(path_of("stopped.nvdb.json")));
+    CHECK(!exists(path_of("stopped.nvdb.partial")) && !exists(path_of(".stopped.nvdb.work")));
+  }
+}
+
+static void places(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  weir_convert_options options = default_options();
+  const char* const output = path_of("place.nvdb");
+  CHECK_OK(weir_convert(&volume, values, NULL, NULL, output, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert(&volume, values, NULL, NULL, output, &error));
+  CHECK_STATUS(WEIR_ERROR_IO,
+               weir_convert(&volume, values, NULL, NULL, path_of("none/place.nvdb"), NULL) == WEIR_ERROR_IO
+                   ? (error.status = WEIR_ERROR_IO)
+                   : WEIR_OK);
+  options.work_dir = path_of("none");
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
+  options.work_dir = directory;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
+  CHECK(same_files(output, path_of("b.nvdb")));
+  weir_buffer* buffer = NULL;
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert_to_memory(&volume, values, NULL, &options, &buffer, &error));
+  CHECK(buffer == NULL);
+}
+
+int main(void) {
+  make_directory();
+  float* const values = pattern_floats();
+  every_type_in_every_order();
+  every_budget(values);
+  values_that_are_none(values);
+  callbacks(values);
+  places(values);
+  free(values);
+  return finish();
+}
