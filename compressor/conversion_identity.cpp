@@ -1,9 +1,11 @@
 #include "compressor/conversion_identity.h"
 
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <system_error>
 
+#include "format/digest.h"
 #include "format/text.h"
 
 namespace weir {
@@ -52,6 +54,11 @@ std::string visible_values(const Scene& scene) {
   return text;
 }
 
+std::string scene_digest(const Scene& scene) {
+  const std::string text = visible_values(scene);
+  return piece_digest(std::as_bytes(std::span(text))).hex();
+}
+
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options) {
   std::string index;
   for (const std::int64_t i : source.index) index += cat(i, ' ');
@@ -59,6 +66,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"source", place_of(source.path)},
       {"source bytes", cat(source.file_bytes)},
       {"source modified (ns)", cat(source.mtime_ns)},
+      {"source files", source.files_digest},
       {"format", source.format},
       {"dataset", source.dataset},
       {"index", index},

@@ -18,7 +18,11 @@ std::map<std::string, std::string> deciding_options(std::map<std::string, std::s
 /// What decides which values a scene shows, and so where an error target is met: the file may change under its path.
 std::string visible_values(const Scene& scene);
 
-/// Source (path, size, modification time, dataset, type, extent), all of `options` that has a say, and the program.
+/// Of visible_values, for the sidecar (Sidecar::Visible::scene_digest); 32 hex digits.
+std::string scene_digest(const Scene& scene);
+
+/// Source (path, size, modification time, states of its files, dataset, type, extent), all of `options` that has a say,
+/// and the program.
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options);
 
 }  // namespace weir

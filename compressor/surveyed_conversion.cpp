@@ -85,6 +85,7 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   sidecar.source.unit_si = info.unit_si;
   sidecar.source.scale = info.mapping.scale;
   sidecar.source.offset = info.mapping.offset;
+  sidecar.source.files_digest = info.files_digest;
   sidecar.missing.count = survey.missing;
   for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
   sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
@@ -225,7 +226,8 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
   sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
   if (visibility) {
     sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
-                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey)};
+                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey),
+                       scene_digest(options.scene->scene)};
   }
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
   sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};

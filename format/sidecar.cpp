@@ -43,6 +43,7 @@ void describe(Archive& archive, S& s) {
     archive.field("unit_si", s.source.unit_si);
     archive.field("scale", s.source.scale);
     archive.field("offset", s.source.offset);
+    archive.optional_field("files_digest", s.source.files_digest);
   });
   archive.object("grid", [&] {
     archive.field("name", s.grid.name);
@@ -99,6 +100,7 @@ void describe(Archive& archive, S& s) {
     archive.field("blocks", visible.blocks);
     archive.field("voxels", visible.voxels);
     describe_error(archive, visible.error);
+    archive.optional_field("scene_digest", visible.scene_digest);
   });
   archive.object("macrocells", [&] {
     archive.field("cell", s.macrocells.cell);
@@ -150,6 +152,9 @@ class JsonWriter {
   void field(const char* key, const std::optional<double>& value) { (*at_)[key] = value ? Json(*value) : Json(); }
   void field(const char* key, const Index3& i) { (*at_)[key] = array(i); }
   void field(const char* key, const Box& box) { (*at_)[key] = {array(box.lo), array(box.hi)}; }
+  void optional_field(const char* key, const std::string& value) {
+    if (!value.empty()) field(key, value);
+  }
   void hex_field(const char* key, std::uint32_t value) {
     std::array<char, 9> text{};
     std::snprintf(text.data(), text.size(), "%08x", value);
@@ -194,6 +199,11 @@ class JsonReader {
   template <typename T>
   void field(const char* key, T& value) {
     read(key, find(key), value);
+  }
+
+  void optional_field(const char* key, std::string& value) {
+    value.clear();
+    if (at_->contains(key)) field(key, value);
   }
 
   void hex_field(const char* key, std::uint32_t& value) {

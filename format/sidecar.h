@@ -35,6 +35,7 @@ struct Sidecar {
     std::optional<double> unit_si;    ///< openPMD unitSI
     double scale = 1;                 ///< value = stored * scale + offset
     double offset = 0;
+    std::string files_digest;  ///< FileStates of the files that the volume lies in; empty, and no key, where it is one
   } source;
 
   struct Grid {
@@ -113,6 +114,7 @@ struct Sidecar {
     std::uint64_t blocks = 0;  ///< that can be seen
     std::uint64_t voxels = 0;  ///< finite ones in them: the error is over these
     CertifiedError error;
+    std::string scene_digest;  ///< of what in the scene decides the bytes; empty, and no key, where weir was older
   };
   std::optional<Visible> visible;
 

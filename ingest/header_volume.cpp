@@ -7,6 +7,7 @@
 #include "format/error.h"
 #include "format/text.h"
 #include "ingest/extent.h"
+#include "ingest/file_states.h"
 #include "ingest/header_text.h"
 #include "ingest/raw_values.h"
 #include "ingest/spool_inflated.h"
@@ -143,6 +144,10 @@ std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, con
   SourceInfo info = volume.info;
   info.extent = shape.extent;
   info.index = options.index.empty() ? std::vector<std::int64_t>(shape.leading.size(), 0) : options.index;
+  FileStates files;
+  files.add(volume.info.path);
+  if (volume.data_path != volume.info.path) files.add(volume.data_path);
+  info.files_digest = files.digest();
   auto file = open_data_file(volume, options.direct_io);
   info.mtime_ns = std::max(info.mtime_ns, file->mtime_ns());
 

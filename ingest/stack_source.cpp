@@ -11,6 +11,7 @@
 #include "format/text.h"
 #include "ingest/block_plan.h"
 #include "ingest/extent.h"
+#include "ingest/file_states.h"
 #include "ingest/for_pieces.h"
 #include "ingest/number_pattern.h"
 #include "ingest/source_registry.h"
@@ -67,6 +68,7 @@ class StackSource final : public VolumeSource {
     }
     info_.path = pattern;
     info_.format = "stack";
+    info_.files_digest = files_.digest();
     checked_volume_bytes(info_.extent, scalar_bytes(info_.type), pattern);
     choose_access();
   }
@@ -108,6 +110,7 @@ class StackSource final : public VolumeSource {
   void add(const std::string& path) {
     const auto source = open_source(path, options_);
     const SourceInfo& info = source->info();
+    files_.add(path, info.files_digest);
     if (slabs_.empty()) {
       first_ = info;
       info_ = info;
@@ -178,6 +181,7 @@ class StackSource final : public VolumeSource {
   SourceInfo first_;  ///< of the first file
   AccessShape access_;
   std::vector<Slab> slabs_;
+  FileStates files_;
   std::uint64_t working_bytes_ = 0;  ///< of one file
   mutable std::mutex mutex_;
   std::atomic<std::uint64_t> closed_bytes_read_{0};

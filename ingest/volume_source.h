@@ -33,6 +33,7 @@ struct SourceInfo {
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of index (0, 0, 0)
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
   std::int64_t mtime_ns = 0;                     ///< modification time, nanoseconds since 1970
+  std::string files_digest;                      ///< FileStates of all files it lies in; empty where that is one
 
   /// The voxels as a box in index space.
   Box domain() const { return {index_origin, index_origin + extent}; }

@@ -78,12 +78,7 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
 void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool may_exist) {
   std::error_code ignored;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (std::filesystem::equivalent(steps[i].path, outputs[i], ignored)) {
-      throw usage(cat(outputs[i], ": is the input; choose another output with -o"));
-    }
-    if (std::filesystem::is_directory(outputs[i], ignored)) {
-      throw usage(cat(outputs[i], ": is a directory; name a file in it with -o"));
-    }
+    check_output(steps[i].path, outputs[i]);
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
       throw usage(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
     }
@@ -101,7 +96,7 @@ void check_alike(const Sidecar& first, const SourceInfo& info, const Budget& bud
 
 // The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
 std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions& options) {
-  FinishedOutput found = find_output(options.output, info, options.provenance.options);
+  FinishedOutput found = find_output(info, options);
   switch (found.state) {
     case FinishedOutput::State::absent:
       return std::nullopt;

@@ -12,15 +12,15 @@
 namespace weir {
 namespace {
 
-using Options = std::map<std::string, std::string>;
-
 // `source` and `options` as a sidecar gives them back: JSON does not hold every byte that a path may.
-Sidecar expected_record(const SourceInfo& source, const Options& options) {
+Sidecar expected_record(const SourceInfo& source, const ConversionOptions& options) {
   Sidecar record;
   record.source.path = source.path;
   record.source.dataset = source.dataset;
   record.source.mtime = utc_text(source.mtime_ns);
-  record.weir.options = deciding_options(options);
+  record.source.files_digest = source.files_digest;
+  if (options.scene) record.visible.emplace().scene_digest = scene_digest(options.scene->scene);
+  record.weir.options = deciding_options(options.provenance.options);
   return parse_sidecar(to_json_text(record), source.path);
 }
 
@@ -31,11 +31,16 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
   if (found.source.mtime != expected.source.mtime) {
     return cat("made of ", source.path, " as of ", found.source.mtime, ", now ", expected.source.mtime);
   }
+  if (found.source.files_digest != expected.source.files_digest) {
+    return cat("made of other files of ", source.path, ", or as they were before");
+  }
   if (found.source.dataset != expected.source.dataset || found.source.index != source.index ||
       found.source.format != source.format || found.source.extent != source.extent) {
     return cat("made of another volume of ", source.path);
   }
   if (deciding_options(found.weir.options) != expected.weir.options) return "made with other options";
+  const std::string scene = expected.visible ? expected.visible->scene_digest : "";
+  if ((found.visible ? found.visible->scene_digest : "") != scene) return "made for a scene that said something else";
   return {};
 }
 
@@ -55,7 +60,8 @@ std::string broken(const std::string& output, const Sidecar& sidecar) {
 
 }  // namespace
 
-FinishedOutput find_output(const std::string& output, const SourceInfo& source, const Options& options) {
+FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& options) {
+  const std::string& output = options.output;
   const std::string record_path = sidecar_path(output);
   if (!std::filesystem::exists(record_path)) {
     if (!std::filesystem::exists(output)) return {};
@@ -75,6 +81,16 @@ FinishedOutput find_output(const std::string& output, const SourceInfo& source, 
   if (reason.empty()) reason = broken(output, found);
   const auto state = reason.empty() ? FinishedOutput::State::done : FinishedOutput::State::stale;
   return {state, std::move(found), std::move(reason)};
+}
+
+void check_output(const std::string& input, const std::string& output) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(input, output, ignored)) {
+    throw Error(ErrorKind::usage, cat(output, ": is the input; choose another output with -o"));
+  }
+  if (std::filesystem::is_directory(output, ignored)) {
+    throw Error(ErrorKind::usage, cat(output, ": is a directory; name a file in it with -o"));
+  }
 }
 
 }  // namespace weir

@@ -3,10 +3,10 @@
 // the volume's nodes; no values are read, that is for `weir verify`.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 
+#include "compressor/conversion.h"
 #include "format/sidecar.h"
 #include "ingest/volume_source.h"
 
@@ -24,11 +24,13 @@ struct FinishedOutput {
   std::string reason;  ///< why it is not done
 };
 
-/// `options` are those of the conversion, as given_options says them; the ones that do not change the
-/// volume's bytes (memory, threads, places) need not agree. Done means: the sidecar names the same source
-/// path, dataset, size and modification time and the same options, and the volume has the size and the head
-/// checksum that the sidecar says. Throws nothing for what stands there.
-FinishedOutput find_output(const std::string& output, const SourceInfo& source,
-                           const std::map<std::string, std::string>& options);
+/// At options.output; options.provenance has those of the command line, as given_options says them, and the ones that
+/// do not change the volume's bytes (memory, threads, places) need not agree. Done means: the sidecar names the same
+/// source path, dataset, size, modification time and states of its files, the same options and a scene that said the
+/// same, and the volume has the size and the head checksum that the sidecar says. Throws nothing for what stands there.
+FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& options);
+
+/// Throws Error(usage) where `output` is the input itself, or a directory.
+void check_output(const std::string& input, const std::string& output);
 
 }  // namespace weir

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "format/error.h"
 #include "format/text.h"
 #include "ingest/extent.h"
+#include "ingest/file_states.h"
 #include "ingest/hdf5/chunk_reader.h"
 #include "ingest/hdf5/constant_source.h"
 #include "ingest/hdf5/dataset_choice.h"
@@ -40,6 +42,13 @@ class ChunkedSource final : public VolumeSource {
   ChunkReader reader_;
 };
 
+// The file a dataset lies in, which an external link may have led to.
+std::string file_of(hid_t dataset) {
+  std::array<char, 4096> name{};
+  const ssize_t length = H5Fget_name(dataset, name.data(), name.size());
+  return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : "";
+}
+
 /// A dataset that is being opened: what all ways of reading it start from.
 struct Opening {
   Hdf5Object object;
@@ -48,6 +57,16 @@ struct Opening {
   SourceInfo info;
   const SourceOptions& options;
 
+  /// The file that was opened and those that links and mappings led to; empty names are the dataset's own.
+  void note_files(const std::vector<std::string>& further) {
+    std::set<std::string> others(further.begin(), further.end());
+    others.erase("");
+    others.erase(info.path);
+    FileStates files;
+    files.add(info.path);
+    for (const std::string& path : others) files.add(path);
+    info.files_digest = files.digest();
+  }
   /// Bytes of the array before the slice.
   std::uint64_t first_byte() const {
     std::uint64_t position = 0;
@@ -70,13 +89,6 @@ struct Opening {
   }
 };
 
-// The file a dataset lies in, which an external link may have led to.
-std::string file_of(hid_t dataset) {
-  std::array<char, 4096> name{};
-  const ssize_t length = H5Fget_name(dataset, name.data(), name.size());
-  return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : "";
-}
-
 std::unique_ptr<VolumeSource> open_contiguous(Opening opening) {
   const haddr_t begin = H5Dget_offset(opening.object.handle.get());
   auto file = std::make_unique<InputFile>(file_of(opening.object.handle.get()), opening.options.direct_io);
@@ -97,6 +109,9 @@ std::unique_ptr<VolumeSource> open_external(Opening opening) {
   }
   std::vector<ExternalPart> parts =
       external_parts(creation.get(), bytes, file_of(opening.object.handle.get()), opening.object.where());
+  std::vector<std::string> files{file_of(opening.object.handle.get())};
+  for (const ExternalPart& part : parts) files.push_back(part.path);
+  opening.note_files(files);
   const std::uint64_t first = opening.first_byte();
   if (parts.size() == 1) {
     auto file = std::make_unique<InputFile>(parts[0].path, opening.options.direct_io);
@@ -139,8 +154,12 @@ std::unique_ptr<VolumeSource> open_stored(Opening opening) {
       break;
   }
   const std::string parent = file_of(opening.object.handle.get());
-  return opening.from_boxes(make_virtual_boxes(std::move(opening.object.handle), opening.slice.index,
-                                               opening.slice.extent, parent, opening.object.where()));
+  auto boxes = make_virtual_boxes(std::move(opening.object.handle), opening.slice.index, opening.slice.extent, parent,
+                                  opening.object.where());
+  std::vector<std::string> files = boxes->files();
+  files.push_back(parent);
+  opening.note_files(files);
+  return opening.from_boxes(std::move(boxes));
 }
 
 // The array's bytes, leading axes included, fit 63 bits.
@@ -195,6 +214,7 @@ std::unique_ptr<VolumeSource> open_hdf5(const std::string& path, const SourceOpt
   opening.slice = volume_slice(opening.facts.axes, options.index, where);
   check_bytes(opening);
   opening.info = source_info(path, opening);
+  opening.note_files({file_of(opening.object.handle.get())});
   if (opening.facts.constant) return make_constant_source(*opening.facts.constant, std::move(opening.info));
   return open_stored(std::move(opening));
 }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "format/index.h"
 #include "ingest/volume_source.h"
@@ -23,6 +25,8 @@ class StoredBoxes {
   /// there is none) and a corner.
   virtual Index3 chunk() const = 0;
   virtual Index3 chunk_origin() const { return {0, 0, 0}; }
+  /// Paths of the files that values come from, besides the one that was opened.
+  virtual std::vector<std::string> files() const { return {}; }
   /// What it and its library hold besides, in bytes.
   virtual std::uint64_t working_bytes() const = 0;
 };

@@ -71,6 +71,11 @@ class VirtualBoxes final : public StoredBoxes {
 
   Index3 chunk() const override { return chunk_; }
   Index3 chunk_origin() const override { return chunk_origin_; }
+  std::vector<std::string> files() const override {
+    std::vector<std::string> files;
+    for (const VirtualMapping& mapping : mappings_) files.push_back(mapping.file);
+    return files;
+  }
   std::uint64_t working_bytes() const override {
     return chunk_bytes_ + mappings_.size() * kBytesPerMapping + (kOpenSources + 1) * kHdf5MetadataBytes;
   }

@@ -22,6 +22,7 @@ TEST(ConversionIdentity, ChangesWithAllThatDecidesTheBytes) {
       [](SourceInfo& s) { s.path = "b.raw"; },
       [](SourceInfo& s) { s.file_bytes = 1; },
       [](SourceInfo& s) { s.mtime_ns = 1; },
+      [](SourceInfo& s) { s.files_digest = "f"; },
       [](SourceInfo& s) { s.dataset = "d"; },
       [](SourceInfo& s) {
         s.index = {1, 2};
@@ -83,6 +84,10 @@ TEST(ConversionIdentity, NamesAllOfASceneThatDecidesWhatIsSeen) {
   EXPECT_NE(with([](Scene& s) { s.volume.range = {0, 1}; }), visible_values({}));
   EXPECT_NE(with([](Scene& s) { s.volume.region = Box{{0, 0, 0}, {1, 1, 1}}; }), visible_values({}));
   EXPECT_NE(with([](Scene& s) { s.volume.opacity = {{0, 1}}; }), visible_values({}));
+  Scene opaque;
+  opaque.volume.opacity = {{0, 1}};
+  EXPECT_NE(scene_digest(opaque), scene_digest({}));
+  EXPECT_EQ(scene_digest({}).size(), 32U);
 }
 
 TEST(ConversionIdentity, IsTheSameOnAnyMachineAndAtAnyPlace) {

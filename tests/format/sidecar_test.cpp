@@ -35,7 +35,8 @@ Sidecar sample() {
               "kg m-3",
               1e-4,
               0.5,
-              -2};
+              -2,
+              "00112233445566778899aabbccddeeff"};
   s.grid = {"density", "float32", {60, 61, 62}, {0.1, 0.2, 0.3}, {-1, 1e300, 5e-324}, {{-4, 5, 6}, {56, 66, 68}}};
   s.value_range = {-0.1, 1.0 / 3.0};
   s.nonfinite = {18446744073709551615U, "keep"};
@@ -46,7 +47,8 @@ Sidecar sample() {
   s.budget = {"size", 1048576, 1048576, 1048592, 1.0000152587890625};
   s.selection = {"sse", "mean", 16, 512, 100, {1, 2, 3, 4, 5, 85}};
   s.error = {1e-6, 1e-3, 2e-6, 60.5, 0.125, false};
-  s.visible = Sidecar::Visible{"bone.toml", 77, 39424, {0.75, 0.875, 0.0625, 21.5, 4.5, false}};
+  s.visible = Sidecar::Visible{
+      "bone.toml", 77, 39424, {0.75, 0.875, 0.0625, 21.5, 4.5, false}, "ffeeddccbbaa99887766554433221100"};
   s.macrocells = {16, {4, 5, 6}, 1};
   s.timing = {1.5, 2.5, 4.25, 1, 2, 3};
   s.file = {1048576, 4096, 0x0badc0deU, "fedcba9876543210fedcba9876543210"};
@@ -164,6 +166,17 @@ TEST(Sidecar, SurvivesDeepNesting) {
             "weir convert");
 }
 
+TEST(Sidecar, KeysThatOlderOnesLackMayBeMissing) {
+  const std::string older = edited([](auto& d) {
+    d["source"].erase("files_digest");
+    d["visible"].erase("scene_digest");
+  });
+  const Sidecar read = parse_sidecar(older, "a.nvdb.json");
+  EXPECT_EQ(read.source.files_digest, "");
+  EXPECT_EQ(read.visible->scene_digest, "");
+  EXPECT_EQ(nlohmann::json::parse(to_json_text(read)), nlohmann::json::parse(older));
+}
+
 TEST(Sidecar, IgnoresKeysItDoesNotKnow) {
   EXPECT_EQ(message(edited([](auto& d) { d["later"] = {1, 2}; })), "no error");
 }
@@ -197,6 +210,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
   lossless.error = {0, 0, 0, std::nullopt, 0, true};
   lossless.budget.requested.reset();
   lossless.visible.reset();
+  lossless.source.files_digest.clear();
   std::vector<std::string> documents{to_json_text(sample()), to_json_text(lossless),
                                      edited([](auto& d) { d["file"]["digest"] = "xyz"; }),
                                      edited([](auto& d) { d["selection"]["leaves_kept"] = -1; })};

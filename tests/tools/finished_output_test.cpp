@@ -66,6 +66,64 @@ TEST_F(SkipDone, ConvertsAgainWhatChanged) {
   EXPECT_FALSE(leaves_it()) << "a nanosecond";
 }
 
+TEST_F(SkipDone, ConvertsAgainWhatASceneSaysOtherwise) {
+  const TemporaryDirectory beside;
+  const std::string scene = beside / "s.toml";
+  const auto say = [&](const std::string& opacity, double azimuth) {
+    write_file(scene, "[camera]\nazimuth = " + std::to_string(azimuth) +
+                          "\n[volume]\nrange = [0, 255]\nopacity = " + opacity + "\n");
+  };
+  say("[[0, 0], [0.5, 0], [1, 1]]", 10);
+  ASSERT_EQ(convert({"--scene", scene}).exit_code, 0);
+  EXPECT_TRUE(leaves_it({"--scene", scene}));
+  say("[[0, 0], [0.5, 0], [1, 1]]", 20);
+  EXPECT_TRUE(leaves_it({"--scene", scene})) << "from where it is seen decides nothing";
+  say("[[0, 1], [0.5, 0], [1, 0]]", 20);
+  const CommandResult edited = convert({"--scene", scene});
+  EXPECT_EQ(edited.exit_code, 0);
+  EXPECT_NE(edited.err.find(output_ + ": converted again: made for a scene that said something else"),
+            std::string::npos)
+      << edited.err;
+  EXPECT_TRUE(leaves_it({"--scene", scene}));
+
+  auto record = nlohmann::json::parse(read_file(output_ + ".json"));
+  record["visible"].erase("scene_digest");  // as an older weir wrote it
+  write_file(output_ + ".json", record.dump());
+  EXPECT_FALSE(leaves_it({"--scene", scene})) << "nobody knows what the scene said";
+}
+
+// Of the same size, and older than another file of the volume.
+TEST_F(SkipDone, ConvertsAgainWhatOneOfSeveralFilesChanges) {
+  const TemporaryDirectory beside;
+  const auto rewrite = [&](const std::string& path, char fill) {
+    const auto before = fs::last_write_time(path);
+    write_file(path, std::string(fs::file_size(path), fill));
+    fs::last_write_time(path, before - std::chrono::hours(1));
+  };
+  const auto expect_seen = [&](const std::vector<std::string>& input, const std::string& changed) {
+    std::vector<std::string> command{"convert"};
+    command.insert(command.end(), input.begin(), input.end());
+    command.insert(command.end(), {"-o", beside / "o.nvdb", "--skip-done", "--overwrite"});
+    ASSERT_EQ(run_weir(command).exit_code, 0);
+    EXPECT_NE(run_weir(command).err.find("done already"), std::string::npos);
+    rewrite(changed, 'y');
+    const CommandResult again = run_weir(command);
+    EXPECT_NE(again.err.find("converted again: made of other files of " + input[0] + ", or as they were before"),
+              std::string::npos)
+        << again.err;
+    EXPECT_NE(run_weir(command).err.find("done already"), std::string::npos);
+  };
+  for (const char* name : {"s_1_40x32x4_uint8.raw", "s_2_40x32x4_uint8.raw", "s_3_40x32x4_uint8.raw"}) {
+    write_file(beside / name, std::string(40 * 32 * 4, 'x'));
+  }
+  expect_seen({beside / "s_%d_40x32x4_uint8.raw", "--stack"}, beside / "s_2_40x32x4_uint8.raw");
+
+  write_file(beside / "d.raw", std::string(40 * 32 * 4, 'x'));
+  write_file(beside / "h.mhd",
+             "ObjectType = Image\nNDims = 3\nDimSize = 40 32 4\nElementType = MET_UCHAR\nElementDataFile = d.raw\n");
+  expect_seen({beside / "h.mhd"}, beside / "d.raw");
+}
+
 TEST_F(SkipDone, ConvertsAgainWhatIsNotWhole) {
   ASSERT_EQ(convert().exit_code, 0);
   fs::resize_file(output_, fs::file_size(output_) - 1);

@@ -3,7 +3,9 @@
 #include "ingest/hdf5/hdf5_source.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "ingest/hdf5/hdf5_lock.h"
@@ -142,6 +144,35 @@ with h5py.File("links.h5", "w") as f:
   std::vector<std::string> names;
   for (const DatasetInfo& dataset : list_hdf5(path, {})) names.push_back(dataset.name);
   EXPECT_EQ(names, (std::vector<std::string>{"/hard", "/group/deep/packed", "/group/deep/plain"}));
+}
+
+TEST_F(Hdf5Source, NotesTheStatesOfAllFilesItLiesIn) {
+  write_by_h5py(scratch, R"(
+v = values("<f4")
+with h5py.File("b.h5", "w") as f: f["d"] = v
+with h5py.File("a.h5", "w") as f:
+    f["own"] = v
+    f["chunked"] = v
+    f.create_dataset("external", data=v, external="e.raw")
+    f["linked"] = h5py.ExternalLink("b.h5", "d")
+    layout = h5py.VirtualLayout(SHAPE, "<f4")
+    layout[...] = h5py.VirtualSource("b.h5", "d", SHAPE)
+    f.create_virtual_dataset("virtual", layout)
+    layout[...] = h5py.VirtualSource(f["own"])
+    f.create_virtual_dataset("inner", layout)
+)");
+  const auto digest = [&](const char* name) {
+    return open_source(scratch.path("a.h5"), dataset_options(name))->info().files_digest;
+  };
+  for (const char* name : {"own", "chunked", "inner"}) EXPECT_EQ(digest(name), "") << name;
+  for (const auto& [name, file] : {std::pair{"external", "e.raw"}, {"linked", "b.h5"}, {"virtual", "b.h5"}}) {
+    const std::string before = digest(name);
+    EXPECT_EQ(before.size(), 32U) << name;
+    EXPECT_EQ(digest(name), before) << name;
+    const std::string path = scratch.path(file);
+    std::filesystem::last_write_time(path, std::filesystem::last_write_time(path) - std::chrono::hours(1));
+    EXPECT_NE(digest(name), before) << name;
+  }
 }
 
 TEST_F(Hdf5Source, TakesLeadingAxesByIndex) {
