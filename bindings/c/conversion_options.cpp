@@ -1,5 +1,6 @@
 #include "bindings/c/conversion_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -238,7 +239,10 @@ void Callbacks::start(const std::string& pass, std::uint64_t total_bytes) {
 
 void Callbacks::advance(std::uint64_t done_bytes) {
   const std::scoped_lock lock(mutex_);
-  if (options_.progress != nullptr) options_.progress(options_.user, pass_.c_str(), done_bytes, total_bytes_);
+  // A push has no survey pass of its own, and may still read what it spooled in search of the background.
+  if (options_.progress != nullptr && !pass_.empty()) {
+    options_.progress(options_.user, pass_.c_str(), std::min(done_bytes, total_bytes_), total_bytes_);
+  }
   ask_cancel();
 }
 

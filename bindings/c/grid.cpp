@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "bindings/c/open_grid.h"
 #include "bindings/c/status.h"
@@ -79,10 +80,10 @@ Box checked_box(const std::int64_t* min, const std::int64_t* max, std::size_t co
     }
   }
   const Index3 e = box.extent();
-  std::uint64_t voxels = 0;
-  if (__builtin_mul_overflow(static_cast<std::uint64_t>(e.x) * static_cast<std::uint64_t>(e.y),
-                             static_cast<std::uint64_t>(e.z), &voxels) ||
-      voxels != count) {
+  std::int64_t plane = 0;
+  std::int64_t voxels = 0;
+  if (__builtin_mul_overflow(e.x, e.y, &plane) || __builtin_mul_overflow(plane, e.z, &voxels) ||
+      std::cmp_not_equal(voxels, count)) {
     throw usage(cat("count is ", count, ", and the box ", box_text(box), " has ", extent_text(e), " voxels"));
   }
   return box;
@@ -98,16 +99,16 @@ const char* weir_version(void) { return WEIR_VERSION; }
 
 weir_status weir_open(const char* path, weir_grid** grid, weir_error* error) {
   return guarded(error, [&] {
-    required(path, "path");
-    *required(grid, "grid") = new weir_grid(std::string(path));
+    required(grid, "grid");
+    *grid = new weir_grid(std::string(required(path, "path")));
   });
 }
 
 weir_status weir_open_memory(const void* data, uint64_t bytes, const char* sidecar, weir_grid** grid,
                              weir_error* error) {
   return guarded(error, [&] {
-    const std::span<const std::byte> file(static_cast<const std::byte*>(required(data, "data")), bytes);
-    *required(grid, "grid") = new weir_grid(file, sidecar);
+    required(grid, "grid");
+    *grid = new weir_grid({static_cast<const std::byte*>(required(data, "data")), bytes}, sidecar);
   });
 }
 

@@ -123,7 +123,8 @@ typedef struct weir_convert_options {
   const char* work_dir; /* for temporary files, on a disk; NULL: a hidden directory beside the output */
   /* Callbacks, each optional, called with `user` by one thread at a time, which may be another than the caller's, while
      the call lasts (for weir_push until its end). They must return, soon, and make no call that has the same handle. */
-  void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes); /* float32 bytes */
+  /* Float32 bytes that a pass, "survey" or "encode", has worked on; it may begin again. */
+  void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes);
   int (*cancel)(void* user); /* asked several times a second in most passes; not 0 ends the call: WEIR_INTERRUPTED */
   void (*notice)(void* user, const char* line); /* what the user should know and is no error */
   void* user;

@@ -1,0 +1,176 @@
+/* Volumes handed over in slabs: in any order, type and layout, by many threads, and what is out of order. */
+#include "check.h"
+
+#include <pthread.h>
+
+static weir_error error;
+
+static weir_push* begin(const weir_volume* volume, const char* output) {
+  weir_push* push = NULL;
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  CHECK_OK(weir_push_begin(volume, &options, output, &push, &error));
+  return push;
+}
+
+static void convert(const weir_volume* volume, const void* values, const char* output) {
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  CHECK_OK(weir_convert(volume, values, NULL, &options, output, &error));
+}
+
+static void any_order(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  convert(&volume, values, path_of("whole.nvdb"));
+  weir_push* const push = begin(&volume, path_of("pushed.nvdb"));
+  float* const slab = malloc(sizeof(float) * NX * NY * 5);
+  for (int z = NZ - 3; z > -5; z -= 5) { /* from the top, the lowest one thinner */
+    const int first = z < 0 ? 0 : z;
+    const int planes = (z == NZ - 3 ? NZ : z + 5) - first;
+    memcpy(slab, values + NX * NY * first, sizeof(float) * (size_t)(NX * NY * planes));
+    CHECK_OK(weir_push_slab(push, first, planes, slab, NULL, &error));
+    memset(slab, 0xFF, sizeof(float) * NX * NY * 5); /* what the simulation does next */
+  }
+  CHECK(!exists(path_of("pushed.nvdb")));
+  CHECK_OK(weir_push_end(push, &error));
+  weir_push_free(push);
+  CHECK(same_files(path_of("whole.nvdb"), path_of("pushed.nvdb")));
+  CHECK(exists(path_of("pushed.nvdb.json")) && !exists(path_of(".pushed.nvdb.work")));
+  free(slab);
+}
+
+static void any_layout(void) {
+  int16_t* const values = malloc(sizeof(int16_t) * VOXELS);
+  int16_t* const transposed = malloc(sizeof(int16_t) * VOXELS); /* z fastest */
+  for (int z = 0; z < NZ; ++z) {
+    for (int y = 0; y < NY; ++y) {
+      for (int x = 0; x < NX; ++x) {
+        values[x + NX * (y + NY * z)] = (int16_t)pattern(x, y, z);
+        transposed[z + NZ * (y + NY * x)] = (int16_t)pattern(x, y, z);
+      }
+    }
+  }
+  const weir_volume volume = pattern_volume(WEIR_INT16);
+  convert(&volume, values, path_of("whole.nvdb"));
+  weir_push* const push = begin(&volume, path_of("pushed.nvdb"));
+  const int64_t stride[3] = {2 * NZ * NY, 2 * NZ, 2};
+  for (int z = 0; z < NZ; ++z) CHECK_OK(weir_push_slab(push, z, 1, transposed + z, stride, &error));
+  CHECK_OK(weir_push_end(push, &error));
+  weir_push_free(push);
+  CHECK(same_files(path_of("whole.nvdb"), path_of("pushed.nvdb")));
+  free(values);
+  free(transposed);
+}
+
+enum { THREADS = 4 };
+
+struct worker {
+  weir_push* push;
+  const float* values;
+  int first;
+  weir_status status;
+};
+
+static void* push_planes(void* argument) {
+  struct worker* const worker = argument;
+  for (int z = worker->first; z < NZ && worker->status == WEIR_OK; z += THREADS) {
+    worker->status = weir_push_slab(worker->push, z, 1, worker->values + NX * NY * z, NULL, NULL);
+  }
+  return NULL;
+}
+
+static void many_threads(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  convert(&volume, values, path_of("whole.nvdb"));
+  weir_push* const push = begin(&volume, path_of("pushed.nvdb"));
+  struct worker workers[THREADS];
+  pthread_t threads[THREADS];
+  for (int t = 0; t < THREADS; ++t) {
+    workers[t] = (struct worker){push, values, t, WEIR_OK};
+    CHECK(pthread_create(&threads[t], NULL, push_planes, &workers[t]) == 0);
+  }
+  for (int t = 0; t < THREADS; ++t) {
+    pthread_join(threads[t], NULL);
+    CHECK(workers[t].status == WEIR_OK);
+  }
+  CHECK_OK(weir_push_end(push, &error));
+  weir_push_free(push);
+  CHECK(same_files(path_of("whole.nvdb"), path_of("pushed.nvdb")));
+}
+
+static void out_of_order(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  const char* const output = path_of("order.nvdb");
+  weir_push* push = begin(&volume, output);
+  weir_push* second = NULL;
+  CHECK_STATUS(WEIR_ERROR_IO, weir_push_begin(&volume, NULL, output, &second, &error)); /* the same output */
+  CHECK(second == NULL);
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* nothing was given */
+  CHECK_OK(weir_push_slab(push, 0, NZ - 1, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, 3, 1, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 2, 2, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 1, 2, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, -1, 1, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 1, 0, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, INT64_MAX, INT64_MAX, values, NULL, &error));
+  CHECK_USAGE("data is a null pointer", weir_push_slab(push, NZ - 1, 1, NULL, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* a plane is missing, and can still be given */
+  CHECK_OK(weir_push_slab(push, NZ - 1, 1, values + NX * NY * (NZ - 1), NULL, &error));
+  CHECK_OK(weir_push_end(push, &error));
+  CHECK_USAGE("the push has ended; begin another", weir_push_end(push, &error));
+  CHECK_USAGE("the push has ended; begin another", weir_push_slab(push, 0, 1, values, NULL, &error));
+  weir_push_free(push);
+  CHECK(same_files(path_of("whole.nvdb"), path_of("order.nvdb")));
+
+  /* Without an end there is nothing. */
+  push = begin(&volume, path_of("never.nvdb"));
+  CHECK_OK(weir_push_slab(push, 0, NZ / 2, values, NULL, &error));
+  weir_push_free(push);
+  push = begin(&volume, path_of("never.nvdb"));
+  weir_push_free(push);
+  CHECK(!exists(path_of("never.nvdb")) && !exists(path_of("never.nvdb.json")));
+  CHECK(!exists(path_of("never.nvdb.partial")) && !exists(path_of(".never.nvdb.work")));
+}
+
+static int cancel(void* user) { return *(int*)user; }
+
+static void after_a_failure(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  float* const holed = malloc(sizeof(float) * VOXELS);
+  memcpy(holed, values, sizeof(float) * VOXELS);
+  holed[1000] = 1.0F / 0.0F;
+  weir_push* push = begin(&volume, path_of("failed.nvdb"));
+  CHECK_OK(weir_push_slab(push, 0, NZ, holed, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_INPUT, weir_push_end(push, &error));
+  CHECK_STATUS(WEIR_ERROR_INPUT, weir_push_end(push, &error));
+  CHECK_STATUS(WEIR_ERROR_INPUT, weir_push_slab(push, 0, 1, values, NULL, &error));
+  weir_push_free(push);
+  CHECK(!exists(path_of("failed.nvdb")) && !exists(path_of("failed.nvdb.partial")));
+  free(holed);
+
+  int stop = 0;
+  weir_convert_options options = default_options();
+  options.cancel = cancel;
+  options.user = &stop;
+  CHECK_OK(weir_push_begin(&volume, &options, path_of("stopped.nvdb"), &push, &error));
+  CHECK_OK(weir_push_slab(push, 0, 1, values, NULL, &error));
+  stop = 1;
+  weir_status status = weir_push_slab(push, 1, NZ - 1, values + NX * NY, NULL, &error);
+  if (status == WEIR_OK) status = weir_push_end(push, &error);
+  CHECK(status == WEIR_INTERRUPTED);
+  CHECK_STATUS(WEIR_INTERRUPTED, weir_push_end(push, &error));
+  weir_push_free(push);
+  CHECK(!exists(path_of("stopped.nvdb")) && !exists(path_of("stopped.nvdb.partial")));
+}
+
+int main(void) {
+  make_directory();
+  float* const values = pattern_floats();
+  any_order(values);
+  any_layout();
+  many_threads(values);
+  out_of_order(values);
+  after_a_failure(values);
+  free(values);
+  return finish();
+}
