@@ -117,13 +117,11 @@ class PushedVolume::State {
     check_complete();
     intake_.finish();
     ended_ = true;
+    const Release release{files_};
     try {
-      const Sidecar sidecar = convert(started);
-      files_.reset();
-      return sidecar;
+      return convert(started);
     } catch (const Error& error) {
       failure_ = error;
-      files_.reset();
       throw;
     }
   }
@@ -131,6 +129,12 @@ class PushedVolume::State {
   const SourceInfo& info() const { return info_; }
 
  private:
+  // However the end comes: what was not committed goes from the disk with it.
+  struct Release {
+    std::optional<PushedFiles>& files;
+    ~Release() { files.reset(); }
+  };
+
   std::uint64_t room_bytes() const { return 2 * memory_.block_bytes; }
   std::size_t slice_voxels() const {
     return static_cast<std::size_t>(volume(min(slices_.leaves * kLeafDim, info_.extent)));

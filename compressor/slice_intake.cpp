@@ -38,11 +38,17 @@ SliceIntake::SliceIntake(BlockPlan plan, std::size_t value_bytes, const IntakeRo
   for (std::size_t i = room.buffers; i-- > 0;) {
     free_.push_back(memory_.bytes().data() + i * buffer_bytes(plan_, value_bytes_));
   }
-  workers_.reserve(room.workers);
-  for (std::size_t i = 0; i < room.workers; ++i) workers_.emplace_back([this] { work(); });
+  try {
+    for (std::size_t i = 0; i < room.workers; ++i) workers_.emplace_back([this] { work(); });
+  } catch (...) {  // no more threads to be had: those there are must end before this object does
+    stop();
+    throw;
+  }
 }
 
-SliceIntake::~SliceIntake() {
+SliceIntake::~SliceIntake() { stop(); }
+
+void SliceIntake::stop() {
   {
     const Lock lock(mutex_);
     stopping_ = true;

@@ -16,10 +16,10 @@
 #include <thread>
 #include <vector>
 
-#include "compressor/strided_copy.h"
 #include "format/error.h"
 #include "ingest/block_plan.h"
 #include "ingest/page_buffer.h"
+#include "ingest/strided_copy.h"
 
 namespace weir {
 
@@ -80,6 +80,7 @@ class SliceIntake {
   };
   using Lock = std::unique_lock<std::mutex>;
 
+  void stop();
   void work();
   void work_until_the_end(Lock& lock);
   std::optional<std::int64_t> slice_to_park() const;

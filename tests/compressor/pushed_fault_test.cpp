@@ -1,9 +1,13 @@
 // A push in which every call to the file system fails in turn: the next call says
 // so, every later one too, and nothing is left on the disk by then.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -17,6 +21,7 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/memory_volume.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir {
@@ -103,6 +108,29 @@ TEST_F(PushedFaultTest, EveryCallFailsInTurnAndNothingIsLeft) {
       EXPECT_EQ(message_of([&] { pushed->end(); }), message);
     }
   }
+}
+
+// Of a killed simulation two empty names are left, which the next output of that name takes over.
+TEST_F(PushedFaultTest, AKilledProcessLeavesNoValues) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer wants its own end";
+  std::fflush(nullptr);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const auto pushed = begin(*real_);
+    pushed->slab(0, 16, volume_.values().data());
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(listing(), (std::set<std::string>{".out.nvdb.work", "out.nvdb.partial"}));
+  EXPECT_TRUE(std::filesystem::is_empty(directory_ / ".out.nvdb.work"));
+  EXPECT_EQ(std::filesystem::file_size(directory_ / "out.nvdb.partial"), 0U);
+  const auto pushed = begin(*real_);
+  push_all(*pushed);
+  pushed->end();
+  EXPECT_EQ(listing(), (std::set<std::string>{"out.nvdb", "out.nvdb.json"}));
 }
 
 // Parking, writing and waiting at once: whatever fails, all threads come back with it.

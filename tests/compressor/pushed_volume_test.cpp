@@ -210,6 +210,23 @@ TEST(PushedVolume, ParksWhatDoesNotFitTheMemory) {
   }
 }
 
+// Rows that no slice holds whole.
+TEST(PushedVolume, CutsLongRows) {
+  const Index3 extent{9001, 17, 20};
+  const std::vector<std::int32_t> values = waves<std::int32_t>(extent);
+  const auto source = open_array({.data = values.data(),
+                                  .type = ScalarType::int32,
+                                  .extent = extent,
+                                  .stride = packed_stride(extent, ScalarType::int32)});
+  ConversionOptions options;
+  options.encoding = Encoding::fpn;
+  const Converted expected = test::convert(*source, options);
+  for (const std::uint64_t mebibytes : {80U, 800U}) {
+    options.memory = mebibytes << 20U;
+    expect_same(push(source->info(), bytes_of(values), options, shuffled_slabs(extent.z, 1, 2), 2), expected);
+  }
+}
+
 class RealPush : public testing::TestWithParam<std::string> {};
 
 TEST_P(RealPush, EndsWithTheBytesOfItsConversion) {

@@ -1,4 +1,4 @@
-#include "compressor/strided_copy.h"
+#include "ingest/strided_copy.h"
 
 #include <gtest/gtest.h>
 
