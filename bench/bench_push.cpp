@@ -1,6 +1,7 @@
 // What a push takes of a simulation's time: seconds of PushedVolume::slab as a
 // multiple of a plain copy of as many bytes in the same run, from memory that is
-// not in a cache to memory that is not, while the background thread works; and
+// not in a cache to memory that is not, while the background thread works (`ratio`
+// by the wall, `cpu_ratio` by the thread's own time, for a machine that is shared); and
 // the bytes a second that push and end take when the simulation does nothing else.
 //
 // Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -58,6 +60,28 @@ struct Simulation {
   std::vector<float> values;
 };
 
+/// Seconds by the wall, waits included, and of this thread's own work.
+struct Spent {
+  double wall_s = 0;
+  double cpu_s = 0;
+
+  template <typename Work>
+  void time(const Work& work) {
+    const Clock::time_point start = Clock::now();
+    const double before_s = cpu_now_s();
+    work();
+    cpu_s += cpu_now_s() - before_s;
+    wall_s += seconds_since(start);
+  }
+
+ private:
+  static double cpu_now_s() {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+  }
+};
+
 void compute_for(double seconds) {
   const Clock::time_point start = Clock::now();
   double work = 1;
@@ -72,9 +96,9 @@ void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, ben
   const Simulation simulation(kind);
   const auto files = make_posix_file_system();
   std::vector<std::byte> copies(kCopyBytes, std::byte{1});
-  double slab_s = 0;
-  double copy_s = 0;
-  double end_s = 0;
+  Spent slabs;
+  Spent copying;
+  Spent ends;
   for (auto _ : state) {
     SourceInfo info;
     info.path = kind;
@@ -83,35 +107,29 @@ void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, ben
     options.output = output_path();
     options.encoding = encoding;
     PushedVolume pushed(info, options, {}, *files);
-    double slabs_s = 0;
+    const double before_s = slabs.wall_s;
     for (std::int64_t i = 0; i < simulation.slabs(); ++i) {
       const std::span<const float> slab = simulation.slab(i);
-      Clock::time_point start = Clock::now();
-      pushed.slab(i * kPlanes, kPlanes, slab.data());
-      slabs_s += seconds_since(start);
+      slabs.time([&] { pushed.slab(i * kPlanes, kPlanes, slab.data()); });
       // As many bytes from far away.
       const auto other = std::as_bytes(simulation.slab((i + simulation.slabs() / 2) % simulation.slabs()));
       const std::size_t at = static_cast<std::size_t>(i) * other.size() % (copies.size() - other.size() + 1);
-      start = Clock::now();
-      std::memcpy(&copies[at], other.data(), other.size());
-      copy_s += seconds_since(start);
+      copying.time([&] { std::memcpy(&copies[at], other.data(), other.size()); });
       benchmark::DoNotOptimize(copies.data());
       compute_for(static_cast<double>(slab.size_bytes()) / 1e9 * pause_s_per_gb);
     }
-    const Clock::time_point start = Clock::now();
-    pushed.end();
-    end_s += seconds_since(start);
-    slab_s += slabs_s;
-    state.SetIterationTime(slabs_s);
+    state.SetIterationTime(slabs.wall_s - before_s);
+    ends.time([&] { pushed.end(); });
     std::filesystem::remove(options.output);
     std::filesystem::remove(sidecar_path(options.output));
   }
   const auto n = static_cast<double>(state.iterations());
   const double gb = static_cast<double>(std::as_bytes(std::span(simulation.values)).size()) / 1e9;
-  state.counters["slab_GB_per_s"] = gb * n / slab_s;
-  state.counters["copy_GB_per_s"] = gb * n / copy_s;
-  state.counters["ratio"] = slab_s / copy_s;
-  state.counters["end_s"] = end_s / n;
+  state.counters["slab_GB_per_s"] = gb * n / slabs.wall_s;
+  state.counters["copy_GB_per_s"] = gb * n / copying.wall_s;
+  state.counters["ratio"] = slabs.wall_s / copying.wall_s;
+  state.counters["cpu_ratio"] = slabs.cpu_s / copying.cpu_s;
+  state.counters["end_s"] = ends.wall_s / n;
 }
 
 /// A simulation that takes two seconds for a gigabyte; the background thread then is faster than it.
