@@ -77,7 +77,7 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   }
   EXPECT_EQ(text.find("Promises that are not kept"), std::string::npos);
   for (const char* name : {"wdas-like_124x84x153_psnr.png", "headline.png"}) {
-    EXPECT_TRUE(fs::exists(directory_ / "images/evaluation" / name)) << name;
+    EXPECT_TRUE(fs::exists(directory_.path() / "images/evaluation" / name)) << name;
   }
   const std::string sheet = directory_ / "images/evaluation/cloud_path.png";
   const CommandResult flip = run_weir({"flip", sheet, sheet, "--json"});
