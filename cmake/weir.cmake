@@ -108,6 +108,11 @@ function(weir_tests name)
     if(TARGET weir_share)
       add_dependencies(weir_tests_${name} weir_share)
       set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}" WEIR_CPACK="${CMAKE_CPACK_COMMAND}")
+      if(TARGET weir_python)
+        add_dependencies(weir_tests_${name} weir_python)
+        list(APPEND installs WEIR_PYTHON_VERSION="${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}"
+                             WEIR_PYTHON_CORE="$<TARGET_FILE_NAME:weir_python>")
+      endif()
     endif()
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
     # Of those that build a program themselves, with the tools weir is built with, or install weir.
@@ -126,6 +131,12 @@ function(weir_tests name)
     set(properties PROPERTIES RESOURCE_LOCK inotify)
   endif()
   gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120 ${properties})
+endfunction()
+
+# weir_skip_test(NAME WHY): a test in place of those that there are not here, so that they are seen to be skipped.
+function(weir_skip_test name why)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${why}")
+  set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
 
 # weir_loader_tests(): the grid loader and its tests with the pretended CUDA runtime of tests/fake_cuda/, as the program

@@ -12,7 +12,6 @@
 #include "format/error.h"
 #include "format/text.h"
 #include "gpu/colormap.h"
-#include "tools/command.h"
 
 namespace weir {
 
@@ -171,7 +170,6 @@ PictureRequest parse_picture(const PictureArguments& arguments) {
   request.sampling.samples =
       static_cast<std::uint32_t>(arguments.samples.empty() ? default_samples(request.scene.mode)
                                                            : parse_count("--spp", arguments.samples, 1, kMaxSamples));
-  request.sampling.cancel = &interrupt_flag();
   request.options.environment = load_environment(request.scene);
   return request;
 }

@@ -37,7 +37,7 @@ void add_picture_options(CLI::App& command, PictureArguments& arguments);
 struct PictureRequest {
   Scene scene;
   RenderOptions options;   ///< with the scene's environment, loaded
-  SampleOptions sampling;  ///< cancelled by interrupt_flag()
+  SampleOptions sampling;
   BackendChoice backend;
 
   std::uint64_t pixel_samples() const {

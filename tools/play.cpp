@@ -115,6 +115,7 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
 void play_series(const PlayArguments& arguments) {
   check_output(arguments);
   PictureRequest request = parse_picture(arguments.picture);
+  request.sampling.cancel = &interrupt_flag();
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();

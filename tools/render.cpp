@@ -56,6 +56,7 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
 
 void render(const RenderArguments& arguments) {
   PictureRequest request = parse_picture(arguments.picture);
+  request.sampling.cancel = &interrupt_flag();
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();

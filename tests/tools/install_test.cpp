@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "format/text.h"
+#include "tests/support/python.h"
 #include "tests/tools/embedded_example.h"
 #include "tests/tools/run_command.h"
 
@@ -18,6 +19,12 @@ namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
+
+#ifdef WEIR_PYTHON_CORE
+const std::string kPythonFolder = "lib/python" WEIR_PYTHON_VERSION "/dist-packages";  // that of /usr/local
+#else
+const std::string kPythonFolder;
+#endif
 
 class Installation : public ::testing::Test {
  protected:
@@ -69,7 +76,18 @@ std::set<std::string> cuda_files() {
   return files;
 }
 
-std::set<std::string> installed_files(bool has_cuda) {
+// Of the Python module, in `folder`.
+std::set<std::string> python_files([[maybe_unused]] const std::string& folder) {
+  std::set<std::string> files;
+#ifdef WEIR_PYTHON_CORE
+  files.insert({"share/weir/paraview/weir_reader.py", cat(folder, "/weir/" WEIR_PYTHON_CORE)});
+  add_files(WEIR_SOURCE_DIR "/bindings/python/weir", cat(folder, "/weir"), files);
+#endif
+  return files;
+}
+
+/// With a folder for Python modules.
+std::set<std::string> installed_files(bool has_cuda, const std::string& python) {
   std::set<std::string> expected{
       "bin/weir",
       "lib/libweir_format_core.a",
@@ -92,6 +110,7 @@ std::set<std::string> installed_files(bool has_cuda) {
       "share/doc/weir/format/sidecar.schema.json",
   };
   expected.merge(headers());
+  expected.merge(python_files(python));
   if (has_cuda) expected.merge(cuda_files());
   add_files(WEIR_SOURCE_DIR "/docs", "share/doc/weir/docs", expected);
   add_files(WEIR_SOURCE_DIR "/examples", "share/doc/weir/examples", expected);
@@ -109,7 +128,9 @@ std::set<std::string> files_below(const fs::path& root) {
   return files;
 }
 
-TEST_F(Installation, HasExactlyTheseFiles) { EXPECT_EQ(files_below(prefix()), installed_files(has_cuda())); }
+TEST_F(Installation, HasExactlyTheseFiles) {
+  EXPECT_EQ(files_below(prefix()), installed_files(has_cuda(), kPythonFolder));
+}
 
 TEST_F(Installation, ThePackageHasThemToo) {
   for (const char* program : {"dpkg-shlibdeps", "file"}) {
@@ -126,7 +147,7 @@ TEST_F(Installation, ThePackageHasThemToo) {
       work / cat("weir_" WEIR_VERSION "_", architecture.substr(0, architecture.size() - 1), ".deb");
   ASSERT_EQ(run_command({"dpkg-deb", "--extract", package, work / "content"}).exit_code, 0);
 
-  std::set<std::string> expected = installed_files(has_cuda());
+  std::set<std::string> expected = installed_files(has_cuda(), "lib/python3/dist-packages");
   expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and wants these two:
   expected.insert({"share/doc/weir/changelog.gz", "share/doc/weir/copyright"});
   std::set<std::string> found;
@@ -156,6 +177,15 @@ TEST_F(Installation, TheCommandRuns) {
     const CommandResult result = run_command(all);
     EXPECT_EQ(result.exit_code, 0) << result.err;
   }
+}
+
+TEST_F(Installation, PythonFindsTheModule) {
+  if (kPythonFolder.empty()) GTEST_SKIP() << "the Python module is not built";
+  CommandOptions options;
+  options.environment = {"PYTHONPATH=" + prefix() + '/' + kPythonFolder};
+  const std::string import = "import weir; print(weir.__version__, weir.__file__)";
+  const CommandResult result = run_command({kPython, "-B", "-c", import}, options);
+  EXPECT_EQ(result.out, cat(WEIR_VERSION, ' ', prefix(), '/', kPythonFolder, "/weir/__init__.py\n")) << result.err;
 }
 
 TEST_F(Installation, TheUnitLeadsToThisPrefix) {

@@ -1,0 +1,134 @@
+"""NanoVDB files as images: a reader for ParaView (Tools > Manage Plugins > Load New...), and a source for VTK.
+
+    from weir_reader import WeirReader        # without ParaView, as any vtkAlgorithm
+    reader = WeirReader()
+    reader.SetFileName("density.nvdb")
+    reader.SetLevel(2)
+    reader.Update()
+    image = reader.GetOutputDataObject(0)     # vtkImageData
+
+The point data has the grid's values, float32, under its name. A voxel is a point: that with index (i, j, k) lies at
+origin + spacing * (i, j, k), as the file says; the extent counts from 0. At level n a point is the mean of a cube of 2^n
+voxels along an edge (of those that are there, at the upper ends) and lies in the cube's middle, with 2^n the spacing. Only
+the extent that is asked for is decoded, and of finer voxels than the level's some rows at a time are held, so that a
+level of a file that is larger than memory opens. The field data has the certificate of the sidecar, where there is one:
+"weir_rmse" and "weir_max_abs", in the values' own unit, and "weir_psnr_db", if anything was lost.
+"""
+
+import weir
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDoubleArray, vtkOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+
+try:
+    from paraview.util.vtkAlgorithm import smdomain, smhint, smproperty, smproxy
+except ImportError:
+
+    class _NoProxies:
+        """In place of ParaView's decorators: what they decorate stays as it is."""
+
+        def __getattr__(self, name):
+            return lambda *arguments, **keywords: lambda decorated: decorated
+
+    smdomain = smhint = smproperty = smproxy = _NoProxies()
+
+
+@smproxy.reader(
+    name="WeirReader", label="NanoVDB Reader (weir)", extensions="nvdb", file_description="NanoVDB volumes"
+)
+class WeirReader(VTKPythonAlgorithmBase):
+    """One .nvdb file; of several grids in it the first."""
+
+    def __init__(self):
+        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
+        self._path = None
+        self._level = 0
+        self._grid = None
+
+    @smproperty.stringvector(name="FileName")
+    @smdomain.filelist()
+    @smhint.filechooser(extensions="nvdb", file_description="NanoVDB volumes")
+    def SetFileName(self, path):
+        """The file to read; it is mapped when it is first needed."""
+        if path != self._path:
+            self._path = path
+            self._grid = None
+            self.Modified()
+
+    def GetFileName(self):
+        return self._path
+
+    @smproperty.intvector(name="Level", label="Level of detail", default_values=0)
+    @smdomain.intrange(min=0, max=12)
+    def SetLevel(self, level):
+        """0: every voxel. Each level more halves the voxels along each axis; the last one has a single point."""
+        if level < 0:
+            raise ValueError(f"level is {level}, it must be 0 or more")
+        if level != self._level:
+            self._level = level
+            self.Modified()
+
+    def GetLevel(self):
+        return self._level
+
+    def RequestInformation(self, request, inputs, outputs):
+        return self._answer(self._describe, outputs.GetInformationObject(0))
+
+    def RequestData(self, request, inputs, outputs):
+        return self._answer(self._read, outputs.GetInformationObject(0))
+
+    def _answer(self, work, information):
+        """1, or 0 after saying in one line what is wrong."""
+        try:
+            if self._path in (None, "None"):  # the latter is ParaView's
+                raise weir.UsageError("no file is named; call SetFileName")
+            if self._grid is None:
+                self._grid = weir.open(self._path)
+            work(information)
+        except weir.Error as error:
+            vtkOutputWindow.GetInstance().DisplayErrorText(f"WeirReader: {error}\n")
+            return 0
+        return 1
+
+    def _level_there_is(self):
+        return min(self._level, self._grid.levels - 1)
+
+    def _placement(self):
+        """Spacing of the level's points, and where the first one lies."""
+        edge = 2 ** self._level_there_is()
+        grid = self._grid
+        origin = [
+            origin + spacing * (index + (edge - 1) / 2)
+            for origin, spacing, index in zip(grid.origin, grid.spacing, grid.index_origin)
+        ]
+        return [spacing * edge for spacing in grid.spacing], origin
+
+    def _describe(self, information):
+        z, y, x = self._grid.level_shape(self._level_there_is())
+        spacing, origin = self._placement()
+        information.Set(Pipeline.WHOLE_EXTENT(), (0, x - 1, 0, y - 1, 0, z - 1), 6)
+        information.Set(vtkDataObject.SPACING(), spacing, 3)
+        information.Set(vtkDataObject.ORIGIN(), origin, 3)
+        information.Set(self.CAN_PRODUCE_SUB_EXTENT(), 1)
+        vtkDataObject.SetPointDataActiveScalarInfo(information, VTK_FLOAT, 1)
+
+    def _read(self, information):
+        x0, x1, y0, y1, z0, z1 = extent = information.Get(Pipeline.UPDATE_EXTENT())
+        image = vtkImageData.GetData(information)
+        spacing, origin = self._placement()
+        image.SetExtent(extent)
+        image.SetSpacing(spacing)
+        image.SetOrigin(origin)
+        if x1 >= x0 and y1 >= y0 and z1 >= z0:
+            box = (x0, y0, z0), (x1 + 1, y1 + 1, z1 + 1)
+            values = numpy_to_vtk(self._grid.to_numpy(box, self._level_there_is()).reshape(-1))
+            values.SetName(self._grid.name or "values")
+            image.GetPointData().SetScalars(values)
+        for name, value in (self._grid.certificate or {}).items():
+            if name in ("rmse", "max_abs", "psnr_db") and value is not None:
+                figure = vtkDoubleArray()
+                figure.SetName(f"weir_{name}")
+                figure.InsertNextValue(value)
+                image.GetFieldData().AddArray(figure)

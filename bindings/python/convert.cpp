@@ -1,0 +1,143 @@
+#include "bindings/python/convert.h"
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "bindings/python/option_list.h"
+#include "bindings/python/watch.h"
+#include "compressor/conversion.h"
+#include "format/error.h"
+#include "format/output_files.h"
+#include "format/process_memory.h"
+#include "format/text.h"
+#include "ingest/array_source.h"
+#include "ingest/series.h"
+#include "ingest/source_registry.h"
+#include "ingest/source_view.h"
+#include "tools/conversion_options.h"
+#include "tools/finished_output.h"
+#include "tools/given_options.h"
+#include "tools/input_options.h"
+#include "tools/run_options.h"
+
+namespace weir::python {
+
+namespace py = pybind11;
+
+namespace {
+
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+/// What a call asks for. No interpreter is needed from here on.
+struct Request {
+  ConversionOptions conversion;
+  SourceOptions source;
+  std::string reading_option;  ///< the first one that says how to read a file; empty: none is given
+};
+
+Request parse_request(const std::string& output, const std::vector<std::string>& options) {
+  InputArguments input;
+  ConversionArguments method;
+  RunArguments run;
+  std::string work_dir;
+  std::string resume = "auto";
+  bool overwrite = false;
+  CLI::App command;
+  add_input_options(command, input);
+  add_conversion_options(command, method);
+  add_run_options(command, run);
+  command.add_option("--work-dir", work_dir);
+  command.add_option("--resume", resume)->check(CLI::IsMember({"auto", "on", "off"}));
+  command.add_flag("--overwrite", overwrite);
+  parse_options(command, options);
+
+  Request request;
+  request.conversion = parse_conversion(method);
+  request.conversion.output = output;
+  request.conversion.overwrite = overwrite;
+  request.conversion.threads = static_cast<std::size_t>(run.threads);
+  request.conversion.work_dir = work_dir;
+  request.conversion.resume = resume == "auto" ? Resume::automatic : resume == "on" ? Resume::on : Resume::off;
+  request.conversion.provenance = {WEIR_VERSION, WEIR_COMMIT, given_options(command)};
+  // The program's own data are in the process as well, and none of the conversion's business.
+  request.conversion.memory = resident_bytes() + parse_memory(run);
+  request.source = parse_input(input);
+  request.source.memory = request.conversion.memory;
+  for (std::string* text : {&input.dataset, &input.missing, &input.spacing, &input.origin, &input.roi}) text->clear();
+  request.reading_option = given_input_option(input);
+  return request;
+}
+
+using OpenSource = std::function<std::unique_ptr<VolumeSource>()>;
+
+std::string convert(const ConversionOptions& options, const OpenSource& open, const py::object& progress) {
+  std::string sidecar;
+  run_watched(progress, [&](Watch& watch) {
+    ConversionControl control;
+    control.cancel = &watch.cancelled();
+    control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
+    control.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
+    control.notice = [&](const std::string& line) { watch.notice(line); };
+    const std::unique_ptr<FileSystem> files = make_posix_file_system();
+    const std::unique_ptr<VolumeSource> source = open();
+    sidecar = to_json_text(convert_volume(*source, options, control, *files));
+  });
+  return sidecar;
+}
+
+DenseArray dense_array(const py::array& array, const std::string& type, const SourceOptions& options) {
+  if (array.ndim() != 3) throw Error(ErrorKind::internal, cat("an array of ", array.ndim(), " axes"));
+  DenseArray dense;
+  dense.data = array.data();
+  dense.type = parse_scalar(type).value();
+  dense.extent = {array.shape(2), array.shape(1), array.shape(0)};
+  dense.stride = {array.strides(2), array.strides(1), array.strides(0)};
+  if (options.spacing) dense.spacing = *options.spacing;
+  if (options.origin) dense.origin = *options.origin;
+  dense.name = options.dataset;
+  if (options.missing) dense.missing.push_back(*options.missing);
+  return dense;
+}
+
+}  // namespace
+
+std::string convert_file(const std::string& source, const std::string& output, const std::vector<std::string>& options,
+                         const py::object& progress) {
+  Request request = parse_request(output, options);
+  SeriesStep step;
+  {
+    const py::gil_scoped_release unlocked;
+    const std::vector<SeriesStep> steps = expand_series(std::vector{source}, request.source);
+    if (steps.size() != 1) throw usage(cat(source, ": names ", steps.size(), " volumes; convert them one by one"));
+    step = steps.front();
+    request.conversion.output = series_outputs(steps, output).front();
+    check_output(step.path, request.conversion.output);
+  }
+  request.source.dataset = step.dataset;
+  request.source.index = step.index;
+  request.source.spool_directory =
+      request.conversion.work_dir.empty() ? directory_of(request.conversion.output) : request.conversion.work_dir;
+  return convert(
+      request.conversion, [&] { return open_source(step.path, request.source); }, progress);
+}
+
+std::string convert_array(const py::array& source, const std::string& type, const std::string& output,
+                          const std::vector<std::string>& options, const py::object& progress) {
+  Request request = parse_request(output, options);
+  if (!request.reading_option.empty()) {
+    throw usage(cat(request.reading_option, " says how to read a file; source is an array"));
+  }
+  check_output({}, output);
+  request.conversion.resume = Resume::off;
+  const DenseArray array = dense_array(source, type, request.source);
+  return convert(
+      request.conversion,
+      [&] {
+        std::unique_ptr<VolumeSource> all = open_array(array);
+        return request.source.roi ? crop_source(std::move(all), *request.source.roi) : std::move(all);
+      },
+      progress);
+}
+
+}  // namespace weir::python

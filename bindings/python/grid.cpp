@@ -1,0 +1,128 @@
+#include "bindings/python/grid.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "bindings/python/levels.h"
+#include "bindings/python/watch.h"
+#include "format/error.h"
+#include "format/macrocells.h"
+#include "format/nvdb_header.h"
+#include "format/sidecar.h"
+#include "format/text.h"
+#include "gpu/macrocell_grid.h"
+#include "ingest/source_registry.h"
+#include "tools/read_sidecar.h"
+#include "tools/volume_verification.h"
+
+namespace weir::python {
+
+namespace py = pybind11;
+
+namespace {
+
+Triple triple(const Index3& i) { return {i.x, i.y, i.z}; }
+
+/// [z, y, x].
+py::array_t<float> make_array(const Index3& extent) { return py::array_t<float>({extent.z, extent.y, extent.x}); }
+
+std::span<float> values_of(py::array_t<float>& array) {
+  return {array.mutable_data(), static_cast<std::size_t>(array.size())};
+}
+
+// Of a file of several grids the first, as everywhere in weir where none is asked for by name.
+SourceOptions first_grid(const NvdbFile& file) {
+  SourceOptions options;
+  if (all_nvdb_segments(file.bytes(), file.path()).size() > 1) options.dataset = file.grid().name();
+  return options;
+}
+
+}  // namespace
+
+Grid::Grid(const std::string& path) : path_(path), file_(std::make_shared<Opened>()) {
+  const py::gil_scoped_release unlocked;
+  file_->file = std::make_shared<const NvdbFile>(path);
+  file_->source = open_source(path, first_grid(*file_->file));
+}
+
+std::shared_ptr<Grid::Opened> Grid::shared() const {
+  if (file_ == nullptr) throw Error(ErrorKind::usage, cat(path_, ": is closed; open it again with weir.open"));
+  return file_;
+}
+
+Grid::Opened& Grid::opened() const { return *shared(); }
+
+std::string Grid::type() const { return std::string(grid_type_name(opened().grid().type())); }
+py::str Grid::name() const {
+  const std::string& name = opened().grid().name();
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(name.data(), static_cast<py::ssize_t>(name.size()), "replace"));
+}
+double Grid::background() const { return opened().grid().background(); }
+std::array<double, 2> Grid::range() const { return {opened().grid().value_min(), opened().grid().value_max()}; }
+Triple Grid::extent() const { return triple(opened().grid().index_bbox().extent()); }
+Triple Grid::index_origin() const { return triple(opened().grid().index_bbox().lo); }
+std::array<double, 3> Grid::spacing() const { return opened().grid().voxel_size(); }
+std::array<double, 3> Grid::origin() const { return opened().grid().world_origin(); }
+std::uint64_t Grid::bytes() const { return opened().file->bytes().size(); }
+int Grid::levels() const { return level_count(opened().source->info().extent); }
+
+std::optional<std::string> Grid::sidecar() const {
+  const NvdbFile& file = *opened().file;
+  const std::string path = sidecar_path(path_);
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const Sidecar sidecar = read_sidecar(path);
+  if (sidecar.file.bytes != file.bytes().size() || sidecar.file.head_checksum != file.grid().head_checksum()) {
+    throw Error(ErrorKind::input, cat(path, ": is of a file of ", sidecar.file.bytes, " bytes with another checksum, ",
+                                      path_, " has ", file.bytes().size(), " bytes; convert it again"));
+  }
+  return to_json_text(sidecar);
+}
+
+py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) const {
+  const auto file = shared();
+  const Box box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  py::array_t<float> array = make_array(box.extent());
+  run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
+    read_level(*file->source, level, box, values, watch.cancelled());
+  });
+  return array;
+}
+
+std::tuple<std::int64_t, Triple, py::array_t<float>, py::array_t<float>> Grid::macrocells() const {
+  const auto file = shared();
+  std::optional<MacrocellGrid> cells;
+  {
+    const py::gil_scoped_release unlocked;
+    cells.emplace(file->grid(), kMacrocell);
+  }
+  const CellLattice lattice = cells->lattice();
+  const Index3 count{lattice.count.x, lattice.count.y, lattice.count.z};
+  py::array_t<float> low = make_array(count);
+  py::array_t<float> high = make_array(count);
+  float* low_value = low.mutable_data();
+  float* high_value = high.mutable_data();
+  for (const MinMax& bounds : cells->bounds()) {
+    *low_value++ = bounds.min;
+    *high_value++ = bounds.max;
+  }
+  const Triple origin{-lattice.shift.x, -lattice.shift.y, -lattice.shift.z};
+  return {static_cast<std::int64_t>(lattice.edge), origin, std::move(low), std::move(high)};
+}
+
+std::vector<std::tuple<std::string, std::string, std::string, bool>> Grid::verify(const py::object& progress) const {
+  const auto file = shared();
+  std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
+  run_watched(progress, [&](Watch& watch) {
+    VerificationWatch verification;
+    verification.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
+    verification.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
+    verification.cancel = &watch.cancelled();
+    for (const VolumeCheck& check : verify_volume(path_, verification)) {
+      all.emplace_back(check.name, check.found, check.expected, check.ok);
+    }
+  });
+  return all;
+}
+
+}  // namespace weir::python

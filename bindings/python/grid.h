@@ -1,0 +1,78 @@
+// An open NanoVDB file as Python sees it. Methods hold the interpreter's lock; the long ones let go of it. Arrays that
+// are handed out own their values.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "format/nvdb_file.h"
+#include "gpu/leaf_table.h"
+#include "gpu/volume_sampler.h"
+#include "ingest/volume_source.h"
+
+namespace weir::python {
+
+using Triple = std::array<std::int64_t, 3>;  ///< x, y, z
+
+class Grid {
+ public:
+  /// Maps and checks the file; reads no values. Throws as NvdbFile and open_source.
+  explicit Grid(const std::string& path);
+
+  /// Lets go of the file. Everything but closed() throws Error(usage) from then on; calls of other threads that are
+  /// under way end as if it were open.
+  void close() { file_.reset(); }
+  bool closed() const { return file_ == nullptr; }
+
+  std::string type() const;
+  pybind11::str name() const;
+  double background() const;
+  std::array<double, 2> range() const;  ///< smallest and largest active value, as the file says
+  Triple extent() const;                ///< voxels
+  Triple index_origin() const;          ///< index of the lowest voxel
+  std::array<double, 3> spacing() const;
+  std::array<double, 3> origin() const;  ///< world position of index (0, 0, 0)
+  std::uint64_t bytes() const;
+  int levels() const;
+
+  /// The sidecar's JSON; nullopt where there is none. Throws Error(input) where it is of another file.
+  std::optional<std::string> sidecar() const;
+  /// float32 [z, y, x] of the box at a level: levels.h.
+  pybind11::array_t<float> read(const Triple& lo, const Triple& hi, int level) const;
+  /// float32 values at `points` (N x 3: x, y, z in voxels from the lowest corner): volume_sampler.h.
+  pybind11::array_t<float> sample(const pybind11::array_t<float, pybind11::array::c_style>& points,
+                                  bool trilinear) const;
+  /// Voxels along a cell, voxel position of the first cell's corner, and float32 [z, y, x] of minima and maxima.
+  std::tuple<std::int64_t, Triple, pybind11::array_t<float>, pybind11::array_t<float>> macrocells() const;
+  /// The picture that `weir render` makes with `options`: uint8 sRGB or, where linear, float32 radiance, [y, x, RGB].
+  pybind11::array render(const std::vector<std::string>& options, bool linear, const pybind11::object& progress) const;
+  /// name, found, expected, ok of all checks of `weir verify`.
+  std::vector<std::tuple<std::string, std::string, std::string, bool>> verify(const pybind11::object& progress) const;
+
+ private:
+  /// What calls share; the last one of them closes the file.
+  struct Opened {
+    std::shared_ptr<const NvdbFile> file;
+    std::unique_ptr<VolumeSource> source;
+    std::once_flag table_made;
+    std::optional<LeafTable> table;  ///< for samples
+
+    const NvdbGrid& grid() const { return file->grid(); }
+  };
+
+  Opened& opened() const;
+  std::shared_ptr<Opened> shared() const;
+
+  std::string path_;
+  std::shared_ptr<Opened> file_;
+};
+
+}  // namespace weir::python

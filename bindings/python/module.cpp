@@ -1,0 +1,42 @@
+// weir._core: what the Python files of bindings/python/weir are written with. They have the documentation and the
+// keywords; here are bytes for paths and options as texts.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "bindings/python/convert.h"
+#include "bindings/python/errors.h"
+#include "bindings/python/grid.h"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, m) {
+  using weir::python::Grid;
+  m.doc() = "The compiled part of weir; use the package weir.";
+  m.attr("__version__") = WEIR_VERSION;
+  weir::python::translate_errors();
+  m.def("keyword_text", &weir::python::keyword_text, py::arg("message"));
+  m.def("convert_file", &weir::python::convert_file, py::arg("source"), py::arg("output"), py::arg("options"),
+        py::arg("progress"));
+  m.def("convert_array", &weir::python::convert_array, py::arg("source").noconvert(), py::arg("type"),
+        py::arg("output"), py::arg("options"), py::arg("progress"));
+  py::class_<Grid>(m, "Grid")
+      .def(py::init<const std::string&>(), py::arg("path"))
+      .def("close", &Grid::close)
+      .def_property_readonly("closed", &Grid::closed)
+      .def_property_readonly("type", &Grid::type)
+      .def_property_readonly("name", &Grid::name)
+      .def_property_readonly("background", &Grid::background)
+      .def_property_readonly("range", &Grid::range)
+      .def_property_readonly("extent", &Grid::extent)
+      .def_property_readonly("index_origin", &Grid::index_origin)
+      .def_property_readonly("spacing", &Grid::spacing)
+      .def_property_readonly("origin", &Grid::origin)
+      .def_property_readonly("bytes", &Grid::bytes)
+      .def_property_readonly("levels", &Grid::levels)
+      .def("sidecar", &Grid::sidecar)
+      .def("read", &Grid::read, py::arg("lo"), py::arg("hi"), py::arg("level"))
+      .def("sample", &Grid::sample, py::arg("points").noconvert(), py::arg("trilinear"))
+      .def("macrocells", &Grid::macrocells)
+      .def("render", &Grid::render, py::arg("options"), py::arg("linear"), py::arg("progress"))
+      .def("verify", &Grid::verify, py::arg("progress"));
+}

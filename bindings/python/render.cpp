@@ -1,0 +1,58 @@
+// Grid::render: a picture by the renderer of `weir render`, as an array.
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bindings/python/grid.h"
+#include "bindings/python/option_list.h"
+#include "bindings/python/watch.h"
+#include "gpu/image_output.h"
+#include "tools/picture_options.h"
+
+namespace weir::python {
+
+namespace py = pybind11;
+
+namespace {
+
+py::array linear_pixels(const Image& image) {
+  py::array_t<float> array({image.height, image.width, 3});
+  float* channel = array.mutable_data();
+  for (const Float3& pixel : image.pixels) {
+    *channel++ = pixel.x;
+    *channel++ = pixel.y;
+    *channel++ = pixel.z;
+  }
+  return array;
+}
+
+py::array display_pixels(const Picture& picture) {
+  const std::vector<std::uint8_t> pixels = encode_rgb24(picture.image, picture.tone);
+  py::array_t<std::uint8_t> array({picture.image.height, picture.image.width, 3});
+  std::copy(pixels.begin(), pixels.end(), array.mutable_data());
+  return array;
+}
+
+}  // namespace
+
+py::array Grid::render(const std::vector<std::string>& options, bool linear, const py::object& progress) const {
+  const auto file = shared();
+  PictureArguments arguments;
+  CLI::App command;
+  add_picture_options(command, arguments);
+  parse_options(command, options);
+  Picture picture;
+  run_watched(progress, [&](Watch& watch) {
+    PictureRequest request = parse_picture(arguments);
+    request.sampling.cancel = &watch.cancelled();
+    request.sampling.progress = [&](std::uint64_t done) { watch.advance(done); };
+    const std::unique_ptr<Backend> backend = make_backend(request.backend);
+    const std::unique_ptr<LoadedVolume> volume = backend->load(file->file, 0, nullptr);
+    watch.start("render", request.pixel_samples());
+    picture = backend->render(*volume, request.scene, request.options, request.sampling);
+  });
+  return linear ? linear_pixels(picture.image) : display_pixels(picture);
+}
+
+}  // namespace weir::python

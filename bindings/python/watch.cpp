@@ -1,0 +1,103 @@
+#include "bindings/python/watch.h"
+
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include "bindings/python/errors.h"
+#include "format/error.h"
+
+namespace weir::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// How long Ctrl-C may go unseen.
+constexpr std::chrono::milliseconds kPause{50};
+
+void deliver(Watch& watch, const py::object& progress) {
+  for (const Watch::Event& event : watch.take()) {
+    if (event.pass.empty()) {
+      py::module_::import("logging").attr("getLogger")("weir").attr("warning")("%s", python_text(event.notice));
+    } else if (!progress.is_none()) {
+      progress(event.pass, event.done, event.total);
+    }
+  }
+}
+
+}  // namespace
+
+void Watch::start(const std::string& pass, std::uint64_t total) {
+  const std::lock_guard lock(mutex_);
+  if (changed_) earlier_.push_back(pass_);
+  pass_ = {pass, 0, total, {}};
+  changed_ = true;
+}
+
+void Watch::advance(std::uint64_t done) {
+  const std::lock_guard lock(mutex_);
+  pass_.done = done < pass_.total ? done : pass_.total;
+  changed_ = true;
+}
+
+void Watch::notice(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  earlier_.push_back({{}, 0, 0, line});
+}
+
+void Watch::stop_if_cancelled() const {
+  if (cancelled_) throw Error(ErrorKind::interrupted, "interrupted");
+}
+
+void Watch::finish() {
+  const std::lock_guard lock(mutex_);
+  finished_ = true;
+  ended_.notify_one();
+}
+
+bool Watch::wait(std::chrono::milliseconds at_most) {
+  std::unique_lock lock(mutex_);
+  return ended_.wait_for(lock, at_most, [this] { return finished_; });
+}
+
+std::vector<Watch::Event> Watch::take() {
+  const std::lock_guard lock(mutex_);
+  std::vector<Event> events = std::exchange(earlier_, {});
+  if (std::exchange(changed_, false)) events.push_back(pass_);
+  return events;
+}
+
+void run_watched(const py::object& progress, const std::function<void(Watch&)>& work) {
+  Watch watch;
+  std::exception_ptr failure;
+  std::exception_ptr raised;
+  std::thread worker([&] {
+    try {
+      work(watch);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    watch.finish();
+  });
+  bool ended = false;
+  while (!ended) {
+    {
+      const py::gil_scoped_release unlocked;
+      ended = watch.wait(kPause);
+    }
+    if (raised) continue;
+    try {
+      if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
+      deliver(watch, progress);
+    } catch (...) {
+      raised = std::current_exception();
+      watch.cancel();
+    }
+  }
+  worker.join();
+  if (raised) std::rethrow_exception(raised);
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace weir::python

@@ -1,0 +1,58 @@
+// Work that a Python program waits for: it runs on a thread of its own without the interpreter's lock, while the
+// calling thread, which alone runs Python code, hands on progress and looks for Ctrl-C.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace weir::python {
+
+/// What the work tells, and is told. Thread-safe.
+class Watch {
+ public:
+  struct Event {
+    std::string pass;  ///< empty: `notice` is a line for the user
+    std::uint64_t done = 0;
+    std::uint64_t total = 0;
+    std::string notice;
+  };
+
+  void start(const std::string& pass, std::uint64_t total);
+  void advance(std::uint64_t done);
+  void notice(const std::string& line);
+  const std::atomic<bool>& cancelled() const { return cancelled_; }
+  /// Throws Error(interrupted) where `cancel` was called.
+  void stop_if_cancelled() const;
+
+  void cancel() { cancelled_ = true; }
+  void finish();
+  /// Waits for the end of the work, that long at most; whether it has ended.
+  bool wait(std::chrono::milliseconds at_most);
+  /// What was told since the last call: of each pass the last state only.
+  std::vector<Event> take();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  std::atomic<bool> cancelled_{false};
+  bool finished_ = false;
+  bool changed_ = false;  // pass_ since the last take()
+  Event pass_;
+  std::vector<Event> earlier_;
+};
+
+/// Runs `work` and rethrows what it throws. `progress`, None or called as progress(pass, done, total), and the
+/// interpreter's signal handlers run meanwhile; where one raises, the work is cancelled, and what was raised goes on
+/// after it has ended. Notices go to the logger "weir". The caller holds the interpreter's lock; `work` must not touch
+/// a Python object.
+void run_watched(const pybind11::object& progress, const std::function<void(Watch&)>& work);
+
+}  // namespace weir::python

@@ -1,0 +1,25 @@
+"""Volumes into NanoVDB files of exactly the size asked, each with a certificate of what it lost; and back.
+
+    import weir
+    record = weir.convert(density, "density.nvdb", rate=10)      # a numpy array [z, y, x], or a path
+    with weir.open("density.nvdb") as grid:
+        grid.certificate["psnr_db"], grid.to_numpy(), grid.sample([[4.5, 4.5, 4.5]]), grid.render(mode="dvr")
+"""
+
+from ._core import __version__
+from .conversion import convert
+from .errors import BudgetError, Error, InputError, IoError, UsageError
+from .grid import Check, Grid, Macrocells, open
+
+__all__ = [
+    "BudgetError",
+    "Check",
+    "Error",
+    "Grid",
+    "InputError",
+    "IoError",
+    "Macrocells",
+    "UsageError",
+    "convert",
+    "open",
+]

@@ -1,0 +1,166 @@
+"""weir.convert."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Callable, Optional, Sequence, Union
+
+import numpy
+
+from . import _core
+from .errors import UsageError
+from .options import box_text, option_list
+
+#: Called with the pass ("survey", "encode", ...), and its float32 bytes done and in all.
+Progress = Callable[[str, int, int], Any]
+Path = Union[str, "os.PathLike[str]"]
+Size = Union[int, str]  #: bytes, or "64MiB", "1.5GB"
+Numbers = Sequence[float]
+
+_TYPES = {"bool": "uint8"} | {
+    name: name
+    for name in "uint8 int8 uint16 int16 uint32 int32 uint64 int64 float16 float32 float64".split()
+}
+
+
+def convert(
+    source: Union[Path, numpy.ndarray],
+    output: Optional[Path] = None,
+    *,
+    rate: Optional[float] = None,
+    size: Optional[Size] = None,
+    psnr: Optional[float] = None,
+    max_error: Optional[float] = None,
+    lossless: bool = False,
+    encoding: Optional[str] = None,
+    metric: Optional[str] = None,
+    fill: Optional[str] = None,
+    background: Union[float, str, None] = None,
+    brick: Optional[int] = None,
+    preset: Optional[str] = None,
+    nonfinite: Optional[str] = None,
+    scene: Optional[Path] = None,
+    spacing: Optional[Numbers] = None,
+    origin: Optional[Numbers] = None,
+    missing: Union[float, str, None] = None,
+    roi: Any = None,
+    dataset: Optional[str] = None,
+    index: Optional[Sequence[int]] = None,
+    dims: Optional[Sequence[int]] = None,
+    type: Optional[str] = None,
+    endian: Optional[str] = None,
+    offset: Optional[Size] = None,
+    stack: bool = False,
+    direct_io: Optional[str] = None,
+    memory: Optional[Size] = None,
+    threads: Optional[int] = None,
+    work_dir: Optional[Path] = None,
+    resume: Optional[str] = None,
+    overwrite: bool = False,
+    progress: Optional[Progress] = None,
+) -> dict[str, Any]:
+    """Converts a volume to a NanoVDB file at `output` and its sidecar beside it; returns the sidecar.
+
+    source
+        A path of anything that `weir convert` reads, or a numpy array indexed [z, y, x] as HDF5 does it: of bool,
+        integers or floats of up to 64 bits in this machine's byte order, with any strides, read-only or not, a
+        numpy.memmap too. An array is read where it is and not copied; it must not change before the call returns.
+    output
+        May be left out for a path: its stem + ".nvdb", beside it. An existing file is replaced with overwrite=True only.
+
+    How large, one of these; rate=8 where none is given:
+
+    rate
+        The file has exactly ceil(float32 bytes of the volume / rate) bytes.
+    size
+        The file has exactly so many bytes.
+    psnr, max_error
+        The smallest file of at least so many dB, or in which every voxel is within that of its value.
+    lossless
+        As long as every bit of every voxel needs.
+
+    What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
+    "fp16"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
+    brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path.
+
+    The volume: spacing (x, y, z) in world units per voxel; origin, the world position of voxel (0, 0, 0); missing, a
+    stored value that says "no data"; roi ((x0, y0, z0), (x1, y1, z1)) in voxels, half open; dataset, the name in a
+    container, or of what an array holds. Of files also index, dims (x, y, z), type, endian, offset, stack, direct_io.
+
+    memory
+        Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it begins.
+    threads
+        At most so many work; 0, the default: one for each core. Results do not depend on it.
+    work_dir
+        For spill files; by default a hidden directory beside the output.
+    resume
+        "auto", "on" or "off": whether what an interrupted conversion of a file did is kept for the next. Never of an
+        array.
+    progress
+        Called in this thread some twenty times a second at most as progress(pass, done, total), in float32 bytes.
+        What it raises, KeyboardInterrupt too, ends the conversion and goes on.
+
+    Nothing is left of a conversion that fails or is interrupted, but for what resume keeps. The interpreter's lock is
+    free while it runs. What a user should know of a conversion that succeeds, for instance that the least size is
+    larger than the rate's, goes to the logger "weir".
+
+    Raises UsageError (a ValueError), InputError, BudgetError or IoError; TypeError where source is something else.
+    """
+    options = option_list(
+        rate=rate,
+        size=size,
+        psnr=psnr,
+        max_error=max_error,
+        lossless=lossless,
+        encoding=encoding,
+        metric=metric,
+        fill=fill,
+        background=background,
+        brick=brick,
+        preset=preset,
+        nonfinite=nonfinite,
+        scene=scene,
+        spacing=spacing,
+        origin=origin,
+        missing=missing,
+        roi=None if roi is None else box_text(roi),
+        dataset=dataset,
+        index=index,
+        dims=dims,
+        type=type,
+        endian=endian,
+        offset=offset,
+        stack=stack,
+        direct_io=direct_io,
+        memory=memory,
+        threads=threads,
+        work_dir=work_dir,
+        resume=resume,
+        overwrite=overwrite,
+    )
+    target = b"" if output is None else os.fsencode(output)
+    if isinstance(source, numpy.ndarray):
+        if not target:
+            raise UsageError("output is missing: an array has no name to make one from")
+        text = _core.convert_array(source, _scalar_type(source), target, options, progress)
+    elif isinstance(source, (str, os.PathLike)):
+        text = _core.convert_file(os.fsencode(source), target, options, progress)
+    else:
+        raise TypeError(f"source is a {source.__class__.__name__}, it must be a path or a numpy array")
+    return json.loads(text)
+
+
+def _scalar_type(array: numpy.ndarray) -> str:
+    """weir's name of the array's type. Raises UsageError for what is no volume of scalars."""
+    if isinstance(array, numpy.ma.MaskedArray):
+        raise UsageError("source is a masked array; give source.filled(numpy.nan) and nonfinite, or a value and missing")
+    if array.ndim != 3:
+        raise UsageError(f"source has {array.ndim} axes, it must have three: [z, y, x]")
+    if array.dtype.name not in _TYPES:
+        raise UsageError(f"source is of {array.dtype.name}, it must be one of {', '.join(_TYPES)}")
+    if not array.dtype.isnative:
+        raise UsageError(
+            f"source has the other byte order ({array.dtype.str}); give source.astype(source.dtype.newbyteorder('='))"
+        )
+    return _TYPES[array.dtype.name]

@@ -1,0 +1,273 @@
+"""weir.open and what it returns."""
+
+from __future__ import annotations
+
+import json
+import os
+from types import TracebackType
+from typing import Any, NamedTuple, Optional, Sequence, Type, Union
+
+import numpy
+
+from . import _core
+from .conversion import Numbers, Path, Progress
+from .errors import UsageError
+from .options import option_list
+
+
+class Macrocells(NamedTuple):
+    """Bounds of the values that a filtered look-up in a cell of the grid can have."""
+
+    cell: int  #: voxels along an edge
+    origin: tuple[int, int, int]  #: (x, y, z) of the first cell's corner in voxels from the grid's; 0 or below
+    min: numpy.ndarray  #: float32 [z, y, x], one for each cell
+    max: numpy.ndarray  #: the same of the largest values
+
+
+class Check(NamedTuple):
+    """One thing that must hold of a file."""
+
+    name: str
+    found: str
+    expected: str
+    ok: bool
+
+
+class Grid:
+    """A NanoVDB file, mapped and checked; values are decoded where they are asked for. Made by weir.open.
+
+    Coordinates (x, y, z) are voxels from the grid's lowest corner; arrays are indexed [z, y, x]. All methods may be
+    called from several threads. Arrays are the caller's own and outlive the grid. A grid is a context manager; once
+    closed, it raises UsageError.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = os.fspath(path)
+        self._core = _core.Grid(os.fsencode(path))
+
+    def __enter__(self) -> Grid:
+        return self
+
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        error: Optional[BaseException],
+        traceback: Optional[TracebackType],
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return f"<weir.Grid {self._path!r}, closed>"
+        return f"<weir.Grid {self._path!r}, {' x '.join(map(str, self.extent))}, {self.type}>"
+
+    def close(self) -> None:
+        """Lets go of the file. Twice does no harm."""
+        self._core.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether close was called."""
+        return self._core.closed
+
+    @property
+    def path(self) -> str:
+        """As it was given."""
+        return self._path
+
+    @property
+    def name(self) -> str:
+        """Of the quantity, "density" for instance; may be empty."""
+        return self._core.name
+
+    @property
+    def type(self) -> str:
+        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"."""
+        return self._core.type
+
+    @property
+    def extent(self) -> tuple[int, int, int]:
+        """Voxels (x, y, z)."""
+        return tuple(self._core.extent)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Of to_numpy(): voxels (z, y, x)."""
+        return self.extent[::-1]
+
+    @property
+    def index_origin(self) -> tuple[int, int, int]:
+        """Index (x, y, z) of the lowest voxel in the file; not 0 where a region was converted."""
+        return tuple(self._core.index_origin)
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """World units per voxel (x, y, z)."""
+        return tuple(self._core.spacing)
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """World position (x, y, z) of the voxel with index (0, 0, 0)."""
+        return tuple(self._core.origin)
+
+    @property
+    def background(self) -> float:
+        """What lies outside, and the most frequent value in files that weir made."""
+        return self._core.background
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest value there is, as the file says."""
+        return tuple(self._core.range)
+
+    @property
+    def bytes(self) -> int:
+        """Length of the file."""
+        return self._core.bytes
+
+    @property
+    def sidecar(self) -> Optional[dict[str, Any]]:
+        """What weir.convert returned, from the file beside this one; None where there is none.
+
+        Raises InputError where it is damaged, or of another file.
+        """
+        text = self._core.sidecar()
+        return None if text is None else json.loads(text)
+
+    @property
+    def certificate(self) -> Optional[dict[str, Any]]:
+        """The sidecar's "error": mse, rmse, nmse, psnr_db (None: lossless), max_abs, lossless; None without a sidecar."""
+        sidecar = self.sidecar
+        return None if sidecar is None else sidecar["error"]
+
+    @property
+    def levels(self) -> int:
+        """How many levels of detail to_numpy offers: 0 ... levels - 1."""
+        return self._core.levels
+
+    def level_shape(self, level: int) -> tuple[int, int, int]:
+        """Shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
+        if not isinstance(level, (int, numpy.integer)) or not 0 <= level < self.levels:
+            raise UsageError(f"level is {level!r}, it must be a whole number from 0 to {self.levels - 1}")
+        return tuple(-(-voxels >> int(level)) for voxels in self.shape)
+
+    def to_numpy(self, roi: Any = None, level: int = 0) -> numpy.ndarray:
+        """The values as float32 [z, y, x]: what a reader of the file decodes.
+
+        roi
+            Slices as of an array, numpy.s_[z0:z1, y0:y1, x0:x1], without steps, or corners ((x0, y0, z0),
+            (x1, y1, z1)), half open; to_numpy(s, k) is to_numpy(level=k)[s], and decodes only that.
+        level
+            Each value is the mean of the voxels in a cube of 2^level voxels along an edge (of those that are there, at
+            the upper ends), NaN where one of them is. No more than some rows of the volume are held meanwhile.
+        """
+        low, high = _box_of(roi, self.level_shape(level))
+        return self._core.read(low, high, level)
+
+    def sample(self, points: Any, filter: str = "trilinear") -> numpy.ndarray:
+        """Values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
+
+        Voxel i covers [i, i + 1), its centre is at i + 0.5; positions outside are clamped to the grid. "trilinear"
+        blends the 8 voxels around a position, "nearest" takes the one that covers it. Positions are rounded to float32.
+        """
+        if filter not in ("trilinear", "nearest"):
+            raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
+        positions = numpy.asarray(points, dtype=numpy.float32, order="C")
+        if positions.ndim == 0 or positions.shape[-1] != 3:
+            raise UsageError(f"points has the shape {positions.shape}, its last axis must be (x, y, z)")
+        if numpy.isnan(positions).any():
+            raise UsageError("points has a position that is NaN; leave it out")
+        return self._core.sample(positions.reshape(-1, 3), filter == "trilinear").reshape(positions.shape[:-1])
+
+    def macrocells(self) -> Macrocells:
+        """Bounds of the values in cells of 16^3 voxels and one voxel around each: the file's, else gathered from it."""
+        cell, origin, low, high = self._core.macrocells()
+        return Macrocells(cell, tuple(origin), low, high)
+
+    def verify(self, progress: Optional[Progress] = None) -> list[Check]:
+        """All checks of `weir verify`: structure, checksums, and what file and sidecar say of each other.
+
+        Reads all of the file. It is whole where all(check.ok for check in grid.verify()).
+        """
+        return [Check(*check) for check in self._core.verify(progress)]
+
+    def render(
+        self,
+        *,
+        mode: Optional[str] = None,
+        size: Sequence[int] = (960, 720),
+        spp: Optional[int] = None,
+        seed: Optional[int] = None,
+        scene: Optional[Path] = None,
+        filter: Optional[str] = None,
+        colormap: Optional[str] = None,
+        range: Optional[Numbers] = None,
+        iso: Optional[float] = None,
+        camera: Optional[Numbers] = None,
+        backend: Optional[str] = None,
+        threads: Optional[int] = None,
+        linear: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> numpy.ndarray:
+        """The picture that `weir render` makes, [y, x, RGB] with rows from the top.
+
+        mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers; camera (azimuth, elevation) or
+        (azimuth, elevation, zoom), in degrees; colormap, a name; range (low, high) of colours and opacity; iso, the
+        surface's value; scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or
+        "nearest"; backend "auto", "cpu" or "cuda"; threads, 0: all. Returns uint8 sRGB or, where `linear`, float32
+        radiance before tone mapping. progress is called with "render" and samples.
+        """
+        options = option_list(
+            mode=mode,
+            size="x".join(map(str, size)),
+            spp=spp,
+            seed=seed,
+            scene=scene,
+            filter=filter,
+            colormap=colormap,
+            range=range,
+            iso=iso,
+            camera=camera,
+            backend=backend,
+            threads=threads,
+        )
+        return self._core.render(options, linear, progress)
+
+
+def open(path: Path) -> Grid:
+    """Opens a NanoVDB file; of several grids in it the first. Raises InputError where it is missing or no valid one."""
+    return Grid(path)
+
+
+def _box_of(roi: Any, shape: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Corners (x, y, z) of what `roi` asks of an array of `shape` [z, y, x]."""
+    if roi is None:
+        return (0, 0, 0), tuple(shape[::-1])
+    bad = UsageError(
+        f"roi is {roi!r}, it must be three slices [z0:z1, y0:y1, x0:x1] without steps, or ((x0, y0, z0), (x1, y1, z1))"
+    )
+    try:
+        parts = (roi,) if isinstance(roi, slice) else tuple(roi)
+        if any(isinstance(part, slice) for part in parts):
+            parts = parts + (slice(None),) * (3 - len(parts))
+            ends = [part.indices(count) for part, count in zip(parts, shape, strict=True)]
+            if any(step != 1 for _, _, step in ends):
+                raise bad
+            low, high = ([end[i] for end in ends[::-1]] for i in (0, 1))
+        else:
+            low, high = ([_whole(end) for end in corner] for corner in parts)
+            if len(low) != 3 or len(high) != 3:
+                raise bad
+    except (AttributeError, TypeError, ValueError):
+        raise bad from None
+    if not all(0 <= a < b <= count for a, b, count in zip(low, high, shape[::-1])):
+        raise UsageError(
+            f"roi is {roi!r}, it must hold a voxel and lie in the {' x '.join(map(str, shape[::-1]))} (x, y, z) there are"
+        )
+    return tuple(low), tuple(high)
+
+
+def _whole(number: Any) -> int:
+    if int(number) != number:
+        raise ValueError
+    return int(number)

@@ -1,0 +1,47 @@
+"""Keywords as the options of the `weir` command, so that both mean the same."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Sequence
+
+import numpy
+
+from .errors import UsageError
+
+
+def text_of(value: Any) -> str:
+    """A number so that it reads back the same; sequences with commas between; a path or a text as it is."""
+    if isinstance(value, (str, os.PathLike)):
+        return str(os.fspath(value))
+    if isinstance(value, (bool, numpy.bool_)):
+        return str(bool(value))  # nobody means a number by it: let the check say so
+    if isinstance(value, (int, numpy.integer)):
+        return str(int(value))
+    if isinstance(value, (float, numpy.floating)):
+        return repr(float(value))
+    if isinstance(value, (Sequence, numpy.ndarray)):
+        return ",".join(text_of(part) for part in value)
+    return str(value)
+
+
+def box_text(box: Any) -> str:
+    """((x0, y0, z0), (x1, y1, z1)), half open, as "x0:x1,y0:y1,z0:z1"; a text stays."""
+    if isinstance(box, str):
+        return box
+    try:
+        low, high = ([text_of(end) for end in corner] for corner in box)
+        return ",".join(f"{a}:{b}" for a, b in zip(low, high, strict=True))
+    except (TypeError, ValueError):
+        raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), half open") from None
+
+
+def option_list(**keywords: Any) -> list[str]:
+    """["--max-error=0.5", "--lossless"]: what is None or False is not given."""
+    options = []
+    for name, value in keywords.items():
+        if value is None or value is False:
+            continue
+        option = "--" + name.replace("_", "-")
+        options.append(option if value is True else f"{option}={text_of(value)}")
+    return options

@@ -1,0 +1,157 @@
+"""What a caller did wrong, by the class and the whole message; nothing is left behind."""
+
+import os
+import unittest
+
+import numpy
+
+import weir
+from support import FolderTest, noise, ramp
+
+
+class Errors(FolderTest):
+    def convert(self, kind, source, **keywords):
+        before = self.names()
+        message = self.refused(kind, weir.convert, source, self.folder / "out.nvdb", **keywords)
+        self.assertEqual(self.names(), before)
+        return message
+
+    def test_classes(self):
+        for kind in (weir.UsageError, weir.InputError, weir.BudgetError, weir.IoError):
+            self.assertTrue(issubclass(kind, weir.Error))
+        self.assertTrue(issubclass(weir.UsageError, ValueError))
+        self.assertTrue(issubclass(weir.IoError, OSError))
+
+    def test_arguments(self):
+        for message, keywords in {
+            'rate is "-1.5", it must be a positive number: dense float32 bytes / file bytes': {"rate": -1.5},
+            'rate is "nan", it must be a positive number: dense float32 bytes / file bytes': {"rate": float("nan")},
+            "size, rate, psnr, max_error and lossless exclude each other; give one": {"rate": 2, "lossless": True},
+            'size is "10 horses", it must be a size such as 1048577, 64MiB or 1.5GB': {"size": "10 horses"},
+            'encoding is "zip", it must be auto, float, fpn, fp4, fp8 or fp16': {"encoding": "zip"},
+            "metric farthest has no error target; psnr and max_error select by sse": {"metric": "farthest", "psnr": 9},
+            'background is "inf", it must be auto or a finite float32': {"background": float("inf")},
+            'spacing is "1,2", it must be x,y,z, three numbers in world units': {"spacing": (1, 2)},
+            'memory is "1000", it must be a size of at least 64.0 MiB, like 512MiB': {"memory": 1000},
+            "dims says how to read a file; source is an array": {"dims": (9, 9, 9)},
+            "roi is ((0, 0), (1, 1, 1)), it must be ((x0, y0, z0), (x1, y1, z1)), half open": {
+                "roi": ((0, 0), (1, 1, 1))
+            },
+        }.items():
+            with self.subTest(message):
+                self.assertEqual(self.convert(weir.UsageError, ramp(9, 9, 9), **keywords), message)
+
+    def test_arrays(self):
+        values = ramp(9, 9, 9)
+        for message, array in {
+            "source has 2 axes, it must have three: [z, y, x]": values[0],
+            "source has 4 axes, it must have three: [z, y, x]": values[None],
+            "source is of complex128, it must be one of bool, uint8, int8, uint16, int16, uint32, int32, uint64, "
+            "int64, float16, float32, float64": values.astype(complex),
+            "source has the other byte order (>f4); give source.astype(source.dtype.newbyteorder('='))": values.astype(
+                ">f4"
+            ),
+            "source is a masked array; give source.filled(numpy.nan) and nonfinite, or a value and missing": (
+                numpy.ma.masked_less(values, 5)
+            ),
+        }.items():
+            with self.subTest(message):
+                self.assertEqual(self.convert(weir.UsageError, array), message)
+
+    def test_an_empty_array(self):
+        self.assertIn("0x9x9", self.convert(weir.InputError, numpy.zeros((9, 9, 0), numpy.float32)))
+
+    def test_what_is_no_volume(self):
+        message = self.refused(TypeError, weir.convert, [[[1.0]]], self.folder / "out.nvdb")
+        self.assertEqual(message, "source is a list, it must be a path or a numpy array")
+        message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9))
+        self.assertEqual(message, "output is missing: an array has no name to make one from")
+        message = self.refused(TypeError, weir.convert, ramp(9, 9, 9), "a.nvdb", rte=8)
+        self.assertEqual(message, "convert() got an unexpected keyword argument 'rte'")
+
+    def test_a_missing_input(self):
+        message = self.refused(weir.InputError, weir.convert, self.folder / "no.nrrd")
+        self.assertTrue(message.startswith("no.nrrd: "), message)
+        self.assertNotIn("\n", message)
+
+    def test_an_output_that_exists(self):
+        weir.convert(ramp(9, 9, 9), self.folder / "out.nvdb", lossless=True)
+        self.assertEqual(
+            self.convert(weir.UsageError, ramp(9, 9, 9)), "out.nvdb: exists; choose another output or pass overwrite"
+        )
+        weir.convert(ramp(9, 9, 9) + 1, self.folder / "out.nvdb", lossless=True, overwrite=True)
+        with weir.open(self.folder / "out.nvdb") as grid:
+            self.assertEqual(grid.range, (1, 80809))
+
+    def test_the_output_is_the_input(self):
+        weir.convert(ramp(9, 9, 9), self.folder / "out.nvdb", lossless=True)
+        message = self.convert(weir.UsageError, self.folder / "out.nvdb", overwrite=True)
+        self.assertEqual(message, "out.nvdb: is the input; choose another output")
+
+    def test_a_directory(self):
+        message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder)
+        self.assertEqual(message, f"{self.folder}: is a directory; name a file in it")
+
+    def test_a_size_that_cannot_be_met(self):
+        message = self.convert(weir.BudgetError, noise((9, 9, 9)), size=1000)
+        self.assertRegex(message, r"^out\.nvdb: .*1000")
+
+    def test_values_that_are_not_finite(self):
+        values = ramp(9, 9, 9)
+        values[0, 0, 0] = numpy.inf
+        message = self.convert(weir.InputError, values)
+        self.assertIn("nonfinite", message)
+        self.assertNotIn("--", message)
+
+    def test_a_directory_that_is_missing(self):
+        message = self.refused(weir.IoError, weir.convert, ramp(9, 9, 9), self.folder / "no" / "out.nvdb")
+        self.assertIn("no", message)
+
+    def test_paths_of_any_bytes(self):
+        path = os.fsencode(self.folder) + b"/\xff\xe4.nvdb"
+        weir.convert(ramp(9, 9, 9), os.fsdecode(path), lossless=True)
+        with weir.open(os.fsdecode(path)) as grid:
+            self.assertEqual(grid.range, (0, 80808))
+        message = self.refused(weir.InputError, weir.open, os.fsdecode(path + b".no"))
+        self.assertTrue(message.startswith("\udcff\udce4.nvdb.no: "), ascii(message))
+
+    def test_messages_name_keywords(self):
+        translate = weir._core.keyword_text
+        self.assertEqual(translate("--max-error is 3; or pass --dims, --roi"), "max_error is 3; or pass dims, roi")
+        self.assertEqual(translate("give (--size) with -o"), "give (size)")
+        self.assertEqual(translate("a--b.raw: -- x-o -other with -other"), "a--b.raw: -- x-o -other with -other")
+
+
+class OpenErrors(FolderTest):
+    def test_no_file(self):
+        message = self.refused(weir.InputError, weir.open, self.folder / "a.nvdb")
+        self.assertTrue(message.startswith("a.nvdb: "), message)
+
+    def test_no_nanovdb(self):
+        (self.folder / "a.nvdb").write_bytes(b"nothing" * 1000)
+        message = self.refused(weir.InputError, weir.open, self.folder / "a.nvdb")
+        self.assertTrue(message.startswith("a.nvdb: "), message)
+        self.assertNotIn("\n", message)
+
+    def test_the_sidecar_of_another_file(self):
+        weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=True)
+        weir.convert(ramp(19, 9, 9), self.folder / "b.nvdb", lossless=True)
+        (self.folder / "b.nvdb.json").replace(self.folder / "a.nvdb.json")
+        sizes = [(self.folder / name).stat().st_size for name in ("b.nvdb", "a.nvdb")]
+        with weir.open(self.folder / "a.nvdb") as grid, self.assertRaises(weir.InputError) as raised:
+            grid.certificate
+        self.assertEqual(
+            str(raised.exception).replace(f"{self.folder}/", ""),
+            f"a.nvdb.json: is of a file of {sizes[0]} bytes with another checksum, "
+            f"a.nvdb has {sizes[1]} bytes; convert it again",
+        )
+
+    def test_a_damaged_sidecar(self):
+        grid = self.lossless(ramp(9, 9, 9))
+        (self.folder / "a.nvdb.json").write_text("{")
+        with self.assertRaises(weir.InputError):
+            grid.sidecar
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,65 @@
+"""Grid.render makes the picture that `weir render` makes."""
+
+import unittest
+
+import numpy
+
+import weir
+from png import read_png
+from support import FolderTest, ramp, run_weir
+
+
+def ball(n=32):
+    """1 in the middle, falling to 0."""
+    z, y, x = (numpy.mgrid[0:n, 0:n, 0:n] + 0.5) / n - 0.5
+    return numpy.maximum(0, 1 - 2 * numpy.sqrt(x * x + y * y + z * z)).astype(numpy.float32)
+
+
+class Render(FolderTest):
+    def test_pictures_are_those_of_the_command(self):
+        grid = self.lossless(ball())
+        scene = self.folder / "scene.toml"
+        scene.write_text("[lighting]\nexposure = 2\n")
+        for keywords, options in (
+            ({"mode": "dvr"}, ["--mode", "dvr"]),
+            ({"mode": "path", "spp": 2, "seed": 7}, ["--mode", "path", "--spp", 2, "--seed", 7]),
+            ({"mode": "iso", "iso": 0.5, "camera": (10, -20, 1.5)}, ["--mode", "iso", "--iso", 0.5, "--camera=10,-20,1.5"]),
+            (
+                {"mode": "mip", "colormap": "heat", "range": (0, 0.5), "filter": "nearest", "scene": scene},
+                ["--mode", "mip", "--colormap", "heat", "--range", "0,0.5", "--filter", "nearest", "--scene", scene],
+            ),
+        ):
+            with self.subTest(keywords):
+                picture = grid.render(size=(60, 40), backend="cpu", **keywords)
+                run_weir("render", grid.path, "-o", self.folder / "a.png", "--size", "60x40", "--backend", "cpu", *options)
+                self.assertEqual((picture.shape, picture.dtype), ((40, 60, 3), numpy.uint8))
+                numpy.testing.assert_array_equal(picture, read_png(self.folder / "a.png"))
+                self.assertGreater(picture.std(), 5)
+
+    def test_linear_is_radiance(self):
+        picture = self.lossless(ball()).render(size=(30, 20), mode="dvr", linear=True)
+        self.assertEqual((picture.shape, picture.dtype), ((20, 30, 3), numpy.float32))
+        self.assertTrue(numpy.isfinite(picture).all())
+        self.assertGreater(picture[10, 15].max(), 0)
+
+    def test_progress_counts_samples(self):
+        calls = []
+        self.lossless(ball()).render(size=(30, 20), spp=3, progress=lambda *call: calls.append(call))
+        self.assertEqual(calls[-1], ("render", 1800, 1800))
+
+    def test_what_cannot_be_rendered(self):
+        grid = self.lossless(ramp(9, 9, 9))
+        for message, keywords in {
+            'size is "0x9", it must be WxH in pixels, each from 1 to 32768 and 268435456 together': {"size": (0, 9)},
+            'camera is "1,99", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, '
+            "zoom from 0.01 to 100": {"camera": (1, 99)},
+            "mode: oil not in {path,dvr,iso,mip}": {"mode": "oil"},
+            'spp is "0", it must be a whole number from 1 to 1048576': {"spp": 0},
+        }.items():
+            self.assertEqual(self.refused(weir.UsageError, grid.render, **keywords), message)
+        message = self.refused(weir.InputError, grid.render, scene=self.folder / "no.toml")
+        self.assertTrue(message.startswith("no.toml: "), message)
+
+
+if __name__ == "__main__":
+    unittest.main()

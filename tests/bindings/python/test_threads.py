@@ -1,0 +1,192 @@
+"""Several threads at once, Ctrl-C, what callbacks raise, and what is left in memory."""
+
+import concurrent.futures
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+import weakref
+
+import numpy
+
+import weir
+from support import FolderTest, noise, ramp, same
+
+LARGE = (128, 256, 256)  # takes a second or so: time enough to be interrupted
+
+INTERRUPTED = """
+import numpy, signal, sys, threading, time, weir
+values = numpy.random.default_rng(1).random((256, 256, 256), dtype=numpy.float32)
+def interrupt_once(pass_, done, total):
+    if done:
+        sys.stdout.write(pass_ + "\\n")
+        sys.stdout.flush()
+try:
+    weir.convert(values, sys.argv[1], psnr=30, progress=interrupt_once)
+    print("done")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+class Threads(FolderTest):
+    def test_conversions_at_once_give_the_same_bytes(self):
+        values = noise((64, 64, 64), numpy.float32)
+        paths = [self.folder / f"{i}.nvdb" for i in range(6)]
+        with concurrent.futures.ThreadPoolExecutor(6) as pool:
+            records = list(pool.map(lambda path: weir.convert(values, path, psnr=40), paths))
+        self.assertEqual(len({record["file"]["digest"] for record in records}), 1)
+        self.assertEqual(len({path.read_bytes() for path in paths}), 1)
+
+    def test_reads_at_once(self):
+        values = noise((40, 50, 60))
+        grid = self.lossless(values)
+        points = numpy.random.default_rng(3).uniform(0, 40, (20000, 3))
+        expected = grid.sample(points)
+
+        def work(i):
+            if i % 2:
+                return same(grid.sample(points), expected)
+            return same(grid.to_numpy(), values.astype(numpy.float32)) and same(
+                grid.to_numpy(level=2), self.level_2
+            )
+
+        self.level_2 = grid.to_numpy(level=2)
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            self.assertTrue(all(pool.map(work, range(40))))
+
+    def test_a_grid_that_is_closed_while_it_is_read(self):
+        values = noise((64, 64, 64))
+        grid = self.lossless(values)
+        started = threading.Event()
+
+        def read():
+            started.set()
+            try:
+                return all(same(grid.to_numpy(), values.astype(numpy.float32)) for _ in range(100))
+            except weir.UsageError as error:
+                return str(error).endswith("is closed; open it again with weir.open")
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            results = [pool.submit(read) for _ in range(4)]
+            started.wait()
+            grid.close()
+            self.assertTrue(all(result.result() for result in results))
+
+    def test_the_interpreter_runs_meanwhile(self):
+        values = noise(LARGE, numpy.float32)
+        ticks = []
+        done = threading.Event()
+
+        def tick():
+            while not done.wait(0.001):
+                ticks.append(time.monotonic())
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        start = time.monotonic()
+        weir.convert(values, self.folder / "a.nvdb", psnr=30)
+        end = time.monotonic()
+        done.set()
+        thread.join()
+        within = [t for t in ticks if start < t < end]
+        self.assertGreater(len(within), 5)
+        self.assertLess(max(b - a for a, b in zip([start, *within], [*within, end])), (end - start) / 2)
+
+
+class Interrupts(FolderTest):
+    def test_ctrl_c_ends_a_conversion_and_leaves_nothing(self):
+        environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+        process = subprocess.Popen(
+            [sys.executable, "-B", "-c", INTERRUPTED, self.folder / "a.nvdb"],
+            stdout=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
+        self.assertEqual(process.stdout.readline(), "survey\n")
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(out.splitlines()[-1], "interrupted")
+        self.assertEqual(self.names(), [])
+
+    def test_what_progress_raises_ends_a_conversion(self):
+        class Enough(Exception):
+            pass
+
+        calls = []
+
+        def stop(pass_, done, total):
+            calls.append(pass_)
+            raise Enough("for today")
+
+        with self.assertRaises(Enough):
+            weir.convert(noise(LARGE, numpy.float32), self.folder / "a.nvdb", psnr=30, progress=stop)
+        self.assertEqual(calls, ["survey"])
+        self.assertEqual(self.names(), [])
+
+    def test_what_progress_raises_ends_a_picture(self):
+        grid = self.lossless(ramp(32, 32, 32))
+
+        def stop(pass_, done, total):
+            raise ZeroDivisionError
+
+        start = time.monotonic()
+        with self.assertRaises(ZeroDivisionError):
+            grid.render(size=(2000, 2000), spp=1000, progress=stop)
+        self.assertLess(time.monotonic() - start, 30)
+
+
+class Memory(FolderTest):
+    def test_no_reference_is_kept(self):
+        class Array(numpy.ndarray):
+            pass
+
+        values = noise((9, 9, 9)).view(Array)
+        calls = []
+        before = sys.getrefcount(values), sys.getrefcount(calls)
+        for i in range(20):
+            weir.convert(values, self.folder / f"{i}.nvdb", lossless=True, progress=lambda *call: calls.append(call))
+            with self.assertRaises(weir.UsageError):
+                weir.convert(values, self.folder / f"{i}.nvdb")
+        self.assertEqual((sys.getrefcount(values), sys.getrefcount(calls)), before)
+        gone = weakref.ref(values)
+        del values
+        self.assertIsNone(gone())
+
+    def test_results_are_freed(self):
+        grid = self.lossless(noise((64, 64, 64)))
+        points = numpy.zeros((100000, 3), numpy.float32)
+
+        def use():
+            grid.to_numpy()
+            grid.to_numpy(level=1)
+            grid.sample(points)
+            grid.macrocells()
+            grid.render(size=(200, 200), mode="mip", spp=1)
+            with weir.open(grid.path) as other:
+                other.to_numpy()
+
+        for _ in range(10):
+            use()
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        for _ in range(60):
+            use()
+        grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+        self.assertLess(grown, 16 << 20)  # the arrays of one round, kept, would be 60 times 3.6 MiB
+
+    def test_an_array_is_not_copied(self):
+        values = numpy.zeros(LARGE[::-1], numpy.float64).transpose()  # 64 MiB
+        values[:] = 1
+        values[5] = 2
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        weir.convert(values, self.folder / "a.nvdb", memory="100MB", threads=1)
+        grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+        self.assertLess(grown, values.nbytes)
+
+
+if __name__ == "__main__":
+    unittest.main()
