@@ -5,7 +5,8 @@
 // A slab is copied into slices (ingest/block_plan.h) of one leaf layer each.
 // Beside the simulation, a thread surveys the slices that are complete and spools
 // their leaves, but for those of one value, in the work directory, so that the
-// end only has to select and encode.
+// end only has to select and encode. The directory needs room for these values as
+// they are stored, and for 80 bytes of each leaf (296 with a scene).
 #pragma once
 
 #include <array>

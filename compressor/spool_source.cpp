@@ -21,6 +21,8 @@ namespace weir {
 namespace {
 
 constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
+/// Boxes below this many bytes per thread are not worth another thread.
+constexpr std::int64_t kBytesPerThread = 256 * 1024;
 
 class SpoolSource final : public VolumeSource {
  public:
@@ -30,7 +32,11 @@ class SpoolSource final : public VolumeSource {
   // A row of leaves lies in one piece, as long rows of a file do.
   AccessShape access() const override { return {scalar_bytes(info_.type), {}, {}}; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
-  ConversionLoss read(const Box& box, std::span<float> values) override { return read_by(kIoThreads, box, values); }
+  ConversionLoss read(const Box& box, std::span<float> values) override {
+    const std::int64_t bytes = box.voxels() * static_cast<std::int64_t>(scalar_bytes(info_.type));
+    const auto threads = std::clamp<std::int64_t>(bytes / kBytesPerThread, 1, static_cast<std::int64_t>(kIoThreads));
+    return read_by(static_cast<std::size_t>(threads), box, values);
+  }
   ConversionLoss read_alone(const Box& box, std::span<float> values) override { return read_by(1, box, values); }
 
  private:
