@@ -78,14 +78,6 @@ bool remove_present(FileSystem& files, const std::string& path) {
   return true;
 }
 
-void remove_directory_quietly(FileSystem& files, const std::string& path) noexcept {
-  try {
-    files.remove_directory(path);
-  } catch (const Error&) {
-    // Not empty: somebody else's files, which are not ours to remove.
-  }
-}
-
 bool remove_all(FileSystem& files, const std::string& directory, const std::string& spills) {
   bool any = remove_present(files, in(directory, kJournal));
   any = remove_present(files, in(directory, kNewJournal)) || any;
@@ -231,8 +223,12 @@ void Journal::write(const std::vector<std::shared_ptr<File>>& open, const std::s
     file->sync();
   }
   files_.rename(in(directory_, kNewJournal), in(directory_, kJournal));  // 3
-  files_.sync_directory(directory_);                                     // 4
-  if (!spill_directory_.empty()) files_.sync_directory(spill_directory_);
+  for (const std::string& directory : {directory_, spill_directory_}) {  // 4
+    if (directory.empty()) continue;
+    files_.sync_directory(directory);
+    if (!placed_) files_.sync_directory(directory_of(directory));
+  }
+  placed_ = true;
 }
 
 void Journal::discard() noexcept {
@@ -248,8 +244,8 @@ void Journal::discard() noexcept {
   } catch (const Error&) {
     // The result counts, or the failure that led here; the next conversion of this output removes what is left.
   }
-  if (!spill_directory_.empty()) remove_directory_quietly(files_, spill_directory_);
-  remove_directory_quietly(files_, directory_);
+  if (!spill_directory_.empty()) remove_if_empty(files_, spill_directory_);
+  remove_if_empty(files_, directory_);
 }
 
 std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& output) {
@@ -270,7 +266,7 @@ bool remove_leftovers(FileSystem& files, const std::string& output) {
     if (found && has_own_spills(*found, output)) spills = found->spill_directory;
   }
   const bool any = remove_all(files, directory, spills);
-  if (!spills.empty()) remove_directory_quietly(files, spills);
+  if (!spills.empty()) remove_if_empty(files, spills);
   return any;
 }
 

@@ -7,7 +7,7 @@
 //   1. all files flushed                what the checkpoint says of them is durable
 //   2. journal.new written and flushed
 //   3. journal.new renamed to journal   the checkpoint counts: the old or the new one, never half of one
-//   4. the directories flushed
+//   4. the directories flushed, at the first save their own names, too
 // and runs beside the work, so that a pass waits for no device. What is written
 // after a save and before the next is written again, the same bytes at the same
 // places.
@@ -83,6 +83,7 @@ class Journal {
   std::map<std::string, std::shared_ptr<File>> open_;
   Clock::time_point last_save_ = Clock::now();
   std::future<void> saving_;
+  bool placed_ = false;  // whether the names of the directories are durable
   std::map<std::string, std::uint64_t> saving_files_;
   std::map<std::string, std::uint64_t> saved_;  // files of the checkpoint that counts; empty: none does
 };

@@ -1,6 +1,8 @@
 #include "compressor/resume.h"
 
 #include "compressor/conversion_identity.h"
+#include "compressor/work_directory.h"
+#include "format/sidecar.h"
 #include "format/text.h"
 
 namespace weir {
@@ -27,11 +29,25 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
     if (remove_leftovers(files, options.output) && control.notice) {
       control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
     }
+    // Unless it is this conversion's WorkDirectory.
+    if (!options.work_dir.empty() || in_memory) remove_if_empty(files, hidden_directory_of(options.output));
     return nullptr;
   }
   return std::make_unique<Journal>(
       files, options.output, identify_conversion(info, options),
       JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.trace, control.notice});
+}
+
+bool clear_leftovers(FileSystem& files, const std::string& output) {
+  const std::string hidden = hidden_directory_of(output);
+  const std::string previous = sidecar_path(output) + ".previous";
+  const bool any = files.exists(hidden) || files.exists(output + ".partial") || files.exists(previous);
+  if (!any) return false;
+  const OutputFiles lock(files, output, true);  // removes its own two unfinished ones
+  remove_leftovers(files, output);
+  remove_if_empty(files, hidden);
+  files.remove(previous);
+  return true;
 }
 
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves) {

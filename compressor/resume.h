@@ -19,6 +19,10 @@ namespace weir {
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files);
 
+/// Removes what a conversion of `output` that was killed after it was done has left beside it, under the lock on it.
+/// False where there is nothing. Throws Error(io) where another process has the lock.
+bool clear_leftovers(FileSystem& files, const std::string& output);
+
 /// "OUT.nvdb: continues a conversion that was interrupted, survey 100 %, encode 37 % done".
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves);
 

@@ -11,6 +11,14 @@ std::string hidden_directory_of(const std::string& output) {
   return directory_of(output) + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
 }
 
+void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
+  try {
+    files.remove_directory(path);
+  } catch (const Error&) {
+    // Not empty.
+  }
+}
+
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
@@ -40,12 +48,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const
 }
 
 WorkDirectory::~WorkDirectory() {
-  if (!made_) return;
-  try {
-    files_.remove_directory(path_);
-  } catch (const Error&) {
-    // Not empty: somebody else's files, which are not ours to remove.
-  }
+  if (made_) remove_if_empty(files_, path_);
 }
 
 }  // namespace weir

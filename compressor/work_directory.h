@@ -13,6 +13,9 @@ namespace weir {
 /// ".OUT.nvdb.work" beside OUT.nvdb.
 std::string hidden_directory_of(const std::string& output);
 
+/// Removes the directory at `path`, unless it holds somebody's files, which are not ours to remove.
+void remove_if_empty(FileSystem& files, const std::string& path) noexcept;
+
 class WorkDirectory {
  public:
   /// `chosen` is --work-dir or empty. Throws Error(usage) where `chosen` is missing or in memory, and

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "compressor/resume.h"
 #include "format/bandwidth.h"
 #include "format/error.h"
 #include "format/limited_file_system.h"
@@ -94,6 +95,17 @@ void check_alike(const Sidecar& first, const SourceInfo& info, const Budget& bud
                   " of ", first.source.path, ", so that a rate gives files of two sizes; give --size"));
 }
 
+// A kill may come between the end of a conversion and the removal of what it was made from.
+void tidy_up(const std::string& output) {
+  try {
+    if (clear_leftovers(*make_posix_file_system(), output)) {
+      spdlog::info("{}: what its conversion had left is removed", output);
+    }
+  } catch (const Error& error) {
+    spdlog::warn("{}: what its conversion had left stays: {}", output, error.what());
+  }
+}
+
 // The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
 std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions& options) {
   FinishedOutput found = find_output(info, options);
@@ -102,6 +114,7 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions
       return std::nullopt;
     case FinishedOutput::State::done:
       spdlog::info("{}: done already", options.output);
+      tidy_up(options.output);
       return std::move(found.sidecar);
     case FinishedOutput::State::stale:
       spdlog::info("{}: converted again: {}", options.output, found.reason);
@@ -255,7 +268,7 @@ void add_convert(CLI::App& app) {
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");
   command->add_flag("--skip-done", a->skip_done,
                     "leave an output that this very conversion made of the same source; convert it again where the "
-                    "source or an option has changed or the output is not whole");
+                    "source, the scene or an option has changed or the output is not whole");
   command->add_flag("--json", a->json, "print the sidecar on stdout");
   add_log_level(*command);
   command->callback([command, a] { convert(*command, *a); });

@@ -51,8 +51,26 @@ TEST(Journal, ASaveFollowsTheProtocol) {
   journal.save();
   const Names calls = files.calls();
   EXPECT_EQ(Names(calls.begin() + static_cast<std::ptrdiff_t>(before), calls.end()),
-            (Names{"sync", "create", "write", "sync", "rename", "sync_directory"}));
+            (Names{"sync", "create", "write", "sync", "rename", "sync_directory", "sync_directory"}));
   EXPECT_TRUE(journal.resumable());
+  journal.save();
+  EXPECT_EQ(files.calls().size() - calls.size(), 6U) << "the hidden directory has its name by then";
+}
+
+TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
+  for (const char* work_dir : {"", "/scratch"}) {
+    MemoryFileSystem files;
+    const JournalOptions options{work_dir, 0, nullptr, nullptr, {}};
+    {
+      Journal journal(files, "o.nvdb", kIdentity, options);
+      begin_survey(journal);
+      journal.save();
+    }
+    const Names saved = files.names();
+    files.lose_unflushed();
+    EXPECT_EQ(files.names(), saved);
+    EXPECT_TRUE(Journal(files, "o.nvdb", kIdentity, options).resumable());
+  }
 }
 
 TEST(Journal, TakesUpWhatWasSavedAndNothingElse) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "format/error.h"
+#include "format/output_files.h"
 #include "format/text.h"
 
 namespace weir::test {
@@ -70,8 +71,20 @@ std::vector<std::string> MemoryFileSystem::names() const {
   return names;
 }
 
+std::vector<std::string> MemoryFileSystem::directories() const {
+  const std::scoped_lock lock(mutex_);
+  return {directories_.begin(), directories_.end()};
+}
+
 void MemoryFileSystem::lose_unflushed() {
   const std::scoped_lock lock(mutex_);
+  files_ = durable_files_;
+  std::erase_if(files_, [&](const auto& file) {
+    const std::string directory = directory_of(file.first);
+    return directories_.contains(directory) && !durable_directories_.contains(directory);
+  });
+  durable_files_ = files_;
+  directories_ = durable_directories_;
   for (const auto& [name, stored] : files_) stored->bytes = stored->flushed;
 }
 
@@ -115,13 +128,43 @@ void MemoryFileSystem::remove(const std::string& path) {
   files_.erase(path);
 }
 
-void MemoryFileSystem::make_directory(const std::string&) {}
-void MemoryFileSystem::remove_directory(const std::string&) {}
-void MemoryFileSystem::sync_directory(const std::string&) {}
+void MemoryFileSystem::make_directory(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  directories_.insert(path);
+}
+
+void MemoryFileSystem::remove_directory(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  for (const auto& [name, stored] : files_) {
+    if (directory_of(name) == path) throw Error(ErrorKind::io, cat(path, ": is not empty"));
+  }
+  directories_.erase(path);
+}
+
+void MemoryFileSystem::sync_directory(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  for (const std::string& directory : directories_) {
+    if (directory_of(directory) == path) durable_directories_.insert(directory);
+  }
+  std::erase_if(durable_directories_, [&](const std::string& directory) {
+    return directory_of(directory) == path && !directories_.contains(directory);
+  });
+  // All that happened to the files that were or are named here, so that none of their renames is cut in two.
+  std::set<const Stored*> concerned;
+  for (const Files* files : {&files_, &durable_files_}) {
+    for (const auto& [name, stored] : *files) {
+      if (directory_of(name) == path) concerned.insert(stored.get());
+    }
+  }
+  std::erase_if(durable_files_, [&](const auto& file) { return concerned.contains(file.second.get()); });
+  for (const auto& [name, stored] : files_) {
+    if (concerned.contains(stored.get())) durable_files_[name] = stored;
+  }
+}
 
 bool MemoryFileSystem::exists(const std::string& path) {
   const std::scoped_lock lock(mutex_);
-  return path == "." || files_.count(path) > 0;
+  return path == "." || files_.contains(path) || directories_.contains(path);
 }
 
 bool MemoryFileSystem::is_memory(const std::string&) { return false; }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 namespace weir::test {
 
-/// Thread-safe. The only directory that exists is "."; others can be made, and are not kept.
+/// Thread-safe. "." exists, and what is made; files may lie in any directory.
 class MemoryFileSystem final : public FileSystem {
  public:
   using Bytes = std::vector<std::byte>;
@@ -21,8 +22,11 @@ class MemoryFileSystem final : public FileSystem {
   /// Content of a file; empty where there is none.
   Bytes content(const std::string& path) const;
   std::vector<std::string> names() const;
+  /// Those that were made and not removed.
+  std::vector<std::string> directories() const;
 
-  /// As if the machine had lost power: every file holds what it held when it was last flushed.
+  /// As if the machine had lost power: every file holds what it held when it was last flushed, and has the names that
+  /// it had when their directories were. A rename happens at both places or at none.
   void lose_unflushed();
 
   std::unique_ptr<File> create(const std::string& path) override;
@@ -42,9 +46,13 @@ class MemoryFileSystem final : public FileSystem {
  private:
   friend class MemoryFile;
   struct Stored;
+  using Files = std::map<std::string, std::shared_ptr<Stored>>;
 
   mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Stored>> files_;
+  Files files_;
+  Files durable_files_;
+  std::set<std::string> directories_;
+  std::set<std::string> durable_directories_;
 };
 
 }  // namespace weir::test

@@ -3,6 +3,7 @@
 // disturbed.
 #include <gtest/gtest.h>
 
+#include "compressor/resume.h"
 #include "tests/compressor/resumed.h"
 
 namespace weir::test {
@@ -79,6 +80,49 @@ TEST_F(ResumeKill, AFullDisk) {
   }
   if (!kSanitized) {
     EXPECT_GT(continued, kPoints / 5);
+  }
+}
+
+// Where the outputs have their names and what they were made from is not removed yet.
+TEST_F(ResumeKill, ADoneConversionIsTidiedUp) {
+  for (const bool overwrite : {false, true}) {
+    // Whether it died at call number `at` after the volume got its name.
+    const auto dies = [&](MemoryFileSystem& memory, int at) {
+      ConversionOptions options = base();
+      if (overwrite) run(options, memory);
+      options.overwrite = overwrite;
+      FaultyFileSystem files(memory, -1, EIO, FaultyFileSystem::After::fails);
+      files.fail_after_rename_to("out.nvdb", at);
+      try {
+        run(options, files);
+      } catch (const Error&) {
+        EXPECT_TRUE(files.failed());
+      }
+      return files.failed();
+    };
+    int left = 0;
+    for (int at = 0;; ++at) {
+      SCOPED_TRACE(at);
+      MemoryFileSystem memory;
+      if (!dies(memory, at)) break;
+      left += memory.names() == kResult ? 0 : 1;
+      clear_leftovers(memory, "out.nvdb");
+      EXPECT_EQ(memory.names(), kResult);
+      EXPECT_EQ(memory.directories(), Names{});
+      EXPECT_FALSE(clear_leftovers(memory, "out.nvdb")) << "nothing is there";
+
+      MemoryFileSystem other;
+      dies(other, at);
+      other.make_directory("/scratch");
+      ConversionOptions again = base();
+      again.overwrite = true;
+      again.work_dir = "/scratch";
+      again.resume = Resume::off;
+      run(again, other);
+      EXPECT_EQ(other.names(), kResult);
+      EXPECT_EQ(other.directories(), Names{"/scratch"});
+    }
+    EXPECT_GE(left, 4) << "lock, directory, journal, rows";
   }
 }
 

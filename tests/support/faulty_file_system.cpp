@@ -55,6 +55,16 @@ void FaultyFileSystem::count(const std::string& call, const std::string& path) {
   throw io_error(path, "do call " + std::to_string(number) + " (" + call + ")", errno_value_);
 }
 
+void FaultyFileSystem::fail_after_rename_to(const std::string& path, int fail_at) {
+  awaited_name_ = path;
+  fail_after_it_ = fail_at;
+}
+
+void FaultyFileSystem::renamed(const std::string& to) {
+  const std::scoped_lock lock(mutex_);
+  if (to == awaited_name_) fail_at_ = static_cast<int>(calls_.size()) + fail_after_it_;
+}
+
 std::vector<std::string> FaultyFileSystem::calls() const {
   const std::scoped_lock lock(mutex_);
   return calls_;
@@ -78,11 +88,13 @@ std::unique_ptr<File> FaultyFileSystem::create_unnamed(const std::string& direct
 void FaultyFileSystem::rename(const std::string& from, const std::string& to) {
   count("rename", from);
   real_.rename(from, to);
+  renamed(to);
 }
 
 void FaultyFileSystem::rename_new(const std::string& from, const std::string& to) {
   count("rename_new", from);
   real_.rename_new(from, to);
+  renamed(to);
 }
 
 void FaultyFileSystem::link(const std::string& from, const std::string& to) {

@@ -22,6 +22,9 @@ class FaultyFileSystem final : public FileSystem {
   /// Call number `fail_at` (0 is the first) fails with `errno_value`; none where it is negative.
   FaultyFileSystem(FileSystem& real, int fail_at, int errno_value, After after = After::works);
 
+  /// Instead of a number from the beginning: call number `fail_at` after something got the name `path`.
+  void fail_after_rename_to(const std::string& path, int fail_at);
+
   /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
   std::vector<std::string> calls() const;
   bool failed() const { return failed_; }
@@ -44,10 +47,14 @@ class FaultyFileSystem final : public FileSystem {
   void count(const std::string& call, const std::string& path);
 
  private:
+  void renamed(const std::string& to);
+
   FileSystem& real_;
   int fail_at_;
   int errno_value_;
   After after_;
+  std::string awaited_name_;
+  int fail_after_it_ = -1;
   mutable std::mutex mutex_;
   std::vector<std::string> calls_;
   std::atomic<bool> failed_{false};

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "compressor/journal.h"
+#include "format/file_system.h"
 #include "tests/tools/run_command.h"
 
 namespace weir {
@@ -135,6 +137,42 @@ TEST_F(SkipDone, ConvertsAgainWhatIsNotWhole) {
     file.seekp(4096 + 100).put('x');  // in the grid's head
   }
   EXPECT_FALSE(leaves_it()) << "damaged head";
+}
+
+// As a kill leaves it between the end of a conversion and the removal of what it was made from.
+TEST_F(SkipDone, RemovesWhatAKilledConversionLeftBesideIt) {
+  ASSERT_EQ(convert().exit_code, 0);
+  const auto leave = [&] {
+    const auto files = make_posix_file_system();
+    Journal journal(*files, output_, {{"source", "killed"}}, {});
+    journal.open("rows")->preallocate(100);
+    journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
+    journal.save_now();
+    write_file(output_ + ".partial", "");
+  };
+  const std::vector<std::string> finished = list_directory(directory_.path());
+  leave();
+  EXPECT_EQ(list_directory(directory_.path()).size(), finished.size() + 4);
+  EXPECT_NE(convert().err.find(output_ + ": what its conversion had left is removed\n"), std::string::npos);
+  EXPECT_EQ(list_directory(directory_.path()), finished);
+  EXPECT_TRUE(leaves_it());
+
+  leave();
+  ASSERT_EQ(run_weir({"convert", source_, "-o", output_, "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(list_directory(directory_.path()), finished);
+
+  leave();
+  {
+    const auto writer = make_posix_file_system()->create(output_ + ".partial");
+    const CommandResult locked = convert();
+    EXPECT_EQ(locked.exit_code, 0);
+    EXPECT_NE(locked.err.find(output_ + ": what its conversion had left stays: " + output_ +
+                              ".partial: is being written by another process"),
+              std::string::npos)
+        << locked.err;
+  }
+  EXPECT_EQ(convert().exit_code, 0);
+  EXPECT_EQ(list_directory(directory_.path()), finished);
 }
 
 TEST_F(SkipDone, RefusesWhatIsNotItsOwn) {
