@@ -105,7 +105,7 @@ class PushedVolume::State {
 
   void slab(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
     check_going_on();
-    take_planes(z0, nz, data);
+    const Taking taking(*this, z0, nz, data);
     const Box domain = info_.domain();
     const Box box{{domain.lo.x, domain.lo.y, domain.lo.z + z0}, {domain.hi.x, domain.hi.y, domain.lo.z + z0 + nz}};
     intake_.add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
@@ -114,13 +114,13 @@ class PushedVolume::State {
   Sidecar end() {
     const auto started = std::chrono::steady_clock::now();
     check_going_on();
-    check_complete();
+    begin_end();
     intake_.finish();
-    ended_ = true;
     const Release release{files_};
     try {
       return convert(started);
     } catch (const Error& error) {
+      const std::lock_guard lock(mutex_);
       failure_ = error;
       throw;
     }
@@ -129,6 +129,25 @@ class PushedVolume::State {
   const SourceInfo& info() const { return info_; }
 
  private:
+  // A slab from its planes being checked to the call's return.
+  class Taking {
+   public:
+    Taking(State& state, std::int64_t z0, std::int64_t nz, const void* data) : state_(state) {
+      const std::lock_guard lock(state_.mutex_);
+      state_.take_planes(z0, nz, data);
+      ++state_.slabs_in_progress_;
+    }
+    ~Taking() {
+      const std::lock_guard lock(state_.mutex_);
+      --state_.slabs_in_progress_;
+    }
+    Taking(const Taking&) = delete;
+    Taking& operator=(const Taking&) = delete;
+
+   private:
+    State& state_;
+  };
+
   // However the end comes: what was not committed goes from the disk with it.
   struct Release {
     std::optional<PushedFiles>& files;
@@ -186,14 +205,17 @@ class PushedVolume::State {
   }
 
   void check_going_on() {
-    if (failure_) throw Error(*failure_);
-    if (ended_) throw Error(ErrorKind::usage, cat(info_.path, ": the volume has ended; begin another one"));
+    intake_.check();
+    {
+      const std::lock_guard lock(mutex_);
+      if (failure_) throw Error(*failure_);
+      if (ended_) throw has_ended();
+    }
     try {
       check_cancel(control_);
     } catch (const Error& interrupted) {
       throw intake_.fail(interrupted);
     }
-    intake_.check();
   }
 
   void take_planes(std::int64_t z0, std::int64_t nz, const void* data) {
@@ -202,20 +224,29 @@ class PushedVolume::State {
       throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, " planes from ", z0,
                                         " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
     }
-    const std::lock_guard lock(mutex_);
     if (const auto twice = given_.add({z0, z0 + nz})) {
       throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, " planes from ", z0, " on holds ",
                                         planes_text({*twice}), ", given before; give each plane once"));
     }
   }
 
-  void check_complete() {
+  void begin_end() {
     const std::lock_guard lock(mutex_);
+    if (ended_) throw has_ended();
     const std::vector<PlaneRange> missing = given_.missing(info_.extent.z);
-    if (missing.empty()) return;
-    throw Error(ErrorKind::usage, cat(info_.path, ": ", planes_text(missing), " of ", info_.extent.z,
-                                      " never came; give the rest first"));
+    if (!missing.empty()) {
+      throw Error(ErrorKind::usage, cat(info_.path, ": ", planes_text(missing), " of ", info_.extent.z,
+                                        " never came; give the rest first"));
+    }
+    if (slabs_in_progress_ > 0) {
+      throw Error(ErrorKind::usage,
+                  cat(info_.path, ": ", slabs_in_progress_, slabs_in_progress_ == 1 ? " slab is" : " slabs are",
+                      " still being taken; end once every call has returned"));
+    }
+    ended_ = true;
   }
+
+  Error has_ended() const { return {ErrorKind::usage, cat(info_.path, ": the volume has ended; begin another one")}; }
 
   Sidecar convert(std::chrono::steady_clock::time_point started) {
     floats_.clear();
@@ -235,8 +266,9 @@ class PushedVolume::State {
   std::optional<PushedFiles> files_;  // none once the push has ended
   BlockPlan slices_;
   tbb::enumerable_thread_specific<PageBuffer> floats_;  // of a slice
-  std::mutex mutex_;
+  std::mutex mutex_;                                    // of the next four
   PlaneSet given_;
+  std::int64_t slabs_in_progress_ = 0;
   bool ended_ = false;
   std::optional<Error> failure_;  // of the end
   SliceIntake intake_;            // last: its workers use the above

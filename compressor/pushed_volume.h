@@ -21,7 +21,7 @@
 
 namespace weir {
 
-/// `slab` may be called by several threads at once; `end` by one, after all of them.
+/// `slab` may be called by several threads at once; `end` once all of them have returned.
 class PushedVolume {
  public:
   /// `info` says extent, index_origin, type, mapping, spacing, origin, path (for messages and the sidecar), dataset
@@ -51,8 +51,9 @@ class PushedVolume {
   void slab(std::int64_t z0, std::int64_t nz, const void* data);
 
   /// Writes the volume and its sidecar, which it returns; the volume has the bytes that convert_volume gives for the
-  /// same values and options. Sidecar::Timing is of this call. Throws Error(usage) naming the planes that are missing:
-  /// they can still be given. Any other Error is final, as for slab, and of the output nothing is left.
+  /// same values and options. Sidecar::Timing is of this call. Throws Error(usage) naming the planes that are missing,
+  /// which can still be given, and where slabs are still being taken. Any other Error is final, as for slab, and of the
+  /// output nothing is left.
   Sidecar end();
 
  private:

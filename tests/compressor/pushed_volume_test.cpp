@@ -14,6 +14,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "format/error.h"
@@ -316,6 +317,34 @@ TEST_F(PushMisuse, IsSaidInOneLineAndTakesNothing) {
   EXPECT_EQ(files_.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
   EXPECT_EQ(end(), "density: the volume has ended; begin another one");
   EXPECT_EQ(slab(0, 1, values_.data()), "density: the volume has ended; begin another one");
+}
+
+TEST_F(PushMisuse, EndsOnceAndNotBeforeEverySlabIsTaken) {
+  info_.extent = {512, 512, 256};
+  PushedVolume pushed(info_, options_, {}, files_);
+  const float everywhere = 2.5F;
+  std::jthread simulation([&] { pushed.slab(0, 256, &everywhere, {0, 0, 0}); });
+  const std::string early = "density: planes 0 to 255 of 256 never came; give the rest first";
+  std::string answer = early;
+  while (answer == early) answer = message(ErrorKind::usage, [&] { pushed.end(); });
+  EXPECT_EQ(answer, "density: 1 slab is still being taken; end once every call has returned");
+  simulation.join();
+  std::atomic<int> ends{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 3; ++t) {
+      threads.emplace_back([&] {
+        const std::string one = message(ErrorKind::usage, [&] { pushed.end(); });
+        if (one == "no error") {
+          ++ends;
+        } else {
+          EXPECT_EQ(one, "density: the volume has ended; begin another one");
+        }
+      });
+    }
+  }
+  EXPECT_EQ(ends, 1);
+  EXPECT_EQ(files_.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
 }
 
 TEST_F(PushMisuse, LeavesNothingWithoutAnEnd) {
