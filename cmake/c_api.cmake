@@ -4,18 +4,28 @@ file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/c/*.cpp)
 add_library(weir_c SHARED ${sources})
 add_library(weir::c ALIAS weir_c)
 target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core)
-set(WEIR_C_HEADERS ${PROJECT_SOURCE_DIR}/bindings/c/weir.h)
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_definitions(weir_c PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
 set_source_files_properties(bindings/c/conversion_options.cpp PROPERTIES COMPILE_DEFINITIONS WEIR_COMMIT="${WEIR_COMMIT}")
-# The second number of the version may change what is there while the first is 0.
+# What is there may change with the second number of the version while the first is 0.
+set(WEIR_ABI ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/weir.map @ONLY
+     CONTENT "# Nothing of the libraries in it.\nWEIR_@WEIR_ABI@ {\n  global: weir_*;\n  local: *;\n};\n")
 set_target_properties(weir_c PROPERTIES OUTPUT_NAME weir EXPORT_NAME c VERSION ${PROJECT_VERSION}
-                      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-                      CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-                      LINK_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/c/weir.map)
-target_link_options(weir_c PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/bindings/c/weir.map
-                                   LINKER:--as-needed)
+                      SOVERSION ${WEIR_ABI}
+                      CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON LINK_DEPENDS ${CMAKE_BINARY_DIR}/weir.map)
+target_link_options(weir_c PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir.map LINKER:--as-needed)
+
+# weir_install_c(): the library and its header, for find_package(weir), pkg-config, or -lweir.
+function(weir_install_c)
+  install(TARGETS weir_c EXPORT weirCTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT weirCTargets NAMESPACE weir:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/weir)
+  install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/weir.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  file(RELATIVE_PATH WEIR_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)  # wherever that will be
+  configure_file(${PROJECT_SOURCE_DIR}/bindings/c/weir.pc.in ${CMAKE_BINARY_DIR}/weir.pc @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/weir.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
 
 # weir_c_tests(): every tests/bindings/c/NAME_test.c as a program of its own, strict C99, that ctest knows as c/NAME_test.
 function(weir_c_tests)
@@ -32,4 +42,16 @@ function(weir_c_tests)
     add_test(NAME c/${name} COMMAND ${target})
     add_dependencies(weir_tests_c ${target})
   endforeach()
+  if(TARGET weir_tests_tools)  # those of the installed library
+    add_dependencies(weir_tests_tools weir_c)
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install_test.cpp
+                 APPEND PROPERTY COMPILE_DEFINITIONS WEIR_ABI="${WEIR_ABI}")
+    set(installs)
+    if(TARGET weir_share)
+      set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}")
+    endif()
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+                 WEIR_CC="${CMAKE_C_COMPILER}" WEIR_CXX="${CMAKE_CXX_COMPILER}" WEIR_CMAKE="${CMAKE_COMMAND}"
+                 WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})
+  endif()
 endfunction()

@@ -30,13 +30,13 @@ NetCDF-4, OpenVDB, NRRD, MetaImage, NIfTI, VTK, raw) stream through bounded
 memory into standard NanoVDB files that meet a byte budget to the byte, or an
 error with as few bytes as meet it, each with a certificate of what it lost.
 It renders them, watches directories beside a running simulation, and has the
-libraries that a renderer embeds.")
+libraries that a renderer or a simulation embeds, in C++, C and Fortran.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "hdf5-filter-plugin, libnanovdb-tools, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm ${packaging}/triggers)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

@@ -1,7 +1,9 @@
-# find_package(weir): weir::format_core and weir::gpu_core, and weir::cuda where weir was built with CUDA and the project
-# compiles CUDA (enable_language(CUDA) before find_package).
+# find_package(weir): weir::format_core and weir::gpu_core; weir::c, the C interface, but where weir was built with
+# WEIR_EMBED; and weir::cuda where weir was built with CUDA and the project compiles CUDA (enable_language(CUDA) before
+# find_package).
 
 include(${CMAKE_CURRENT_LIST_DIR}/weirTargets.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/weirCTargets.cmake OPTIONAL)
 if(CMAKE_CUDA_COMPILER AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/weirCudaTargets.cmake)
   include(CMakeFindDependencyMacro)
   find_dependency(Threads)

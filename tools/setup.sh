@@ -12,7 +12,7 @@ packages=(
   # to test
   libgtest-dev libbenchmark-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
-  hdf5-filter-plugin-zfp-serial groff-base zsh fish dpkg-dev file
+  hdf5-filter-plugin-zfp-serial groff-base zsh fish dpkg-dev file gfortran pkg-config
   # to check
   clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck
 )

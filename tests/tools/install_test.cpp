@@ -90,12 +90,19 @@ std::set<std::string> python_files([[maybe_unused]] const std::string& folder) {
 std::set<std::string> installed_files(bool has_cuda, const std::string& python) {
   std::set<std::string> expected{
       "bin/weir",
+      "include/weir.h",
+      "lib/libweir.so",
+      "lib/libweir.so." WEIR_ABI,
+      "lib/libweir.so." WEIR_VERSION,
       "lib/libweir_format_core.a",
       "lib/libweir_gpu_core.a",
+      "lib/cmake/weir/weirCTargets.cmake",
+      "lib/cmake/weir/weirCTargets-release.cmake",
       "lib/cmake/weir/weirConfig.cmake",
       "lib/cmake/weir/weirConfigVersion.cmake",
       "lib/cmake/weir/weirTargets.cmake",
       "lib/cmake/weir/weirTargets-release.cmake",
+      "lib/pkgconfig/weir.pc",
       "lib/systemd/system/weir@.service",
       "lib/sysusers.d/weir.conf",
       "share/bash-completion/completions/weir",
@@ -156,6 +163,7 @@ TEST_F(Installation, ThePackageHasThemToo) {
   EXPECT_EQ(run_command({work / "content/usr/bin/weir", "--version"}).out, WEIR_VERSION "\n");
   const std::string unit = read_file(work / "content/usr/lib/systemd/system/weir@.service");
   EXPECT_EQ(unit, read_file(WEIR_SOURCE_DIR "/daemon/weir@.service")) << "written for /usr";
+  EXPECT_EQ(run_command({"dpkg-deb", "--info", package, "triggers"}).out, "activate-noawait ldconfig\n");
   const std::string needs = run_command({"dpkg-deb", "--field", package, "Depends"}).out;
   for (const char* library : {"libc6 (", "libhdf5-", "libopenvdb", "libtbb", "libsqlite3-0"}) {
     EXPECT_NE(needs.find(library), std::string::npos) << needs;
