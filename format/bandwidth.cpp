@@ -4,8 +4,6 @@
 #include <thread>
 #include <utility>
 
-#include "format/error.h"
-
 namespace weir {
 namespace {
 
@@ -32,7 +30,7 @@ void Bandwidth::spend(std::uint64_t bytes) {
     return bucket_.take(bytes, now);
   }();
   for (; now < until; now = clock_.now()) {
-    if (cancel_ != nullptr && *cancel_) throw Error(ErrorKind::interrupted, "interrupted");
+    if (cancel_ != nullptr && *cancel_) return;
     clock_.sleep(std::min<TokenBucket::Time::duration>(kNap, until - now));
   }
 }

@@ -19,12 +19,13 @@ struct BandwidthClock {
 
 class Bandwidth {
  public:
-  /// bytes_per_s above 0; a tenth of a second's bytes may be moved at once. `cancel`, if any, ends waiting.
+  /// bytes_per_s above 0; a tenth of a second's bytes may be moved at once. Once `cancel`, if any, is set, nobody
+  /// waits: whoever stops then has to bring what it began to an end, and to save it.
   Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel, BandwidthClock clock);
   Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel);
 
   /// `bytes` were read, or are about to be written: returns when that keeps to the limit. Any thread may call it; they
-  /// share the limit. Throws Error(interrupted) when cancelled.
+  /// share the limit.
   void spend(std::uint64_t bytes);
 
  private:

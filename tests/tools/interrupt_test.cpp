@@ -101,6 +101,23 @@ TEST(Interrupt, KeepsALargeConversionThatTheSameCommandContinues) {
             (Names{".volume.nvdb.work/", ".volume.nvdb.work/journal", ".volume.nvdb.work/rows"}));
 }
 
+// Long before the first save is due, and with bytes to wait for.
+TEST(Interrupt, BelowABandwidthKeepsWhatIsDone) {
+  const TemporaryDirectory directory;
+  fs::create_directory(directory / "out");
+  const std::string volume = directory / "zeros_1024x1024x1024_uint8.raw";
+  write_file(volume, "");
+  fs::resize_file(volume, std::uintmax_t{1} << 30U);
+  const fs::path work = directory / "out/.volume.nvdb.work";
+  const CommandResult result = interrupt(directory, volume, SIGINT, [&] { return written_at(work / "rows", 0); },
+                                         {"--bandwidth", "10MB", "--save-interval", "3600"});
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err,
+            "weir: interrupted; what is done is kept in " + work.string() + ", the same command continues it\n");
+  EXPECT_EQ(list_directory(directory / "out"),
+            (Names{".volume.nvdb.work/", ".volume.nvdb.work/journal", ".volume.nvdb.work/rows"}));
+}
+
 TEST(Interrupt, KilledAgainAndAgainItEndsWithTheSameBytes) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
