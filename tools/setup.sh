@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build git ca-certificates
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
-  libzfp-dev libsqlite3-dev
+  libzfp-dev libsqlite3-dev pybind11-dev python3-dev python3-numpy
   # to test
   libgtest-dev libbenchmark-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
@@ -20,6 +20,11 @@ packages=(
 if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(chromium chromium-driver); fi
 # ZFP's own command, to evaluate it; what needs it is skipped where it is missing. Looked for in Debian alone.
 if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(zfp); fi
+
+# VTK, for the reader of bindings/paraview; ParaView has a VTK of its own, which this one would remove.
+if [[ $(dpkg-query --show --showformat '${db:Status-Abbrev}' python3-paraview 2>/dev/null || true) != ii* ]]; then
+  packages+=(python3-vtk9)
+fi
 
 missing=()
 for package in "${packages[@]}"; do

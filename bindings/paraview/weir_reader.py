@@ -36,7 +36,7 @@ except ImportError:
 
 
 @smproxy.reader(
-    name="WeirReader", label="NanoVDB Reader (weir)", extensions="nvdb", file_description="NanoVDB volumes"
+    name="WeirReader", label="Weir Reader", extensions="nvdb", file_description="NanoVDB volumes"
 )
 class WeirReader(VTKPythonAlgorithmBase):
     """One .nvdb file; of several grids in it the first."""
@@ -60,7 +60,7 @@ class WeirReader(VTKPythonAlgorithmBase):
     def GetFileName(self):
         return self._path
 
-    @smproperty.intvector(name="Level", label="Level of detail", default_values=0)
+    @smproperty.intvector(name="Level", default_values=0)
     @smdomain.intrange(min=0, max=12)
     def SetLevel(self, level):
         """0: every voxel. Each level more halves the voxels along each axis; the last one has a single point."""
