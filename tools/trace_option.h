@@ -1,4 +1,4 @@
-// The option --trace of the commands that stream a volume.
+// The option --trace of the commands that go through a volume.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -26,7 +26,8 @@ Index3 voxel_of(unsigned n) { return {n >> 6U, n >> 3U & 7U, n & 7U}; }
 // Calls on_tile for every tile in this thread, and reduces leaves batch by batch on all threads.
 // `Tally` has add(const GridBlock& leaf, std::span<const float, 512> values) and merge(const Tally&).
 template <typename Tally, typename OnTile>
-Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgress& progress, const OnTile& on_tile) {
+Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgress& progress, const OnTile& on_tile,
+                    Trace* trace = nullptr) {
   Tally total = zero;
   std::vector<GridBlock> batch;
   std::uint64_t done = 0;
@@ -35,6 +36,7 @@ Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgres
         tbb::blocked_range<std::size_t>(0, batch.size(), 256), zero,
         [&](const tbb::blocked_range<std::size_t>& range, Tally part) {
           std::array<float, kLeafVoxels> values{};
+          const TraceSpan span(trace, "decode", range.size() * sizeof values);
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
             grid.decode_leaf(batch[i].leaf, values);
             part.add(batch[i], values);
@@ -199,9 +201,10 @@ class HistogramTally {
 
 }  // namespace
 
-TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress) {
-  return reduce_blocks(grid, CensusTally(grid), progress,
-                       [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); })
+TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace) {
+  return reduce_blocks(
+             grid, CensusTally(grid), progress, [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); },
+             trace)
       .census;
 }
 

@@ -11,6 +11,7 @@
 
 #include "format/index.h"
 #include "format/nvdb_grid.h"
+#include "format/trace.h"
 
 namespace weir {
 
@@ -30,8 +31,9 @@ struct TreeCensus {
 /// Called with the number of leaves done so far, from the calling thread; may throw to stop.
 using CensusProgress = std::function<void(std::uint64_t leaves)>;
 
-/// Decodes every leaf, on all threads of TBB. Throws as NvdbGrid::decode_leaf.
-TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress);
+/// Decodes every leaf, on all threads of TBB. `trace` gets what each of them decodes, in float32 bytes. Throws as
+/// NvdbGrid::decode_leaf.
+TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace = nullptr);
 
 /// Counts of the active values in `bins` equal bins over [lo, hi], lo < hi; what lies outside or is
 /// NaN is not counted. Decodes every leaf, on all threads of TBB. Throws as NvdbGrid::decode_leaf.

@@ -1,5 +1,6 @@
 // weir verify: everything a volume and its sidecar say about each other and
 // themselves, checked. Exit 0 only if all holds.
+#include <array>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -8,9 +9,11 @@
 #include <vector>
 
 #include "format/error.h"
+#include "format/sidecar.h"
 #include "format/text.h"
 #include "tools/command.h"
 #include "tools/progress.h"
+#include "tools/trace_option.h"
 #include "tools/volume_verification.h"
 
 namespace weir {
@@ -19,6 +22,7 @@ namespace {
 struct VerifyArguments {
   std::string path;
   bool json = false;
+  std::string trace;
   ProgressOptions progress;
 };
 
@@ -28,7 +32,12 @@ std::vector<VolumeCheck> verify(const VerifyArguments& arguments) {
   watch.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   watch.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   watch.cancel = &interrupt_flag();
-  return verify_volume(arguments.path, watch);
+  const std::unique_ptr<Trace> trace =
+      open_trace(arguments.trace, std::array{arguments.path, sidecar_path(arguments.path)});
+  watch.trace = trace.get();
+  std::vector<VolumeCheck> checks = verify_volume(arguments.path, watch);
+  if (trace) trace->close();
+  return checks;
 }
 
 // An error of a reader says already where and what was expected.
@@ -68,6 +77,7 @@ void add_verify(CLI::App& app) {
       ->type_name("OUT.nvdb")
       ->required();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
+  add_trace_option(*command, arguments->trace);
   add_progress_options(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { run(*arguments); });

@@ -25,10 +25,15 @@ void stop_if_cancelled(const VerificationWatch& watch) {
 std::string parallel_digest(std::span<const std::byte> file, const VerificationWatch& watch) {
   constexpr std::uint64_t kBatch = 32;  // pieces between two looks at the progress and the cancel flag
   if (watch.pass_started) watch.pass_started("digest", file.size());
+  const TraceSpan pass(watch.trace, "digest", file.size());
   std::vector<Digest> pieces(piece_count(file.size()));
   for (std::uint64_t begin = 0; begin < pieces.size(); begin += kBatch) {
     const std::uint64_t end = std::min<std::uint64_t>(begin + kBatch, pieces.size());
-    tbb::parallel_for(begin, end, [&](std::uint64_t i) { pieces[i] = piece_digest(file_piece(file, i)); });
+    tbb::parallel_for(begin, end, [&](std::uint64_t i) {
+      const std::span<const std::byte> piece = file_piece(file, i);
+      const TraceSpan span(watch.trace, "hash", piece.size());
+      pieces[i] = piece_digest(piece);
+    });
     if (watch.pass_advanced) watch.pass_advanced(end * kDigestPieceBytes);
     stop_if_cancelled(watch);
   }
@@ -39,12 +44,14 @@ TreeCensus watched_census(const NvdbGrid& grid, const VerificationWatch& watch) 
   const auto leaves = static_cast<double>(std::max<std::uint64_t>(grid.node_counts()[0], 1));
   const auto bytes = static_cast<double>(grid.data_bytes());
   if (watch.pass_started) watch.pass_started("leaves", grid.data_bytes());
-  return take_census(grid, [&](std::uint64_t done) {
+  const TraceSpan pass(watch.trace, "leaves", grid.data_bytes());
+  const auto progress = [&](std::uint64_t done) {
     if (watch.pass_advanced) {
       watch.pass_advanced(static_cast<std::uint64_t>(bytes * static_cast<double>(done) / leaves));
     }
     stop_if_cancelled(watch);
-  });
+  };
+  return take_census(grid, progress, watch.trace);
 }
 
 // Failures that end the verification early become a check like any other.
@@ -65,7 +72,10 @@ auto checked(const std::string& name, std::vector<VolumeCheck>& checks, const Ru
 std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch) {
   std::vector<VolumeCheck> checks;
   const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(sidecar_path(path)); });
-  const auto file = checked("structure", checks, [&] { return std::make_unique<NvdbFile>(path); });
+  const auto file = checked("structure", checks, [&] {
+    const TraceSpan span(watch.trace, "open");
+    return std::make_unique<NvdbFile>(path);
+  });
   if (!file) return checks;
   const NvdbGrid& grid = (*file)->grid();
   const auto census = checked("structure", checks, [&] { return watched_census(grid, watch); });

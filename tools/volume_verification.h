@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "format/trace.h"
 #include "tools/volume_check.h"
 
 namespace weir {
@@ -16,6 +17,7 @@ struct VerificationWatch {
   std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   const std::atomic<bool>* cancel = nullptr;
+  Trace* trace = nullptr;  ///< gets the passes, and what each thread decodes and hashes in them
 };
 
 /// Checks the .nvdb at `path` and the sidecar beside it: structure, checksum, digest, and what one says of the other.

@@ -128,6 +128,33 @@ TEST_F(TraceOption, TellsWhatIsCompared) {
   EXPECT_EQ(run_weir({"compare", input_, directory_ / "o.nvdb", "--trace", input_}).exit_code, 2);
 }
 
+TEST_F(TraceOption, TellsWhatIsVerified) {
+  const std::string output = directory_ / "o.nvdb";
+  ASSERT_EQ(run_weir({"convert", input_, "-o", output, "--rate", "2", "--encoding", "float"}).exit_code, 0);
+  const CommandResult result = run_weir({"verify", output, "--trace", trace_});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Threads threads = read_trace(trace_);
+  const auto file_bytes = static_cast<double>(std::filesystem::file_size(output));
+  const Json sidecar = Json::parse(read_file(output + ".json"));
+  EXPECT_EQ(bytes_of(threads, "digest"), file_bytes);
+  EXPECT_EQ(bytes_of(threads, "hash"), file_bytes);
+  EXPECT_EQ(bytes_of(threads, "decode"), sidecar["selection"]["leaves_kept"].get<double>() * 2048);
+  EXPECT_LE(bytes_of(threads, "leaves"), file_bytes);
+  Names inner = names_of(threads[0]);
+  for (const char* pass : {"open", "leaves", "digest"}) EXPECT_EQ(inner.erase(pass), 1U) << pass;
+  for (const auto& [thread, spans] : threads) {
+    if (thread != 0) inner.merge(names_of(spans));
+  }
+  EXPECT_EQ(inner, (Names{"decode", "hash"}));
+  for (const std::string& file : {output, output + ".json"}) {
+    EXPECT_EQ(run_weir({"verify", output, "--trace", file}).err,
+              "weir: --trace " + file + ": is an input or an output; choose another\n");
+  }
+  std::filesystem::resize_file(output, 10000);
+  EXPECT_EQ(run_weir({"verify", output, "--trace", trace_}).exit_code, 3);
+  EXPECT_EQ(names_of(read_trace(trace_)[0]), Names{"open"});
+}
+
 TEST_F(TraceOption, IsWholeWhereTheConversionIsNot) {
   EXPECT_EQ(run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--size", "1", "--trace", trace_}).exit_code, 4);
   Threads threads = read_trace(trace_);
