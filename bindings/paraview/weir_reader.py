@@ -13,6 +13,8 @@ voxels along an edge (of those that are there, at the upper ends) and lies in th
 the extent that is asked for is decoded, and of finer voxels than the level's some rows at a time are held, so that a
 level of a file that is larger than memory opens. The field data has the certificate of the sidecar, where there is one:
 "weir_rmse" and "weir_max_abs", in the values' own unit, and "weir_psnr_db", if anything was lost.
+
+Several files of one extent are the steps of a series, at the times 0, 1, 2, ...
 """
 
 import weir
@@ -39,26 +41,50 @@ except ImportError:
     name="WeirReader", label="Weir Reader", extensions="nvdb", file_description="NanoVDB volumes"
 )
 class WeirReader(VTKPythonAlgorithmBase):
-    """One .nvdb file; of several grids in it the first."""
+    """One .nvdb file, or a series of them; of several grids in a file the first."""
 
     def __init__(self):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
-        self._path = None
+        self._paths = []
         self._level = 0
-        self._grid = None
+        self._step = 0
+        self._grid = None  # of the step
 
-    @smproperty.stringvector(name="FileName")
+    @smproperty.stringvector(
+        name="FileNames",
+        command="AddFileName",
+        clean_command="ClearFileNames",
+        repeat_command="1",
+        number_of_elements="1",
+        panel_visibility="never",
+    )
     @smdomain.filelist()
     @smhint.filechooser(extensions="nvdb", file_description="NanoVDB volumes")
-    def SetFileName(self, path):
-        """The file to read; it is mapped when it is first needed."""
-        if path != self._path:
-            self._path = path
+    def AddFileName(self, path):
+        """The file of the next step; it is mapped when it is first needed."""
+        if path not in (None, "None"):  # the latter is ParaView's way to say that there is none
+            self._paths.append(path)
             self._grid = None
             self.Modified()
 
-    def GetFileName(self):
-        return self._path
+    def ClearFileNames(self):
+        self._paths = []
+        self._grid = None
+        self.Modified()
+
+    def SetFileName(self, path):
+        """The one file to read."""
+        if [path] != self._paths:
+            self.ClearFileNames()
+            self.AddFileName(path)
+
+    def GetFileNames(self):
+        return list(self._paths)
+
+    @smproperty.doublevector(name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty")
+    def GetTimestepValues(self):
+        """The times of a series; None of a single file."""
+        return [float(step) for step in range(len(self._paths))] if len(self._paths) > 1 else None
 
     @smproperty.intvector(name="Level", default_values=0)
     @smdomain.intrange(min=0, max=12)
@@ -82,15 +108,22 @@ class WeirReader(VTKPythonAlgorithmBase):
     def _answer(self, work, information):
         """1, or 0 after saying in one line what is wrong."""
         try:
-            if self._path in (None, "None"):  # the latter is ParaView's
+            if not self._paths:
                 raise weir.UsageError("no file is named; call SetFileName")
-            if self._grid is None:
-                self._grid = weir.open(self._path)
+            self._open(information)
             work(information)
         except weir.Error as error:
             vtkOutputWindow.GetInstance().DisplayErrorText(f"WeirReader: {error}\n")
             return 0
         return 1
+
+    def _open(self, information):
+        """Makes the grid that of the time that is asked for: the last step up to it."""
+        time = information.Get(Pipeline.UPDATE_TIME_STEP()) if information.Has(Pipeline.UPDATE_TIME_STEP()) else 0
+        step = min(max(int(time), 0), len(self._paths) - 1)
+        if self._grid is None or step != self._step:
+            self._grid = weir.open(self._paths[step])
+            self._step = step
 
     def _level_there_is(self):
         return min(self._level, self._grid.levels - 1)
@@ -113,14 +146,24 @@ class WeirReader(VTKPythonAlgorithmBase):
         information.Set(vtkDataObject.ORIGIN(), origin, 3)
         information.Set(self.CAN_PRODUCE_SUB_EXTENT(), 1)
         vtkDataObject.SetPointDataActiveScalarInfo(information, VTK_FLOAT, 1)
+        times = self.GetTimestepValues()
+        if times:
+            information.Set(Pipeline.TIME_STEPS(), times, len(times))
+            information.Set(Pipeline.TIME_RANGE(), [times[0], times[-1]], 2)
 
     def _read(self, information):
+        whole = information.Get(Pipeline.WHOLE_EXTENT())[1::2]
+        there = [points - 1 for points in self._grid.level_shape(self._level_there_is())[::-1]]
+        if there != list(whole):  # VTK settles the extent before the time
+            raise weir.InputError(f"{self._grid.path}: is not of the extent that the series began with; read it alone")
         x0, x1, y0, y1, z0, z1 = extent = information.Get(Pipeline.UPDATE_EXTENT())
         image = vtkImageData.GetData(information)
         spacing, origin = self._placement()
         image.SetExtent(extent)
         image.SetSpacing(spacing)
         image.SetOrigin(origin)
+        if len(self._paths) > 1:
+            image.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(self._step))
         if x1 >= x0 and y1 >= y0 and z1 >= z0:
             box = (x0, y0, z0), (x1 + 1, y1 + 1, z1 + 1)
             values = numpy_to_vtk(self._grid.to_numpy(box, self._level_there_is()).reshape(-1))

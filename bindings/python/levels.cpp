@@ -35,7 +35,11 @@ class MeanRows {
  public:
   /// `rows`: values of the level, from the volume's corner.
   MeanRows(VolumeSource& source, int level, const Box& rows)
-      : source_(source), edge_(std::int64_t{1} << level), rows_(rows), sums_(static_cast<std::size_t>(rows.voxels())) {}
+      : source_(source),
+        level_(level),
+        edge_(std::int64_t{1} << level),
+        rows_(rows),
+        sums_(static_cast<std::size_t>(rows.voxels())) {}
 
   void sum(const std::atomic<bool>& cancelled) {
     const Box domain = source_.info().domain();
@@ -47,8 +51,7 @@ class MeanRows {
         const Box part = intersect({{voxels.lo.x, y, z}, {voxels.hi.x, y + kLeafDim, z + kLeafDim}}, voxels);
         values.resize(static_cast<std::size_t>(part.voxels()));
         source_.read(part, values);
-        const float* value = values.data();
-        for_each_index(part, [&](const Index3& i) { sum_at(i - domain.lo) += *value++; });
+        add({part.lo - domain.lo, part.hi - domain.lo}, values.data());
       }
     }
   }
@@ -65,12 +68,19 @@ class MeanRows {
   }
 
  private:
-  double& sum_at(const Index3& voxel) {
-    const Index3 cube = floor_div(voxel, edge_);
-    return sums_[static_cast<std::size_t>(linear_index(cube - rows_.lo, rows_.extent()))];
+  // The values of voxels from the volume's corner, x fastest; their first one along x begins a cube.
+  void add(const Box& voxels, const float* value) {
+    for (std::int64_t z = voxels.lo.z; z < voxels.hi.z; ++z) {
+      for (std::int64_t y = voxels.lo.y; y < voxels.hi.y; ++y) {
+        const Index3 cube{rows_.lo.x, y >> level_, z >> level_};
+        double* sum = &sums_[static_cast<std::size_t>(linear_index(cube - rows_.lo, rows_.extent()))];
+        for (std::int64_t x = 0; x < voxels.extent().x; ++x) sum[x >> level_] += *value++;
+      }
+    }
   }
 
   VolumeSource& source_;
+  int level_;
   std::int64_t edge_;
   Box rows_;
   std::vector<double> sums_;

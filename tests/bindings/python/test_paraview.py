@@ -82,6 +82,10 @@ reader.UpdatePipeline()
 image = servermanager.Fetch(reader)
 print(type(reader).__name__, image.GetDimensions(), image.GetSpacing(), image.GetOrigin())
 print(vtk_to_numpy(image.GetPointData().GetScalars()).sum())
+series = OpenDataFile([sys.argv[2], sys.argv[3]])
+print(list(series.TimestepValues), list(series.FileNames) == sys.argv[2:])
+series.UpdatePipeline(1)
+print(servermanager.Fetch(series).GetPointData().GetScalars().GetRange())
 """
 
 
@@ -98,15 +102,12 @@ class Reader(FolderTest):
         reader.Update()
         return reader.GetOutputDataObject(0)
 
-    def refusal(self, path):
-        """What VTK is told."""
+    def told(self, update):
+        """The first line that VTK is told."""
         before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
         vtkOutputWindow.SetInstance(window)
         self.addCleanup(vtkOutputWindow.SetInstance, before)
-        reader = WeirReader()
-        if path is not None:
-            reader.SetFileName(str(path))
-        reader.Update()
+        update()
         return window.GetOutput().splitlines()[0].replace(f"{self.folder}/", "")
 
     def test_level_0_is_the_volume(self):
@@ -186,14 +187,39 @@ class Reader(FolderTest):
             reader.SetLevel(1)
             reader.Update()
             self.assertTrue(same(values_of(reader.GetOutputDataObject(0)), grid.to_numpy(level=1)))
-        self.assertEqual((reader.GetFileName(), reader.GetLevel()), (grid.path, 1))
+        self.assertEqual((reader.GetFileNames(), reader.GetLevel()), ([grid.path], 1))
         with self.assertRaisesRegex(ValueError, "^level is -1, it must be 0 or more$"):
             reader.SetLevel(-1)
 
+    def test_a_series_is_read_by_time(self):
+        steps = [ramp(9, 9, 9) + step for step in range(3)]
+        reader = WeirReader()
+        for step, values in enumerate(steps):
+            reader.AddFileName(self.lossless(values, f"{step}.nvdb").path)
+        self.assertEqual(reader.GetTimestepValues(), [0, 1, 2])
+        for time, step in ((2, 2), (0, 0), (1.5, 1), (7, 2), (-1, 0)):
+            reader.UpdateTimeStep(time)
+            image = reader.GetOutputDataObject(0)
+            self.assertTrue(same(values_of(image), steps[step]))
+            self.assertEqual(image.GetInformation().Get(image.DATA_TIME_STEP()), step)
+        self.lossless(ramp(10, 9, 9), "3.nvdb")
+        reader.AddFileName(str(self.folder / "3.nvdb"))
+        reader.UpdateTimeStep(0)
+        self.assertEqual(
+            self.told(lambda: reader.UpdateTimeStep(3)),
+            "WeirReader: 3.nvdb: is not of the extent that the series began with; read it alone",
+        )
+        reader.SetFileName(str(self.folder / "3.nvdb"))
+        self.assertIsNone(reader.GetTimestepValues())
+        reader.Update()
+        self.assertTrue(same(values_of(reader.GetOutputDataObject(0)), ramp(10, 9, 9)))
+
     def test_errors_are_one_line(self):
-        self.assertEqual(self.refusal(None), "WeirReader: no file is named; call SetFileName")
+        reader = WeirReader()
+        self.assertEqual(self.told(reader.Update), "WeirReader: no file is named; call SetFileName")
         message = self.refused(weir.InputError, weir.open, self.folder / "no.nvdb")
-        self.assertEqual(self.refusal(self.folder / "no.nvdb"), f"WeirReader: {message}")
+        reader.SetFileName(str(self.folder / "no.nvdb"))
+        self.assertEqual(self.told(reader.Update), f"WeirReader: {message}")
 
 
 class Pictures(FolderTest):
@@ -230,9 +256,10 @@ class ParaView(FolderTest):
             self.skipTest("paraview is not installed")
         values = ramp(20, 16, 12)
         grid = self.lossless(values, spacing=(1, 2, 3))
+        later = self.lossless(values + 1, "b.nvdb")
         (self.folder / "script.py").write_text(PARAVIEW)
         result = subprocess.run(
-            ["pvbatch", self.folder / "script.py", SOURCE / "bindings/paraview/weir_reader.py", grid.path],
+            ["pvbatch", self.folder / "script.py", SOURCE / "bindings/paraview/weir_reader.py", grid.path, later.path],
             env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
             capture_output=True,
             text=True,
@@ -240,8 +267,13 @@ class ParaView(FolderTest):
         )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(
-            result.stdout.splitlines()[:2],
-            ["WeirReader (10, 8, 6) (2.0, 4.0, 6.0) (0.5, 1.0, 1.5)", str(grid.to_numpy(level=1).sum())],
+            result.stdout.splitlines(),
+            [
+                "WeirReader (10, 8, 6) (2.0, 4.0, 6.0) (0.5, 1.0, 1.5)",
+                str(grid.to_numpy(level=1).sum()),
+                "[0.0, 1.0] True",
+                str(later.range),
+            ],
         )
 
 
