@@ -1,9 +1,13 @@
-# The C interface: libweir.so, target weir_c, also called weir::c, with bindings/c/weir.h; and its tests.
+# The C interface: libweir.so, target weir_c, also called weir::c, with bindings/c/weir.h and, where it is built with
+# CUDA, bindings/c/weir_cuda.h; and its tests.
 
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/c/*.cpp)
+if(NOT TARGET weir_cuda)
+  list(FILTER sources EXCLUDE REGEX "/cuda_grid\\.cpp$")
+endif()
 add_library(weir_c SHARED ${sources})
 add_library(weir::c ALIAS weir_c)
-target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core)
+target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda>)
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_definitions(weir_c PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
@@ -21,15 +25,23 @@ target_link_options(weir_c PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/w
 function(weir_install_c)
   install(TARGETS weir_c EXPORT weirCTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT weirCTargets NAMESPACE weir:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/weir)
-  install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/weir.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  set(headers ${PROJECT_SOURCE_DIR}/bindings/c/weir.h)
+  if(TARGET weir_cuda)
+    list(APPEND headers ${PROJECT_SOURCE_DIR}/bindings/c/weir_cuda.h)
+  endif()
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   file(RELATIVE_PATH WEIR_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)  # wherever that will be
   configure_file(${PROJECT_SOURCE_DIR}/bindings/c/weir.pc.in ${CMAKE_BINARY_DIR}/weir.pc @ONLY)
   install(FILES ${CMAKE_BINARY_DIR}/weir.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 
-# weir_c_tests(): every tests/bindings/c/NAME_test.c as a program of its own, strict C99, that ctest knows as c/NAME_test.
+# weir_c_tests(): every tests/bindings/c/NAME_test.c as a program of its own, strict C99, that ctest knows as c/NAME_test,
+# and of what the library does not show weir_c_parts_test. All of them are the target weir_tests_c.
 function(weir_c_tests)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/c/*_test.c)
+  if(NOT TARGET weir_cuda)
+    list(FILTER sources EXCLUDE REGEX "/cuda_test\\.c$")
+  endif()
   add_custom_target(weir_tests_c)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME_WE)
@@ -42,6 +54,15 @@ function(weir_c_tests)
     add_test(NAME c/${name} COMMAND ${target})
     add_dependencies(weir_tests_c ${target})
   endforeach()
+  set(parts ${PROJECT_SOURCE_DIR}/tests/bindings/c/versioned_struct_test.cpp ${PROJECT_SOURCE_DIR}/bindings/c/status.cpp)
+  add_executable(weir_c_parts_test ${parts})
+  target_compile_definitions(weir_c_parts_test PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(weir_c_parts_test PRIVATE weir_format GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(weir_c_parts_test)
+  add_dependencies(weir_tests_c weir_c_parts_test)
+  if(TARGET weir_cuda)
+    target_link_libraries(weir_c_cuda_test PRIVATE CUDA::cudart_static)
+  endif()
   if(TARGET weir_tests_tools)  # those of the installed library
     add_dependencies(weir_tests_tools weir_c)
     set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install_test.cpp
@@ -52,6 +73,7 @@ function(weir_c_tests)
     endif()
     set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp APPEND PROPERTY COMPILE_DEFINITIONS
                  WEIR_CC="${CMAKE_C_COMPILER}" WEIR_CXX="${CMAKE_CXX_COMPILER}" WEIR_CMAKE="${CMAKE_COMMAND}"
-                 WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})
+                 WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_NVCC="${CMAKE_CUDA_COMPILER}"
+                 WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})
   endif()
 endfunction()

@@ -119,9 +119,8 @@ weir_status weir_grid_info_init(weir_grid_info* info, size_t struct_size) { retu
 weir_status weir_get_info(const weir_grid* grid, weir_grid_info* info, weir_error* error) {
   return guarded(error, [&] {
     required(grid, "grid");
-    const std::size_t bytes = read_struct(info, "weir_grid_info").struct_size;
-    *info = describe(*grid);
-    info->struct_size = bytes;
+    read_struct(info, "weir_grid_info");
+    write_struct(describe(*grid), info);
   });
 }
 

@@ -13,31 +13,42 @@ namespace weir::c {
 /// More is no struct of any version, but memory that was never set up.
 inline constexpr std::size_t kMaxStructBytes = 4096;
 
+/// What the first version of the library had; a struct that grows gets a number of its own here.
+template <typename T>
+inline constexpr std::size_t kFirstBytes = sizeof(T);
+
 /// Zeros but for struct_size.
 template <typename T>
 weir_status init_struct(T* target, std::size_t bytes) noexcept {
-  if (target == nullptr || bytes < sizeof(T) || bytes > kMaxStructBytes) return WEIR_ERROR_USAGE;
+  if (target == nullptr || bytes < kFirstBytes<T> || bytes > kMaxStructBytes) return WEIR_ERROR_USAGE;
   std::memset(static_cast<void*>(target), 0, bytes);
   target->struct_size = bytes;
   return WEIR_OK;
 }
 
-/// *given in this library's form; `name` is for messages. Throws Error(usage) where it is null, was not set up, or sets
-/// what a newer header has and this library does not know.
+/// *given in this library's form, what an older header does not have being 0; `name` is for messages. Throws
+/// Error(usage) where it is null, was not set up, or sets what a newer header has and this library does not know.
 template <typename T>
 T read_struct(const T* given, const char* name) {
   const std::size_t bytes = required(given, name)->struct_size;
-  if (bytes < sizeof(T) || bytes > kMaxStructBytes) {
-    throw usage(cat(name, ": struct_size is ", bytes, ", and must be at least ", sizeof(T), "; set it up with ", name,
-                    "_init"));
+  if (bytes < kFirstBytes<T> || bytes > kMaxStructBytes) {
+    throw usage(cat(name, ": struct_size is ", bytes, ", and must be at least ", kFirstBytes<T>, "; set it up with ",
+                    name, "_init"));
   }
   const auto* const begin = reinterpret_cast<const unsigned char*>(given);
-  if (std::any_of(begin + sizeof(T), begin + bytes, [](unsigned char b) { return b != 0; })) {
+  if (std::any_of(begin + std::min(bytes, sizeof(T)), begin + bytes, [](unsigned char b) { return b != 0; })) {
     throw usage(cat(name, ": sets members that are newer than this library, " WEIR_VERSION "; leave them 0"));
   }
-  T known;
-  std::memcpy(&known, given, sizeof known);
+  T known{};
+  std::memcpy(&known, given, std::min(bytes, sizeof known));
   return known;
+}
+
+/// Writes what the header of `target`, which read_struct has accepted, knows of `source`.
+template <typename T>
+void write_struct(T source, T* target) {
+  source.struct_size = target->struct_size;
+  std::memcpy(target, &source, std::min(source.struct_size, sizeof source));
 }
 
 }  // namespace weir::c

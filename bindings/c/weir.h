@@ -153,8 +153,8 @@ WEIR_API weir_status weir_convert(const weir_volume* volume, const void* data, c
 /* A NanoVDB file in memory. Read by any threads. */
 typedef struct weir_buffer weir_buffer;
 
-/* The same without a file. Besides options->memory the process holds the result, and 1 to 4 % of the volume's float32
- * bytes, with an encoding other than FLOAT up to the result's size more, in place of temporary files; work_dir must be
+/* The same without a file. Besides options->memory the process holds the result and, in place of temporary files, about
+ * 3 % of the volume's float32 bytes, with an encoding other than FLOAT up to the result's size more; work_dir must be
  * NULL. *buffer is the caller's, for weir_buffer_free. */
 WEIR_API weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, const int64_t stride[3],
                                             const weir_convert_options* options, weir_buffer** buffer,

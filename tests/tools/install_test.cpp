@@ -66,7 +66,7 @@ std::set<std::string> headers() {
 }
 
 std::set<std::string> cuda_files() {
-  std::set<std::string> files{"lib/libweir_cuda.a", "lib/cmake/weir/weirCudaTargets.cmake",
+  std::set<std::string> files{"include/weir_cuda.h", "lib/libweir_cuda.a", "lib/cmake/weir/weirCudaTargets.cmake",
                               "lib/cmake/weir/weirCudaTargets-release.cmake"};
   for (const char* name :
        {"check", "device_array", "device_buffer", "grid_loader", "load/copy_task", "load/direct_storage",
