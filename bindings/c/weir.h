@@ -24,10 +24,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define WEIR_API
-#else
+#if defined(__GNUC__)
 #define WEIR_API __attribute__((visibility("default")))
+#else
+#define WEIR_API
 #endif
 
 #ifdef __cplusplus
@@ -193,7 +193,8 @@ WEIR_API weir_status weir_convert_file(const char* input, const weir_input_optio
 
 /* ---- Push: a volume out of a running simulation ---------------------------------------------------------------- */
 
-/* A volume that is handed over in slabs, and whose values are gone after each call. */
+/* A volume that is handed over in slabs, and whose values are gone after each call. Any threads may push slabs at once;
+ * the other calls are for one thread, before and after all of them. */
 typedef struct weir_push weir_push;
 
 /* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end. Values
@@ -202,15 +203,15 @@ typedef struct weir_push weir_push;
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed
- * after the call. Each plane once, in any order, and by any threads at once. After WEIR_ERROR_USAGE (planes that are
- * not there, or were given) nothing was taken and the push goes on; any other failure is the push's end, and its status
- * that of every later call. A full disk is such a failure: the call does not wait for room on it. */
+ * after the call. Each plane once, in any order. After WEIR_ERROR_USAGE (planes that are not there, or were given)
+ * nothing was taken and the push goes on; any other failure is the push's end, and its status that of every later call.
+ * A full disk is such a failure: the call does not wait for room on it. */
 WEIR_API weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* data, const int64_t stride[3],
                                     weir_error* error);
 /* Writes the file, of the bytes that weir_convert gives for the same values, and its sidecar. WEIR_ERROR_USAGE where
- * planes are missing; they can still be given. By one thread, after all slabs. */
+ * planes are missing, which can still be given, and where it was written already. */
 WEIR_API weir_status weir_push_end(weir_push* push, weir_error* error);
-/* Ends a push that was not ended without an output, and frees it. By one thread, after all other calls. */
+/* Ends a push that was not ended without an output, and frees it. */
 WEIR_API void weir_push_free(weir_push* push);
 
 /* ---- Load: a NanoVDB file to values ---------------------------------------------------------------------------- */

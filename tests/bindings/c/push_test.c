@@ -113,12 +113,12 @@ static void out_of_order(const float* values) {
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, -1, 1, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 1, 0, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, INT64_MAX, INT64_MAX, values, NULL, &error));
-  CHECK_USAGE("data is a null pointer", weir_push_slab(push, NZ - 1, 1, NULL, NULL, &error));
+  CHECK_USAGE("memory: the slab's data is a null pointer", weir_push_slab(push, NZ - 1, 1, NULL, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* a plane is missing, and can still be given */
   CHECK_OK(weir_push_slab(push, NZ - 1, 1, values + NX * NY * (NZ - 1), NULL, &error));
   CHECK_OK(weir_push_end(push, &error));
-  CHECK_USAGE("the push has ended; begin another", weir_push_end(push, &error));
-  CHECK_USAGE("the push has ended; begin another", weir_push_slab(push, 0, 1, values, NULL, &error));
+  CHECK_USAGE("memory: the volume has ended; begin another one", weir_push_end(push, &error));
+  CHECK_USAGE("memory: the volume has ended; begin another one", weir_push_slab(push, 0, 1, values, NULL, &error));
   weir_push_free(push);
   CHECK(same_files(path_of("whole.nvdb"), path_of("order.nvdb")));
 
