@@ -184,7 +184,7 @@ TEST(PushedVolume, TakesAxesInAnyOrder) {
 
 // So little memory that most slices are parked, some of them more than once.
 TEST(PushedVolume, ParksWhatDoesNotFitTheMemory) {
-  const Index3 extent{600, 300, 40};
+  const Index3 extent{600, 150, 24};
   std::mt19937 random(7);
   std::vector<float> values(static_cast<std::size_t>(volume(extent)));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 600 < 300 ? 0 : static_cast<float>(random() % 1000);
@@ -320,11 +320,11 @@ TEST_F(PushMisuse, IsSaidInOneLineAndTakesNothing) {
 }
 
 TEST_F(PushMisuse, EndsOnceAndNotBeforeEverySlabIsTaken) {
-  info_.extent = {512, 512, 256};
+  info_.extent = {512, 512, 64};
   PushedVolume pushed(info_, options_, {}, files_);
   const float everywhere = 2.5F;
-  std::jthread simulation([&] { pushed.slab(0, 256, &everywhere, {0, 0, 0}); });
-  const std::string early = "density: planes 0 to 255 of 256 never came; give the rest first";
+  std::jthread simulation([&] { pushed.slab(0, 64, &everywhere, {0, 0, 0}); });
+  const std::string early = "density: planes 0 to 63 of 64 never came; give the rest first";
   std::string answer = early;
   while (answer == early) answer = message(ErrorKind::usage, [&] { pushed.end(); });
   EXPECT_EQ(answer, "density: 1 slab is still being taken; end once every call has returned");
