@@ -62,6 +62,26 @@ TEST_F(ResumeTest, InterruptedEncodePassReadsTheRestOnly) {
   EXPECT_EQ(files.names(), kResult);
 }
 
+// What the saving thread writes down is whole, whatever the passes do meanwhile.
+TEST_F(ResumeTest, SavesBesideTheWorkCanBeContinuedFrom) {
+  ConversionOptions options = base();
+  options.threads = 2;
+  const Result expected = undisturbed(options);
+  options.save_interval_s = 1e-9;  // as soon as the last one is over
+  const int calls = calls_of(options);
+  for (const int part : {1, 2, 3, 4}) {
+    SCOPED_TRACE(part);
+    MemoryFileSystem files;
+    if (!killed(options, files, calls * part / 5)) continue;
+    files.lose_unflushed();
+    options.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
+    run(options, files);
+    EXPECT_EQ(files.names(), kResult);
+    EXPECT_TRUE(files.content("out.nvdb") == expected.file);
+    options.overwrite = false;
+  }
+}
+
 TEST_F(ResumeTest, SmallVolumesPayNothingAndLeaveNothing) {
   ConversionOptions options = base();
   options.resume = Resume::automatic;
