@@ -21,9 +21,9 @@ if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(chromium ch
 # ZFP's own command, to evaluate it; what needs it is skipped where it is missing. Looked for in Debian alone.
 if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(zfp); fi
 
-# VTK, for the reader of bindings/paraview; ParaView has a VTK of its own, which this one would remove.
+# VTK and a display for its pictures, to test bindings/paraview. ParaView has a VTK of its own, which this one would remove.
 if [[ $(dpkg-query --show --showformat '${db:Status-Abbrev}' python3-paraview 2>/dev/null || true) != ii* ]]; then
-  packages+=(python3-vtk9)
+  packages+=(python3-vtk9 xvfb xauth)
 fi
 
 missing=()

@@ -11,7 +11,11 @@ def main() -> int:
     sys.path.insert(0, str(path.parent))
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except unittest.SkipTest as reason:
+        print(f"skipped: {reason}")
+        return 77
     result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromModule(module))
     if result.testsRun == 0:
         print(f"{path}: has no tests", file=sys.stderr)
