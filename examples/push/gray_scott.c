@@ -28,8 +28,10 @@ static weir_push* begin(const char* directory, int step) {
   for (int axis = 0; axis < 3; ++axis) volume.extent[axis] = n;
   volume.type = WEIR_FLOAT32;
   volume.name = "v";
-  weir_convert_options options; /* files of one size, so that they play: an eighth of the values', or the smallest */
+  weir_convert_options options;
   weir_convert_options_init(&options, sizeof options);
+  options.budget_kind = WEIR_BUDGET_PSNR; /* as few bytes as keep 50 dB */
+  options.budget = 50;
   options.overwrite = 1;
   weir_push* push = NULL;
   weir_error error;

@@ -77,6 +77,8 @@ contains
     volume%scalar_type = weir_float32
     volume%name = c_loc(name)
     call check(weir_convert_options_init(options, c_sizeof(options)))
+    options%budget_kind = weir_budget_psnr
+    options%budget = 50
     options%overwrite = 1
     write (output, '(a, a, i4.4, a)') trim(directory), '/v_', step, '.nvdb'
     call check(weir_push_begin(volume, options, trim(output) // c_null_char, push, error))
