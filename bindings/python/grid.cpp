@@ -22,6 +22,7 @@ namespace py = pybind11;
 namespace {
 
 Triple triple(const Index3& i) { return {i.x, i.y, i.z}; }
+Index3 index3(const Triple& i) { return {std::get<0>(i), std::get<1>(i), std::get<2>(i)}; }
 
 /// [z, y, x].
 py::array_t<float> make_array(const Index3& extent) { return py::array_t<float>({extent.z, extent.y, extent.x}); }
@@ -59,11 +60,11 @@ py::str Grid::name() const {
       PyUnicode_DecodeUTF8(name.data(), static_cast<py::ssize_t>(name.size()), "replace"));
 }
 double Grid::background() const { return opened().grid().background(); }
-std::array<double, 2> Grid::range() const { return {opened().grid().value_min(), opened().grid().value_max()}; }
+std::tuple<double, double> Grid::range() const { return {opened().grid().value_min(), opened().grid().value_max()}; }
 Triple Grid::extent() const { return triple(opened().grid().index_bbox().extent()); }
 Triple Grid::index_origin() const { return triple(opened().grid().index_bbox().lo); }
-std::array<double, 3> Grid::spacing() const { return opened().grid().voxel_size(); }
-std::array<double, 3> Grid::origin() const { return opened().grid().world_origin(); }
+Position Grid::spacing() const { return std::tuple_cat(opened().grid().voxel_size()); }
+Position Grid::origin() const { return std::tuple_cat(opened().grid().world_origin()); }
 std::uint64_t Grid::bytes() const { return opened().file->bytes().size(); }
 int Grid::levels() const { return level_count(opened().source->info().extent); }
 
@@ -81,7 +82,7 @@ std::optional<std::string> Grid::sidecar() const {
 
 py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) const {
   const auto file = shared();
-  const Box box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  const Box box{index3(lo), index3(hi)};
   py::array_t<float> array = make_array(box.extent());
   run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
     read_level(*file->source, level, box, values, watch.cancelled());

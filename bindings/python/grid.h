@@ -5,7 +5,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <array>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,7 +20,9 @@
 
 namespace weir::python {
 
-using Triple = std::array<std::int64_t, 3>;  ///< x, y, z
+/// x, y, z. A tuple: so is what Python gets.
+using Triple = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
+using Position = std::tuple<double, double, double>;
 
 class Grid {
  public:
@@ -35,11 +37,11 @@ class Grid {
   std::string type() const;
   pybind11::str name() const;
   double background() const;
-  std::array<double, 2> range() const;  ///< smallest and largest active value, as the file says
-  Triple extent() const;                ///< voxels
-  Triple index_origin() const;          ///< index of the lowest voxel
-  std::array<double, 3> spacing() const;
-  std::array<double, 3> origin() const;  ///< world position of index (0, 0, 0)
+  std::tuple<double, double> range() const;  ///< smallest and largest active value, as the file says
+  Triple extent() const;                     ///< voxels
+  Triple index_origin() const;               ///< index of the lowest voxel
+  Position spacing() const;
+  Position origin() const;  ///< world position of index (0, 0, 0)
   std::uint64_t bytes() const;
   int levels() const;
 

@@ -7,6 +7,7 @@ import os
 from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _core
 from .errors import UsageError
@@ -25,7 +26,7 @@ _TYPES = {"bool": "uint8"} | {
 
 
 def convert(
-    source: Union[Path, numpy.ndarray],
+    source: Union[Path, NDArray[Any]],
     output: Optional[Path] = None,
     *,
     rate: Optional[float] = None,
@@ -89,7 +90,8 @@ def convert(
     container, or of what an array holds. Of files also index, dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
-        Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it begins.
+        Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it
+        begins; what is said of a memory that is too small counts both.
     threads
         At most so many work; 0, the default: one for each core. Results do not depend on it.
     work_dir
@@ -148,10 +150,11 @@ def convert(
         text = _core.convert_file(os.fsencode(source), target, options, progress)
     else:
         raise TypeError(f"source is a {source.__class__.__name__}, it must be a path or a numpy array")
-    return json.loads(text)
+    record: dict[str, Any] = json.loads(text)
+    return record
 
 
-def _scalar_type(array: numpy.ndarray) -> str:
+def _scalar_type(array: NDArray[Any]) -> str:
     """weir's name of the array's type. Raises UsageError for what is no volume of scalars."""
     if isinstance(array, numpy.ma.MaskedArray):
         raise UsageError("source is a masked array; give source.filled(numpy.nan) and nonfinite, or a value and missing")

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Optional, Sequence, Type, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _core
 from .conversion import Numbers, Path, Progress
@@ -20,8 +21,8 @@ class Macrocells(NamedTuple):
 
     cell: int  #: voxels along an edge
     origin: tuple[int, int, int]  #: (x, y, z) of the first cell's corner in voxels from the grid's; 0 or below
-    min: numpy.ndarray  #: float32 [z, y, x], one for each cell
-    max: numpy.ndarray  #: the same of the largest values
+    min: NDArray[numpy.float32]  #: float32 [z, y, x], one for each cell
+    max: NDArray[numpy.float32]  #: the same of the largest values
 
 
 class Check(NamedTuple):
@@ -88,27 +89,28 @@ class Grid:
     @property
     def extent(self) -> tuple[int, int, int]:
         """Voxels (x, y, z)."""
-        return tuple(self._core.extent)
+        return self._core.extent
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """Of to_numpy(): voxels (z, y, x)."""
-        return self.extent[::-1]
+        x, y, z = self.extent
+        return z, y, x
 
     @property
     def index_origin(self) -> tuple[int, int, int]:
         """Index (x, y, z) of the lowest voxel in the file; not 0 where a region was converted."""
-        return tuple(self._core.index_origin)
+        return self._core.index_origin
 
     @property
     def spacing(self) -> tuple[float, float, float]:
         """World units per voxel (x, y, z)."""
-        return tuple(self._core.spacing)
+        return self._core.spacing
 
     @property
     def origin(self) -> tuple[float, float, float]:
         """World position (x, y, z) of the voxel with index (0, 0, 0)."""
-        return tuple(self._core.origin)
+        return self._core.origin
 
     @property
     def background(self) -> float:
@@ -118,7 +120,7 @@ class Grid:
     @property
     def range(self) -> tuple[float, float]:
         """Smallest and largest value there is, as the file says."""
-        return tuple(self._core.range)
+        return self._core.range
 
     @property
     def bytes(self) -> int:
@@ -149,9 +151,10 @@ class Grid:
         """Shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
         if not isinstance(level, (int, numpy.integer)) or not 0 <= level < self.levels:
             raise UsageError(f"level is {level!r}, it must be a whole number from 0 to {self.levels - 1}")
-        return tuple(-(-voxels >> int(level)) for voxels in self.shape)
+        z, y, x = (-(-voxels >> int(level)) for voxels in self.shape)
+        return z, y, x
 
-    def to_numpy(self, roi: Any = None, level: int = 0) -> numpy.ndarray:
+    def to_numpy(self, roi: Any = None, level: int = 0) -> NDArray[numpy.float32]:
         """The values as float32 [z, y, x]: what a reader of the file decodes.
 
         roi
@@ -164,7 +167,7 @@ class Grid:
         low, high = _box_of(roi, self.level_shape(level))
         return self._core.read(low, high, level)
 
-    def sample(self, points: Any, filter: str = "trilinear") -> numpy.ndarray:
+    def sample(self, points: Any, filter: str = "trilinear") -> NDArray[numpy.float32]:
         """Values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
 
         Voxel i covers [i, i + 1), its centre is at i + 0.5; positions outside are clamped to the grid. "trilinear"
@@ -181,8 +184,7 @@ class Grid:
 
     def macrocells(self) -> Macrocells:
         """Bounds of the values in cells of 16^3 voxels and one voxel around each: the file's, else gathered from it."""
-        cell, origin, low, high = self._core.macrocells()
-        return Macrocells(cell, tuple(origin), low, high)
+        return Macrocells(*self._core.macrocells())
 
     def verify(self, progress: Optional[Progress] = None) -> list[Check]:
         """All checks of `weir verify`: structure, checksums, and what file and sidecar say of each other.
@@ -208,7 +210,7 @@ class Grid:
         threads: Optional[int] = None,
         linear: bool = False,
         progress: Optional[Progress] = None,
-    ) -> numpy.ndarray:
+    ) -> NDArray[Any]:
         """The picture that `weir render` makes, [y, x, RGB] with rows from the top.
 
         mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers; camera (azimuth, elevation) or
