@@ -19,7 +19,10 @@ Sidecar expected_record(const SourceInfo& source, const ConversionOptions& optio
   record.source.dataset = source.dataset;
   record.source.mtime = utc_text(source.mtime_ns);
   record.source.files_digest = source.files_digest;
-  if (options.scene) record.visible.emplace().scene_digest = scene_digest(options.scene->scene);
+  if (options.scene) {
+    record.visible = Sidecar::Visible();
+    record.visible->scene_digest = scene_digest(options.scene->scene);
+  }
   record.weir.options = deciding_options(options.provenance.options);
   return parse_sidecar(to_json_text(record), source.path);
 }
