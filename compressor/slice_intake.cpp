@@ -28,8 +28,8 @@ Error as_error(const std::exception_ptr& failure) {
 
 }  // namespace
 
-SliceIntake::SliceIntake(BlockPlan plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink)
-    : plan_(std::move(plan)),
+SliceIntake::SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink)
+    : plan_(plan),
       value_bytes_(value_bytes),
       sink_(std::move(sink)),
       memory_(room.buffers * buffer_bytes(plan_, value_bytes_)),

@@ -46,7 +46,7 @@ struct IntakeRoom {
 class SliceIntake {
  public:
   /// `plan` cuts the volume into slices, one leaf deep, of values of `value_bytes`.
-  SliceIntake(BlockPlan plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink);
+  SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink);
   /// Stops the workers once they have ended what they are at.
   ~SliceIntake();
   SliceIntake(const SliceIntake&) = delete;
