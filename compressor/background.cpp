@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "compressor/region_share.h"
+
 namespace weir {
 namespace {
 
@@ -23,11 +25,16 @@ std::size_t fullest(std::span<const std::uint64_t> counts) {
   return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
 }
 
+// The values of this rank's part of the volume.
 template <typename Visit>
-void for_each_value(VolumeSource& source, const BlockPlan& plan, const StreamOptions& options, Visit&& visit) {
+void for_each_own_value(VolumeSource& source, const BlockPlan& plan, const StreamOptions& options, Team& team,
+                        Visit&& visit) {
+  const OwnLeaves own(plan.lattice, team);
   std::vector<Box> boxes;
-  for (std::int64_t i = 0; i < plan.size(); ++i) boxes.push_back(plan.voxel_box(plan.leaf_box(i)));
-  stream_blocks(source, boxes, options, [&](const Block& block) { visit(block.values); });
+  for (std::int64_t i = 0; i < plan.size(); ++i) {
+    for (const Box& part : own.of(plan.leaf_box(i))) boxes.push_back(plan.voxel_box(part));
+  }
+  team.run([&] { stream_blocks(source, boxes, options, [&](const Block& block) { visit(block.values); }); });
 }
 
 Background mode_of_counts(const Survey& survey, std::size_t bin) {
@@ -66,34 +73,42 @@ Background mode_of_samples(std::vector<Sample>& samples, double total, const std
 }
 
 std::vector<Sample> all_voxels_in(const Survey& survey, std::size_t bin, VolumeSource& source, const BlockPlan& plan,
-                                  const StreamOptions& options) {
+                                  const StreamOptions& options, Team& team) {
   std::vector<Sample> samples;
-  for_each_value(source, plan, options, [&](std::span<const float> values) {
+  for_each_own_value(source, plan, options, team, [&](std::span<const float> values) {
     for (const float v : values) {
       if (std::isfinite(v) && survey.histogram.bin_of(v) == bin) samples.push_back({v, 1});
     }
   });
+  team.concatenate(samples);
   return samples;
 }
 
 std::vector<Sample> sampled_leaves(const Survey& survey, std::size_t bin, const RowStore& rows, double& total) {
   const std::int64_t leaves = rows.leaves().size();
   const std::int64_t stride = (leaves + kModeSamples - 1) / kModeSamples;
+  Team& team = rows.team();
+  const Share own = team.share(leaves);
   constexpr std::int64_t kPiece = 4096;
   std::vector<LeafRow> piece;
   std::vector<Sample> samples;
-  total = 0;
-  for (std::int64_t first = 0; first < leaves; first += kPiece) {
-    piece.resize(static_cast<std::size_t>(std::min(kPiece, leaves - first)));
-    rows.read(first, piece);
-    for (std::int64_t i = (stride - first % stride) % stride; i < static_cast<std::int64_t>(piece.size());
-         i += stride) {
-      const LeafRow& row = piece[static_cast<std::size_t>(i)];
-      if (!std::isfinite(row.sample)) continue;
-      total += static_cast<double>(row.finite);
-      if (survey.histogram.bin_of(row.sample) == bin) samples.push_back({row.sample, row.finite});
+  std::uint64_t weight = 0;
+  team.run([&] {
+    for (std::int64_t first = own.begin; first < own.end; first += kPiece) {
+      piece.resize(static_cast<std::size_t>(std::min(kPiece, own.end - first)));
+      rows.read(first, piece);
+      for (std::int64_t i = (stride - first % stride) % stride; i < static_cast<std::int64_t>(piece.size());
+           i += stride) {
+        const LeafRow& row = piece[static_cast<std::size_t>(i)];
+        if (!std::isfinite(row.sample)) continue;
+        weight += row.finite;
+        if (survey.histogram.bin_of(row.sample) == bin) samples.push_back({row.sample, row.finite});
+      }
     }
-  }
+  });
+  team.concatenate(samples);
+  team.sum<std::uint64_t>({&weight, 1});
+  total = static_cast<double>(weight);
   return samples;
 }
 
@@ -140,7 +155,7 @@ Background find_background(const Survey& survey, const RowStore& rows, VolumeSou
   if (survey.min == survey.max) return {survey.min + 0.0F, "mode", 1};
   Background mode;
   if (static_cast<std::int64_t>(survey.voxels()) <= kExactModeVoxels) {
-    auto samples = all_voxels_in(survey, bin, source, plan, options);
+    auto samples = all_voxels_in(survey, bin, source, plan, options, rows.team());
     mode = mode_of_samples(samples, static_cast<double>(survey.finite), "mode");
   } else {
     double total = 0;
@@ -151,7 +166,7 @@ Background find_background(const Survey& survey, const RowStore& rows, VolumeSou
 }
 
 Background paper_background(const Survey& survey, VolumeSource& source, const BlockPlan& plan,
-                            const StreamOptions& options) {
+                            const StreamOptions& options, Team& team) {
   if (survey.finite == 0) return {0, "none", 0};
   if (survey.min == survey.max) return {survey.min + 0.0F, "paper", 1};
   std::vector<std::uint64_t> counts(kPaperBins);
@@ -163,7 +178,7 @@ Background paper_background(const Survey& survey, VolumeSource& source, const Bl
     }
   } else {
     tbb::enumerable_thread_specific<std::vector<std::uint64_t>> tallies(counts);
-    for_each_value(source, plan, options, [&](std::span<const float> values) {
+    for_each_own_value(source, plan, options, team, [&](std::span<const float> values) {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, values.size(), 65536), [&](const auto& range) {
         std::vector<std::uint64_t>& tally = tallies.local();
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -174,6 +189,7 @@ Background paper_background(const Survey& survey, VolumeSource& source, const Bl
     for (const auto& tally : tallies) {
       for (std::size_t i = 0; i < kPaperBins; ++i) counts[i] += tally[i];
     }
+    team.sum<std::uint64_t>(counts);
   }
   const std::size_t bin = fullest(counts);
   const float value = paper_edge(bin, survey.min, survey.max);

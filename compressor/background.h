@@ -36,6 +36,6 @@ Background find_background(const Survey& survey, const RowStore& rows, VolumeSou
 /// computes it (Zellmann et al., EGPGV 2025), in double where hi - lo overflows. One more pass over the volume unless
 /// the survey counted every value.
 Background paper_background(const Survey& survey, VolumeSource& source, const BlockPlan& plan,
-                            const StreamOptions& options);
+                            const StreamOptions& options, Team& team = no_team());
 
 }  // namespace weir

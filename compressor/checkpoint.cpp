@@ -136,4 +136,8 @@ std::optional<Checkpoint> parse_checkpoint(std::string_view text) {
   }
 }
 
+std::string tally_text(const SurveyTally& tally) { return to_json(tally).dump(); }
+
+SurveyTally parse_tally(std::string_view text) { return tally_of(Json::parse(text)); }
+
 }  // namespace weir

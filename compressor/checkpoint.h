@@ -41,6 +41,10 @@ struct Checkpoint {
 /// A line with version and digest, then JSON.
 std::string to_text(const Checkpoint& checkpoint);
 
+/// A tally alone, and back: nothing is lost.
+std::string tally_text(const SurveyTally& tally);
+SurveyTally parse_tally(std::string_view text);
+
 /// Nothing where `text` is not a whole one of this version.
 std::optional<Checkpoint> parse_checkpoint(std::string_view text);
 

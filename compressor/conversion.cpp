@@ -53,14 +53,15 @@ std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
 
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                   OutputFiles& output, WorkDirectory& work, Journal* journal) {
+                   OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
   const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
-  const MemoryPlan memory = plan_memory(options.memory, resident_bytes() + source.working_bytes(), threads, domain);
+  MemoryPlan memory;
+  team.run([&] { memory = plan_memory(options.memory, held + source.working_bytes(), threads, domain); });
   const ReadingPlan reading = plan_reading(source, memory);
   const StreamOptions stream = stream_options(control);
   if (reading.encode.amplification > 1 && control.notice) {
@@ -79,13 +80,13 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
       control.notice(continued_notice(options.output, journal->state, leaves.size()));
     }
   }
-  start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey));
+  team.run([&] { start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey)); });
   const std::optional<Visibility> visibility = visibility_of(options, domain);
   const auto spill = [&](const char* name) -> std::shared_ptr<File> {
     if (journal != nullptr) return journal->open(name);
     return work.spill();
   };
-  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions), {}};
+  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions, team), {}};
   if (visibility) stores.faces.emplace(spill("faces"), leaves);
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
@@ -99,18 +100,24 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
 }  // namespace
 
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                       FileSystem& files) {
+                       FileSystem& files, Team& team) {
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
-  const std::unique_ptr<Journal> journal = open_journal(source.info(), options, control, output, files);
+  std::unique_ptr<Journal> journal;
+  if (team.alone()) journal = open_journal(source.info(), options, control, output, files);
   try {
-    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get());
+    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, resident_bytes());
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {
     if (!journal) throw;
     throw ended_with(error, *journal);
   }
+}
+
+Sidecar convert_into(OutputFiles& output, WorkDirectory& work, VolumeSource& source, const ConversionOptions& options,
+                     const ConversionControl& control, Team& team) {
+  return convert_to(source, options, control, output, work, nullptr, team, 0);
 }
 
 }  // namespace weir

@@ -13,6 +13,7 @@
 #include "compressor/encoding.h"
 #include "compressor/fill.h"
 #include "compressor/leaf_gain.h"
+#include "compressor/team.h"
 #include "format/file_system.h"
 #include "format/scene.h"
 #include "format/sidecar.h"
@@ -20,6 +21,9 @@
 #include "ingest/volume_source.h"
 
 namespace weir {
+
+class OutputFiles;
+class WorkDirectory;
 
 /// A scene and where it came from.
 struct SceneFile {
@@ -62,9 +66,16 @@ struct ConversionControl {
 
 /// Converts and returns the sidecar that was written. Throws Error; then what was there before is untouched, and of the
 /// output nothing is left but, where it can be continued (journal.h), what the hidden directory beside it holds: the
-/// same call goes on from there and ends with the same bytes.
+/// same call goes on from there and ends with the same bytes. Where `team` has other ranks, each calls this with a
+/// source of the same volume, the same options and a file system in which they find the files of each other; what is
+/// interrupted is lost then, and options.memory and options.threads are those of each process.
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                       FileSystem& files);
+                       FileSystem& files, Team& team = no_team());
+
+/// The same into an output whose lock the caller holds, by the work directory beside it; options.memory is what this
+/// takes besides what the process holds already, and what is interrupted is lost.
+Sidecar convert_into(OutputFiles& output, WorkDirectory& work, VolumeSource& source, const ConversionOptions& options,
+                     const ConversionControl& control, Team& team);
 
 /// Names as on the command line and in the sidecar.
 std::string metric_name(Metric metric);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compressor/quantised_leaf.h"
+#include "compressor/region_share.h"
 #include "format/leaf_codec.h"
 #include "format/quantised_codec.h"
 #include "format/simd.h"
@@ -198,18 +199,21 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   const TreeRegions& tree = target.tree;
   BoxSet nothing;
   BoxSet& known = done == nullptr ? nothing : *done;
+  const OwnLeaves own(plan.lattice, target.team);
   std::vector<Box> parts;  // what is not done
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
   std::vector<std::size_t> part_of;  // by leaf box
   for (std::int64_t i = 0; i < plan.size(); ++i) {
-    for (const Box& part : known.missing_from(plan.leaf_box(i))) {
-      parts.push_back(part);
-      const Box kept = trim_to_kept(tree, target.choices, part);
-      if (kept.empty()) continue;
-      leaf_boxes.push_back(kept);
-      voxel_boxes.push_back(plan.voxel_box(kept));
-      part_of.push_back(parts.size() - 1);
+    for (const Box& missing : known.missing_from(plan.leaf_box(i))) {
+      for (const Box& part : own.of(missing)) {
+        parts.push_back(part);
+        const Box kept = trim_to_kept(tree, target.choices, part);
+        if (kept.empty()) continue;
+        leaf_boxes.push_back(kept);
+        voxel_boxes.push_back(plan.voxel_box(kept));
+        part_of.push_back(parts.size() - 1);
+      }
     }
   }
   std::size_t told = 0;

@@ -30,6 +30,7 @@ struct EncodeTarget {
   File& out;
   RecordStore& records;
   Trace* trace = nullptr;
+  Team& team = no_team();  ///< each rank encodes the leaves of its own regions
 };
 
 /// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, says

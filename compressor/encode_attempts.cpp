@@ -73,14 +73,18 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
   Pauses pauses;
   if (job.journal != nullptr) pauses = {[&] { return job.journal->due(); }, [&] { job.journal->save(); }};
-  encode_leaves(job.source, job.plan,
-                {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                 job.output.volume(), *encoded.records, job.stream.trace},
-                job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
-  encoded.errors = sum_leaf_errors(*file.tree, *encoded.records);
+  Team& team = job.rows.team();
+  team.run([&] {
+    encode_leaves(job.source, job.plan,
+                  {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
+                   job.output.volume(), *encoded.records, job.stream.trace, team},
+                  job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
+  });
+  encoded.records->publish(team);
+  encoded.errors = sum_leaf_errors(*file.tree, *encoded.records, nullptr, team);
   encoded.seen_errors = request.rule.visibility == nullptr
                             ? encoded.errors
-                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get());
+                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get(), team);
   return encoded;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include "compressor/team.h"
 #include "format/file_system.h"
 #include "format/nanovdb_layout.h"
 
@@ -108,6 +109,8 @@ class ChoiceStore {
     file_->read_at(at(region), std::as_writable_bytes(std::span(&choices, 1)));
     return choices;
   }
+  /// After each rank has written those of its regions.
+  void publish(Team& team) { team.publish(*file_); }
 
  private:
   static std::uint64_t at(std::int64_t region) { return static_cast<std::uint64_t>(region) * sizeof(LeafChoices); }

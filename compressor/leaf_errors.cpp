@@ -22,9 +22,10 @@ std::vector<bool> seen_leaves(const LeafChoices& choices) {
 
 }  // namespace
 
-LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by) {
+LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by,
+                           Team& team) {
   std::vector<LeafErrors> by_region(tree.regions.size());
-  tbb::parallel_for(std::size_t{0}, by_region.size(), [&](std::size_t i) {
+  const auto sum_region = [&](std::size_t i) {
     const Region& region = tree.regions[i];
     if (region.leaves == 0) return;
     LeafErrors& errors = by_region[i];
@@ -40,7 +41,11 @@ LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, 
       errors.exact = errors.exact && record.exact != 0;
     }
     errors.squared = squares.value();
-  });
+  };
+  const Share own = team.share(static_cast<std::int64_t>(by_region.size()));
+  team.run(
+      [&] { tbb::parallel_for(static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end), sum_region); });
+  team.gather(by_region);
   LeafErrors total;
   CompensatedSum squares;
   for (const LeafErrors& region : by_region) {

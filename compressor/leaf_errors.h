@@ -3,6 +3,7 @@
 
 #include "compressor/leaf_choice.h"
 #include "compressor/leaf_record.h"
+#include "compressor/team.h"
 #include "compressor/tree_regions.h"
 
 namespace weir {
@@ -15,6 +16,7 @@ struct LeafErrors {
 
 /// Sums the records of all kept leaves, or of those that can be seen by the choices `seen_by`: leaf by leaf in a
 /// region, region by region in the tree's order, compensated, so that neither threads nor blocks matter.
-LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by = nullptr);
+LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by = nullptr,
+                           Team& team = no_team());
 
 }  // namespace weir

@@ -63,7 +63,7 @@ Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibili
   const Reaches reaches(leaves, fill);
   tbb::enumerable_thread_specific<Neighbourhood> neighbourhoods;
   tbb::enumerable_thread_specific<Shown> shown;
-  tbb::parallel_for(std::int64_t{0}, volume(regions), [&](std::int64_t task) {
+  const auto find = [&](std::int64_t task) {
     const Index3 lo = index_at(task, regions) * kLowerLeaves;
     const Box box = intersect({lo, lo + Index3{kLowerLeaves, kLowerLeaves, kLowerLeaves}}, all);
     Neighbourhood& around = neighbourhoods.local();
@@ -80,14 +80,19 @@ Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibili
       seen.finite += around.rows[around.at(leaf)].finite;
     });
     store->write_box(box, found);
-  });
+  };
+  Team& team = rows.team();
+  const Share own = team.share(volume(regions));
+  team.run([&] { tbb::parallel_for(own.begin, own.end, find); });
+  team.publish(store->file());
   rows.set_reaches(std::move(store));
-  Shown total;
+  std::array<std::uint64_t, 2> total{};
   for (const Shown& some : shown) {
-    total.blocks += some.blocks;
-    total.finite += some.finite;
+    total[0] += some.blocks;
+    total[1] += some.finite;
   }
-  return total;
+  team.sum<std::uint64_t>(total);
+  return {total[0], total[1]};
 }
 
 }  // namespace weir

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compressor/bounds.h"
+#include "compressor/team.h"
 #include "format/file_system.h"
 #include "format/index.h"
 #include "format/leaf_codec.h"
@@ -49,6 +50,8 @@ class RecordStore {
     file_->read_at(first * sizeof(LeafRecord), std::as_writable_bytes(std::span(records)));
     return records;
   }
+  /// After each rank has written those of its leaves.
+  void publish(Team& team) { team.publish(*file_); }
 
  private:
   std::shared_ptr<File> file_;

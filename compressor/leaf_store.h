@@ -26,6 +26,7 @@ class LeafStore {
   }
 
   const NodeLattice& leaves() const { return leaves_; }
+  File& file() { return *file_; }
 
   /// Consecutive leaves, from linear index `first` on.
   void write(std::int64_t first, std::span<const Record> records) {

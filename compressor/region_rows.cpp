@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "compressor/region_share.h"
+
 namespace weir {
 
 namespace {
@@ -47,9 +49,11 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
   });
 }
 
-void for_each_region(const TreeRegions& tree, const RowStore& store,
-                     const std::function<void(std::int64_t, const RegionRows&)>& visit) {
-  for_each_region(tree, store, {{0, 0, 0}, tree.region_lattice.count}, visit);
+void for_each_own_region(const TreeRegions& tree, const RowStore& store,
+                         const std::function<void(std::int64_t, const RegionRows&)>& visit) {
+  store.team().run([&] {
+    for (const Box& box : own_regions(tree.region_lattice, store.team())) for_each_region(tree, store, box, visit);
+  });
 }
 
 }  // namespace weir

@@ -59,8 +59,8 @@ RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& b
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit);
 
-/// The same for all regions.
-void for_each_region(const TreeRegions& tree, const RowStore& store,
-                     const std::function<void(std::int64_t, const RegionRows&)>& visit);
+/// The same for the regions of this rank of the store's team: all of them where there is no other.
+void for_each_own_region(const TreeRegions& tree, const RowStore& store,
+                         const std::function<void(std::int64_t, const RegionRows&)>& visit);
 
 }  // namespace weir

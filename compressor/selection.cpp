@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -87,7 +88,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
     std::uint64_t lossy = 0;
   };
   tbb::enumerable_thread_specific<Totals> totals;
-  for_each_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
+  for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
     std::vector<LeafGain> gains;
     rule_.gains(tree_, region_rows, gains);
     summarize_region(region, region_rows, gains);
@@ -102,17 +103,25 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
       total.minimum.leaf_bytes += leaf.steps[0].bytes;
     }
   });
+  rows_.team().gather(tree_.regions);
   summarize_uppers();
 
+  std::array<std::uint64_t, 5> sums{};
+  for (const Totals& total : totals) {
+    sums[0] += total.minimum.leaves;
+    sums[1] += total.minimum.leaf_bytes;
+    sums[2] += total.full.leaves;
+    sums[3] += total.full.leaf_bytes;
+    sums[4] += total.lossy;
+  }
+  rows_.team().sum<std::uint64_t>(sums);
   NodeCounts minimum;
   NodeCounts full;
-  for (const Totals& total : totals) {
-    minimum.leaves += total.minimum.leaves;
-    minimum.leaf_bytes += total.minimum.leaf_bytes;
-    full.leaves += total.full.leaves;
-    full.leaf_bytes += total.full.leaf_bytes;
-    bytes_.lossy_leaves += total.lossy;
-  }
+  minimum.leaves = sums[0];
+  minimum.leaf_bytes = sums[1];
+  full.leaves = sums[2];
+  full.leaf_bytes = sums[3];
+  bytes_.lossy_leaves = sums[4];
   for (const Region& region : tree_.regions) {
     minimum.lowers += region.key == kRequired ? 1 : 0;
     full.lowers += region.key > 0 ? 1 : 0;
@@ -245,7 +254,7 @@ void Selection::summarize_uppers() {
 // Calls visit(key, bytes, gain) for everything below the upper nodes that can be bought.
 template <typename Visit>
 void Selection::for_each_key(const Visit& visit) const {
-  for_each_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
+  for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     visit(region.key, nvdb::kLowerBytes, region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
@@ -272,6 +281,10 @@ double Selection::find_threshold(const Goal& goal, Goal::Weight& above) const {
   struct Bucket {
     Goal::Weight weight = 0;
     std::uint64_t items = 0;
+    void operator+=(const Bucket& other) {
+      weight += other.weight;
+      items += other.items;
+    }
   };
   using Buckets = std::vector<Bucket>;
   std::uint64_t prefix = 0;
@@ -294,16 +307,17 @@ double Selection::find_threshold(const Goal& goal, Goal::Weight& above) const {
         [&](double key, std::uint64_t bytes, double gain) { count(local.local(), key, goal.weight(bytes, gain)); });
     Buckets total(kBuckets);
     for (const Buckets& buckets : local) {
-      for (std::size_t i = 0; i < kBuckets; ++i) {
-        total[i].weight += buckets[i].weight;
-        total[i].items += buckets[i].items;
-      }
+      for (std::size_t i = 0; i < kBuckets; ++i) total[i] += buckets[i];
     }
+    rows_.team().sum<Bucket>(total);
+    Goal::Weight all_required = required.combine(std::plus<>());
+    rows_.team().sum<Goal::Weight>({&all_required, 1});
+    required.clear();
     for (const Upper& upper : tree_.uppers) {
       count(total, upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain));
     }
     if (prefix == 0 && shift == 64 - kDigit) {
-      for (const Goal::Weight weight : required) above += weight;
+      above += all_required + required.combine(std::plus<>());
       if (goal.unit != 0 && above >= goal.limit) return std::numeric_limits<double>::max();
     }
     std::size_t bucket = kBuckets;
@@ -330,6 +344,7 @@ double Selection::sorted_threshold(const Goal& goal, Goal::Weight& above,
   });
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
+  rows_.team().concatenate(items);
   for (const Upper& upper : tree_.uppers) {
     if (matches(upper.key)) items.push_back({upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain)});
   }
@@ -429,7 +444,11 @@ void Selection::buy_for(const Goal& goal) {
   cut_.threshold = find_threshold(goal, above);
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
   for (Upper& upper : tree_.uppers) upper.open = upper.key > cut_.threshold;
-  resolve_ties(goal, above);
+  Team& team = rows_.team();
+  team.lead([&] { resolve_ties(goal, above); });
+  team.follow(tree_.regions);
+  team.follow(tree_.uppers);
+  team.follow(cut_);
 }
 
 LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows) const {

@@ -41,18 +41,22 @@ void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
 Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
                              VolumeSource& source, const BlockPlan& plan, const StreamOptions& stream) {
   if (options.background) return {*options.background, "user", 0};
-  if (options.paper_background) return paper_background(survey, source, plan, stream);
+  if (options.paper_background) return paper_background(survey, source, plan, stream, rows.team());
   return find_background(survey, rows, source, plan, stream);
 }
 
 // Reads the finished bytes back: what is hashed is what the file system holds.
-Digest digest_of_file(File& file, std::uint64_t bytes) {
+Digest digest_of_file(File& file, std::uint64_t bytes, Team& team) {
   std::vector<Digest> pieces(piece_count(bytes));
   tbb::enumerable_thread_specific<std::vector<std::byte>> scratch{std::vector<std::byte>(kDigestScratchBytes)};
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-    const std::uint64_t offset = i * kDigestPieceBytes;
-    pieces[i] = piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
+  const Share own = team.share(static_cast<std::int64_t>(pieces.size()));
+  team.run([&] {
+    tbb::parallel_for(static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end), [&](std::size_t i) {
+      const std::uint64_t offset = i * kDigestPieceBytes;
+      pieces[i] = piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
+    });
   });
+  team.gather(pieces);
   return combine(pieces);
 }
 
@@ -156,13 +160,19 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   Background background;
   Sidecar sidecar = describe_source(info, survey, options);
+  Team& team = rows.team();
   const bool known = journal != nullptr && journal->state.background;
-  tbb::parallel_invoke(
-      [&] {
-        background = known ? *journal->state.background
-                           : choose_background(options, survey, rows, source, reading.survey, stream);
-      },
-      [&] { sidecar.source.digest = source_digest(rows); });
+  const auto find = [&] {
+    background =
+        known ? *journal->state.background : choose_background(options, survey, rows, source, reading.survey, stream);
+  };
+  const auto digest = [&] { sidecar.source.digest = source_digest(rows); };
+  if (team.alone()) {
+    tbb::parallel_invoke(find, digest);
+  } else {  // which meet in the same order everywhere
+    find();
+    team.lead(digest);
+  }
   if (journal != nullptr) {
     journal->state.background = background;
     // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
@@ -180,13 +190,15 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
 
   // Selection and encoding.
   span.reset();
-  check_cancel(control);
+  const auto check = [&] { team.run([&] { check_cancel(control); }); };
+  check();
   const Clock::time_point encoding = Clock::now();
   const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded = encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
-                                           options.scene ? visible_values(options.scene->scene) : "", stream,
-                                           [&] { start_pass(control, "encode", voxels); }, control.notice},
-                                          std::move(request));
+  const EncodedFile encoded =
+      encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
+                   options.scene ? visible_values(options.scene->scene) : "", stream,
+                   [&] { team.run([&] { start_pass(control, "encode", voxels); }); }, control.notice},
+                  std::move(request));
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
   if (!size.notice.empty() && control.notice) control.notice(size.notice);
@@ -195,16 +207,21 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
   span.emplace(control.trace, "write tree");
   // Most of the file goes to the device while the rest is made.
   const std::jthread writeback([&output] { output.volume().start_writeback(); });
-  check_cancel(control);
+  check();
   GridHead head;
   head.type = type;
   head.breadth_first = type != GridType::fpn;
   head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
   head.voxel_size = info.spacing;
   head.origin = info.origin;
-  const std::uint32_t checksum =
-      write_tree({*file.tree, rows, *file.choices, *encoded.records, file.fill, layout}, head, output.volume());
-  check_cancel(control);
+  std::uint32_t checksum = 0;
+  team.lead([&] {
+    checksum =
+        write_tree({*file.tree, rows, *file.choices, *encoded.records, file.fill, layout}, head, output.volume());
+  });
+  team.follow(checksum);
+  team.publish(output.volume());
+  check();
 
   // Finish.
   span.emplace(control.trace, "digest", size.bytes);
@@ -230,14 +247,18 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
                        scene_digest(options.scene->scene)};
   }
   sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes).hex()};
+  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes, team).hex()};
   sidecar.timing.encode_s = seconds_since(encoding);
   sidecar.timing.total_s = seconds_since(started);
   sidecar.timing.bytes_read = source.bytes_read();
+  team.sum<std::uint64_t>({&sidecar.timing.bytes_read, 1});
   sidecar.timing.bytes_written = layout.content_end;
   sidecar.timing.peak_rss_bytes = peak_resident_bytes();
   span.emplace(control.trace, "commit", size.bytes);
-  output.commit(to_json_text(sidecar));
+  const std::string text = to_json_text(sidecar);
+  std::vector<char> record(text.begin(), text.end());
+  team.follow(record);  // times are the leading rank's
+  output.commit({record.begin(), record.end()});
   return sidecar;
 }
 

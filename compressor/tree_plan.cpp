@@ -133,7 +133,7 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   const RegionPlanner planner(rule, tree);
   tbb::enumerable_thread_specific<Tally> tallies;
   std::vector<RegionErrors> errors(tree.regions.size());
-  for_each_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
+  for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
     Region& region = tree.regions[static_cast<std::size_t>(index)];
     LeafChoices choices = selection.choices(index, region_rows);
     planner.mark(region_rows, choices);
@@ -152,9 +152,15 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     }
   });
 
+  Team& team = rows.team();
+  team.gather(tree.regions);
+  team.gather(errors);
+  store.publish(team);
+  std::vector<Tally> parts(tallies.begin(), tallies.end());
+  team.concatenate(parts);
   TreePlan plan;
   Tally total;
-  for (const Tally& other : tallies) total.add(other);
+  for (const Tally& other : parts) total.add(other);
   CompensatedSum squares;
   for (const Region& region : tree.regions) squares.add(region.squared_error);
   CompensatedSum seen;

@@ -52,7 +52,7 @@ TEST(RegionRows, VisitsEveryRegionOnceWithItsRowsInLeafOrder) {
     std::mutex mutex;
     std::vector<int> visits(tree.regions.size());
     std::vector<int> seen(static_cast<std::size_t>(store.leaves().size()));
-    for_each_region(tree, store, [&](std::int64_t region, const RegionRows& rows) {
+    for_each_own_region(tree, store, [&](std::int64_t region, const RegionRows& rows) {
       const std::scoped_lock lock(mutex);
       ++visits[static_cast<std::size_t>(region)];
       EXPECT_EQ(rows.leaf_box(), tree.leaf_box(region));
