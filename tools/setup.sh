@@ -9,6 +9,7 @@ packages=(
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
   libzfp-dev libsqlite3-dev pybind11-dev python3-dev python3-numpy
+  libopenmpi-dev openmpi-bin
   # to test
   libgtest-dev libbenchmark-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial

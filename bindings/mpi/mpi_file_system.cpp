@@ -1,0 +1,175 @@
+#include "bindings/mpi/mpi_file_system.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // of a call: counts are int
+
+class MpiFile final : public File {
+ public:
+  // `own` is the leading rank's, which made the file.
+  MpiFile(MpiTeam& team, std::string path, std::unique_ptr<File> own)
+      : team_(team), path_(std::move(path)), own_(std::move(own)) {
+    const std::lock_guard lock(team_.calls());
+    check_mpi(MPI_File_open(MPI_COMM_SELF, path_.c_str(), MPI_MODE_RDWR, MPI_INFO_NULL, &file_), "opening " + path_);
+  }
+  ~MpiFile() override {
+    const std::lock_guard lock(team_.calls());
+    MPI_File_close(&file_);
+  }
+  MpiFile(const MpiFile&) = delete;
+  MpiFile& operator=(const MpiFile&) = delete;
+
+  const std::string& path() const override { return path_; }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    for (std::size_t at = 0; at < bytes.size();) {
+      const auto count = static_cast<int>(std::min(kMostBytes, bytes.size() - at));
+      MPI_Status status{};
+      const std::lock_guard lock(team_.calls());
+      check_mpi(
+          MPI_File_write_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, &status),
+          "writing " + path_);
+      at += transferred(status, "written");
+    }
+  }
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
+    for (std::size_t at = 0; at < bytes.size();) {
+      const auto count = static_cast<int>(std::min(kMostBytes, bytes.size() - at));
+      MPI_Status status{};
+      const std::lock_guard lock(team_.calls());
+      check_mpi(
+          MPI_File_read_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, &status),
+          "reading " + path_);
+      at += transferred(status, "there to be read");
+    }
+  }
+
+  bool preallocate(std::uint64_t bytes) override {
+    bool reserved = false;
+    team_.lead([&] { reserved = own_->preallocate(bytes); });
+    team_.follow(reserved);
+    return reserved;
+  }
+  void clear() override {
+    team_.lead([&] { own_->clear(); });
+  }
+  void start_writeback() override {
+    if (own_) own_->start_writeback();
+  }
+  void sync() override {
+    const std::lock_guard lock(team_.calls());
+    check_mpi(MPI_File_sync(file_), "flushing " + path_);
+  }
+  std::uint64_t size() override {
+    MPI_Offset bytes = 0;
+    const std::lock_guard lock(team_.calls());
+    check_mpi(MPI_File_get_size(file_, &bytes), "asking for the size of " + path_);
+    return static_cast<std::uint64_t>(bytes);
+  }
+
+ private:
+  std::size_t transferred(const MPI_Status& status, const char* what) const {
+    int count = 0;
+    MPI_Get_count(&status, MPI_BYTE, &count);
+    if (count > 0) return static_cast<std::size_t>(count);
+    throw Error(ErrorKind::io, cat(path_, ": nothing more is ", what));
+  }
+
+  MpiTeam& team_;
+  std::string path_;
+  std::unique_ptr<File> own_;
+  MPI_File file_ = MPI_FILE_NULL;
+};
+
+class MpiFileSystem final : public FileSystem {
+ public:
+  MpiFileSystem(MpiTeam& team, FileSystem& files) : team_(team), files_(files) {}
+
+  std::unique_ptr<File> create(const std::string& path) override {
+    return share(path, [&] { return files_.create(path); });
+  }
+  std::unique_ptr<File> open(const std::string& path) override {
+    return share(path, [&] { return files_.open(path); });
+  }
+  // With a name until all have it open: one without cannot be opened by others.
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override {
+    const std::string name = cat("/.weir.", ::getpid(), '.', unnamed_++);
+    std::vector<char> shared(name.begin(), name.end());
+    team_.follow(shared);
+    const std::string path = directory + std::string(shared.begin(), shared.end());
+    std::unique_ptr<File> file = share(path, [&] { return files_.create(path); });
+    remove(path);
+    return file;
+  }
+  void rename(const std::string& from, const std::string& to) override {
+    team_.lead([&] { files_.rename(from, to); });
+  }
+  void rename_new(const std::string& from, const std::string& to) override {
+    team_.lead([&] { files_.rename_new(from, to); });
+  }
+  void link(const std::string& from, const std::string& to) override {
+    team_.lead([&] { files_.link(from, to); });
+  }
+  void remove(const std::string& path) override {
+    team_.lead([&] { files_.remove(path); });
+  }
+  void make_directory(const std::string& path) override {
+    team_.lead([&] { files_.make_directory(path); });
+  }
+  void remove_directory(const std::string& path) override {
+    team_.lead([&] { files_.remove_directory(path); });
+  }
+  void sync_directory(const std::string& path) override {
+    team_.lead([&] { files_.sync_directory(path); });
+  }
+  bool exists(const std::string& path) override {
+    return ask<bool>([&] { return files_.exists(path); });
+  }
+  bool is_memory(const std::string& directory) override {
+    return ask<bool>([&] { return files_.is_memory(directory); });
+  }
+  std::uint64_t free_bytes(const std::string& directory) override {
+    return ask<std::uint64_t>([&] { return files_.free_bytes(directory); });
+  }
+
+ private:
+  template <typename Answer>
+  Answer ask(const std::function<Answer()>& question) {
+    Answer answer{};
+    team_.lead([&] { answer = question(); });
+    team_.follow(answer);
+    return answer;
+  }
+
+  std::unique_ptr<File> share(const std::string& path, const std::function<std::unique_ptr<File>()>& make) {
+    std::unique_ptr<File> own;
+    team_.lead([&] { own = make(); });
+    std::unique_ptr<File> file;
+    team_.run([&] { file = std::make_unique<MpiFile>(team_, path, std::move(own)); });
+    return file;
+  }
+
+  MpiTeam& team_;
+  FileSystem& files_;
+  int unnamed_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<FileSystem> make_mpi_file_system(MpiTeam& team, FileSystem& files) {
+  return std::make_unique<MpiFileSystem>(team, files);
+}
+
+}  // namespace weir

@@ -1,0 +1,115 @@
+#include "bindings/mpi/mpi_team.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "format/error.h"
+#include "format/text.h"
+
+namespace weir {
+namespace {
+
+constexpr int kTag = 1;
+constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // of a message: counts are int
+
+// Whether a rank is unwinding, as a part's last byte.
+std::byte unwinding() { return static_cast<std::byte>(std::uncaught_exceptions() > 0 ? 1 : 0); }
+
+}  // namespace
+
+void check_mpi(int code, const std::string& action) {
+  if (code == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> text{};
+  int length = 0;
+  MPI_Error_string(code, text.data(), &length);
+  throw Error(ErrorKind::io, cat("MPI: ", action, ": ", std::string(text.data(), static_cast<std::size_t>(length))));
+}
+
+MpiTeam::MpiTeam(MPI_Comm communicator) {
+  int threads = MPI_THREAD_SINGLE;
+  check_mpi(MPI_Query_thread(&threads), "asking for threads");
+  if (threads < MPI_THREAD_SERIALIZED) {
+    throw Error(ErrorKind::usage,
+                "MPI was initialised without MPI_THREAD_SERIALIZED; use MPI_Init_thread with that, or more");
+  }
+  check_mpi(MPI_Comm_dup(communicator, &communicator_), "copying the communicator");
+  check_mpi(MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN), "setting the error handler");
+  check_mpi(MPI_Comm_rank(communicator_, &rank_), "asking for the rank");
+  check_mpi(MPI_Comm_size(communicator_, &size_), "asking for the number of processes");
+}
+
+MpiTeam::~MpiTeam() {
+  const std::lock_guard lock(calls_);
+  MPI_Comm_free(&communicator_);
+}
+
+int MpiTeam::on_this_machine() const {
+  const std::lock_guard lock(calls_);
+  MPI_Comm local = MPI_COMM_NULL;
+  check_mpi(MPI_Comm_split_type(communicator_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local), "asking who is here");
+  int count = 1;
+  MPI_Comm_size(local, &count);
+  MPI_Comm_free(&local);
+  return count;
+}
+
+void MpiTeam::send(const Bytes& part, int to) const {
+  const std::uint64_t size = part.size();
+  check_mpi(MPI_Send(&size, 1, MPI_UINT64_T, to, kTag, communicator_), "sending");
+  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
+    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
+    check_mpi(MPI_Send(part.data() + at, count, MPI_BYTE, to, kTag, communicator_), "sending");
+  }
+}
+
+Team::Bytes MpiTeam::receive(int from) const {
+  std::uint64_t size = 0;
+  check_mpi(MPI_Recv(&size, 1, MPI_UINT64_T, from, kTag, communicator_, MPI_STATUS_IGNORE), "receiving");
+  Bytes part(size);
+  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
+    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
+    check_mpi(MPI_Recv(part.data() + at, count, MPI_BYTE, from, kTag, communicator_, MPI_STATUS_IGNORE), "receiving");
+  }
+  return part;
+}
+
+void MpiTeam::broadcast(Bytes& part) const {
+  std::uint64_t size = part.size();
+  check_mpi(MPI_Bcast(&size, 1, MPI_UINT64_T, 0, communicator_), "sending to all");
+  part.resize(size);
+  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
+    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
+    check_mpi(MPI_Bcast(part.data() + at, count, MPI_BYTE, 0, communicator_), "sending to all");
+  }
+}
+
+void MpiTeam::merge(Bytes& part, const Merge& both) {
+  if (alone()) return;
+  const std::lock_guard lock(calls_);
+  // A tree: rank 0 hears of 1, 2, 4 ..., each of which has heard of those up to the next.
+  part.push_back(unwinding());
+  for (int step = 1; step < size_; step *= 2) {
+    if (rank_ % (2 * step) != 0) {
+      send(part, rank_ - step);
+      break;
+    }
+    if (rank_ + step >= size_) continue;
+    Bytes higher = receive(rank_ + step);
+    if (higher.back() != part.back()) {
+      std::fprintf(stderr, "weir: one of %d processes failed alone, so that none can go on\n", size_);
+      MPI_Abort(communicator_, static_cast<int>(ErrorKind::internal));
+      std::abort();
+    }
+    higher.pop_back();
+    part.pop_back();
+    both(part, higher);
+    part.push_back(unwinding());
+  }
+  broadcast(part);
+  part.pop_back();
+}
+
+}  // namespace weir

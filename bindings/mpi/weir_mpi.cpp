@@ -1,0 +1,159 @@
+// `weir-mpi convert`: one conversion by all processes of an MPI job.
+#include <mpi.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "bindings/mpi/mpi_file_system.h"
+#include "bindings/mpi/mpi_team.h"
+#include "compressor/conversion.h"
+#include "format/error.h"
+#include "format/output_files.h"
+#include "format/text.h"
+#include "ingest/source_registry.h"
+#include "tools/conversion_options.h"
+#include "tools/given_options.h"
+#include "tools/input_options.h"
+#include "tools/progress.h"
+#include "tools/run_options.h"
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+extern "C" void on_signal(int signal) {
+  if (interrupted.exchange(true)) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
+
+/// The command line as given; empty: not given.
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string work_dir;
+  bool overwrite = false;
+  bool json = false;
+  weir::InputArguments source;
+  weir::ConversionArguments conversion;
+  weir::RunArguments run;
+};
+
+void add_convert(CLI::App& app, Arguments& a) {
+  CLI::App& command = *app.add_subcommand("convert", "Convert a volume to the file that weir convert makes of it");
+  command.add_option("input", a.input, "volume file that all processes can read")->required();
+  command.add_option("-o,--output", a.output, "OUT.nvdb, on a file system that all processes share")->required();
+  weir::add_input_options(command, a.source);
+  weir::add_conversion_options(command, a.conversion);
+  weir::add_run_options(command, a.run);
+  command.add_option("--work-dir", a.work_dir,
+                     "for spill files, shared by all processes too; default: a hidden directory beside the output");
+  command.add_flag("--overwrite", a.overwrite, "replace an existing output");
+  command.add_flag("--json", a.json, "print the sidecar on stdout");
+}
+
+// The cores of a machine, divided among its processes.
+std::size_t threads_of(const Arguments& a, const weir::MpiTeam& team) {
+  if (a.run.threads > 0) return static_cast<std::size_t>(a.run.threads);
+  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return static_cast<std::size_t>(std::max(1, cores / team.on_this_machine()));
+}
+
+void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
+  const std::size_t threads = threads_of(a, team);
+  weir::ConversionOptions options;
+  std::unique_ptr<weir::VolumeSource> source;
+  team.run([&] {
+    options = weir::parse_conversion(a.conversion);
+    options.output = a.output;
+    options.overwrite = a.overwrite;
+    options.memory = weir::parse_memory(a.run);
+    options.threads = threads;
+    options.work_dir = a.work_dir;
+    options.provenance = {WEIR_VERSION, WEIR_COMMIT, weir::given_options(command)};
+    weir::SourceOptions source_options = weir::parse_input(a.source);
+    source_options.memory = options.memory;
+    source_options.spool_directory = a.work_dir.empty() ? weir::directory_of(a.output) : a.work_dir;
+    source = weir::open_source(a.input, source_options);
+  });
+  weir::Progress progress(a.run.progress);
+  weir::ConversionControl control;
+  control.cancel = &interrupted;
+  if (team.leads()) {
+    control.pass_started = [&](const std::string& pass, std::uint64_t bytes) {
+      progress.start(pass, bytes / static_cast<std::uint64_t>(team.size()));  // of this process's share
+    };
+    control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
+    control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
+  }
+  const std::unique_ptr<weir::FileSystem> local = weir::make_posix_file_system();
+  const std::unique_ptr<weir::FileSystem> shared = weir::make_mpi_file_system(team, *local);
+  const weir::Sidecar sidecar = weir::convert_volume(*source, options, control, *shared, team);
+  if (!team.leads()) return;
+  progress.finish();
+  spdlog::info("{}: {} bytes, rate {:.4g}, by {} processes, survey {:.2f} s, encode {:.2f} s", options.output,
+               sidecar.file.bytes, sidecar.budget.rate, team.size(), sidecar.timing.survey_s, sidecar.timing.encode_s);
+  if (a.json) std::fputs(weir::to_json_text(sidecar).c_str(), stdout);
+}
+
+int fail(const std::string& message, int code, bool says) {
+  if (says) std::fprintf(stderr, "weir-mpi: %s\n", message.c_str());
+  return code;
+}
+
+// What ends in an Error ends so on all ranks; one of them says it.
+int run(int argc, char** argv, int rank) {
+  const bool says = rank == 0;
+  CLI::App app("Converts one volume with all processes of an MPI job.", "weir-mpi");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", WEIR_VERSION);
+  Arguments arguments;
+  add_convert(app, arguments);
+  try {
+    app.parse(argc, argv);
+    weir::MpiTeam team(MPI_COMM_WORLD);
+    convert(*app.get_subcommands().front(), arguments, team);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return says ? app.exit(error) : 0;
+    const std::string text = error.what();
+    return fail(text.substr(0, text.find('\n')) + "; see weir-mpi --help", static_cast<int>(weir::ErrorKind::usage),
+                says);
+  } catch (const weir::Error& error) {
+    return fail(error.what(), error.exit_code(), says);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int threads = MPI_THREAD_SINGLE;
+  if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &threads) != MPI_SUCCESS) {
+    return fail("MPI could not be initialised", static_cast<int>(weir::ErrorKind::internal), true);
+  }
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("weir-mpi"));
+  spdlog::set_pattern("%H:%M:%S %l %v");
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  int code = static_cast<int>(weir::ErrorKind::internal);
+  try {
+    code = run(argc, argv, rank);
+  } catch (const std::exception& error) {  // of this process alone: the others would wait
+    std::fprintf(stderr, "weir-mpi: process %d: internal fault: %s; please report it\n", rank, error.what());
+    MPI_Abort(MPI_COMM_WORLD, code);
+  }
+  MPI_Finalize();
+  return code;
+}

@@ -1,0 +1,219 @@
+// Conversions by several processes: weir-mpi and the pushes of weir_mpi.h, against what one process makes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/text.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/tools/run_command.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kData = WEIR_SOURCE_DIR "/../shared/data/";
+
+// Of a launcher that refuses root and more processes than cores unless told.
+CommandOptions mpi_options(const fs::path& directory) {
+  CommandOptions options;
+  options.directory = directory;
+  options.environment = {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                         "OMPI_MCA_rmaps_base_oversubscribe=1", "OMPI_MCA_mpi_yield_when_idle=1",
+                         "OMPI_MCA_btl_base_warn_component_unused=0"};
+  return options;
+}
+
+CommandResult run_mpi(int processes, std::vector<std::string> command, const fs::path& directory) {
+  command.insert(command.begin(), {WEIR_MPIEXEC, "-n", cat(processes)});
+  return run_command(command, mpi_options(directory));
+}
+
+// The first line that `program` said, among those of the launcher.
+std::string line_of(const std::string& text, const std::string& program) {
+  const std::size_t at = text.find(program + ": ");
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+class Mpi : public testing::Test {
+ protected:
+  std::string sample(const std::string& kind, const std::string& dims, const std::string& type) {
+    std::string name = kind + "_" + dims + "_" + type + ".raw";
+    std::string commas = dims;
+    for (char& c : commas) c = c == 'x' ? ',' : c;
+    const CommandResult made =
+        run_weir({"sample", kind, "--dims", commas, "--type", type, "-o", name, "--log-level", "error"}, here());
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return name;
+  }
+
+  // One of ../shared/data; empty where it is missing.
+  std::string real(const std::string& name) {
+    const std::string packed = kData + name + ".xz";
+    if (!fs::exists(packed)) return "";
+    const CommandResult raw = run_command({"sh", "-c", "xz -dkc '" + packed + "' > " + name}, here());
+    EXPECT_EQ(raw.exit_code, 0) << raw.err;
+    return name;
+  }
+
+  std::string serial(const std::string& volume, std::vector<std::string> options) {
+    std::vector<std::string> command{"convert", volume, "-o", "serial.nvdb", "--overwrite", "--log-level", "error"};
+    command.insert(command.end(), options.begin(), options.end());
+    const CommandResult made = run_weir(command, here());
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return read_file(directory_ / "serial.nvdb");
+  }
+
+  // With 1, 2, 3 and 8 processes.
+  void expect_same(const std::string& volume, const std::vector<std::string>& options) {
+    const std::string expected = serial(volume, options);
+    for (const int processes : {1, 2, 3, 8}) {
+      std::vector<std::string> command{WEIR_MPI_COMMAND, "convert", volume, "-o", "mpi.nvdb", "--overwrite"};
+      command.insert(command.end(), options.begin(), options.end());
+      const CommandResult made = run_mpi(processes, command, directory_.path());
+      ASSERT_EQ(made.exit_code, 0) << made.err;
+      EXPECT_TRUE(read_file(directory_ / "mpi.nvdb") == expected)
+          << volume << ", " << processes << " processes, " << options.back();
+    }
+    const CommandResult verified = run_weir({"verify", "mpi.nvdb"}, here());
+    EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+  }
+
+  CommandResult push(int processes, const std::string& volume, const std::vector<std::string>& extent_and_type,
+                     const std::vector<std::string>& budget, const std::string& mode) {
+    std::vector<std::string> command{WEIR_MPI_PUSH, volume};
+    command.insert(command.end(), extent_and_type.begin(), extent_and_type.end());
+    command.emplace_back("pushed.nvdb");
+    command.insert(command.end(), budget.begin(), budget.end());
+    command.push_back(mode);
+    return run_mpi(processes, command, directory_.path());
+  }
+
+  // What serial conversion makes of it, pushed by 1, 2, 3 and 8 processes.
+  void expect_pushed(const std::string& volume, const std::vector<std::string>& extent_and_type) {
+    const std::string expected = serial(volume, {"--rate", "6", "--nonfinite", "background"});
+    for (const int processes : {1, 2, 3, 8}) {
+      fs::remove(directory_ / "pushed.nvdb");
+      fs::remove(directory_ / "pushed.nvdb.json");
+      const CommandResult pushed = push(processes, volume, extent_and_type, {"1", "6"}, "all");
+      ASSERT_EQ(pushed.exit_code, 0) << pushed.err;
+      ASSERT_EQ(pushed.out, "end: 0 \nafter: the push has ended; begin another\n");
+      EXPECT_TRUE(read_file(directory_ / "pushed.nvdb") == expected) << volume << ", " << processes << " processes";
+    }
+  }
+
+  std::vector<std::string> leftovers() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_.path())) {
+      const std::string name = entry.path().filename();
+      if (name.find("nvdb") != std::string::npos || name.starts_with('.')) names.push_back(name);
+    }
+    return names;
+  }
+
+  CommandOptions here() const {
+    CommandOptions options;
+    options.directory = directory_.path();
+    return options;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Mpi, AnyNumberOfProcessesConvertsToTheSameBytes) {
+  const std::string cloud = sample("cloud", "150x140x270", "float32");
+  expect_same(cloud, {"--rate", "8"});
+  expect_same(cloud, {"--encoding", "float", "--rate", "5"});
+  expect_same(cloud, {"--preset", "paper", "--rate", "4"});
+  expect_same(cloud, {"--lossless"});
+  const std::string turbulence = sample("turbulence", "257x130x33", "float32");
+  expect_same(turbulence, {"--psnr", "45"});
+  expect_same(turbulence, {"--max-error", "0.05"});
+  expect_same(turbulence, {"--metric", "farthest", "--rate", "4"});
+  expect_same(sample("cloud", "1x1x1", "uint8"), {"--lossless"});
+}
+
+TEST_F(Mpi, AScenesChoiceIsTheSame) {
+  const std::string cloud = sample("cloud", "150x140x140", "float32");
+  write_file(directory_ / "scene.toml", "[transfer_function]\npoints = [[0.0, 0.0], [0.4, 0.0], [1.0, 1.0]]\n");
+  expect_same(cloud, {"--rate", "30", "--scene", "scene.toml"});
+}
+
+TEST_F(Mpi, RealVolumesConvertAndPushToTheSameBytes) {
+  const std::string aneurism = real("aneurism_256x256x256_uint8.raw");
+  const std::string brain = real("mni152_2009_193x229x193_int16.raw");
+  const std::string vortices = real("wmag_91x91x91_float32.raw");
+  if (aneurism.empty() || brain.empty() || vortices.empty()) GTEST_SKIP() << kData << " is missing";
+  expect_same(aneurism, {"--rate", "10"});
+  expect_same(brain, {"--rate", "10"});
+  expect_pushed(aneurism, {"256", "256", "256", "1"});
+  expect_pushed(brain, {"193", "229", "193", "4"});
+  expect_pushed(vortices, {"91", "91", "91", "10"});
+}
+
+TEST_F(Mpi, HardVolumesPushToTheSameBytes) {
+  expect_pushed(sample("exceptions", "129x40x33", "float32"), {"129", "40", "33", "10"});
+  expect_pushed(sample("cloud", "1x1x1", "float64"), {"1", "1", "1", "11"});
+  expect_pushed(sample("turbulence", "7x9x17", "float16"), {"7", "9", "17", "9"});
+}
+
+TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
+  const std::string cloud = sample("cloud", "64x64x200", "float32");
+  const auto fails = [&](const std::vector<std::string>& arguments, int code, const std::string& line) {
+    std::vector<std::string> command{WEIR_MPI_COMMAND, "convert"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const CommandResult run = run_mpi(3, command, directory_.path());
+    EXPECT_EQ(run.exit_code, code) << run.err;
+    EXPECT_EQ(line_of(run.err, "weir-mpi"), line) << run.err;
+  };
+  fails({"none.raw", "-o", "out.nvdb"}, 3, "weir-mpi: none.raw: cannot open for reading: No such file or directory");
+  fails({cloud, "-o", "none/out.nvdb"}, 5,
+        "weir-mpi: none/out.nvdb: the directory none does not exist; make it or choose another output");
+  fails(
+      {cloud, "-o", "out.nvdb", "--size", "1000"}, 4,
+      "weir-mpi: out.nvdb: 1000 bytes asked, the smallest tree for this volume takes 312192; ask for --size 312192 or "
+      "more");
+  fails({cloud, "-o", "out.nvdb", "--speed", "9"}, 2,
+        "weir-mpi: The following arguments were not expected: 9 --speed; see weir-mpi --help");
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+  write_file(directory_ / "out.nvdb", "theirs");
+  fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output with -o or pass --overwrite");
+  EXPECT_EQ(read_file(directory_ / "out.nvdb"), "theirs");
+}
+
+TEST_F(Mpi, APushOfOtherThanEachVoxelOnceIsRefused) {
+  const std::string cloud = sample("cloud", "20x30x40", "float32");
+  const std::vector<std::string> volume{"20", "30", "40", "10"};
+  const auto refused = [&](const std::string& mode, const std::string& said) {
+    const CommandResult run = push(3, cloud, volume, {"1", "6"}, mode);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out, said) << mode;
+    EXPECT_EQ(leftovers(), std::vector<std::string>{}) << mode;
+  };
+  refused("missing", "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+  refused("twice", "end: 2 memory: voxels of the box 10:20,20:30,30:40 were given twice; give each voxel once\n");
+  refused("outside",
+          "box: 2 memory: a box of voxels 10:20,20:30,31:41 is not in the volume of 20x30x40\n"
+          "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+  refused("null",
+          "box: 2 data is a null pointer\n"
+          "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+}
+
+TEST_F(Mpi, TheExampleSavesWhatOneProcessDoes) {
+  for (const int processes : {1, 3}) {
+    fs::create_directory(directory_ / cat(processes));
+    const CommandResult run = run_mpi(processes, {WEIR_MPI_EXAMPLE, cat(processes), "40", "20"}, directory_.path());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  for (const char* name : {"heat_0000.nvdb", "heat_0020.nvdb"}) {
+    const std::string one = read_file(directory_ / "1" / name);
+    EXPECT_FALSE(one.empty()) << name;
+    EXPECT_TRUE(one == read_file(directory_ / "3" / name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace weir
