@@ -90,8 +90,7 @@ static weir_convert_options random_options(void) {
   options.fill = small(2);
   options.nonfinite = small(3);
   options.brick = spoil(4) ? small(40) : 0;
-  options.threads = spoil(4) ? (int32_t)integer(1) : 2;
-  if (options.threads > 8) options.threads = 5000;
+  options.threads = !spoil(4) ? 0 : below(2) == 0 ? -1 : 5000;
   options.memory = (uint64_t)integer((int64_t)100 << 20);
   options.overwrite = below(4) > 0;
   if (below(4) == 0) options.progress = ignore_progress;
