@@ -206,7 +206,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
 }
 
 std::string checked_output(const char* path) {
-  const std::string output = required(path, "output");
+  std::string output = required(path, "output");
   if (output.empty()) throw usage("output is empty; name a file");
   std::error_code ignored;
   if (std::filesystem::is_directory(output, ignored)) {

@@ -21,6 +21,7 @@
 #ifndef WEIR_H
 #define WEIR_H
 
+/* NOLINTBEGIN: clang-tidy has the rules of C++ */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -284,4 +285,5 @@ WEIR_API weir_status weir_sample(const weir_grid* grid, int32_t filter, const fl
 }
 #endif
 
+/* NOLINTEND */
 #endif /* WEIR_H */

@@ -2,6 +2,7 @@
 #ifndef WEIR_CUDA_H
 #define WEIR_CUDA_H
 
+/* NOLINTBEGIN: clang-tidy has the rules of C++ */
 #include "weir.h"
 
 #ifdef __cplusplus
@@ -29,4 +30,5 @@ WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
 }
 #endif
 
+/* NOLINTEND */
 #endif /* WEIR_CUDA_H */
