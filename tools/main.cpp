@@ -9,19 +9,9 @@
 
 #include "format/error.h"
 #include "tools/command.h"
+#include "tools/interrupt.h"
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-// The first signal asks the work to end cleanly, a second one ends the process at once.
-extern "C" void on_signal(int signal) {
-  if (interrupted.exchange(true)) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-}
 
 int fail(const std::string& message, int code) {
   std::fprintf(stderr, "weir: %s\n", message.c_str());
@@ -33,8 +23,6 @@ std::string first_line(std::string text) { return text.substr(0, text.find('\n')
 }  // namespace
 
 namespace weir {
-
-const std::atomic<bool>& interrupt_flag() { return interrupted; }
 
 void add_log_level(CLI::App& command) {
   command
@@ -50,8 +38,7 @@ void add_log_level(CLI::App& command) {
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
   spdlog::set_pattern("%H:%M:%S %l %v");
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  weir::catch_interrupts();
   std::signal(SIGPIPE, SIG_IGN);
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");

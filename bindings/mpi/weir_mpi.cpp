@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -19,23 +17,15 @@
 #include "format/output_files.h"
 #include "format/text.h"
 #include "ingest/source_registry.h"
+#include "tools/command.h"
 #include "tools/conversion_options.h"
 #include "tools/given_options.h"
 #include "tools/input_options.h"
+#include "tools/interrupt.h"
 #include "tools/progress.h"
 #include "tools/run_options.h"
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-extern "C" void on_signal(int signal) {
-  if (interrupted.exchange(true)) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-}
 
 /// The command line as given; empty: not given.
 struct Arguments {
@@ -88,7 +78,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
   });
   weir::Progress progress(a.run.progress);
   weir::ConversionControl control;
-  control.cancel = &interrupted;
+  control.cancel = &weir::interrupt_flag();
   if (team.leads()) {
     control.pass_started = [&](const std::string& pass, std::uint64_t bytes) {
       progress.start(pass, bytes / static_cast<std::uint64_t>(team.size()));  // of this process's share
@@ -145,8 +135,7 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir-mpi"));
   spdlog::set_pattern("%H:%M:%S %l %v");
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  weir::catch_interrupts();
   int code = static_cast<int>(weir::ErrorKind::internal);
   try {
     code = run(argc, argv, rank);

@@ -1,11 +1,8 @@
 // What a push takes of the memory, from the kernel: less than the ceiling, for a
 // volume eight times as large whose planes come in random order.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 #include <random>
 #include <string>
@@ -14,6 +11,7 @@
 
 #include "compressor/pushed_volume.h"
 #include "format/process_memory.h"
+#include "tests/compressor/child_answer.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -71,29 +69,7 @@ std::string measure(const std::string& output) {
 TEST(PushedMemory, StaysUnderTheCeilingWithPlanesInRandomOrder) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
-  int ends[2];
-  ASSERT_EQ(::pipe(ends), 0);
-  std::fflush(nullptr);
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    std::string answer;
-    try {
-      answer = measure(directory / "out.nvdb");
-    } catch (const std::exception& error) {
-      answer = error.what();
-    }
-    const ssize_t written = ::write(ends[1], answer.data(), answer.size());
-    ::_exit(written == static_cast<ssize_t>(answer.size()) ? 0 : 1);
-  }
-  ::close(ends[1]);
-  std::string answer(200, '\0');
-  const ssize_t length = ::read(ends[0], answer.data(), answer.size());
-  answer.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
-  ::close(ends[0]);
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  const std::string answer = answer_of_child([&] { return measure(directory / "out.nvdb"); });
   EXPECT_TRUE(answer.starts_with("ok")) << answer;
   RecordProperty("taken", answer);
 }

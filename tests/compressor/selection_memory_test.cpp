@@ -1,11 +1,8 @@
 // Selection over a row file sixteen times as large as the memory ceiling: an 8 GiB
 // volume's rows would fit in memory and prove nothing.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
@@ -14,6 +11,7 @@
 #include "compressor/tree_plan.h"
 #include "format/file_system.h"
 #include "format/process_memory.h"
+#include "tests/compressor/child_answer.h"
 #include "tests/support/sanitized.h"
 
 namespace weir {
@@ -67,29 +65,7 @@ std::string measure() {
 
 TEST(SelectionMemory, StaysUnderTheCeilingWithRowsSixteenTimesAsLarge) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
-  int ends[2];
-  ASSERT_EQ(::pipe(ends), 0);
-  std::fflush(nullptr);
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    std::string answer;
-    try {
-      answer = measure();
-    } catch (const std::exception& error) {
-      answer = error.what();
-    }
-    const ssize_t written = ::write(ends[1], answer.data(), answer.size());
-    ::_exit(written == static_cast<ssize_t>(answer.size()) ? 0 : 1);
-  }
-  ::close(ends[1]);
-  std::string answer(200, '\0');
-  const ssize_t length = ::read(ends[0], answer.data(), answer.size());
-  answer.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
-  ::close(ends[0]);
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  const std::string answer = answer_of_child([&] { return measure(); });
   EXPECT_EQ(answer, "ok");
 }
 
