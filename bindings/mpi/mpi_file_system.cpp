@@ -98,18 +98,27 @@ class MpiFileSystem final : public FileSystem {
   MpiFileSystem(MpiTeam& team, FileSystem& files) : team_(team), files_(files) {}
 
   std::unique_ptr<File> create(const std::string& path) override {
-    return share(path, [&] { return files_.create(path); });
+    std::unique_ptr<File> own;
+    team_.lead([&] { own = files_.create(path); });
+    try {
+      return shared(path, std::move(own));
+    } catch (const Error&) {  // some process does not find it: nothing of it may stay
+      team_.lead([&] { files_.remove(path); });
+      throw;
+    }
   }
   std::unique_ptr<File> open(const std::string& path) override {
-    return share(path, [&] { return files_.open(path); });
+    std::unique_ptr<File> own;
+    team_.lead([&] { own = files_.open(path); });
+    return shared(path, std::move(own));
   }
   // With a name until all have it open: one without cannot be opened by others.
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     const std::string name = cat("/.weir.", ::getpid(), '.', unnamed_++);
-    std::vector<char> shared(name.begin(), name.end());
-    team_.follow(shared);
-    const std::string path = directory + std::string(shared.begin(), shared.end());
-    std::unique_ptr<File> file = share(path, [&] { return files_.create(path); });
+    std::vector<char> leading(name.begin(), name.end());
+    team_.follow(leading);
+    const std::string path = directory + std::string(leading.begin(), leading.end());
+    std::unique_ptr<File> file = create(path);
     remove(path);
     return file;
   }
@@ -153,9 +162,8 @@ class MpiFileSystem final : public FileSystem {
     return answer;
   }
 
-  std::unique_ptr<File> share(const std::string& path, const std::function<std::unique_ptr<File>()>& make) {
-    std::unique_ptr<File> own;
-    team_.lead([&] { own = make(); });
+  // `own` is the leading rank's.
+  std::unique_ptr<File> shared(const std::string& path, std::unique_ptr<File> own) {
     std::unique_ptr<File> file;
     team_.run([&] { file = std::make_unique<MpiFile>(team_, path, std::move(own)); });
     return file;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bindings/c/weir.h"
 #include "format/text.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/tools/run_command.h"
@@ -93,11 +94,16 @@ class Mpi : public testing::Test {
 
   // What serial conversion makes of it, pushed by 1, 2, 3 and 8 processes.
   void expect_pushed(const std::string& volume, const std::vector<std::string>& extent_and_type) {
-    const std::string expected = serial(volume, {"--rate", "6", "--nonfinite", "background"});
+    expect_pushed(volume, extent_and_type, {"--rate", "6"}, {cat(WEIR_BUDGET_RATE), "6"});
+  }
+  void expect_pushed(const std::string& volume, const std::vector<std::string>& extent_and_type,
+                     std::vector<std::string> options, const std::vector<std::string>& budget) {
+    options.insert(options.end(), {"--nonfinite", "background"});
+    const std::string expected = serial(volume, options);
     for (const int processes : {1, 2, 3, 8}) {
       fs::remove(directory_ / "pushed.nvdb");
       fs::remove(directory_ / "pushed.nvdb.json");
-      const CommandResult pushed = push(processes, volume, extent_and_type, {"1", "6"}, "all");
+      const CommandResult pushed = push(processes, volume, extent_and_type, budget, "all");
       ASSERT_EQ(pushed.exit_code, 0) << pushed.err;
       ASSERT_EQ(pushed.out, "end: 0 \nafter: the push has ended; begin another\n");
       EXPECT_TRUE(read_file(directory_ / "pushed.nvdb") == expected) << volume << ", " << processes << " processes";
@@ -137,7 +143,8 @@ TEST_F(Mpi, AnyNumberOfProcessesConvertsToTheSameBytes) {
 
 TEST_F(Mpi, AScenesChoiceIsTheSame) {
   const std::string cloud = sample("cloud", "150x140x140", "float32");
-  write_file(directory_ / "scene.toml", "[transfer_function]\npoints = [[0.0, 0.0], [0.4, 0.0], [1.0, 1.0]]\n");
+  write_file(directory_ / "scene.toml",
+             "[volume]\nrange = [0.0, 1.0]\nopacity = [[0.0, 0.0], [0.4, 0.0], [1.0, 1.0]]\n");
   expect_same(cloud, {"--rate", "30", "--scene", "scene.toml"});
 }
 
@@ -154,9 +161,13 @@ TEST_F(Mpi, RealVolumesConvertAndPushToTheSameBytes) {
 }
 
 TEST_F(Mpi, HardVolumesPushToTheSameBytes) {
-  expect_pushed(sample("exceptions", "129x40x33", "float32"), {"129", "40", "33", "10"});
-  expect_pushed(sample("cloud", "1x1x1", "float64"), {"1", "1", "1", "11"});
-  expect_pushed(sample("turbulence", "7x9x17", "float16"), {"7", "9", "17", "9"});
+  const auto expect_all_of = [&](const std::string& kind, const std::string& dims, const std::string& type,
+                                 const std::vector<std::string>& extent_and_type) {
+    expect_pushed(sample(kind, dims, type), extent_and_type, {"--lossless"}, {cat(WEIR_BUDGET_LOSSLESS), "0"});
+  };
+  expect_all_of("some-nan", "129x40x33", "float32", {"129", "40", "33", "10"});
+  expect_all_of("cloud", "1x1x1", "float64", {"1", "1", "1", "11"});
+  expect_all_of("turbulence", "7x9x17", "int16", {"7", "9", "17", "4"});
 }
 
 TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
@@ -173,7 +184,7 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
         "weir-mpi: none/out.nvdb: the directory none does not exist; make it or choose another output");
   fails(
       {cloud, "-o", "out.nvdb", "--size", "1000"}, 4,
-      "weir-mpi: out.nvdb: 1000 bytes asked, the smallest tree for this volume takes 312192; ask for --size 312192 or "
+      "weir-mpi: out.nvdb: 1000 bytes asked, the smallest tree for this volume takes 345312; ask for --size 345312 or "
       "more");
   fails({cloud, "-o", "out.nvdb", "--speed", "9"}, 2,
         "weir-mpi: The following arguments were not expected: 9 --speed; see weir-mpi --help");
@@ -181,6 +192,30 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
   write_file(directory_ / "out.nvdb", "theirs");
   fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output with -o or pass --overwrite");
   EXPECT_EQ(read_file(directory_ / "out.nvdb"), "theirs");
+}
+
+// As on two machines that do not share the directory: the second process works in another one.
+TEST_F(Mpi, AFileThatSomeProcessDoesNotFindLeavesNothing) {
+  const std::string cloud = directory_ / sample("cloud", "64x64x200", "float32");
+  const auto run_apart = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{WEIR_MPI_COMMAND, "convert", cloud};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    std::string again = "cd other && exec";
+    for (const std::string& word : command) again += " '" + word + "'";
+    command.insert(command.end(), {":", "-n", "1", "sh", "-c", again});
+    return run_mpi(1, command, directory_.path());
+  };
+  fs::create_directories(directory_ / "other/work");
+  fs::create_directory(directory_ / "work");
+  const CommandResult output = run_apart({"-o", "out.nvdb"});
+  EXPECT_EQ(output.exit_code, 5) << output.err;
+  EXPECT_TRUE(line_of(output.err, "weir-mpi").starts_with("weir-mpi: MPI: opening out.nvdb.partial: ")) << output.err;
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+  const CommandResult work = run_apart({"-o", directory_ / "out.nvdb", "--work-dir", "work"});
+  EXPECT_EQ(work.exit_code, 5) << work.err;
+  EXPECT_TRUE(line_of(work.err, "weir-mpi").starts_with("weir-mpi: MPI: opening work/.weir.")) << work.err;
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+  EXPECT_TRUE(fs::is_empty(directory_ / "work"));
 }
 
 TEST_F(Mpi, APushOfOtherThanEachVoxelOnceIsRefused) {
@@ -197,6 +232,9 @@ TEST_F(Mpi, APushOfOtherThanEachVoxelOnceIsRefused) {
   refused("outside",
           "box: 2 memory: a box of voxels 10:20,20:30,31:41 is not in the volume of 20x30x40\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+  refused("differing",
+          "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
+          "same\n");
   refused("null",
           "box: 2 data is a null pointer\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
@@ -209,9 +247,9 @@ TEST_F(Mpi, TheExampleSavesWhatOneProcessDoes) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
   for (const char* name : {"heat_0000.nvdb", "heat_0020.nvdb"}) {
-    const std::string one = read_file(directory_ / "1" / name);
+    const std::string one = read_file(directory_ / cat("1/", name));
     EXPECT_FALSE(one.empty()) << name;
-    EXPECT_TRUE(one == read_file(directory_ / "3" / name)) << name;
+    EXPECT_TRUE(one == read_file(directory_ / cat("3/", name))) << name;
   }
 }
 
