@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <thread>
 
 #include "format/error.h"
 #include "format/text.h"
@@ -46,14 +47,14 @@ MpiTeam::~MpiTeam() {
   MPI_Comm_free(&communicator_);
 }
 
-int MpiTeam::on_this_machine() const {
+std::size_t MpiTeam::own_cores() const {
   const std::lock_guard lock(calls_);
   MPI_Comm local = MPI_COMM_NULL;
   check_mpi(MPI_Comm_split_type(communicator_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local), "asking who is here");
-  int count = 1;
-  MPI_Comm_size(local, &count);
+  int processes = 1;
+  MPI_Comm_size(local, &processes);
   MPI_Comm_free(&local);
-  return count;
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency() / static_cast<std::size_t>(processes));
 }
 
 void MpiTeam::send(const Bytes& part, int to) const {
@@ -89,6 +90,16 @@ void MpiTeam::broadcast(Bytes& part) const {
 void MpiTeam::merge(Bytes& part, const Merge& both) {
   if (alone()) return;
   const std::lock_guard lock(calls_);
+  try {
+    merge_in_tree(part, both);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {  // of this process alone, in the midst of what all do
+    end_all(error.what());
+  }
+}
+
+void MpiTeam::merge_in_tree(Bytes& part, const Merge& both) const {
   // A tree: rank 0 hears of 1, 2, 4 ..., each of which has heard of those up to the next.
   part.push_back(unwinding());
   for (int step = 1; step < size_; step *= 2) {
@@ -98,11 +109,7 @@ void MpiTeam::merge(Bytes& part, const Merge& both) {
     }
     if (rank_ + step >= size_) continue;
     Bytes higher = receive(rank_ + step);
-    if (higher.back() != part.back()) {
-      std::fprintf(stderr, "weir: one of %d processes failed alone, so that none can go on\n", size_);
-      MPI_Abort(communicator_, static_cast<int>(ErrorKind::internal));
-      std::abort();
-    }
+    if (higher.back() != part.back()) end_all("it is not where the others are");
     higher.pop_back();
     part.pop_back();
     both(part, higher);
@@ -110,6 +117,12 @@ void MpiTeam::merge(Bytes& part, const Merge& both) {
   }
   broadcast(part);
   part.pop_back();
+}
+
+void MpiTeam::end_all(const std::string& why) const {
+  std::fprintf(stderr, "weir: one of %d processes failed alone, so that none can go on: %s\n", size_, why.c_str());
+  MPI_Abort(communicator_, static_cast<int>(ErrorKind::internal));
+  std::abort();
 }
 
 }  // namespace weir

@@ -3,7 +3,9 @@
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <mutex>
+#include <string>
 
 #include "compressor/team.h"
 
@@ -23,13 +25,16 @@ class MpiTeam final : public Team {
   int size() const override { return size_; }
   void merge(Bytes& part, const Merge& both) override;
 
-  /// Processes of the team that share this one's memory, itself among them.
-  int on_this_machine() const;
+  /// This process's part of its machine's cores, which the team's processes on it divide; at least 1. All ranks ask.
+  std::size_t own_cores() const;
 
   /// Held around every call of MPI.
   std::mutex& calls() const { return calls_; }
 
  private:
+  // All ranks call them, and hold calls_.
+  void merge_in_tree(Bytes& part, const Merge& both) const;
+  [[noreturn]] void end_all(const std::string& why) const;
   void send(const Bytes& part, int to) const;
   Bytes receive(int from) const;
   void broadcast(Bytes& part) const;

@@ -6,6 +6,7 @@
 #include "bindings/mpi/mpi_team.h"
 #include "bindings/mpi/pushed_boxes.h"
 #include "bindings/mpi/weir_mpi.h"
+#include "compressor/conversion_identity.h"
 #include "format/text.h"
 
 /// What outlives a PushedBoxes comes before it.
@@ -40,6 +41,29 @@ Index3 index_of(const int64_t* values, const char* name, int64_t least) {
   return {values[0], values[1], values[2]};
 }
 
+// What the processes must say alike, since each goes by what it was told.
+std::string said_by_all(const SourceInfo& info, const ConversionOptions& options) {
+  ConversionIdentity said = identify_conversion(info, options);
+  said.erase("source");  // where and of when a file would be
+  said.erase("source modified (ns)");
+  said["output"] = options.output;
+  said["overwrite"] = options.overwrite ? "yes" : "no";
+  said["work-dir"] = options.work_dir;
+  std::string text;
+  for (const auto& [name, value] : said) text += cat(name, '=', value, '\n');
+  return text;
+}
+
+void require_alike(Team& team, const std::string& said) {
+  std::vector<char> leading(said.begin(), said.end());
+  team.follow(leading);
+  team.run([&] {
+    if (std::string(leading.begin(), leading.end()) == said) return;
+    throw usage(cat("process ", team.rank(), " of ", team.size(),
+                    " gives another volume, output or other options than process 0; all must give the same"));
+  });
+}
+
 }  // namespace
 }  // namespace weir::c
 
@@ -62,6 +86,9 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
       conversion = read_options(given);
       conversion.output = checked_output(output);
     });
+    require_alike(made->team, said_by_all(info, conversion));
+    const std::size_t cores = made->team.own_cores();
+    if (conversion.threads == 0) conversion.threads = cores;
     made->boxes = std::make_unique<PushedBoxes>(std::move(info), conversion, made->control, made->team);
     *push = made.release();
   });

@@ -1,6 +1,7 @@
 #include "bindings/mpi/pushed_boxes.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "bindings/mpi/mpi_file_system.h"
@@ -45,6 +46,27 @@ void for_each_piece(const Box& box, std::size_t value_bytes, const Visit& visit)
   }
 }
 
+// In a scope that all ranks leave by a failure, or none. Where one fails alone, the others would wait for it in what
+// they do: it meets them here, so that the team ends them all.
+class FailingTogether {
+ public:
+  explicit FailingTogether(Team& team) : team_(team) {}
+  ~FailingTogether() {
+    if (std::uncaught_exceptions() == before_) return;
+    try {
+      team_.run([] {});
+    } catch (const std::exception&) {
+      // The failure that led here is the one to report.
+    }
+  }
+  FailingTogether(const FailingTogether&) = delete;
+  FailingTogether& operator=(const FailingTogether&) = delete;
+
+ private:
+  Team& team_;
+  const int before_ = std::uncaught_exceptions();
+};
+
 }  // namespace
 
 PushedBoxes::PushedBoxes(SourceInfo info, const ConversionOptions& options, const ConversionControl& control,
@@ -79,11 +101,14 @@ void PushedBoxes::box(const Box& box, const void* data, const std::array<std::in
       copy_voxels(from, part, piece.data());
       spool_.write(part, piece);
     });
+    given_.push_back(from.box);
   } catch (const Error& error) {
     failure_ = error;
     throw;
+  } catch (const std::exception& error) {
+    failure_ = Error(ErrorKind::internal, error.what());
+    throw;
   }
-  given_.push_back(from.box);
 }
 
 // Each voxel once: boxes without a voxel in common, whose voxels are as many as the volume's.
@@ -109,6 +134,7 @@ void PushedBoxes::check_complete() {
 }
 
 Sidecar PushedBoxes::end() {
+  const FailingTogether together(team_);
   team_.run([&] {
     if (failure_) throw Error(*failure_);
   });

@@ -4,11 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
-#include <thread>
 
 #include "bindings/mpi/mpi_file_system.h"
 #include "bindings/mpi/mpi_team.h"
@@ -52,21 +50,15 @@ void add_convert(CLI::App& app, Arguments& a) {
   command.add_flag("--json", a.json, "print the sidecar on stdout");
 }
 
-// The cores of a machine, divided among its processes.
-std::size_t threads_of(const Arguments& a, const weir::MpiTeam& team) {
-  if (a.run.threads > 0) return static_cast<std::size_t>(a.run.threads);
-  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return static_cast<std::size_t>(std::max(1, cores / team.on_this_machine()));
-}
-
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
-  const std::size_t threads = threads_of(a, team);
+  const std::size_t threads = a.run.threads > 0 ? static_cast<std::size_t>(a.run.threads) : team.own_cores();
   weir::ConversionOptions options;
   std::unique_ptr<weir::VolumeSource> source;
   team.run([&] {
     options = weir::parse_conversion(a.conversion);
     options.output = a.output;
     options.overwrite = a.overwrite;
+    options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
     options.memory = weir::parse_memory(a.run);
     options.threads = threads;
     options.work_dir = a.work_dir;

@@ -1,10 +1,11 @@
 /* weir inside the processes of an MPI job: one volume that they hold in boxes becomes one file, with the bytes that
  * weir convert gives for all of it. Link with -lweir_mpi -lweir and MPI; weir.h says how calls end and what the structs
- * mean. MPI must be initialised with MPI_THREAD_SERIALIZED or more, and while a collective call lasts, no other thread
+ * mean. MPI must be initialised with MPI_THREAD_SERIALIZED or more, and while any of these calls lasts, no other thread
  * of the process may call MPI.
  *
  * Output and work directory lie on a file system that all processes share. A failure of a collective call is the same
- * status and message in all of them. */
+ * status and message in all of them; where one process fails by itself (out of memory, say), so that the others would
+ * wait for it, weir ends the job (MPI_Abort). */
 #ifndef WEIR_MPI_H
 #define WEIR_MPI_H
 
@@ -19,8 +20,9 @@ extern "C" {
 /* A volume on its way into a file. */
 typedef struct weir_mpi_push weir_mpi_push;
 
-/* Collective over `comm`, which is copied; volume, options and output are the same in all processes (options->memory,
- * threads and callbacks are each its own). Takes the output's lock. *push is the caller's, for weir_mpi_push_free. */
+/* Collective over `comm`, which is copied; volume, options and output are the same in all processes, or WEIR_USAGE
+ * (options->memory, threads and callbacks are each its own; threads 0: an equal part of the machine's cores). Takes the
+ * output's lock. *push is the caller's, for weir_mpi_push_free. */
 WEIR_API weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const weir_convert_options* options,
                                          const char* output, weir_mpi_push** push, weir_error* error);
 /* The same with Fortran's handle of the communicator. */
