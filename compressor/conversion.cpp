@@ -61,8 +61,11 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
-  team.run([&] { memory = plan_memory(options.memory, held + source.working_bytes(), threads, domain); });
-  const ReadingPlan reading = plan_reading(source, memory);
+  ReadingPlan reading;
+  team.run([&] {
+    memory = plan_memory(options.memory, held + source.working_bytes(), threads, domain);
+    reading = plan_reading(source, memory);
+  });
   const StreamOptions stream = stream_options(control);
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
