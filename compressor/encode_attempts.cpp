@@ -42,6 +42,7 @@ void adopt_plan(Journal& journal, const Digest& plan) {
 // The files that the leaves and their records go to, empty but for what counts.
 std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   if (job.journal == nullptr) {
+    job.rows.team().publish(job.output.volume());  // nothing of an earlier attempt comes after this one's
     job.output.volume().clear();
     return job.work.spill();
   }
