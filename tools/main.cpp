@@ -22,19 +22,6 @@ std::string first_line(std::string text) { return text.substr(0, text.find('\n')
 
 }  // namespace
 
-namespace weir {
-
-void add_log_level(CLI::App& command) {
-  command
-      .add_option_function<std::string>(
-          "--log-level", [](const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); },
-          "trace, debug, info, warn, error or off")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->default_str("info");
-}
-
-}  // namespace weir
-
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
   spdlog::set_pattern("%H:%M:%S %l %v");

@@ -48,6 +48,7 @@ void add_convert(CLI::App& app, Arguments& a) {
                      "for spill files, shared by all processes too; default: a hidden directory beside the output");
   command.add_flag("--overwrite", a.overwrite, "replace an existing output");
   command.add_flag("--json", a.json, "print the sidecar on stdout");
+  weir::add_log_level(command);
 }
 
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {

@@ -1,0 +1,19 @@
+// --log-level, of every command.
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+#include "tools/command.h"
+
+namespace weir {
+
+void add_log_level(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--log-level", [](const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); },
+          "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->default_str("info");
+}
+
+}  // namespace weir
