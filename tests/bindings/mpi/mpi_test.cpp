@@ -253,5 +253,13 @@ TEST_F(Mpi, TheExampleSavesWhatOneProcessDoes) {
   }
 }
 
+TEST(MpiDocument, ShowsTheExampleAsItIs) {
+  const std::string text = read_file(WEIR_SOURCE_DIR "/docs/mpi.md");
+  const std::size_t begin = text.find("\n```c\n") + 6;
+  const std::string shown = text.substr(begin, text.find("\n```\n", begin) - begin);
+  ASSERT_GT(shown.size(), 500U);
+  EXPECT_NE(read_file(WEIR_SOURCE_DIR "/examples/mpi/heat.c").find(shown), std::string::npos);
+}
+
 }  // namespace
 }  // namespace weir
