@@ -158,6 +158,7 @@ with h5py.File("a.h5", "w") as f:
     layout = h5py.VirtualLayout(SHAPE, "<f4")
     layout[...] = h5py.VirtualSource("b.h5", "d", SHAPE)
     f.create_virtual_dataset("virtual", layout)
+    layout = h5py.VirtualLayout(SHAPE, "<f4")
     layout[...] = h5py.VirtualSource(f["own"])
     f.create_virtual_dataset("inner", layout)
 )");
