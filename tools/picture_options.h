@@ -36,7 +36,7 @@ void add_picture_options(CLI::App& command, PictureArguments& arguments);
 /// What they mean.
 struct PictureRequest {
   Scene scene;
-  RenderOptions options;   ///< with the scene's environment, loaded
+  RenderOptions options;  ///< with the scene's environment, loaded
   SampleOptions sampling;
   BackendChoice backend;
 
