@@ -34,26 +34,14 @@ class MpiFile final : public File {
   const std::string& path() const override { return path_; }
 
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    for (std::size_t at = 0; at < bytes.size();) {
-      const auto count = static_cast<int>(std::min(kMostBytes, bytes.size() - at));
-      MPI_Status status{};
-      const std::lock_guard lock(team_.calls());
-      check_mpi(
-          MPI_File_write_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, &status),
-          "writing " + path_);
-      at += transferred(status, "written");
-    }
+    transfer(bytes, "writing ", "written", [&](std::size_t at, int count, MPI_Status* status) {
+      return MPI_File_write_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, status);
+    });
   }
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
-    for (std::size_t at = 0; at < bytes.size();) {
-      const auto count = static_cast<int>(std::min(kMostBytes, bytes.size() - at));
-      MPI_Status status{};
-      const std::lock_guard lock(team_.calls());
-      check_mpi(
-          MPI_File_read_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, &status),
-          "reading " + path_);
-      at += transferred(status, "there to be read");
-    }
+    transfer(bytes, "reading ", "there to be read", [&](std::size_t at, int count, MPI_Status* status) {
+      return MPI_File_read_at(file_, static_cast<MPI_Offset>(offset + at), bytes.data() + at, count, MPI_BYTE, status);
+    });
   }
 
   bool preallocate(std::uint64_t bytes) override {
@@ -80,11 +68,18 @@ class MpiFile final : public File {
   }
 
  private:
-  std::size_t transferred(const MPI_Status& status, const char* what) const {
-    int count = 0;
-    MPI_Get_count(&status, MPI_BYTE, &count);
-    if (count > 0) return static_cast<std::size_t>(count);
-    throw Error(ErrorKind::io, cat(path_, ": nothing more is ", what));
+  // All of `bytes`, by as many calls as that takes.
+  template <typename Call>
+  void transfer(std::span<const std::byte> bytes, const char* action, const char* done, const Call& call) const {
+    for (std::size_t at = 0; at < bytes.size();) {
+      MPI_Status status{};
+      int count = 0;
+      const std::lock_guard lock(team_.calls());
+      check_mpi(call(at, static_cast<int>(std::min(kMostBytes, bytes.size() - at)), &status), action + path_);
+      MPI_Get_count(&status, MPI_BYTE, &count);
+      if (count <= 0) throw Error(ErrorKind::io, cat(path_, ": nothing more is ", done));
+      at += static_cast<std::size_t>(count);
+    }
   }
 
   MpiTeam& team_;

@@ -19,6 +19,14 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // of a message: coun
 // Whether a rank is unwinding, as a part's last byte.
 std::byte unwinding() { return static_cast<std::byte>(std::uncaught_exceptions() > 0 ? 1 : 0); }
 
+// A part in pieces that fit a message, each by `call(first byte, count)`.
+template <typename Part, typename Call>
+void for_each_message(Part& part, const std::string& action, const Call& call) {
+  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
+    check_mpi(call(part.data() + at, static_cast<int>(std::min(kMostBytes, part.size() - at))), action);
+  }
+}
+
 }  // namespace
 
 void check_mpi(int code, const std::string& action) {
@@ -60,20 +68,18 @@ std::size_t MpiTeam::own_cores() const {
 void MpiTeam::send(const Bytes& part, int to) const {
   const std::uint64_t size = part.size();
   check_mpi(MPI_Send(&size, 1, MPI_UINT64_T, to, kTag, communicator_), "sending");
-  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
-    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
-    check_mpi(MPI_Send(part.data() + at, count, MPI_BYTE, to, kTag, communicator_), "sending");
-  }
+  for_each_message(part, "sending", [&](const std::byte* first, int count) {
+    return MPI_Send(first, count, MPI_BYTE, to, kTag, communicator_);
+  });
 }
 
 Team::Bytes MpiTeam::receive(int from) const {
   std::uint64_t size = 0;
   check_mpi(MPI_Recv(&size, 1, MPI_UINT64_T, from, kTag, communicator_, MPI_STATUS_IGNORE), "receiving");
   Bytes part(size);
-  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
-    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
-    check_mpi(MPI_Recv(part.data() + at, count, MPI_BYTE, from, kTag, communicator_, MPI_STATUS_IGNORE), "receiving");
-  }
+  for_each_message(part, "receiving", [&](std::byte* first, int count) {
+    return MPI_Recv(first, count, MPI_BYTE, from, kTag, communicator_, MPI_STATUS_IGNORE);
+  });
   return part;
 }
 
@@ -81,10 +87,8 @@ void MpiTeam::broadcast(Bytes& part) const {
   std::uint64_t size = part.size();
   check_mpi(MPI_Bcast(&size, 1, MPI_UINT64_T, 0, communicator_), "sending to all");
   part.resize(size);
-  for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
-    const auto count = static_cast<int>(std::min(kMostBytes, part.size() - at));
-    check_mpi(MPI_Bcast(part.data() + at, count, MPI_BYTE, 0, communicator_), "sending to all");
-  }
+  for_each_message(part, "sending to all",
+                   [&](std::byte* first, int count) { return MPI_Bcast(first, count, MPI_BYTE, 0, communicator_); });
 }
 
 void MpiTeam::merge(Bytes& part, const Merge& both) {
