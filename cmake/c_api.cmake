@@ -11,7 +11,6 @@ target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_definitions(weir_c PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
-set_source_files_properties(bindings/c/conversion_options.cpp PROPERTIES COMPILE_DEFINITIONS WEIR_COMMIT="${WEIR_COMMIT}")
 # What is there may change with the second number of the version while the first is 0.
 set(WEIR_ABI ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/weir.map @ONLY
@@ -43,6 +42,7 @@ function(weir_c_tests)
     list(FILTER sources EXCLUDE REGEX "/cuda_test\\.c$")
   endif()
   add_custom_target(weir_tests_c)
+  add_dependencies(weir_tests weir_tests_c)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME_WE)
     set(target weir_c_${name})

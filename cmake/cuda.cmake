@@ -1,6 +1,20 @@
-# Of gpu/cuda/, where nvcc is found: weir_cuda, also called weir::cuda, grid loader and kernels, which another program
-# embeds (docs/embedding.md), and weir_cuda_backend, which makes them a back end of weir render.
+# Of gpu/cuda/, where nvcc is found: weir_cuda, also called weir::cuda, the grid loader, which another program embeds
+# (docs/embedding.md), and weir_cuda_backend, the renderer's kernels and what makes them a back end of weir render.
 # At file scope: enable_language does not work inside a function.
+
+set(wanted ${WEIR_CUDA})
+if(wanted STREQUAL "AUTO" AND WEIR_EMBED)
+  set(wanted ON)
+elseif(wanted STREQUAL "AUTO")
+  # The kernels take longer to compile than the rest, and without a device nothing runs them.
+  execute_process(COMMAND nvidia-smi --list-gpus OUTPUT_VARIABLE devices ERROR_QUIET)
+  if(devices MATCHES "GPU")
+    set(wanted ON)
+  endif()
+endif()
+if(NOT wanted STREQUAL "ON")
+  return()
+endif()
 
 include(CheckLanguage)
 find_program(WEIR_NVCC nvcc PATHS /usr/local/cuda/bin)
@@ -22,10 +36,9 @@ if(CMAKE_CUDA_COMPILER)
   set(CMAKE_CUDA_STANDARD 20)
   set(CMAKE_CUDA_STANDARD_REQUIRED ON)
   find_package(CUDAToolkit REQUIRED)
-  file(GLOB_RECURSE WEIR_CUDA_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp
-                                                        ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
-  list(FILTER WEIR_CUDA_SOURCES EXCLUDE REGEX "/cuda_backend\\.cpp$")
-  add_library(weir_cuda STATIC ${WEIR_CUDA_SOURCES})
+  file(GLOB loader CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/load/*.cpp)
+  list(APPEND loader ${PROJECT_SOURCE_DIR}/gpu/cuda/check.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/grid_loader.cpp)
+  add_library(weir_cuda STATIC ${loader})
   add_library(weir::cuda ALIAS weir_cuda)
   set_target_properties(weir_cuda PROPERTIES EXPORT_NAME cuda)
   set(WEIR_CUDA_HEADERS check device_array device_buffer grid_loader load/copy_task load/direct_storage load/load_report
@@ -38,7 +51,10 @@ if(CMAKE_CUDA_COMPILER)
   # Each thread has a default stream of its own: one loads while another renders.
   target_compile_definitions(weir_cuda PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
   if(NOT WEIR_EMBED)
-    add_library(weir_cuda_backend STATIC ${PROJECT_SOURCE_DIR}/gpu/cuda/cuda_backend.cpp)
+    file(GLOB renderer CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
+    list(REMOVE_ITEM renderer ${loader})
+    add_library(weir_cuda_backend STATIC ${renderer})
+    target_compile_definitions(weir_cuda_backend PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
     target_link_libraries(weir_cuda_backend PUBLIC weir_cuda weir_gpu)
   endif()
   if(WEIR_BUILD_BENCH AND NOT WEIR_EMBED)

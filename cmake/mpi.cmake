@@ -18,7 +18,7 @@ target_compile_definitions(weir_mpi_team PUBLIC OMPI_SKIP_MPICXX MPICH_SKIP_MPIC
 
 add_executable(weir-mpi bindings/mpi/weir_mpi.cpp)
 target_link_libraries(weir-mpi PRIVATE weir_mpi_team weir_tools)
-target_compile_definitions(weir-mpi PRIVATE WEIR_VERSION="${PROJECT_VERSION}" WEIR_COMMIT="${WEIR_COMMIT}")
+target_compile_definitions(weir-mpi PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
 
 # libweir_mpi.so, target weir_mpi, also called weir::mpi: pushes by all processes, with bindings/mpi/weir_mpi.h.
 add_library(weir_mpi SHARED bindings/mpi/push.cpp bindings/mpi/pushed_boxes.cpp bindings/c/conversion_options.cpp
@@ -58,13 +58,12 @@ function(weir_mpi_tests)
     target_compile_options(${target} PRIVATE -pedantic -Wall -Wextra -Wconversion -Wshadow)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   endforeach()
-  file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
-  add_executable(weir_tests_mpi tests/bindings/mpi/mpi_test.cpp
-                                tests/tools/run_command.cpp ${support})
+  add_executable(weir_tests_mpi tests/bindings/mpi/mpi_test.cpp)
+  add_dependencies(weir_tests weir_tests_mpi)
   add_dependencies(weir_tests_mpi weir weir-mpi weir_mpi_push_boxes weir_mpi_heat)
-  target_link_libraries(weir_tests_mpi PRIVATE weir_format GTest::gtest GTest::gtest_main)
+  target_link_libraries(weir_tests_mpi PRIVATE weir_test_support GTest::gtest_main)
   target_compile_definitions(weir_tests_mpi PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_COMMAND="$<TARGET_FILE:weir>"
                              WEIR_MPIEXEC="${MPIEXEC_EXECUTABLE}" WEIR_MPI_COMMAND="$<TARGET_FILE:weir-mpi>"
                              WEIR_MPI_PUSH="$<TARGET_FILE:weir_mpi_push_boxes>" WEIR_MPI_EXAMPLE="$<TARGET_FILE:weir_mpi_heat>")
-  gtest_discover_tests(weir_tests_mpi DISCOVERY_TIMEOUT 120 PROPERTIES PROCESSORS 2)
+  gtest_discover_tests(weir_tests_mpi DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES PROPERTIES PROCESSORS 2)
 endfunction()

@@ -20,7 +20,6 @@ file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/python/*.cpp)
 pybind11_add_module(weir_python MODULE NO_EXTRAS ${sources})
 target_link_libraries(weir_python PRIVATE weir_tools)
 target_compile_definitions(weir_python PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
-set_source_files_properties(bindings/python/convert.cpp PROPERTIES COMPILE_DEFINITIONS WEIR_COMMIT="${WEIR_COMMIT}")
 # Other modules of a process have libraries of their own: nothing but the module's entry is to be seen.
 target_link_options(weir_python PRIVATE LINKER:--exclude-libs,ALL LINKER:--as-needed)
 
@@ -49,6 +48,7 @@ endfunction()
 
 # weir_python_tests(): each tests/bindings/python/test_NAME.py as the test python.NAME.
 function(weir_python_tests)
+  add_dependencies(weir_tests weir_python)
   file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/python/test_*.py)
   foreach(test IN LISTS tests)
     get_filename_component(name ${test} NAME_WE)

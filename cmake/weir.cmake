@@ -18,6 +18,10 @@ if(WEIR_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_V
 elseif(WEIR_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 15)
   set(WEIR_WERROR OFF)
 endif()
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC lets a class use an unnamed namespace in the file that it compiles, not in one that this file includes.
+  target_compile_options(weir_options INTERFACE $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>>)
+endif()
 if(WEIR_WERROR)
   target_compile_options(weir_options INTERFACE $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Werror>>)
 endif()
@@ -78,7 +82,23 @@ function(weir_embed_page target folder)
   target_sources(${target} PRIVATE ${source})
 endfunction()
 
-# weir_tests(NAME): every .cpp in tests/NAME/, and what tests share in tests/support/, as the program weir_tests_NAME.
+# weir_test_libraries(): what test programs share, compiled once: weir_test_support (tests/support/) and weir_test_stock
+# (tests/stock/), the only one that includes OpenVDB's and NanoVDB's converters, which take half a minute to compile.
+function(weir_test_libraries)
+  file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
+  add_library(weir_test_support STATIC ${support})
+  target_link_libraries(weir_test_support PUBLIC weir_format GTest::gtest)
+  set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/support/run_command.cpp PROPERTY COMPILE_DEFINITIONS
+               WEIR_COMMAND="${CMAKE_BINARY_DIR}/weir")
+  file(GLOB stock CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/stock/*.cpp)
+  add_library(weir_test_stock STATIC ${stock})
+  target_link_libraries(weir_test_stock PUBLIC weir_test_support ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
+  foreach(library weir_test_support weir_test_stock)
+    target_compile_options(${library} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Og>)  # a third less time to compile
+  endforeach()
+endfunction()
+
+# weir_tests(NAME): every .cpp in tests/NAME/ as the program weir_tests_NAME.
 function(weir_tests name)
   set(patterns ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)
   if(CMAKE_CUDA_COMPILER)
@@ -88,15 +108,7 @@ function(weir_tests name)
   if(NOT sources)
     return()
   endif()
-  if(name MATCHES "^(ingest|tools)$")  # NanoVDB files of other writers are an input too
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/format/stock_nvdb.cpp)
-  elseif(name STREQUAL "cuda")  # they load and render the same small grids
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/gpu/test_grid.cpp)
-  elseif(name STREQUAL "daemon")  # it is the command that watches
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/tests/tools/run_command.cpp ${PROJECT_SOURCE_DIR}/tests/tools/scoped_mount.cpp)
-  endif()
-  file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
-  add_executable(weir_tests_${name} ${sources} ${support})
+  add_executable(weir_tests_${name} ${sources})
   set(library weir_${name})
   if(name STREQUAL "cuda")  # they try the renderer too
     set(library weir_cuda_backend)
@@ -122,15 +134,36 @@ function(weir_tests name)
                  WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}"
                  WEIR_VERSION="${PROJECT_VERSION}" ${installs})
   endif()
-  target_link_libraries(weir_tests_${name} PRIVATE ${library} GTest::gtest GTest::gtest_main
-                                                   ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
+  target_link_libraries(weir_tests_${name} PRIVATE ${library} weir_test_stock GTest::gtest_main)
   target_compile_definitions(weir_tests_${name} PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_compile_options(weir_tests_${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)  # a quarter less time to compile
-  set(properties)
-  if(name STREQUAL "daemon")  # some change the machine's limits of inotify for a moment
-    set(properties PROPERTIES RESOURCE_LOCK inotify)
+  target_compile_options(weir_tests_${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Og>)  # a third less time to compile
+  weir_add_gtests(weir_tests_${name})
+endfunction()
+
+# weir_add_gtests(TARGET): the tests of a GoogleTest program that WEIR_TESTS names. Most run in groups, several in one
+# process: starting a process for each takes longer than most tests. Alone run
+#   those with Memory or Ceiling in their name, which measure the memory of their process or of a child, which counts
+#   what its parent held;
+#   all of the daemon, which run services, with files and times of their own; those with SmallQueue in their name, which
+#   change the machine's limit of inotify for a moment, not beside those that count on it.
+function(weir_add_gtests target)
+  add_dependencies(weir_tests ${target})
+  set(alone *Memory*:*Ceiling*)
+  if(target STREQUAL "weir_tests_daemon")
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER ${WEIR_TESTS}-*SmallQueue*:*TwoThousandFiles*:${WEIR_TESTS_LEFT_OUT})
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER *SmallQueue*:*TwoThousandFiles* TEST_LIST ${target}_locked
+                         PROPERTIES RESOURCE_LOCK inotify)
+    return()
   endif()
-  gtest_discover_tests(weir_tests_${name} DISCOVERY_TIMEOUT 120 ${properties})
+  foreach(group RANGE 1 ${WEIR_TEST_GROUPS})
+    add_test(NAME ${target}/${group} COMMAND ${target} --gtest_filter=${WEIR_TESTS}-${alone}:${WEIR_TESTS_LEFT_OUT})
+    math(EXPR index "${group} - 1")
+    set_tests_properties(${target}/${group} PROPERTIES ENVIRONMENT
+      "GTEST_TOTAL_SHARDS=${WEIR_TEST_GROUPS};GTEST_SHARD_INDEX=${index};GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/test_results/${target}-${group}.xml")
+  endforeach()
+  if(WEIR_TESTS STREQUAL "*")
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER ${alone}-${WEIR_TESTS_LEFT_OUT})
+  endif()
 endfunction()
 
 # weir_skip_test(NAME WHY): a test in place of those that there are not here, so that they are seen to be skipped.
@@ -146,11 +179,10 @@ function(weir_loader_tests)
   file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
                                       ${root}/tests/fake_cuda/*.cpp)
   add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/check.cpp ${root}/gpu/cuda/grid_loader.cpp
-                                   ${root}/tests/cuda/grid_loader_test.cpp ${root}/tests/gpu/test_grid.cpp)
+                                   ${root}/tests/cuda/grid_loader_test.cpp)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
-  target_link_libraries(weir_tests_loader PRIVATE weir_format GTest::gtest GTest::gtest_main ${OPENVDB_LIBRARY}
-                                                  ${IMATH_LIBRARY} TBB::tbb Threads::Threads ${CMAKE_DL_LIBS})
-  gtest_discover_tests(weir_tests_loader DISCOVERY_TIMEOUT 120)
+  target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
+  weir_add_gtests(weir_tests_loader)
 endfunction()
 
 # weir_benchmarks(): every bench/NAME.cpp as the Google Benchmark program NAME in the build folder's bench/.

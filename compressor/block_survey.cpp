@@ -32,11 +32,12 @@ BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
 class BlockSurvey::Leaves {
  public:
   // `faces` is empty where they are not asked for.
-  Leaves(const NodeLattice& leaves, const ValueTable& table, bool widths, const Block& block, const Box& leaf_box,
-         std::span<LeafRow> rows, std::span<LeafFaces> faces)
+  Leaves(const NodeLattice& leaves, const ValueTable& table, bool widths, bool has_missing, const Block& block,
+         const Box& leaf_box, std::span<LeafRow> rows, std::span<LeafFaces> faces)
       : leaves_(leaves),
         table_(table),
         widths_(widths),
+        has_missing_(has_missing),
         block_(block),
         leaf_box_(leaf_box),
         rows_(rows),
@@ -112,7 +113,7 @@ class BlockSurvey::Leaves {
         finite[kept++] = values[i];
         continue;
       }
-      if (is_missing(values[i])) {
+      if (has_missing_ && is_missing(values[i])) {
         ++missing;
         continue;
       }
@@ -133,6 +134,7 @@ class BlockSurvey::Leaves {
   const NodeLattice& leaves_;
   const ValueTable& table_;
   bool widths_;
+  bool has_missing_;
   const Block& block_;
   const Box& leaf_box_;
   std::span<LeafRow> rows_;
@@ -143,6 +145,7 @@ BlockSurvey::BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafF
     : rows_(rows),
       faces_(faces),
       widths_(widths),
+      has_missing_(!info.mapping.missing.empty()),
       trace_(trace),
       table_(value_table(info)),
       fresh_([this] {
@@ -156,7 +159,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   const Index3 extent = leaf_box.extent();
   std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
   std::vector<LeafFaces> block_faces(faces_ == nullptr ? 0 : block_rows.size());
-  const Leaves leaves(rows_.leaves(), table_, widths_, block, leaf_box, block_rows, block_faces);
+  const Leaves leaves(rows_.leaves(), table_, widths_, has_missing_, block, leaf_box, block_rows, block_faces);
   const auto survey = [&](std::int64_t first, std::int64_t end) {
     const TraceSpan span(trace_, "survey");
     Tally& tally = tallies_.local();

@@ -53,6 +53,7 @@ class BlockSurvey {
   RowStore& rows_;
   LeafStore<LeafFaces>* faces_;
   bool widths_;
+  bool has_missing_;  // some values of the source stand for "no data"
   Trace* trace_;
   ValueTable table_;
   Tally fresh_;

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 2 ";
+constexpr std::string_view kFormat = "weir checkpoint 3 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -90,8 +90,9 @@ Checkpoint checkpoint_of(const Json& json) {
   }
   if (json.contains("attempt")) {
     const Json& attempt = json["attempt"];
-    c.attempt = {attempt.at("number").get<int>(), double_of(attempt.at("squared_error")),
+    c.attempt = {attempt.at("number").get<int>(), double_of(attempt.at("planned_error")),
                  static_cast<Encoding>(attempt.at("encoding").get<int>()), attempt.at("seen").get<std::string>()};
+    if (attempt.contains("met")) c.attempt->met = double_of(attempt["met"]);
   }
   return c;
 }
@@ -114,9 +115,10 @@ std::string to_text(const Checkpoint& c) {
   }
   if (c.attempt) {
     json["attempt"] = {{"number", c.attempt->number},
-                       {"squared_error", bits(c.attempt->squared_error)},
+                       {"planned_error", bits(c.attempt->planned_error)},
                        {"encoding", static_cast<int>(c.attempt->encoding)},
                        {"seen", c.attempt->seen}};
+    if (c.attempt->met) json["attempt"]["met"] = bits(*c.attempt->met);
   }
   // A path may hold any byte.
   const std::string body = json.dump(-1, ' ', false, Json::error_handler_t::replace);

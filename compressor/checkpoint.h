@@ -23,9 +23,10 @@ struct Checkpoint {
   /// An attempt at an error target: the request that the encode pass works on.
   struct Attempt {
     int number = 0;
-    double squared_error = 0;  ///< FileRequest::squared_error
+    double planned_error = 0;  ///< FileRequest::planned_error
     Encoding encoding = Encoding::float32;
-    std::string seen;  ///< visible_values of the scene that it was made for
+    std::string seen;                ///< visible_values of the scene that it was made for
+    std::optional<double> met = {};  ///< the planned error of an earlier file that met the target
   };
 
   ConversionIdentity identity;

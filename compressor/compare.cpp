@@ -23,7 +23,7 @@ namespace {
 constexpr std::int64_t kRegionsAtATime = 4;
 
 /// What one thread has seen; the order of merging does not matter.
-class Tally {
+class DifferenceTally {
  public:
   void add_leaf(const Block& block, const NvdbGrid& grid, const NodeLattice& leaves, const Index3& leaf) {
     const Box node = leaves.node_box(leaf);
@@ -49,7 +49,7 @@ class Tally {
     }
   }
 
-  void merge(const Tally& other) {
+  void merge(const DifferenceTally& other) {
     squared_error_.add(other.squared_error_);
     nonfinite_ += other.nonfinite_;
     nonfinite_decoded_ += other.nonfinite_decoded_;
@@ -177,7 +177,7 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
   std::vector<Box> boxes;
   for (std::int64_t i = 0; i < plan.size(); ++i) boxes.push_back(plan.voxel_box(plan.leaf_box(i)));
 
-  tbb::enumerable_thread_specific<Tally> tallies;
+  tbb::enumerable_thread_specific<DifferenceTally> tallies;
   StreamOptions stream;
   stream.cancel = options.cancel;
   stream.trace = options.trace;
@@ -191,8 +191,8 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
     for_each_leaf(plan.lattice, plan.leaf_box(static_cast<std::int64_t>(block.index)), options.release_pages,
                   [&](const Index3& leaf) { tallies.local().add_leaf(block, grid, plan.lattice, leaf); });
   });
-  Tally total;
-  for (const Tally& tally : tallies) total.merge(tally);
+  DifferenceTally total;
+  for (const DifferenceTally& tally : tallies) total.merge(tally);
   Comparison comparison = total.result(domain);
   comparison.loss = loss;
   return comparison;

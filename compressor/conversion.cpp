@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "compressor/conversion_control.h"
 #include "compressor/memory_plan.h"
 #include "compressor/resume.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/error.h"
+#include "format/file_id.h"
 #include "format/process_memory.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 
@@ -51,19 +54,36 @@ std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
   return static_cast<std::uint64_t>(voxels);
 }
 
+// What a file that changed makes go wrong first is any error of its format, and whoever reads that one looks for damage
+// in a file that is whole by then.
+Error with_its_cause(const Error& error, const SourceInfo& info) {
+  if (error.kind() != ErrorKind::input) return error;
+  try {
+    check_unchanged(info.files);
+  } catch (const Error& changed) {
+    return changed;
+  }
+  return error;
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
-  const std::size_t threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::uint64_t resident = held + source.working_bytes();
+  const std::size_t threads = choose_threads(options.threads, processors, options.memory, resident, domain);
+  if (options.threads == 0 && threads < processors && control.notice) {
+    control.notice(fewer_threads_notice(threads, processors, options.memory));
+  }
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
   ReadingPlan reading;
   team.run([&] {
-    memory = plan_memory(options.memory, held + source.working_bytes(), threads, domain);
+    memory = plan_memory(options.memory, resident, threads, domain);
     reading = plan_reading(source, memory);
   });
   const StreamOptions stream = stream_options(control);
@@ -96,6 +116,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),
                          stores.faces ? &*stores.faces : nullptr, &surveyed, pauses);
   }();
+  check_source(source, team);  // before an encode pass is spent on it
   return convert_surveyed({source, options, control, output, work, journal, visibility}, reading, survey, stores,
                           started);
 }
@@ -104,6 +125,13 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
 
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                        FileSystem& files, Team& team) {
+  std::vector<FileId> inputs;
+  for (const FileState& file : source.info().files) {
+    if (file.exists) inputs.push_back({file.device, file.inode});
+  }
+  if (const auto id = file_id(source.info().path)) inputs.push_back(*id);
+  require_not_input(inputs, options.output);
+  if (team.alone() && !options.overwrite) clear_after_commit(files, options.output);
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
   std::unique_ptr<Journal> journal;
@@ -113,8 +141,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {
-    if (!journal) throw;
-    throw ended_with(error, *journal);
+    const Error cause = with_its_cause(error, source.info());
+    throw journal ? ended_with(cause, *journal) : cause;
   }
 }
 

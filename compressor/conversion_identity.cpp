@@ -1,5 +1,7 @@
 #include "compressor/conversion_identity.h"
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <sstream>
@@ -22,6 +24,18 @@ std::string exact(double value) {
 std::string place_of(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored).string();
+}
+
+// What no copy of the file shares with it, whatever its size and time. The device's number may be another one after the
+// machine was started again.
+std::string states_of(std::span<const FileState> files) {
+  DigestStream states;
+  for (const FileState& file : files) {
+    const std::array<std::uint64_t, 4> state{file.inode, file.bytes, static_cast<std::uint64_t>(file.mtime_ns),
+                                             static_cast<std::uint64_t>(file.ctime_ns)};
+    states.update(piece_digest(std::as_bytes(std::span(state))));
+  }
+  return states.digest().hex();
 }
 
 std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
@@ -67,6 +81,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"source bytes", cat(source.file_bytes)},
       {"source modified (ns)", cat(source.mtime_ns)},
       {"source files", source.files_digest},
+      {"source states", states_of(source.files)},
       {"format", source.format},
       {"dataset", source.dataset},
       {"index", index},

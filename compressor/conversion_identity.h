@@ -21,8 +21,8 @@ std::string visible_values(const Scene& scene);
 /// Of visible_values, for the sidecar (Sidecar::Visible::scene_digest); 32 hex digits.
 std::string scene_digest(const Scene& scene);
 
-/// Source (path, size, modification time, states of its files, dataset, type, extent), all of `options` that has a say,
-/// and the program.
+/// Source (path, size, modification time, inodes and states of its files, dataset, type, extent), all of `options` that
+/// has a say, and the program.
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options);
 
 }  // namespace weir

@@ -10,6 +10,7 @@
 
 #include "compressor/quantised_leaf.h"
 #include "compressor/region_share.h"
+#include "compressor/surveyed_digests.h"
 #include "format/leaf_codec.h"
 #include "format/quantised_codec.h"
 #include "format/simd.h"
@@ -66,7 +67,7 @@ class LeafEncoder {
  public:
   // The kept leaves of one x layer of one region, as far as they lie in the block.
   void add_layer(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
-                 const LeafPlaces& places, std::int64_t x) {
+                 const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
     const TreeRegions& tree = target.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
     const Box box = intersect(tree.leaf_box(region_index), leaf_box);
@@ -75,6 +76,7 @@ class LeafEncoder {
         const Index3 leaf{x, y, z};
         const std::size_t position = tree.mask_position(leaf);
         if (!places.kept(position)) continue;
+        surveyed.check(leaf, block.values, block.voxels);
         const LeafPlaces::Place before = places.before(position);
         gather(target, block, leaf,
                {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes,
@@ -177,10 +179,11 @@ class LeafEncoder {
   std::vector<LeafRecord> records_;
 };
 
-// Calls visit(region, places, x) for every x layer of every region of a block that holds kept leaves;
+// Calls visit(region, places, surveyed, x) for every x layer of every region of a block that holds kept leaves;
 // `for_each(begin, end, action)` is the loop to use.
 template <typename ForEach, typename Visit>
-void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEach& for_each, const Visit& visit) {
+void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Box& leaf_box, const ForEach& for_each,
+                    const Visit& visit) {
   const TreeRegions& tree = target.tree;
   const Box regions = regions_under(tree, leaf_box);
   for_each(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
@@ -188,7 +191,8 @@ void for_each_layer(const EncodeTarget& target, const Box& leaf_box, const ForEa
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
     const LeafPlaces places(target.choices.read(region));
     const Box box = intersect(tree.leaf_box(region), leaf_box);
-    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, x); });
+    const SurveyedDigests surveyed(target.rows, box, info);
+    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x); });
   });
 }
 
@@ -199,7 +203,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   const TreeRegions& tree = target.tree;
   BoxSet nothing;
   BoxSet& known = done == nullptr ? nothing : *done;
-  const OwnLeaves own(plan.lattice, target.team);
+  const OwnLeaves own(plan.lattice, target.rows.team());
   std::vector<Box> parts;  // what is not done
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
@@ -237,10 +241,12 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     work_in_place(source, voxel_boxes, stream, [&](const Block& block) {
       const Box& leaf_box = leaf_boxes[block.index];
       LeafEncoder& encoder = encoders.local();
-      for_each_layer(target, leaf_box, in_turn, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
-        const TraceSpan span(target.trace, "encode");
-        encoder.add_layer(target, block, leaf_box, region, places, x);
-      });
+      for_each_layer(
+          target, source.info(), leaf_box, in_turn,
+          [&](std::int64_t region, const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
+            const TraceSpan span(target.trace, "encode");
+            encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);
+          });
       encoder.finish(target);
     });
     tell(voxel_boxes.size());
@@ -251,12 +257,13 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   };
   stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
-    for_each_layer(target, leaf_box, in_parallel, [&](std::int64_t region, const LeafPlaces& places, std::int64_t x) {
-      const TraceSpan span(target.trace, "encode");
-      LeafEncoder& encoder = encoders.local();
-      encoder.add_layer(target, block, leaf_box, region, places, x);
-      encoder.finish(target);
-    });
+    for_each_layer(target, source.info(), leaf_box, in_parallel,
+                   [&](std::int64_t region, const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
+                     const TraceSpan span(target.trace, "encode");
+                     LeafEncoder& encoder = encoders.local();
+                     encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);
+                     encoder.finish(target);
+                   });
   });
   tell(voxel_boxes.size());
 }

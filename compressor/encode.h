@@ -9,6 +9,7 @@
 #include "compressor/leaf_record.h"
 #include "compressor/pauses.h"
 #include "compressor/quantised_leaf.h"
+#include "compressor/row_store.h"
 #include "compressor/tree_regions.h"
 #include "format/box_set.h"
 #include "format/file_system.h"
@@ -29,13 +30,14 @@ struct EncodeTarget {
   Fit fit;        ///< of quantised leaves
   File& out;
   RecordStore& records;
+  const RowStore& rows;  ///< of the survey; each rank of its team encodes the leaves of its own regions
   Trace* trace = nullptr;
-  Team& team = no_team();  ///< each rank encodes the leaves of its own regions
 };
 
 /// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, says
 /// for which positions of the leaf lattice that has been done already, by any plan, is brought up to date when `pauses`
-/// ask for it, and in the end is the whole lattice.
+/// ask for it, and in the end is the whole lattice. Throws Error(input) where the values of a leaf are not those that
+/// the survey saw.
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
                    const StreamOptions& options, Reading reading = Reading::ahead, BoxSet* done = nullptr,
                    const Pauses& pauses = {});

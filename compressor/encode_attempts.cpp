@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "compressor/encode.h"
 #include "format/digest.h"
+#include "format/error.h"
 #include "format/text.h"
 
 namespace weir {
@@ -78,7 +80,7 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   team.run([&] {
     encode_leaves(job.source, job.plan,
                   {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                   job.output.volume(), *encoded.records, job.stream.trace, team},
+                   job.output.volume(), *encoded.records, job.rows, job.stream.trace},
                   job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
   });
   encoded.records->publish(team);
@@ -89,47 +91,102 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   return encoded;
 }
 
-// Whether another attempt should be made at an error target, and with which expected error. Expectations come from
-// the survey's estimates; decoded values decide. A file within 2 % of the error asked is small enough.
-bool adjust_target(const EncodedFile& encoded, double target, int attempt, FileRequest& request) {
-  if (encoded.file.encoding == Encoding::float32) return false;  // exact
-  constexpr int kMostAttempts = 6;
-  if (request.budget.kind == Budget::Kind::max_error) {
-    if (encoded.seen_errors.max_abs <= request.budget.target) return false;
-    request.encoding = Encoding::float32;
-    return true;
+// Squared error over the finite voxels that can be seen, of what the file decodes to.
+double seen_error(const EncodedFile& encoded) {
+  return encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
+}
+
+// Whether the file keeps what the budget promises of its values.
+bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
+  const TileErrors& tiles = encoded.file.plan.seen_tiles;
+  const LeafErrors& leaves = encoded.seen_errors;
+  switch (request.budget.kind) {
+    case Budget::Kind::psnr:
+      return seen_error(encoded) <= request.squared_error;
+    case Budget::Kind::max_error:
+      return std::max(tiles.max_abs, leaves.max_abs) <= request.budget.target;
+    case Budget::Kind::lossless:
+      return tiles.exact && leaves.exact;
+    case Budget::Kind::automatic:
+    case Budget::Kind::size:
+    case Budget::Kind::rate:
+      break;
   }
-  const double error = encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
-  const bool met = error <= target;
-  if (met && (attempt >= 2 || error >= 0.98 * target || !(error > 0))) return false;
-  if (attempt + 1 >= kMostAttempts) {
-    request.encoding = Encoding::float32;
-    return !met;
-  }
-  // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
-  request.squared_error *= target / error * (met ? 0.995 : 1 - std::ldexp(0.002, 2 * attempt));
   return true;
 }
+
+// The attempts at one file: what the last one was asked for decides the next.
+struct Attempts {
+  static constexpr int kMostEstimated = 6;  // then comes one that is sure
+
+  FileRequest request;
+  int number = 0;
+  std::optional<double> met = {};  // the planned error of an earlier file that met the target
+
+  // Whether there has to be another one after `encoded`, which then is set up. Expectations come from the survey's
+  // estimates; decoded values decide. Throws Error(budget) where the encoding asked for has nothing better left.
+  bool adjust(const EncodedFile& encoded) {
+    const bool kept = keeps_promise(encoded, request);
+    if (encoded.file.encoding == Encoding::float32) {
+      if (kept) return false;
+      throw Error(ErrorKind::internal, cat(request.path, ": float leaves miss what was asked; report this"));
+    }
+    if (request.budget.kind != Budget::Kind::psnr) {
+      if (!kept) take_float(encoded);
+      return !kept;
+    }
+    // Within 2 % of the error asked is small enough.
+    const double error = seen_error(encoded);
+    if (kept && (number >= 2 || error >= 0.98 * request.squared_error || !(error > 0))) return false;
+    const bool exhausted = !kept && keeps_everything(encoded);
+    if (kept) met = request.planned_error;
+    if (number + 1 < kMostEstimated && !exhausted) {
+      // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
+      request.planned_error *= request.squared_error / error * (kept ? 0.995 : 1 - std::ldexp(0.002, 2 * number));
+    } else if (met) {
+      request.planned_error = *met;
+      met.reset();
+    } else if (request.encoding != Encoding::automatic && !exhausted) {
+      request.planned_error = 0;
+    } else {
+      take_float(encoded);
+    }
+    return true;
+  }
+
+ private:
+  // Every leaf is kept as well as this encoding can.
+  bool keeps_everything(const EncodedFile& encoded) const {
+    return encoded.file.plan.expected_error > request.planned_error || request.planned_error == 0;
+  }
+
+  void take_float(const EncodedFile& encoded) {
+    if (request.encoding != Encoding::automatic) {
+      throw unmet_target(request, encoded.file.encoding, seen_error(encoded));
+    }
+    request.encoding = Encoding::float32;
+  }
+};
 
 }  // namespace
 
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
-  const double target = request.squared_error;
-  int attempt = 0;
-  const bool continues =
-      job.journal != nullptr && job.journal->state.attempt && job.journal->state.attempt->seen == job.seen;
-  if (continues) {
+  request.planned_error = request.squared_error;
+  Attempts attempts{std::move(request), 0, {}};
+  if (job.journal != nullptr && job.journal->state.attempt && job.journal->state.attempt->seen == job.seen) {
     const Checkpoint::Attempt& interrupted = *job.journal->state.attempt;
-    attempt = interrupted.number;
-    request.squared_error = interrupted.squared_error;
-    request.encoding = interrupted.encoding;
+    attempts.number = interrupted.number;
+    attempts.request.planned_error = interrupted.planned_error;
+    attempts.request.encoding = interrupted.encoding;
+    attempts.met = interrupted.met;
   }
-  for (;; ++attempt) {
+  for (;; ++attempts.number) {
     if (job.journal != nullptr) {
-      job.journal->state.attempt = {attempt, request.squared_error, request.encoding, job.seen};
+      job.journal->state.attempt = {attempts.number, attempts.request.planned_error, attempts.request.encoding,
+                                    job.seen, attempts.met};
     }
-    EncodedFile encoded = encode_once(job, request);
-    if (!request.budget.by_error() || !adjust_target(encoded, target, attempt, request)) return encoded;
+    EncodedFile encoded = encode_once(job, attempts.request);
+    if (!attempts.adjust(encoded)) return encoded;
   }
 }
 

@@ -1,9 +1,9 @@
 #include "compressor/encoding_choice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "format/error.h"
 #include "format/text.h"
 
 namespace weir {
@@ -35,14 +35,40 @@ class Candidate {
   /// The smallest file whose error is expected to meet the budget's target.
   FilePlan plan_for_error() {
     if (request_.budget.kind == Budget::Kind::psnr) {
-      selection_.choose_error(request_.squared_error);
-      return planned({0, "psnr", ""});
+      if (encoding_ == Encoding::float32) return plan_exact();
+      const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
+      return lowered_to_nothing ? plan_everything() : plan_expected(request_.planned_error);
     }
     selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
     return planned({0, "max_error", ""});
   }
 
  private:
+  FilePlan plan_expected(double squared_error) {
+    selection_.choose_error(squared_error);
+    return planned({0, "psnr", ""});
+  }
+
+  // Float leaves lose nothing, so that the plan's error is the file's. Selection counts gains to a part in 2^53 of
+  // the error of nothing kept, which is not enough for a target far below that.
+  FilePlan plan_exact() {
+    const double target = std::min(request_.squared_error, request_.planned_error);
+    FilePlan file = plan_expected(target);
+    double goal = target;
+    for (double step = 2; file.plan.expected_error > target; step *= 2) {
+      goal -= step * (file.plan.expected_error - target);
+      tree_ = std::move(file.tree);
+      if (!(goal > 0)) return plan_everything();
+      file = plan_expected(goal);
+    }
+    return file;
+  }
+
+  FilePlan plan_everything() {
+    selection_.choose(bytes_.full.file_bytes);
+    return planned({0, "psnr", ""});
+  }
+
   FilePlan planned(const FileSize& size) {
     FilePlan file;
     file.encoding = encoding_;
@@ -83,23 +109,10 @@ std::string lossy_leaves_text(const Candidate& quantised) {
              " values that no lattice of 16 bits gives back bit for bit");
 }
 
+// Whether the file is expected to do what its plan was asked for.
 bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
-  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.squared_error
+  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.planned_error
                                                    : candidate.lossless();
-}
-
-Error unmet(const FileRequest& request, Encoding encoding, const FilePlan& file) {
-  const bool psnr = request.budget.kind == Budget::Kind::psnr;
-  std::string best;
-  if (psnr && file.plan.expected_error > 0) {
-    const double short_by = 10 * std::log10(file.plan.expected_error / request.squared_error);
-    best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
-  } else {
-    best = " has leaves whose range 16 bits do not divide that finely";
-  }
-  return {ErrorKind::budget,
-          cat(request.path, ": --", psnr ? "psnr " : "max-error ", request.budget.target, " cannot be met: --encoding ",
-              encoding_name(encoding), best, "; use --encoding auto or float")};
 }
 
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
@@ -113,7 +126,8 @@ FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore&
   Candidate candidate(request, encoding, rows, work);
   if (request.budget.by_error()) {
     FilePlan file = candidate.plan_for_error();
-    if (!meets(request, candidate, file)) throw unmet(request, encoding, file);
+    const bool first = request.planned_error >= request.squared_error;  // before any file was made
+    if (first && !meets(request, candidate, file)) throw unmet_target(request, encoding, file.plan.expected_error);
     return file;
   }
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
@@ -156,6 +170,24 @@ FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDir
 }
 
 }  // namespace
+
+Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error) {
+  const bool psnr = request.budget.kind == Budget::Kind::psnr;
+  std::string best;
+  if (request.budget.kind == Budget::Kind::lossless) {
+    return {ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding),
+                                   " cannot be lossless: a leaf of it reads other bits; use --encoding auto or float")};
+  }
+  if (psnr && squared_error > 0) {
+    const double short_by = 10 * std::log10(squared_error / request.squared_error);
+    best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
+  } else {
+    best = " has leaves whose range 16 bits do not divide that finely";
+  }
+  return {ErrorKind::budget,
+          cat(request.path, ": --", psnr ? "psnr " : "max-error ", request.budget.target, " cannot be met: --encoding ",
+              encoding_name(encoding), best, "; use --encoding auto or float")};
+}
 
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);

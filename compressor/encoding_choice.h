@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "compressor/budget.h"
@@ -13,6 +15,7 @@
 #include "compressor/tree_plan.h"
 #include "compressor/tree_regions.h"
 #include "compressor/work_directory.h"
+#include "format/error.h"
 
 namespace weir {
 
@@ -31,6 +34,9 @@ struct FileRequest {
   GainRule rule;                          ///< but for its encoding
   Budget budget;
   double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels that can be seen may come to
+  /// For a PSNR: what to plan quantised leaves for, whose errors are estimated. At first the same as squared_error;
+  /// what their files lose adjusts it. Float leaves are never planned for more than squared_error.
+  double planned_error = std::numeric_limits<double>::infinity();
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
   std::string path;               ///< of the output, for messages
@@ -39,6 +45,10 @@ struct FileRequest {
 /// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
 /// asked error. Throws Error(budget) where size, error or exactness cannot be met, naming what can, Error(usage)
 /// where the encoding cannot hold the volume.
+/// Where planned_error was lowered and this encoding is not expected to reach it, the plan is all that it has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
+
+/// Error(budget) for a target that `encoding` misses, where for a PSNR all it has loses `squared_error`.
+Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error);
 
 }  // namespace weir

@@ -11,25 +11,25 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kDifferenceLanes = 16;
 
-struct Lanes {
-  std::array<double, kLanes> squared_error;
-  std::array<double, kLanes> max_abs;
-  std::array<float, kLanes> min;
-  std::array<float, kLanes> max;
-  std::array<std::uint32_t, kLanes> nonfinite;
-  std::array<std::uint32_t, kLanes> nonfinite_decoded;
-  std::array<std::uint32_t, kLanes> different;
-  std::array<std::uint32_t, kLanes> nonfinite_different;
+struct DifferenceLanes {
+  std::array<double, kDifferenceLanes> squared_error;
+  std::array<double, kDifferenceLanes> max_abs;
+  std::array<float, kDifferenceLanes> min;
+  std::array<float, kDifferenceLanes> max;
+  std::array<std::uint32_t, kDifferenceLanes> nonfinite;
+  std::array<std::uint32_t, kDifferenceLanes> nonfinite_decoded;
+  std::array<std::uint32_t, kDifferenceLanes> different;
+  std::array<std::uint32_t, kDifferenceLanes> nonfinite_different;
 };
 
 // v - v is 0 for a finite v and NaN for every other.
 inline bool is_finite(float v) { return v - v == 0.0F; }
 
-WEIR_SIMD void accumulate(const float* source, const float* decoded, Lanes& lanes) {
-  for (std::size_t i = 0; i < kLeafVoxels; i += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
+WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes& lanes) {
+  for (std::size_t i = 0; i < kLeafVoxels; i += kDifferenceLanes) {
+    for (std::size_t l = 0; l < kDifferenceLanes; ++l) {
       const float s = source[i + l];
       const float d = decoded[i + l];
       const bool s_finite = is_finite(s);
@@ -53,18 +53,18 @@ WEIR_SIMD void accumulate(const float* source, const float* decoded, Lanes& lane
 }  // namespace
 
 LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded) {
-  Lanes lanes{};
+  DifferenceLanes lanes{};
   lanes.min.fill(std::numeric_limits<float>::infinity());
   lanes.max.fill(-std::numeric_limits<float>::infinity());
   accumulate(source.data(), decoded.data(), lanes);
 
-  for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+  for (std::size_t half = kDifferenceLanes / 2; half > 0; half /= 2) {
     for (std::size_t l = 0; l < half; ++l) lanes.squared_error[l] += lanes.squared_error[l + half];
   }
   LeafDifference result;
   result.squared_error = lanes.squared_error[0];
   result.range = {lanes.min[0], lanes.max[0]};
-  for (std::size_t l = 0; l < kLanes; ++l) {
+  for (std::size_t l = 0; l < kDifferenceLanes; ++l) {
     result.max_abs = std::max(result.max_abs, lanes.max_abs[l]);
     result.range.min = std::min(result.range.min, lanes.min[l]);
     result.range.max = std::max(result.range.max, lanes.max[l]);

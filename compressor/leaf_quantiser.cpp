@@ -12,7 +12,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kQuantiserLanes = 16;
 /// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
 constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
@@ -38,9 +38,9 @@ using Deviations = std::array<float, kLeafVoxels>;
 
 // Pairwise, whatever the machine.
 double sum(const Floats16& lanes) {
-  std::array<float, kLanes> all;
+  std::array<float, kQuantiserLanes> all;
   std::memcpy(all.data(), &lanes, sizeof all);
-  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
+  for (std::size_t width = kQuantiserLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
   }
   return static_cast<double>(all[0]);
@@ -48,7 +48,7 @@ double sum(const Floats16& lanes) {
 
 // The next 16 of `left` values; `filler` behind the last.
 [[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
-  if (left >= kLanes) {
+  if (left >= kQuantiserLanes) {
     std::memcpy(&v, values, sizeof v);
   } else {
     v = filler - Floats16{};
@@ -69,7 +69,7 @@ double sum(const Floats16& lanes) {
 // Fills the deviations, 0 behind the last value, and returns the sum of their squares.
 WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
   Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
     Floats16 v;
     load(values + i, count - i, mean, v);
     const Floats16 d = (v - mean) * scale;
@@ -85,7 +85,7 @@ WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t 
   Floats16 codes{};
   Floats16 code_squares{};
   Floats16 code_values{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
     Floats16 v;
     Floats16 d;
     Floats16 code;
@@ -103,7 +103,7 @@ WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t 
 WEIR_SIMD double measure(const float* values, std::size_t count, const Levels& levels, float scale) {
   const Levels l = levels;
   Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
     Floats16 v;
     Floats16 code;
     load(values + i, count - i, l.minimum, v);

@@ -14,16 +14,16 @@ namespace weir {
 namespace {
 
 // Sums run in 16 lanes, two vectors of eight, whatever the machine: lane l takes values l, l + 16, ...
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kSummaryLanes = 16;
 
-struct Lanes {
+struct SummaryLanes {
   Doubles8 low{};
   Doubles8 high{};
 };
 
-using LaneArray = std::array<double, kLanes>;
+using LaneArray = std::array<double, kSummaryLanes>;
 
-LaneArray to_array(const Lanes& lanes) {
+LaneArray to_array(const SummaryLanes& lanes) {
   LaneArray all;
   std::memcpy(all.data(), &lanes, sizeof lanes);
   return all;
@@ -31,7 +31,7 @@ LaneArray to_array(const Lanes& lanes) {
 
 // Pairwise, so that the result does not depend on how the lanes were computed.
 double sum(LaneArray lanes) {
-  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
+  for (std::size_t width = kSummaryLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) lanes[i] += lanes[i + width];
   }
   return lanes[0];
@@ -65,13 +65,13 @@ struct Moments {
 WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
   Floats8 low = values[0] - Floats8{};
   Floats8 high = low;
-  Lanes total;
-  const std::size_t whole = count / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes) {
+  SummaryLanes total;
+  const std::size_t whole = count / kSummaryLanes * kSummaryLanes;
+  for (std::size_t i = 0; i < whole; i += kSummaryLanes) {
     Floats8 a;
     Floats8 b;
     std::memcpy(&a, values + i, sizeof a);
-    std::memcpy(&b, values + i + kLanes / 2, sizeof b);
+    std::memcpy(&b, values + i + kSummaryLanes / 2, sizeof b);
     low = a < low ? a : low;
     low = b < low ? b : low;
     high = a > high ? a : high;
@@ -101,14 +101,14 @@ struct Deviation {
 
 WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mean) {
   const auto centre = static_cast<double>(mean);
-  Lanes total;
-  Lanes squares;
-  const std::size_t whole = count / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes) {
+  SummaryLanes total;
+  SummaryLanes squares;
+  const std::size_t whole = count / kSummaryLanes * kSummaryLanes;
+  for (std::size_t i = 0; i < whole; i += kSummaryLanes) {
     Floats8 a;
     Floats8 b;
     std::memcpy(&a, values + i, sizeof a);
-    std::memcpy(&b, values + i + kLanes / 2, sizeof b);
+    std::memcpy(&b, values + i + kSummaryLanes / 2, sizeof b);
     const Doubles8 da = __builtin_convertvector(a, Doubles8) - centre;
     const Doubles8 db = __builtin_convertvector(b, Doubles8) - centre;
     total.low += da;

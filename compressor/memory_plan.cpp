@@ -24,16 +24,37 @@ constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
 // both passes' small buffers and the allocator's waste.
 constexpr std::uint64_t kBlockEighths = 3;
 
-}  // namespace
-
-MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
+// All but the workers.
+std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
   const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
   const NodeLattice cells = make_lattice(domain, kMacrocell);
   // Macrocell layers: the window, its successor while it moves, and those being written.
   const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
   // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
   const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + 28 * cell_layer;
-  const std::uint64_t fixed = resident + kSlackBytes + kStagingBytes + threads * kWorkerBytes + tree;
+  return resident + kSlackBytes + kStagingBytes + tree;
+}
+
+}  // namespace
+
+std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
+                           const Box& domain) {
+  if (asked > 0) return asked;
+  const std::size_t most = std::max<std::size_t>(1, processors);
+  const std::uint64_t others = shared_bytes(resident, domain) + 2 * kLeastBlockBytes;
+  const std::uint64_t each = kWorkerBytes + kRegionRowsBytes;
+  if (others + most * each <= ceiling) return most;
+  const std::uint64_t free = ceiling > others ? ceiling - others : 0;
+  return std::clamp<std::size_t>(free / 4 * 3 / each, 1, most);
+}
+
+std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling) {
+  return cat("--memory ", format_bytes(ceiling), " holds ", threads, " of ", processors,
+             " threads; give more to use them all");
+}
+
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
+  const std::uint64_t fixed = shared_bytes(resident, domain) + threads * kWorkerBytes;
   const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
   if (ceiling < least) {
     throw Error(ErrorKind::usage,

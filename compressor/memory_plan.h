@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "format/index.h"
 
@@ -19,6 +20,14 @@ struct MemoryPlan {
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
 /// Throws Error(usage) naming a sufficient --memory where it is too small.
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
+
+/// Workers of a conversion: `asked`, or where that is 0 one for each of the machine's `processors`, and fewer where
+/// `ceiling` does not hold them: then a quarter of what they share stays for the blocks. At least 1.
+std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
+                           const Box& domain);
+
+/// One line for the user where it chose fewer.
+std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling);
 
 /// The ceiling that leaves `block_bytes` for a block, all else as `plan`, made for `ceiling`, has it.
 std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes);

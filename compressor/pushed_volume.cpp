@@ -24,6 +24,7 @@
 #include "compressor/work_directory.h"
 #include "format/error.h"
 #include "format/output_files.h"
+#include "format/scalar_type.h"
 #include "format/text.h"
 #include "ingest/array_source.h"
 #include "ingest/block_plan.h"
@@ -33,8 +34,6 @@
 
 namespace weir {
 namespace {
-
-constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
 
 SourceInfo as_pushed(SourceInfo info) {
   info.format = "pushed";
@@ -95,7 +94,8 @@ class PushedVolume::State {
       : info_(as_pushed(std::move(info))),
         options_(options),
         control_(control),
-        threads_(options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency())),
+        threads_(choose_threads(options.threads, std::max(1U, std::thread::hardware_concurrency()), options.memory, 0,
+                                info_.domain())),
         memory_(memory_for(options, std::max(threads_, workers), info_.domain())),
         seen_(visibility_of(options, info_.domain())),
         files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_.segment_regions, files),

@@ -2,6 +2,7 @@
 
 #include "compressor/conversion_identity.h"
 #include "compressor/work_directory.h"
+#include "format/commit_traces.h"
 #include "format/sidecar.h"
 #include "format/text.h"
 
@@ -48,6 +49,15 @@ bool clear_leftovers(FileSystem& files, const std::string& output) {
   remove_if_empty(files, hidden);
   files.remove(previous);
   return true;
+}
+
+void clear_after_commit(FileSystem& files, const std::string& output) {
+  if (is_committed(files, output)) {
+    clear_leftovers(files, output);
+  } else if (files.exists(output) && !files.exists(output + ".partial")) {
+    // Without a journal a conversion holds nothing in it that has a name.
+    remove_if_empty(files, hidden_directory_of(output));
+  }
 }
 
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves) {

@@ -23,6 +23,10 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
 /// False where there is nothing. Throws Error(io) where another process has the lock.
 bool clear_leftovers(FileSystem& files, const std::string& output);
 
+/// What a conversion left of itself that was killed when its output was in place already. Takes the lock for it;
+/// another process that holds it is Error(io).
+void clear_after_commit(FileSystem& files, const std::string& output);
+
 /// "OUT.nvdb: continues a conversion that was interrupted, survey 100 %, encode 37 % done".
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves);
 

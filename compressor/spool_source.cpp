@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "format/error.h"
+#include "format/scalar_type.h"
 #include "format/text.h"
 #include "ingest/decode_values.h"
 #include "ingest/extent.h"
@@ -20,7 +21,6 @@
 namespace weir {
 namespace {
 
-constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
 /// Boxes below this many bytes per thread are not worth another thread.
 constexpr std::int64_t kBytesPerThread = 256 * 1024;
 

@@ -23,6 +23,7 @@
 #include "format/process_memory.h"
 #include "format/seconds_since.h"
 #include "format/text.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 namespace {
@@ -32,10 +33,18 @@ using Clock = std::chrono::steady_clock;
 void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
   if (survey.non_finite == 0) return;
   const Index3& at = survey.first_non_finite;
-  throw Error(ErrorKind::input,
-              cat(info.path, ": ", survey.non_finite, survey.non_finite == 1 ? " voxel is" : " voxels are",
-                  " NaN or infinite, the first (", survey.first_non_finite_value, ") at ", at.x, ",", at.y, ",", at.z,
-                  "; choose --nonfinite background or --nonfinite keep"));
+  const std::uint64_t beyond = std::min(survey.loss.overflow, survey.non_finite);
+  const std::uint64_t others = survey.non_finite - beyond;
+  std::string what;
+  if (others > 0) what = cat(others, others == 1 ? " voxel is" : " voxels are", " NaN or infinite");
+  if (beyond > 0) {
+    what = cat(what, others > 0 ? " and " : "", beyond, beyond == 1 ? " voxel is" : " voxels are",
+               " finite but beyond the 3.4e+38 of float32");
+  }
+  throw Error(ErrorKind::input, cat(info.path, ": ", what, ", the first (", survey.first_non_finite_value,
+                                    beyond > 0 ? " as float32" : "", ") at ", at.x, ",", at.y, ",", at.z,
+                                    beyond > 0 ? "; scale the values, or choose" : "; choose",
+                                    " --nonfinite background or --nonfinite keep"));
 }
 
 Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
@@ -135,6 +144,10 @@ std::optional<Visibility> visibility_of(const ConversionOptions& options, const 
   const bool promise = options.budget.by_error() || options.budget.kind == Budget::Kind::lossless;
   return Visibility(options.scene->scene, options.scene->path, domain,
                     promise ? Visibility::Weighing::alike : Visibility::Weighing::by_picture);
+}
+
+void check_source(const VolumeSource& source, Team& team) {
+  team.run([&] { check_unchanged(source.info().files); });
 }
 
 bool surveys_widths(const ConversionOptions& options) {
@@ -258,6 +271,7 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
   const std::string text = to_json_text(sidecar);
   std::vector<char> record(text.begin(), text.end());
   team.follow(record);  // times are the leading rank's
+  check_source(source, team);
   output.commit({record.begin(), record.end()});
   return sidecar;
 }

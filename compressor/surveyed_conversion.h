@@ -35,6 +35,9 @@ struct ConversionJob {
 /// Visibility does.
 std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain);
 
+/// Throws where a file that the source lies in is not as it was when it was opened (ingest/file_state.h), on all ranks.
+void check_source(const VolumeSource& source, Team& team);
+
 /// Whether the survey is to look at the widths of quantised leaves (survey.h).
 bool surveys_widths(const ConversionOptions& options);
 

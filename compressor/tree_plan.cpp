@@ -12,7 +12,7 @@ namespace weir {
 namespace {
 
 // What merges without regard to order.
-struct Tally {
+struct PlanTally {
   double max_abs = 0;
   double seen_max_abs = 0;
   bool exact = true;         // the tiles
@@ -20,7 +20,7 @@ struct Tally {
   bool leaves_exact = true;  // at their widths, where they can be seen
   std::array<std::uint64_t, 6> leaves_by_width{};
 
-  void add(const Tally& other) {
+  void add(const PlanTally& other) {
     max_abs = std::max(max_abs, other.max_abs);
     seen_max_abs = std::max(seen_max_abs, other.seen_max_abs);
     exact = exact && other.exact;
@@ -49,7 +49,7 @@ class RegionPlanner {
   }
 
   // The leaves of an open region: `region.squared_error` is of those that became tiles.
-  RegionErrors add_leaves(const LeafChoices& choices, const RegionRows& rows, Region& region, Tally& tally) const {
+  RegionErrors add_leaves(const LeafChoices& choices, const RegionRows& rows, Region& region, PlanTally& tally) const {
     CompensatedSum squares;
     CompensatedSum seen_squares;
     CompensatedSum expected;
@@ -77,7 +77,7 @@ class RegionPlanner {
   }
 
   // A region that reads `value` all over, as bits where `exact`.
-  RegionErrors add_tile(const RegionRows& rows, float value, bool exact, Region& region, Tally& tally) const {
+  RegionErrors add_tile(const RegionRows& rows, float value, bool exact, Region& region, PlanTally& tally) const {
     region.squared_error = region.sums.sse_about(value);
     tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
     tally.exact = tally.exact && exact;
@@ -96,7 +96,7 @@ class RegionPlanner {
   }
 
   void add_seen_tile(const RegionRows& rows, const Index3& leaf, float value, bool exact, CompensatedSum& squares,
-                     CompensatedSum& expected, Tally& tally) const {
+                     CompensatedSum& expected, PlanTally& tally) const {
     const LeafRow& row = rows.at(leaf);
     expected.add(rule_.tile_weight(rows.reach(leaf), value) * row.sse_about(value));
     if (!seen(rows, leaf)) return;
@@ -131,7 +131,7 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
 TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store) {
   const GainRule& rule = selection.rule();
   const RegionPlanner planner(rule, tree);
-  tbb::enumerable_thread_specific<Tally> tallies;
+  tbb::enumerable_thread_specific<PlanTally> tallies;
   std::vector<RegionErrors> errors(tree.regions.size());
   for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
     Region& region = tree.regions[static_cast<std::size_t>(index)];
@@ -156,11 +156,11 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   team.gather(tree.regions);
   team.gather(errors);
   store.publish(team);
-  std::vector<Tally> parts(tallies.begin(), tallies.end());
+  std::vector<PlanTally> parts(tallies.begin(), tallies.end());
   team.concatenate(parts);
   TreePlan plan;
-  Tally total;
-  for (const Tally& other : parts) total.add(other);
+  PlanTally total;
+  for (const PlanTally& other : parts) total.add(other);
   CompensatedSum squares;
   for (const Region& region : tree.regions) squares.add(region.squared_error);
   CompensatedSum seen;

@@ -1,5 +1,7 @@
 #include "daemon/api_json.h"
 
+#include <nlohmann/json.hpp>
+
 namespace weir {
 namespace {
 

@@ -2,7 +2,7 @@
 // names; a value that is not known is null; times are Unix seconds.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "daemon/control.h"
 

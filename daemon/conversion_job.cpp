@@ -15,6 +15,7 @@
 #include "format/file_system.h"
 #include "format/sidecar.h"
 #include "format/text.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 namespace {
@@ -45,6 +46,9 @@ bool says_disk_full(const std::string& reason) {
   const auto says = [&](int error) { return reason.find(std::strerror(error)) != std::string::npos; };
   return says(ENOSPC) || says(EDQUOT);
 }
+
+// The source's own identity says nothing of the planes of a stack and of the files that a header names.
+bool says_changed(const std::string& reason) { return reason.find(kChangedWhileRead) != std::string::npos; }
 
 // Whether the picture was made after the volume got its name.
 bool newer(const std::string& thumbnail, const std::string& volume) {
@@ -236,7 +240,7 @@ void ConversionJob::fail(int exit_code, const std::string& reason) {
     end(TaskEnd::stopped);
   } else if (is_gone(task_.source)) {
     end(TaskEnd::source_gone);
-  } else if (now && *now != task_.identity) {
+  } else if ((now && *now != task_.identity) || (exit_code == kInput && says_changed(reason))) {
     end(TaskEnd::source_changed);
   } else if (exit_code == kIo && says_disk_full(reason)) {
     end(TaskEnd::disk_full);

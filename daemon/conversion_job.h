@@ -25,7 +25,7 @@ enum class TaskEnd {
   done,
   failed,          ///< by itself: JobResult::exit_code and reason say why
   disk_full,       ///< nothing wrong with source or options
-  source_changed,  ///< rewritten meanwhile: what was made of it is worth nothing
+  source_changed,  ///< it or a file that it names was rewritten meanwhile: what was made of it is worth nothing
   source_gone,     ///< deleted before it was converted
   stopped          ///< as asked
 };

@@ -1,5 +1,6 @@
 #include "daemon/event_log.h"
 
+#include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -12,7 +13,7 @@
 namespace weir {
 namespace {
 
-std::string quoted(std::string_view value) {
+std::string logfmt(std::string_view value) {
   const auto plain = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '"' && c != '=' && c != '\x7f'; };
   bool all_plain = !value.empty();
   for (const char c : value) all_plain = all_plain && plain(c);
@@ -62,7 +63,7 @@ std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service) {
 
 std::string event_text(std::string_view name, std::initializer_list<Field> fields) {
   std::string text(name);
-  for (const Field& field : fields) text += cat(' ', field.key, '=', quoted(field.value));
+  for (const Field& field : fields) text += cat(' ', field.key, '=', logfmt(field.value));
   return text;
 }
 
@@ -70,9 +71,9 @@ EventLog::EventLog(const ServiceConfig& service) : logger_(open_log(service)) {}
 
 void EventLog::reopen(const ServiceConfig& service) { logger_ = open_log(service); }
 
-void EventLog::write(spdlog::level::level_enum level, std::string_view name,
-                     std::initializer_list<Field> fields) const {
-  if (logger_->should_log(level)) logger_->log(level, event_text(name, fields));
+void EventLog::write(int level, std::string_view name, std::initializer_list<Field> fields) const {
+  const auto of_spdlog = static_cast<spdlog::level::level_enum>(level);
+  if (logger_->should_log(of_spdlog)) logger_->log(of_spdlog, event_text(name, fields));
 }
 
 void EventLog::debug(std::string_view name, std::initializer_list<Field> fields) const {

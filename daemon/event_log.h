@@ -2,8 +2,6 @@
 // can read it and a program can take it apart. One thread.
 #pragma once
 
-#include <spdlog/logger.h>
-
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -12,6 +10,10 @@
 
 #include "daemon/config.h"
 #include "format/text.h"
+
+namespace spdlog {
+class logger;
+}
 
 namespace weir {
 
@@ -42,7 +44,8 @@ class EventLog {
   void error(std::string_view name, std::initializer_list<Field> fields) const;
 
  private:
-  void write(spdlog::level::level_enum level, std::string_view name, std::initializer_list<Field> fields) const;
+  /// `level` is one of spdlog::level::level_enum.
+  void write(int level, std::string_view name, std::initializer_list<Field> fields) const;
 
   std::shared_ptr<spdlog::logger> logger_;
 };

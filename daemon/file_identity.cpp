@@ -1,12 +1,12 @@
 #include "daemon/file_identity.h"
 
 #include <cerrno>
+#include "format/file_time.h"
 
 namespace weir {
 
 FileIdentity identity_of(const struct stat& status) {
-  return {static_cast<std::uint64_t>(status.st_size),
-          std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec,
+  return {static_cast<std::uint64_t>(status.st_size), nanoseconds_of(status.st_mtim.tv_sec, status.st_mtim.tv_nsec),
           static_cast<std::uint64_t>(status.st_ino)};
 }
 

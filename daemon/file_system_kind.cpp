@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <ios>
 #include <string_view>
@@ -43,7 +44,11 @@ constexpr std::array kKnown{
 
 FileSystemKind file_system_kind(std::uint64_t statfs_type) {
   const auto* known = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& k) { return k.type == statfs_type; });
-  if (known == kKnown.end()) return {cat("type 0x", std::hex, std::uppercase, statfs_type), false};
+  if (known == kKnown.end()) {
+    std::string type = hex(statfs_type);
+    for (char& digit : type) digit = static_cast<char>(std::toupper(digit));
+    return {"type 0x" + type, false};
+  }
   return {std::string(known->name), known->local};
 }
 

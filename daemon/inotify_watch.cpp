@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kRootInterval{1000};
 constexpr std::chrono::minutes kLookInterval{5};
 /// Between two readings of the queue: events of one file are merged, and a busy writer costs little.
-constexpr milliseconds kBatch{20};
+constexpr milliseconds kBatchTime{20};
 /// After an overflow: a storm goes on for a while.
 constexpr milliseconds kAfterOverflow{100};
 constexpr std::size_t kReadsPerBatch = 32;
@@ -201,7 +201,7 @@ void InotifyWatch::read_events() {
   deliver();
   if (inotify_ == nullptr) return;
   if (begin_anew_) return after(batch_timer_, kAfterOverflow, &InotifyWatch::start);
-  after(batch_timer_, kBatch, &InotifyWatch::await_events);
+  after(batch_timer_, kBatchTime, &InotifyWatch::await_events);
 }
 
 void InotifyWatch::take(const inotify_event& event, std::string_view name) {

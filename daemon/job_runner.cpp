@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -156,8 +157,8 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
     case TaskEnd::source_gone:
       log_.info(report.end == TaskEnd::source_gone ? "source-gone" : "source-changed",
                 {{"job", id}, {"source", run.job.source}});
-      record([this, job = run.job] {
-        store_.postpone(job.id, "the source changed");
+      record([this, job = run.job, delay_ms = settle_ms(run.job)] {
+        store_.postpone(job.id, "the source changed", delay_ms);
         source_changed(job);
       });
       break;
@@ -176,6 +177,14 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
     boost::asio::post(io_, std::exchange(stopped_, nullptr));
   }
   wake();
+}
+
+// A plane of a stack or a header's data may still be written to while the file that is watched stays as it is: then
+// nothing else keeps the next attempt from beginning at once.
+std::int64_t JobRunner::settle_ms(const Job& job) const {
+  const WatchConfig* watch = watch_of(job.watch);
+  const double settle_s = watch == nullptr ? WatchConfig{}.settle_s : watch->settle_s;
+  return std::max<std::int64_t>(1, std::llround(settle_s * 1000));
 }
 
 // The job waits; from here on it is discovered with what is there now, or forgotten where nothing is.

@@ -83,6 +83,7 @@ class JobRunner {
   bool start_next();
   void start(const WatchConfig& watch, const Job& job);
   void ended(std::int64_t id, const TaskReport& report);
+  std::int64_t settle_ms(const Job& job) const;
   void source_changed(const Job& job);
   void discard_work(const Job& job, const std::string& directory) const;
   void done(const RunningJob& run, const TaskReport& report);

@@ -233,8 +233,12 @@ bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobSt
   return database_.changes() == 1;
 }
 
-bool JobStore::postpone(std::int64_t id, const std::string& reason) {
-  return move(id, {JobState::running}, JobState::waiting, reason);
+bool JobStore::postpone(std::int64_t id, const std::string& reason, std::int64_t delay_ms) {
+  if (!move(id, {JobState::running}, JobState::waiting, reason)) return false;
+  if (delay_ms > 0) {
+    database_.prepare("UPDATE jobs SET due_ms = ? WHERE id = ?").bind(clock_() + delay_ms).bind(id).step();
+  }
+  return true;
 }
 
 bool JobStore::quarantine(std::int64_t id, const std::string& reason) {

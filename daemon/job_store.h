@@ -82,8 +82,9 @@ class JobStore {
   /// running -> quarantined for exit code 3; failed for 2 and 4, which another attempt cannot change; else
   /// waiting for backoff_ms, and failed at the kMaxAttempts-th time.
   bool fail(std::int64_t id, const JobResult& result);
-  /// running -> waiting with `reason` and nothing counted: the disk is full, or the service goes down.
-  bool postpone(std::int64_t id, const std::string& reason);
+  /// running -> waiting with `reason`, for `delay_ms` at least, and nothing counted: the disk is full, the source is
+  /// being written to, or the service goes down.
+  bool postpone(std::int64_t id, const std::string& reason, std::int64_t delay_ms = 0);
   /// discovered, waiting or running -> quarantined: the source can never be complete.
   bool quarantine(std::int64_t id, const std::string& reason);
   bool cancel(std::int64_t id);  ///< discovered, waiting or running -> cancelled

@@ -51,7 +51,7 @@ bool is_at_or_below(std::string_view path, std::string_view directory) {
 }
 
 // Without links, as far as it exists.
-fs::path resolved(const std::string& path) {
+fs::path without_links(const std::string& path) {
   std::error_code error;
   fs::path real = fs::weakly_canonical(path, error);
   return error ? fs::path(path).lexically_normal() : real;
@@ -61,14 +61,14 @@ fs::path resolved(const std::string& path) {
 
 PathFilter::PathFilter(const WatchConfig& watch)
     : directory_(watch.directory),
-      real_directory_(resolved(watch.directory).string()),
+      real_directory_(without_links(watch.directory).string()),
       recursive_(watch.recursive),
       any_raw_(watch.convert_option("dims") && watch.convert_option("type")),
       include_(watch.include),
       exclude_(watch.exclude),
       marker_(watch.complete == Completion::marker ? watch.marker : std::string()) {
   for (const std::string& path : watch.excluded_paths) {
-    const fs::path relative = resolved(path).lexically_relative(real_directory_);
+    const fs::path relative = without_links(path).lexically_relative(real_directory_);
     if (!relative.empty() && *relative.begin() != "..") excluded_.push_back(relative.string());
   }
 }

@@ -7,7 +7,7 @@
 namespace weir {
 namespace {
 
-double seconds_of(std::int64_t milliseconds) { return static_cast<double>(milliseconds) / 1000; }
+double seconds_of(std::int64_t ms) { return static_cast<double>(ms) / 1000; }
 
 JobView view_of(const Job& job) {
   JobView view;

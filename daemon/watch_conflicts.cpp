@@ -13,13 +13,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// With links resolved; as given where even that fails.
-fs::path resolved(const std::string& path) {
+fs::path real_place(const std::string& path) {
   std::error_code error;
   fs::path result = fs::weakly_canonical(path, error);
   return error ? fs::path(path) : result;
 }
 
-bool same_place(const std::string& a, const std::string& b) { return resolved(a) == resolved(b); }
+bool same_place(const std::string& a, const std::string& b) { return real_place(a) == real_place(b); }
 
 std::string_view template_of(const WatchConfig& watch) {
   return watch.name.empty() ? std::string_view("{stem}.nvdb") : watch.name;
@@ -57,8 +57,8 @@ std::optional<WatchConflict> conflict_of_two(std::span<const WatchConfig> watche
 }  // namespace
 
 bool is_within(const std::string& path, const std::string& directory) {
-  const fs::path inner = resolved(path);
-  const fs::path outer = resolved(directory);
+  const fs::path inner = real_place(path);
+  const fs::path outer = real_place(directory);
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 

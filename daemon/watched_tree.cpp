@@ -19,7 +19,7 @@ constexpr milliseconds kRetry{1000};
 /// Until a file is looked at again that could not be looked at.
 constexpr std::chrono::seconds kUnreachable{5};
 /// So many changes to the state file are one transaction: long enough to be quick, short enough to answer meanwhile.
-constexpr std::size_t kBatch = 500;
+constexpr std::size_t kBatchEvents = 500;
 
 // API, page and convert's announcements are text.
 bool is_text(const std::string& path) {
@@ -75,7 +75,7 @@ void WatchedTree::schedule(milliseconds delay) {
 // is due again.
 void WatchedTree::work() {
   scheduled_ = false;
-  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), kBatch));
+  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), kBatchEvents));
   std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   try {
     store_.together([&] {

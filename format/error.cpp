@@ -5,12 +5,20 @@
 
 namespace weir {
 
+Error usage_error(const std::string& message) { return {ErrorKind::usage, message}; }
+
+Error input_error(const std::string& path, const std::string& message) {
+  return {ErrorKind::input, path + ": " + message};
+}
+
 Error io_error(const std::string& path, const std::string& action, int errno_value) {
   std::string remedy;
   if (errno_value == ENOSPC || errno_value == EDQUOT) {
     remedy = "; free space on that file system or choose another with -o or --work-dir";
   } else if (errno_value == EACCES || errno_value == EPERM || errno_value == EROFS) {
     remedy = "; check the permissions or choose another place";
+  } else if (errno_value == EFBIG) {
+    remedy = "; raise the limit of file size (ulimit -f) or choose another file system";
   }
   return Error(ErrorKind::io,
                path + ": cannot " + action + ": " + std::generic_category().message(errno_value) + remedy);

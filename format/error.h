@@ -29,6 +29,12 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
+/// Of kind usage.
+Error usage_error(const std::string& message);
+
+/// "PATH: MESSAGE", kind input.
+Error input_error(const std::string& path, const std::string& message);
+
 /// "PATH: ACTION: strerror(ERRNO)", kind io; ENOENT and ENOTDIR say the path is missing.
 Error io_error(const std::string& path, const std::string& action, int errno_value);
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,6 +31,9 @@ class File {
   virtual std::uint64_t size() = 0;
   /// The system's, for as long as this file is open; -1 where there is none.
   virtual int descriptor() const { return -1; }
+  /// Whether no other process writes it by way of a FileSystem: it is locked, or did not exist before. False where it
+  /// did, on a file system without locks.
+  virtual bool exclusive() const { return true; }
 };
 
 /// All paths are as the user wrote them. Thread-safe.
@@ -37,26 +41,36 @@ class FileSystem {
  public:
   virtual ~FileSystem() = default;
   /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it; a lock
-  /// held by another process is Error(io) "is being written by another process".
+  /// held by another process is Error(io) "is being written by another process". What stands there and is no
+  /// regular file with this one name, a symbolic link for instance, is somebody's: Error(usage).
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
-  /// The same, but what the file holds stays.
+  /// The same, but what the file holds stays, and it may have further names.
   virtual std::unique_ptr<File> open(const std::string& path) = 0;
   /// A file in `directory` without a name: nothing of it outlives the process.
   virtual std::unique_ptr<File> create_unnamed(const std::string& directory) = 0;
   virtual void rename(const std::string& from, const std::string& to) = 0;
   /// Like rename, but an existing `to` is an error.
   virtual void rename_new(const std::string& from, const std::string& to) = 0;
-  virtual void link(const std::string& from, const std::string& to) = 0;
+  /// Gives the file `from` a second name; false where the file system has no such links.
+  [[nodiscard]] virtual bool link(const std::string& from, const std::string& to) = 0;
   virtual void remove(const std::string& path) = 0;            ///< a missing file is no error
   virtual void make_directory(const std::string& path) = 0;    ///< an existing one is no error
   virtual void remove_directory(const std::string& path) = 0;  ///< empty or missing
   virtual void sync_directory(const std::string& path) = 0;
   virtual bool exists(const std::string& path) = 0;
+  /// Whether nothing is lost but a regular file when something is renamed to `path`: it is missing or is one, by way
+  /// of symbolic links, too.
+  virtual bool is_replaceable(const std::string&) { return true; }
   virtual bool is_memory(const std::string& directory) = 0;  ///< tmpfs or ramfs
   virtual std::uint64_t free_bytes(const std::string& directory) = 0;
 };
 
+struct PosixFileSystemOptions {
+  std::function<void(const std::string& line)> notice;   ///< gets one line, once, where files cannot be locked
+  int (*lock)(int descriptor, int operation) = nullptr;  ///< instead of flock, for tests
+};
+
 /// The real one.
-std::unique_ptr<FileSystem> make_posix_file_system();
+std::unique_ptr<FileSystem> make_posix_file_system(PosixFileSystemOptions options = {});
 
 }  // namespace weir

@@ -45,6 +45,7 @@ constexpr Index3 index_at(std::int64_t linear, const Index3& extent) {
 }
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+constexpr std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return -floor_div(-a, b); }
 constexpr Index3 floor_div(const Index3& a, std::int64_t b) {
   return {floor_div(a.x, b), floor_div(a.y, b), floor_div(a.z, b)};
 }

@@ -24,6 +24,7 @@ class LimitedFile final : public File {
   void sync() override { file_->sync(); }
   std::uint64_t size() override { return file_->size(); }
   int descriptor() const override { return file_->descriptor(); }
+  bool exclusive() const override { return file_->exclusive(); }
 
  private:
   std::unique_ptr<File> file_;
@@ -41,12 +42,13 @@ class LimitedFileSystem final : public FileSystem {
   }
   void rename(const std::string& from, const std::string& to) override { files_.rename(from, to); }
   void rename_new(const std::string& from, const std::string& to) override { files_.rename_new(from, to); }
-  void link(const std::string& from, const std::string& to) override { files_.link(from, to); }
+  bool link(const std::string& from, const std::string& to) override { return files_.link(from, to); }
   void remove(const std::string& path) override { files_.remove(path); }
   void make_directory(const std::string& path) override { files_.make_directory(path); }
   void remove_directory(const std::string& path) override { files_.remove_directory(path); }
   void sync_directory(const std::string& path) override { files_.sync_directory(path); }
   bool exists(const std::string& path) override { return files_.exists(path); }
+  bool is_replaceable(const std::string& path) override { return files_.is_replaceable(path); }
   bool is_memory(const std::string& directory) override { return files_.is_memory(directory); }
   std::uint64_t free_bytes(const std::string& directory) override { return files_.free_bytes(directory); }
 

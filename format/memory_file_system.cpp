@@ -154,9 +154,10 @@ void MemoryFileSystem::rename_new(const std::string& from, const std::string& to
   files_.erase(from);
 }
 
-void MemoryFileSystem::link(const std::string& from, const std::string& to) {
+bool MemoryFileSystem::link(const std::string& from, const std::string& to) {
   const std::scoped_lock lock(mutex_);
   if (!files_.emplace(to, find(from)).second) throw io_error(from, "link to " + to, EEXIST);
+  return true;
 }
 
 void MemoryFileSystem::remove(const std::string& path) {

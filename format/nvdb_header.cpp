@@ -64,7 +64,7 @@ std::vector<NvdbRecord> read_segment(const NvdbBytes& file, std::uint64_t segmen
     file.fail(segment, "a raw grid without file header (magic NanoVDB1); write it with nanovdb::io::writeGrid");
   }
   if (magic != nvdb::kMagic && magic != kMagicFileNew) {
-    file.fail(segment, "magic number 0x", std::hex, magic, " is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
+    file.fail(segment, "magic number 0x", hex(magic), " is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
   }
   check_version(file, segment + 8, file.get<std::uint32_t>(segment + 8));
   const auto grids = file.get<std::uint16_t>(segment + 12);
@@ -149,7 +149,7 @@ NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string&
   const NvdbBytes grid(bytes.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
   const auto magic = grid.get<std::uint64_t>(nvdb::grid::kMagic);
   if (magic != nvdb::kMagic && magic != kMagicGridNew) {
-    grid.fail(nvdb::grid::kMagic, "grid magic number 0x", std::hex, magic, " is not NanoVDB0 or NanoVDB1");
+    grid.fail(nvdb::grid::kMagic, "grid magic number 0x", hex(magic), " is not NanoVDB0 or NanoVDB1");
   }
   header.version = grid.get<std::uint32_t>(nvdb::grid::kVersion);
   check_version(grid, nvdb::grid::kVersion, header.version);

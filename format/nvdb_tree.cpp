@@ -92,8 +92,7 @@ class TreeReader {
     for (std::uint32_t i = 0; i < tree_.root_tiles; ++i) {
       const std::uint64_t tile = nvdb::kRootTilesOffset + i * nvdb::kRootTileBytes;
       const auto key = grid_.get<std::uint64_t>(tile + nvdb::root::kTileKey);
-      if ((key & ~kKeyBits) != 0)
-        grid_.fail(tile, "root tile key 0x", std::hex, key, " is no key of 32-bit coordinates");
+      if ((key & ~kKeyBits) != 0) grid_.fail(tile, "root tile key 0x", hex(key), " is no key of 32-bit coordinates");
       keys[i] = key;
       const Index3 origin = root_tile_origin(key);
       const Box box{origin, origin + Index3{kUpperDim, kUpperDim, kUpperDim}};
@@ -106,7 +105,7 @@ class TreeReader {
     check_reached(upper_, upper_seen_);
     std::sort(keys.begin(), keys.end());
     if (const auto twice = std::adjacent_find(keys.begin(), keys.end()); twice != keys.end()) {
-      grid_.fail(nvdb::kRootTilesOffset, "root tile key 0x", std::hex, *twice, " stands in the table twice");
+      grid_.fail(nvdb::kRootTilesOffset, "root tile key 0x", hex(*twice), " stands in the table twice");
     }
   }
 

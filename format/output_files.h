@@ -3,6 +3,7 @@
 // that was there before, and a failure leaves the directory as it was.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,7 +16,9 @@ class OutputFiles {
  public:
   /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
   /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
-  /// false. A sidecar that a killed commit left without its volume is no output, and is removed.
+  /// false, where its name is too long for the names beside it, or where something else than a regular file would be
+  /// replaced. A sidecar that a killed commit left without its volume is no output, and is removed; one that it put
+  /// beside the volume from before makes room for that volume's own.
   OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
   /// Removes what was not committed.
   ~OutputFiles();
@@ -26,7 +29,7 @@ class OutputFiles {
   const std::string& directory() const { return directory_; }
 
   /// The volume's bytes are those of `file`, on the same file system, and not of OUT.nvdb.partial, which stays the
-  /// lock. A failure leaves `file`, which is its owner's to remove.
+  /// lock until this object ends. A failure leaves `file`, which is its owner's to remove.
   void write_to(std::shared_ptr<File> file);
 
   /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
@@ -39,6 +42,9 @@ class OutputFiles {
 
  private:
   void refuse_existing(const std::string& path);
+  void settle(bool left_over);
+  void restore_previous();
+  void keep_previous(const std::string& previous);
   void remove_quietly(const std::string& path) noexcept;
 
   FileSystem& files_;
@@ -50,6 +56,13 @@ class OutputFiles {
   std::unique_ptr<File> partial_;
   std::shared_ptr<File> volume_;  // where not partial_
 };
+
+/// Throws what OutputFiles does where no output can be made at `path`, whose longest name of weir's own beside it is
+/// longer by `beside` bytes.
+void require_place(FileSystem& files, const std::string& path, std::size_t beside);
+
+/// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
+void require_alone(const File& partial);
 
 /// Directory part of a path, "." where there is none.
 std::string directory_of(const std::string& path);

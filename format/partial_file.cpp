@@ -1,6 +1,7 @@
 #include "format/partial_file.h"
 
 #include <cerrno>
+#include <string_view>
 
 #include "format/error.h"
 #include "format/output_files.h"
@@ -10,15 +11,12 @@ namespace weir {
 
 PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files), path_(path), overwrite_(overwrite) {
-  const std::string directory = directory_of(path);
-  if (!files_.exists(directory)) {
-    throw Error(ErrorKind::io,
-                cat(path, ": the directory ", directory, " does not exist; make it or choose another output"));
-  }
+  require_place(files_, path, std::string_view(".partial").size());
   if (!overwrite && files_.exists(path)) {
     throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
   }
   file_ = files_.create(path + ".partial");
+  require_alone(*file_);
 }
 
 PartialFile::~PartialFile() {

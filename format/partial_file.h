@@ -12,9 +12,9 @@ namespace weir {
 
 class PartialFile {
  public:
-  /// Creates and locks PATH.partial. Throws Error(usage) where `path` exists and `overwrite` is false,
-  /// Error(io) where its directory is missing or not writable or another process writes it. `files`
-  /// must outlive the object.
+  /// Creates and locks PATH.partial. Throws Error(usage) where `path` exists and `overwrite` is false, is no regular
+  /// file or has too long a name, Error(io) where its directory is missing or not writable or another process writes
+  /// it. `files` must outlive the object.
   PartialFile(FileSystem& files, const std::string& path, bool overwrite);
   /// Removes what was not committed.
   ~PartialFile();

@@ -5,10 +5,12 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "format/error.h"
@@ -20,7 +22,8 @@ namespace {
 
 class PosixFile final : public File {
  public:
-  PosixFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+  PosixFile(int descriptor, std::string path, bool exclusive)
+      : descriptor_(descriptor), path_(std::move(path)), exclusive_(exclusive) {}
   ~PosixFile() override { ::close(descriptor_); }
   PosixFile(const PosixFile&) = delete;
   PosixFile& operator=(const PosixFile&) = delete;
@@ -79,35 +82,58 @@ class PosixFile final : public File {
   }
 
   int descriptor() const override { return descriptor_; }
+  bool exclusive() const override { return exclusive_; }
+  void set_exclusive() { exclusive_ = true; }
 
  private:
   int descriptor_;
   std::string path_;
+  bool exclusive_;
 };
+
+[[noreturn]] void refuse_foreign(const std::string& path, const char* what) {
+  throw usage_error(cat(path, ": ", what, ", so it is none of weir's own files; remove it or choose another output"));
+}
 
 class PosixFileSystem final : public FileSystem {
  public:
+  explicit PosixFileSystem(PosixFileSystemOptions options) : options_(std::move(options)) {}
+
   std::unique_ptr<File> create(const std::string& path) override {
     std::unique_ptr<File> file = open(path);
+    struct stat status {};
+    if (::fstat(file->descriptor(), &status) != 0) throw io_error(path, "look at", errno);
+    // Emptied by this name, it would be empty by the other one.
+    if (status.st_nlink > 1) refuse_foreign(path, "has a second name (a hard link)");
     file->clear();
     return file;
   }
 
   std::unique_ptr<File> open(const std::string& path) override {
     for (;;) {
-      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      // O_NONBLOCK: a pipe of this name must not wait for its other end.
+      constexpr int kFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+      int descriptor = ::open(path.c_str(), kFlags | O_EXCL, 0666);
+      const bool made = descriptor >= 0;
+      if (!made && errno == EEXIST) descriptor = ::open(path.c_str(), kFlags, 0666);
+      if (descriptor < 0 && errno == ELOOP) refuse_foreign(path, "is a symbolic link");
       if (descriptor < 0) throw io_error(path, "create", errno);
-      auto file = std::make_unique<PosixFile>(descriptor, path);
-      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      auto file = std::make_unique<PosixFile>(descriptor, path, made);
+      if (lock(descriptor) == 0) {
+        file->set_exclusive();
+      } else if (errno == EWOULDBLOCK) {
         throw Error(ErrorKind::io,
                     cat(path, ": is being written by another process; wait for it or choose another output"));
+      } else {
+        tell_that_locks_fail(path, errno);
       }
       // Between open and lock the writer before us may have renamed this very file to its result:
       // writing to it then would destroy that.
       struct stat mine {};
       struct stat named {};
       if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
-      if (::stat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
+      if (!S_ISREG(mine.st_mode)) refuse_foreign(path, "is no regular file");
+      if (::lstat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
       return file;
     }
   }
@@ -120,7 +146,7 @@ class PosixFileSystem final : public FileSystem {
       if (descriptor >= 0) ::unlink(name.c_str());
     }
     if (descriptor < 0) throw io_error(directory, "create a temporary file in it", errno);
-    return std::make_unique<PosixFile>(descriptor, directory + " (temporary file)");
+    return std::make_unique<PosixFile>(descriptor, directory + " (temporary file)", true);
   }
 
   void rename(const std::string& from, const std::string& to) override {
@@ -135,8 +161,11 @@ class PosixFileSystem final : public FileSystem {
     rename(from, to);
   }
 
-  void link(const std::string& from, const std::string& to) override {
-    if (::link(from.c_str(), to.c_str()) != 0) throw io_error(from, "link to " + to, errno);
+  bool link(const std::string& from, const std::string& to) override {
+    if (::link(from.c_str(), to.c_str()) == 0) return true;
+    // EPERM is also of a file that is another user's, which the system may protect from links.
+    if (errno == EPERM || errno == EOPNOTSUPP || errno == ENOSYS || errno == EMLINK) return false;
+    throw io_error(from, "link to " + to, errno);
   }
 
   void remove(const std::string& path) override {
@@ -144,7 +173,10 @@ class PosixFileSystem final : public FileSystem {
   }
 
   void make_directory(const std::string& path) override {
-    if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) throw io_error(path, "create the directory", errno);
+    if (::mkdir(path.c_str(), 0777) == 0) return;
+    if (errno != EEXIST) throw io_error(path, "create the directory", errno);
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) == 0 && !S_ISDIR(status.st_mode)) refuse_foreign(path, "is no directory");
   }
 
   void remove_directory(const std::string& path) override {
@@ -166,6 +198,11 @@ class PosixFileSystem final : public FileSystem {
     return ::lstat(path.c_str(), &status) == 0;
   }
 
+  bool is_replaceable(const std::string& path) override {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+  }
+
   bool is_memory(const std::string& directory) override {
     struct statfs status {};
     if (::statfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the file system", errno);
@@ -179,10 +216,26 @@ class PosixFileSystem final : public FileSystem {
     if (::statvfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the free space", errno);
     return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
   }
+
+ private:
+  int lock(int descriptor) const {
+    return (options_.lock != nullptr ? options_.lock : ::flock)(descriptor, LOCK_EX | LOCK_NB);
+  }
+
+  void tell_that_locks_fail(const std::string& path, int reason) {
+    if (told_.exchange(true) || !options_.notice) return;
+    options_.notice(cat(path, ": cannot be locked: ", std::generic_category().message(reason),
+                        "; see to it that no other process writes this output"));
+  }
+
+  PosixFileSystemOptions options_;
+  std::atomic<bool> told_{false};
 };
 
 }  // namespace
 
-std::unique_ptr<FileSystem> make_posix_file_system() { return std::make_unique<PosixFileSystem>(); }
+std::unique_ptr<FileSystem> make_posix_file_system(PosixFileSystemOptions options) {
+  return std::make_unique<PosixFileSystem>(std::move(options));
+}
 
 }  // namespace weir

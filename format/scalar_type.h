@@ -1,6 +1,7 @@
 // Scalar types of input volumes: names as on the command line, sizes in bytes.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,5 +19,8 @@ std::string_view scalar_name(ScalarType type);
 std::optional<ScalarType> parse_scalar(std::string_view name);
 /// All names, comma separated, for messages.
 std::string scalar_names();
+
+/// The byte order of this machine.
+inline constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
 
 }  // namespace weir

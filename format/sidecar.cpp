@@ -128,6 +128,8 @@ void describe(Archive& archive, S& s) {
   });
 }
 
+constexpr int kMaxSidecarDepth = 16;  ///< twice what one has
+
 class JsonWriter {
  public:
   using Json = nlohmann::ordered_json;
@@ -315,8 +317,16 @@ std::string to_json_text(const Sidecar& sidecar) {
 
 Sidecar parse_sidecar(std::string_view text, const std::string& path) {
   nlohmann::json document;
+  // A level of nesting takes 80 times the memory of its byte.
+  const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > kMaxSidecarDepth) {
+      throw Error(ErrorKind::input, cat(path, ": nested deeper than ", kMaxSidecarDepth,
+                                        " levels, no sidecar is; write it again with weir convert"));
+    }
+    return true;
+  };
   try {
-    document = nlohmann::json::parse(text);
+    document = nlohmann::json::parse(text, check_depth);
   } catch (const nlohmann::json::parse_error& error) {
     throw Error(ErrorKind::input,
                 cat(path, ": at byte ", error.byte - 1, ": not valid JSON; write the sidecar again with weir convert"));
@@ -339,15 +349,17 @@ Sidecar parse_sidecar(std::string_view text, const std::string& path) {
 
 std::string utc_text(std::int64_t nanoseconds) {
   using namespace std::chrono;
-  const sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(nanoseconds)};
-  const auto day = floor<days>(time);
-  const year_month_day date(day);
-  const hh_mm_ss clock(time - day);
+  // By seconds: the midnight before the first time that 64 bits hold in nanoseconds is none of them.
+  const auto second = floor<seconds>(std::chrono::nanoseconds(nanoseconds));
+  const auto rest = static_cast<int>((std::chrono::nanoseconds(nanoseconds) - second).count());
+  const auto day = floor<days>(second);
+  const year_month_day date{sys_days(day)};
+  const hh_mm_ss clock(second - day);
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09dZ", static_cast<int>(date.year()),
                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
                 static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
+                static_cast<int>(clock.seconds().count()), rest);
   return text.data();
 }
 

@@ -30,6 +30,25 @@ constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"KiB", 102
 
 }  // namespace
 
+TextPiece::TextPiece(long long value)
+    : text_(buffer_.data(), std::to_chars(buffer_.data(), buffer_.data() + buffer_.size(), value).ptr) {}
+
+TextPiece::TextPiece(unsigned long long value)
+    : text_(buffer_.data(), std::to_chars(buffer_.data(), buffer_.data() + buffer_.size(), value).ptr) {}
+
+TextPiece::TextPiece(double value)
+    : text_(buffer_.data(),
+            std::to_chars(buffer_.data(), buffer_.data() + buffer_.size(), value, std::chars_format::general, 9).ptr) {}
+
+std::string concatenate(std::initializer_list<std::string_view> pieces) {
+  std::size_t size = 0;
+  for (const std::string_view piece : pieces) size += piece.size();
+  std::string text;
+  text.reserve(size);
+  for (const std::string_view piece : pieces) text += piece;
+  return text;
+}
+
 std::optional<std::int64_t> parse_int(std::string_view text) { return parse_whole<std::int64_t>(text); }
 
 std::optional<double> parse_double(std::string_view text) { return parse_whole<double>(text); }
@@ -79,6 +98,18 @@ std::vector<std::string> split(std::string_view text, char separator) {
     if (stop == std::string_view::npos) return parts;
     start = stop + 1;
   }
+}
+
+std::string fixed(double value, int digits) {
+  std::array<char, 400> text{};  // the largest double has 309 digits
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+std::string hex(std::uint64_t value, int digits) {
+  std::array<char, 65> text{};
+  std::snprintf(text.data(), text.size(), "%0*llx", digits, static_cast<unsigned long long>(value));
+  return text.data();
 }
 
 }  // namespace weir

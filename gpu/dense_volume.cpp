@@ -14,7 +14,7 @@ namespace weir {
 
 namespace {
 
-constexpr MinMax kNothing{kInfinity, -kInfinity};
+constexpr MinMax kEmptyRange{kInfinity, -kInfinity};
 
 bool is_number(float v) { return v == v; }
 
@@ -37,7 +37,7 @@ MinMax joined(const MinMax& a, const MinMax& b) { return {std::min(a.min, b.min)
 DenseVolume::DenseVolume(const GridFrame& frame, std::unique_ptr<const float[]> values, float background)
     : frame_(frame), values_(std::move(values)), background_(background) {
   range_ = oneapi::tbb::parallel_reduce(
-      oneapi::tbb::blocked_range<std::int64_t>(0, frame_.domain.voxels(), 1 << 16), kNothing,
+      oneapi::tbb::blocked_range<std::int64_t>(0, frame_.domain.voxels(), 1 << 16), kEmptyRange,
       [&](const auto& part, const MinMax& bounds) {
         return bounds_of(values_.get() + part.begin(), part.end() - part.begin(), bounds, is_finite);
       },
@@ -62,7 +62,7 @@ MacrocellGrid macrocells_of(const DenseVolume& volume, std::int64_t edge) {
   oneapi::tbb::parallel_for(std::int64_t{0}, lattice.size(), [&](std::int64_t i) {
     const Box apron = grown(lattice.node_box(lattice.position(i)), kMacrocellApron);
     const Box seen = intersect(apron, domain);
-    MinMax bounds = domain.contains(apron) ? kNothing : outside;
+    MinMax bounds = domain.contains(apron) ? kEmptyRange : outside;
     for (std::int64_t z = seen.lo.z; z < seen.hi.z; ++z) {
       for (std::int64_t y = seen.lo.y; y < seen.hi.y; ++y) {
         const Index3 at = Index3{seen.lo.x, y, z} - domain.lo;

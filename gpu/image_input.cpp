@@ -35,15 +35,12 @@ struct ExrFile {
   ExrFile& operator=(const ExrFile&) = delete;
 };
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-  throw Error(ErrorKind::input, cat(path, ": ", message));
-}
-
 // Throws with the library's reason where `status` is none of success.
 void check_exr(int status, const char* reason, const std::string& path) {
   const std::string text = reason != nullptr ? reason : cat("code ", status);
   if (reason != nullptr) FreeEXRErrorMessage(reason);
-  if (status != TINYEXR_SUCCESS) fail(path, cat("broken OpenEXR file (", text.substr(0, text.find('\n')), ")"));
+  if (status != TINYEXR_SUCCESS)
+    throw input_error(path, cat("broken OpenEXR file (", text.substr(0, text.find('\n')), ")"));
 }
 
 // Where R, G and B are among the channels; three times the same for gray.
@@ -58,7 +55,8 @@ std::array<int, 3> find_channels(const EXRHeader& header, const std::string& pat
   }
   for (std::size_t k = 0; k < 3; ++k) {
     if (found[k] < 0)
-      fail(path, cat("there is no channel ", kNames[k], "; give a picture with R, G and B, or one channel"));
+      throw input_error(path,
+                        cat("there is no channel ", kNames[k], "; give a picture with R, G and B, or one channel"));
   }
   return found;
 }
@@ -87,7 +85,7 @@ Image decode_exr(std::span<const std::byte> bytes, const std::string& path, cons
   ExrFile file;
   check_exr(ParseEXRVersionFromMemory(&file.version, memory, bytes.size()), nullptr, path);
   if (file.version.multipart != 0 || file.version.non_image != 0) {
-    fail(path, "an OpenEXR file of several parts or of deep pixels; give one with a single flat picture");
+    throw input_error(path, "an OpenEXR file of several parts or of deep pixels; give one with a single flat picture");
   }
   const int parsed = ParseEXRHeaderFromMemory(&file.header, &file.version, memory, bytes.size(), &reason);
   check_exr(parsed, reason, path);
@@ -95,12 +93,13 @@ Image decode_exr(std::span<const std::byte> bytes, const std::string& path, cons
   const std::int64_t width = std::int64_t{window.max_x} - window.min_x + 1;
   const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
   if (width < 1 || height < 1 || width > INT32_MAX || height > INT32_MAX) {
-    fail(path, cat("broken OpenEXR file (", width, " x ", height, " pixels)"));
+    throw input_error(path, cat("broken OpenEXR file (", width, " x ", height, " pixels)"));
   }
   const std::array<int, 3> channels = find_channels(file.header, path);
   for (int c = 0; c < file.header.num_channels; ++c) {
     if (file.header.pixel_types[c] == TINYEXR_PIXELTYPE_UINT) {
-      fail(path, cat("channel ", file.header.channels[c].name, " holds whole numbers; give half or float"));
+      throw input_error(path,
+                        cat("channel ", file.header.channels[c].name, " holds whole numbers; give half or float"));
     }
     file.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
   }
@@ -135,7 +134,7 @@ Image read_image(const std::string& path, const ImageSizeCheck& check) {
   if (bytes.size() >= kExr.size() && std::memcmp(bytes.data(), kExr.data(), kExr.size()) == 0) {
     return decode_exr(bytes, path, check);
   }
-  fail(path, "neither OpenEXR nor Radiance; give an .exr or .hdr file");
+  throw input_error(path, "neither OpenEXR nor Radiance; give an .exr or .hdr file");
 }
 
 }  // namespace weir

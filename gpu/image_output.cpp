@@ -122,6 +122,9 @@ ImageFile::ImageFile(FileSystem& files, const std::string& path)
   if (std::filesystem::is_directory(target)) {
     throw Error(ErrorKind::usage, cat(path, ": is a directory; name a file in it"));
   }
+  if (!files_.is_replaceable(path)) {
+    throw Error(ErrorKind::usage, cat(path, ": is no regular file, and nothing else is replaced; choose another name"));
+  }
   temporary_ = (target.parent_path() / cat('.', target.filename().string(), '.', ::getpid(), ".partial")).string();
   file_ = files_.create(temporary_);
 }

@@ -11,7 +11,7 @@ namespace weir {
 namespace {
 
 // Bounds of nothing: any value widens them, and max_opacity takes them as unknown.
-constexpr MinMax kNothing{kInfinity, -kInfinity};
+constexpr MinMax kNoValues{kInfinity, -kInfinity};
 
 // Cells that a box of voxels touches.
 Box cells_of(const Box& voxels, std::int64_t edge) {
@@ -38,7 +38,7 @@ MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
     cells_.assign(file.cells.begin(), file.cells.end());
   } else {
     lattice_ = make_lattice(grid.index_bbox(), kMacrocell);
-    cells_.assign(static_cast<std::size_t>(lattice_.size()), kNothing);
+    cells_.assign(static_cast<std::size_t>(lattice_.size()), kNoValues);
     gather(grid);
   }
   while (lattice_.dim < edge) merge();
@@ -78,7 +78,7 @@ void MacrocellGrid::merge() {
   const NodeLattice fine = lattice_;
   const std::vector<MinMax> bounds = std::move(cells_);
   lattice_ = make_lattice(fine.domain, 2 * fine.dim);
-  cells_.assign(static_cast<std::size_t>(lattice_.size()), kNothing);
+  cells_.assign(static_cast<std::size_t>(lattice_.size()), kNoValues);
   for_each_index({fine.first, fine.first + fine.count}, [&](const Index3& cell) {
     const MinMax& b = bounds[static_cast<std::size_t>(fine.linear(cell - fine.first))];
     include(floor_div(cell, 2), b.min, b.max);
@@ -122,7 +122,7 @@ void MacrocellGrid::gather_leaf(const NvdbGrid& grid, const GridBlock& block) {
   for_each_index(intersect(cells_of(grown(voxels, kMacrocellApron), lattice_.dim), all), [&](const Index3& cell) {
     const Index3 lo = cell * lattice_.dim;
     const Box apron = grown({lo, lo + Index3{lattice_.dim, lattice_.dim, lattice_.dim}}, kMacrocellApron);
-    MinMax seen = kNothing;
+    MinMax seen = kNoValues;
     for_each_index(intersect(voxels, apron), [&](const Index3& voxel) {
       const Index3 i = voxel - block.origin;
       const float v = values[static_cast<std::size_t>(i.x << 6 | i.y << 3 | i.z)];

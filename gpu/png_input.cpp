@@ -27,10 +27,6 @@ struct PngFile {
   PngFile& operator=(const PngFile&) = delete;
 };
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-  throw Error(ErrorKind::input, cat(path, ": ", message));
-}
-
 }  // namespace
 
 Image read_png(const std::string& path) {
@@ -38,17 +34,18 @@ Image read_png(const std::string& path) {
   const std::span<const std::byte> bytes = mapping.bytes();
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
   if (bytes.size() < kSignature.size() || std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0) {
-    fail(path, "not a PNG file; give a picture as .png");
+    throw input_error(path, "not a PNG file; give a picture as .png");
   }
   PngFile file;
   png_image& head = file.head;
-  const auto broken = [&] { fail(path, cat("broken PNG file (", head.message, ")")); };
+  const auto broken = [&] { throw input_error(path, cat("broken PNG file (", head.message, ")")); };
   if (png_image_begin_read_from_memory(&head, bytes.data(), bytes.size()) == 0) broken();
-  if ((head.format & PNG_FORMAT_FLAG_LINEAR) != 0) fail(path, "16 bits a channel; give a PNG of 8");
+  if ((head.format & PNG_FORMAT_FLAG_LINEAR) != 0) throw input_error(path, "16 bits a channel; give a PNG of 8");
   // Deflate shrinks to no less than 1/1032, and a pixel is one bit at least: do not take memory on a header's word.
   const std::uint64_t pixels = std::uint64_t{head.width} * head.height;
   if (pixels / 8 / 1032 > bytes.size()) {
-    fail(path, cat("broken PNG file (", head.width, " x ", head.height, " pixels in ", bytes.size(), " bytes)"));
+    throw input_error(path,
+                      cat("broken PNG file (", head.width, " x ", head.height, " pixels in ", bytes.size(), " bytes)"));
   }
   head.format = PNG_FORMAT_RGBA;
   std::vector<std::uint8_t> rgba(pixels * 4);
@@ -60,8 +57,8 @@ Image read_png(const std::string& path) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const std::uint8_t* p = rgba.data() + 4 * i;
     if (p[3] != 255) {
-      fail(path, cat("pixel ", i % head.width, ", ", i / head.width, " is transparent (alpha ", int{p[3]},
-                     "); give a picture without, laid over its background"));
+      throw input_error(path, cat("pixel ", i % head.width, ", ", i / head.width, " is transparent (alpha ", int{p[3]},
+                                  "); give a picture without, laid over its background"));
     }
     image.pixels[i] = {linear[p[0]], linear[p[1]], linear[p[2]]};
   }

@@ -16,11 +16,11 @@
 #include "ingest/convert_values.h"
 #include "ingest/decode_values.h"
 #include "ingest/extent.h"
+#include "ingest/source_view.h"
 
 namespace weir {
 namespace {
 
-constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
 constexpr std::string_view kPath = "memory";
 
 /// Where x is not the array's fastest axis: values gathered at a time, kTileRows rows of kTileVoxels, so that a cache
@@ -160,8 +160,12 @@ void check_strides(const DenseArray& array) {
 
 void check_place(const DenseArray& array) {
   for (const double s : array.spacing) {
-    if (s > 0.0 && std::isfinite(s)) continue;
-    throw Error(ErrorKind::usage, cat(kPath, ": the spacing has ", s, "; each must be finite and above 0"));
+    if (!(s > 0.0) || !std::isfinite(s)) {
+      throw Error(ErrorKind::usage, cat(kPath, ": the spacing has ", s, "; each must be finite and above 0"));
+    }
+    if (s < kLeastSpacing || s > kMostSpacing) {
+      throw Error(ErrorKind::usage, cat(kPath, ": the spacing has ", s, "; each must be within 1e-37 and 1e+37"));
+    }
   }
   for (const double o : array.origin) {
     if (std::isfinite(o)) continue;
@@ -172,8 +176,11 @@ void check_place(const DenseArray& array) {
 }  // namespace
 
 std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type) {
-  const auto bytes = static_cast<std::int64_t>(scalar_bytes(type));
-  return {bytes, bytes * extent.x, bytes * extent.x * extent.y};
+  // Unsigned: an extent that makes them overflow is refused later, where it is looked at.
+  const std::uint64_t bytes = scalar_bytes(type);
+  const std::uint64_t row = bytes * static_cast<std::uint64_t>(extent.x);
+  const std::uint64_t plane = row * static_cast<std::uint64_t>(extent.y);
+  return {static_cast<std::int64_t>(bytes), static_cast<std::int64_t>(row), static_cast<std::int64_t>(plane)};
 }
 
 SourceInfo array_info(const DenseArray& array) {

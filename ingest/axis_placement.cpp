@@ -5,18 +5,20 @@
 #include <cstddef>
 #include <optional>
 
+#include "format/text.h"
+
 namespace weir {
 namespace {
 
 /// Of a step's largest part: smaller ones are rounding of the float32 matrices and quaternions in headers.
-constexpr double kRounding = 1e-6;
+constexpr double kAxisRounding = 1e-6;
 
 /// The world axis that a step runs along; nullopt for an oblique one and none at all.
 std::optional<std::size_t> world_axis(const Vector3& step) {
   const double largest = std::max({std::fabs(step[0]), std::fabs(step[1]), std::fabs(step[2])});
   std::optional<std::size_t> axis;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (std::fabs(step[c]) <= kRounding * largest) continue;
+    if (std::fabs(step[c]) <= kAxisRounding * largest) continue;
     if (axis) return std::nullopt;
     axis = c;
   }
@@ -63,5 +65,7 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first) {
   }
   return placement;
 }
+
+std::string vector_text(const Vector3& v) { return cat(v[0], ',', v[1], ',', v[2]); }
 
 }  // namespace weir

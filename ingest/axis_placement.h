@@ -23,4 +23,7 @@ struct AxisPlacement {
 /// along one of the world's. What that loses, flips and rotations, is in `orientation`.
 AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first);
 
+/// "x,y,z", as spacings and origins are shown and given.
+std::string vector_text(const Vector3& v);
+
 }  // namespace weir

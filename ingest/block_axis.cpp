@@ -8,8 +8,6 @@
 namespace weir {
 namespace {
 
-constexpr std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return -floor_div(-a, b); }
-
 /// Lengths tried one by one, and numbers of equal parts.
 constexpr std::int64_t kCutsTried = 64;
 /// Where blocks meet chunks repeats itself: cuts are judged by so many blocks.

@@ -13,8 +13,6 @@
 namespace weir {
 namespace {
 
-constexpr std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return -floor_div(-a, b); }
-
 using Axes = std::array<BlockAxis, 3>;
 
 std::uint64_t largest_bytes(const Axes& axes) {

@@ -22,7 +22,7 @@ constexpr std::size_t kBuffers = 2;
 /// after block i - kBuffers has been worked on, and worked on after it has been read.
 class Handover {
  public:
-  /// Reader: waits until block `i` may be read; false where the caller has stopped.
+  /// BlockReader: waits until block `i` may be read; false where the caller has stopped.
   bool wait_free(std::size_t i) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return stopped_ || i < worked_ + kBuffers; });
@@ -67,13 +67,13 @@ class Handover {
 };
 
 /// The reading thread; told to stop and joined on every way out of stream_blocks.
-class Reader {
+class BlockReader {
  public:
   template <typename Run>
-  Reader(Handover& handover, Run run) : handover_(handover), thread_(std::move(run)) {}
-  ~Reader() { handover_.stop(); }  // thread_ joins after this
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  BlockReader(Handover& handover, Run run) : handover_(handover), thread_(std::move(run)) {}
+  ~BlockReader() { handover_.stop(); }  // thread_ joins after this
+  BlockReader(const BlockReader&) = delete;
+  BlockReader& operator=(const BlockReader&) = delete;
 
  private:
   Handover& handover_;
@@ -128,7 +128,7 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
 
   std::array<ConversionLoss, kBuffers> losses;
   Handover handover;
-  const Reader reader(handover, [&] {
+  const BlockReader reader(handover, [&] {
     try {
       for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
         const TraceSpan span(options.trace, "read", values(i).size_bytes());

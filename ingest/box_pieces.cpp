@@ -3,11 +3,7 @@
 #include <algorithm>
 
 namespace weir {
-namespace {
-
-std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
-
-}  // namespace
+namespace {}  // namespace
 
 BoxPieces::BoxPieces(const Index3& extent, const Box& box, std::size_t voxel_bytes, std::uint64_t header_bytes,
                      std::uint64_t piece_bytes)

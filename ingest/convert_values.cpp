@@ -175,8 +175,6 @@ ConversionLoss convert(const std::byte* bytes, ScalarType type, std::span<float>
   return {};
 }
 
-constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
-
 }  // namespace
 
 bool is_native_float32(ScalarType type, bool big_endian) {

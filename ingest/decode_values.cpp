@@ -16,10 +16,9 @@ namespace weir {
 namespace {
 
 /// Values decoded at a time: the temporaries stay in the first-level cache.
-constexpr std::size_t kChunk = 512;
-constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
+constexpr std::size_t kAtOnce = 512;
 
-using Mask = std::array<bool, kChunk>;
+using MissingMask = std::array<bool, kAtOnce>;
 
 template <typename T>
 class Decoder {
@@ -32,21 +31,26 @@ class Decoder {
   }
 
   ConversionLoss decode(std::span<T> stored, std::span<float> values) const {
-    Mask missing{};
+    MissingMask missing{};
     for (const T m : missing_) mark(stored, m, missing);
     // A missing value, 1e36 in a double say, must not count as rounded.
     for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
     const ConversionLoss loss = mapping_.scales() ? scale(stored, missing, values)
                                                   : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
     const float mark = missing_value();
+    const float other = std::bit_cast<float>(kMissingBits ^ 1U);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (missing[i]) std::memcpy(&values[i], &mark, sizeof mark);
+      if (missing[i]) {
+        std::memcpy(&values[i], &mark, sizeof mark);
+      } else if (!missing_.empty() && is_missing(values[i])) {
+        std::memcpy(&values[i], &other, sizeof other);
+      }
     }
     return loss;
   }
 
  private:
-  static void mark(std::span<const T> stored, T value, Mask& missing) {
+  static void mark(std::span<const T> stored, T value, MissingMask& missing) {
     if (value != value) {
       for (std::size_t i = 0; i < stored.size(); ++i) missing[i] |= stored[i] != stored[i];
     } else {
@@ -54,8 +58,8 @@ class Decoder {
     }
   }
 
-  ConversionLoss scale(std::span<const T> stored, const Mask& missing, std::span<float> values) const {
-    std::array<double, kChunk> scaled;
+  ConversionLoss scale(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
+    std::array<double, kAtOnce> scaled;
     for (std::size_t i = 0; i < stored.size(); ++i) {
       scaled[i] = missing[i] ? 0.0 : static_cast<double>(stored[i]) * mapping_.scale + mapping_.offset;
     }
@@ -82,10 +86,10 @@ template <typename T>
 ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool swap, const ValueMapping& mapping,
                          std::span<float> values) {
   const Decoder<T> decoder(type, mapping);
-  std::array<T, kChunk> stored;
+  std::array<T, kAtOnce> stored;
   ConversionLoss loss;
-  for (std::size_t start = 0; start < values.size(); start += kChunk) {
-    const auto part = values.subspan(start, std::min(kChunk, values.size() - start));
+  for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
+    const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
     const auto used = std::span(stored).first(part.size());
     load<T>(bytes.data() + start * sizeof(T), swap, used);
     loss.add(decoder.decode(used, part));
@@ -97,10 +101,10 @@ ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool
 ConversionLoss decode_half(std::span<const std::byte> bytes, bool big_endian, const ValueMapping& mapping,
                            std::span<float> values) {
   const Decoder<float> decoder(ScalarType::float32, mapping);
-  std::array<float, kChunk> widened;
+  std::array<float, kAtOnce> widened;
   ConversionLoss loss;
-  for (std::size_t start = 0; start < values.size(); start += kChunk) {
-    const auto part = values.subspan(start, std::min(kChunk, values.size() - start));
+  for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
+    const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
     const auto used = std::span(widened).first(part.size());
     convert_values(bytes.subspan(2 * start, 2 * part.size()), ScalarType::float16, big_endian, used);
     loss.add(decoder.decode(used, part));

@@ -1,7 +1,5 @@
 #include "ingest/file_states.h"
 
-#include <sys/stat.h>
-
 #include <filesystem>
 #include <span>
 
@@ -10,18 +8,18 @@
 namespace weir {
 namespace {
 
-std::string time_text(const timespec& time) { return cat(time.tv_sec, ' ', time.tv_nsec); }
+// As in the digests of version 0.1.
+std::string seconds_and_rest(std::int64_t ns) { return cat(ns / 1'000'000'000, ' ', ns % 1'000'000'000); }
 
 }  // namespace
 
-void FileStates::add(const std::string& path, const std::string& named) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) status = {};
+void FileStates::add(const FileState& file, const std::string& named) {
   // A name holds no zero byte.
-  const std::string text = cat(std::filesystem::path(path).filename().string(), '\0', status.st_size, ' ',
-                               time_text(status.st_mtim), ' ', time_text(status.st_ctim), ' ', named);
+  const std::string text = cat(std::filesystem::path(file.path).filename().string(), '\0', file.bytes, ' ',
+                               seconds_and_rest(file.mtime_ns), ' ', seconds_and_rest(file.ctime_ns), ' ', named);
   states_.update(piece_digest(std::as_bytes(std::span(text))));
   files_ += named.empty() ? 1 : 2;
+  all_.push_back(file);
 }
 
 std::string FileStates::digest() const { return files_ < 2 ? std::string() : states_.digest().hex(); }

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "format/digest.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 
@@ -15,14 +17,19 @@ class FileStates {
   /// a file that was replaced by one of the same size and time is another. `named` is the digest of the states of those
   /// that it names, if any. To be called before the file is opened, so that a change meanwhile is seen later; a missing
   /// one is for the opening to refuse.
-  void add(const std::string& path, const std::string& named = {});
+  void add(const std::string& path, const std::string& named = {}) { add(look_at_file(path), named); }
+  void add(const FileState& file, const std::string& named = {});
 
   /// 32 hex digits, which depend on the order; empty where there are fewer than two files.
   std::string digest() const;
 
+  /// Those added.
+  const std::vector<FileState>& files() const { return all_; }
+
  private:
-  std::size_t files_ = 0;
+  std::size_t files_ = 0;  ///< those that others name among them
   DigestStream states_;
+  std::vector<FileState> all_;
 };
 
 }  // namespace weir

@@ -40,6 +40,8 @@ class LineReader {
   bool open_ended_ = false;
 };
 
+/// Blank, tab or line end; a negative `c` (the end of a file) is none.
+constexpr bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 /// Without white space at both ends.
 std::string_view trimmed(std::string_view text);
 /// What white space separates.

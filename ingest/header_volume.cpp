@@ -6,6 +6,7 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "ingest/axis_placement.h"
 #include "ingest/extent.h"
 #include "ingest/file_states.h"
 #include "ingest/header_text.h"
@@ -117,8 +118,6 @@ UnpackedRange unpacked_range(const HeaderVolume& volume, const Shape& shape, std
           volume.packed_offset + shape.all_bytes};
 }
 
-std::string vector_text(const std::array<double, 3>& v) { return cat(v[0], ',', v[1], ',', v[2]); }
-
 }  // namespace
 
 std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo mode) {
@@ -144,11 +143,12 @@ std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, con
   SourceInfo info = volume.info;
   info.extent = shape.extent;
   info.index = options.index.empty() ? std::vector<std::int64_t>(shape.leading.size(), 0) : options.index;
-  FileStates files;
-  files.add(volume.info.path);
-  if (volume.data_path != volume.info.path) files.add(volume.data_path);
-  info.files_digest = files.digest();
   auto file = open_data_file(volume, options.direct_io);
+  FileStates files;
+  files.add(volume.info.files.empty() ? look_at_file(volume.info.path) : volume.info.files.front());
+  if (volume.data_path != volume.info.path) files.add(file->state());
+  info.files_digest = files.digest();
+  info.files = files.files();
   info.mtime_ns = std::max(info.mtime_ns, file->mtime_ns());
 
   RawLayout layout{0, volume.type, volume.big_endian, volume.info.mapping};

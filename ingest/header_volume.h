@@ -18,8 +18,8 @@ namespace weir {
 
 /// An array as its header describes it; nothing of it is checked yet.
 struct HeaderVolume {
-  /// Of the header's file: path, format, bytes and time; labels, units, spacing, origin and mapping. The rest is filled
-  /// in on opening, and the time becomes that of the values' file where that is later.
+  /// Of the header's file: path, format, bytes, time and state; labels, units, spacing, origin and mapping. The rest is
+  /// filled in on opening, and the time becomes that of the values' file where that is later.
   SourceInfo info;
   std::vector<std::int64_t> extents;  ///< of every axis, the fastest first; those after the third choose a volume
   ScalarType type = ScalarType::float32;

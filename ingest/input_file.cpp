@@ -42,6 +42,11 @@ bool may_see_residency(const std::string& path, const struct stat& status) {
 InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& shown) : path_(shown), mode_(mode) {
   // O_NONBLOCK: opening a pipe must not wait for its writer. Regular files ignore it.
   buffered_.reset(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  // Of this process or machine, and not of the file.
+  if (!buffered_ && (errno == EMFILE || errno == ENFILE)) {
+    throw Error(ErrorKind::io, cat(shown, ": cannot open for reading: ", message_of(errno),
+                                   "; raise the limit of open files (ulimit -n)"));
+  }
   if (!buffered_) throw open_error(shown, cat("cannot open for reading: ", message_of(errno)));
   struct stat status {};
   if (::fstat(buffered_.get(), &status) != 0) throw open_error(shown, cat("cannot look at: ", message_of(errno)));
@@ -49,7 +54,7 @@ InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& 
   if (!S_ISREG(status.st_mode)) throw open_error(shown, "is not a regular file; copy its content to one");
   if (status.st_size == 0) throw open_error(shown, "is empty (0 bytes)");
   size_ = static_cast<std::uint64_t>(status.st_size);
-  mtime_ns_ = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+  state_ = state_of(path, status);
 
   if (mode != DirectIo::off) {
     direct_.reset(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_DIRECT));

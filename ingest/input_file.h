@@ -10,6 +10,7 @@
 #include <string>
 
 #include "format/descriptor.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 
@@ -43,7 +44,9 @@ class InputFile {
 
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
-  std::int64_t mtime_ns() const { return mtime_ns_; }
+  std::int64_t mtime_ns() const { return state_.mtime_ns; }
+  /// As it was when it was opened.
+  const FileState& state() const { return state_; }
   /// Bytes the file system was asked for so far, alignment included.
   std::uint64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
 
@@ -86,7 +89,7 @@ class InputFile {
   Descriptor buffered_;
   Descriptor direct_;  ///< -1 where direct I/O is off or refused
   std::uint64_t size_ = 0;
-  std::int64_t mtime_ns_ = 0;
+  FileState state_;
   std::byte* mapping_ = nullptr;  ///< of the whole file, for mincore only: never dereferenced
   std::atomic<bool> direct_works_{false};
   std::atomic<std::uint64_t> bytes_read_{0};

@@ -19,18 +19,18 @@ constexpr std::int64_t kMaxDimensions = 10;  ///< MetaIO's limit
 
 using TypeName = std::pair<std::string_view, ScalarType>;
 // MetaIO's own widths: MET_LONG is four bytes on every machine.
-constexpr std::array<TypeName, 12> kTypes{{{"MET_CHAR", ScalarType::int8},
-                                           {"MET_UCHAR", ScalarType::uint8},
-                                           {"MET_SHORT", ScalarType::int16},
-                                           {"MET_USHORT", ScalarType::uint16},
-                                           {"MET_INT", ScalarType::int32},
-                                           {"MET_UINT", ScalarType::uint32},
-                                           {"MET_LONG", ScalarType::int32},
-                                           {"MET_ULONG", ScalarType::uint32},
-                                           {"MET_LONG_LONG", ScalarType::int64},
-                                           {"MET_ULONG_LONG", ScalarType::uint64},
-                                           {"MET_FLOAT", ScalarType::float32},
-                                           {"MET_DOUBLE", ScalarType::float64}}};
+constexpr std::array<TypeName, 12> kMetaTypes{{{"MET_CHAR", ScalarType::int8},
+                                               {"MET_UCHAR", ScalarType::uint8},
+                                               {"MET_SHORT", ScalarType::int16},
+                                               {"MET_USHORT", ScalarType::uint16},
+                                               {"MET_INT", ScalarType::int32},
+                                               {"MET_UINT", ScalarType::uint32},
+                                               {"MET_LONG", ScalarType::int32},
+                                               {"MET_ULONG", ScalarType::uint32},
+                                               {"MET_LONG_LONG", ScalarType::int64},
+                                               {"MET_ULONG_LONG", ScalarType::uint64},
+                                               {"MET_FLOAT", ScalarType::float32},
+                                               {"MET_DOUBLE", ScalarType::float64}}};
 
 struct Entry {
   std::string_view value;
@@ -122,8 +122,8 @@ class Entries {
 ScalarType type_of(const Entries& entries) {
   const std::string_view name = entries.required("ElementType").value;
   const auto* const found =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeName& type) { return type.first == name; });
-  if (found == kTypes.end())
+      std::find_if(kMetaTypes.begin(), kMetaTypes.end(), [&](const TypeName& type) { return type.first == name; });
+  if (found == kMetaTypes.end())
     throw entries.wrong("ElementType", "MET_CHAR to MET_DOUBLE can be read, one value a voxel");
   return found->second;
 }

@@ -34,7 +34,7 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
-HeaderVolume describe(const std::string& path) {
+HeaderVolume describe_meta_image(const std::string& path) {
   InputFile file(path, DirectIo::off);
   const std::string head = read_head(file);
   const MetaImageHeader header = parse_meta_image_header(head, head.size() == file.size(), path);
@@ -43,6 +43,7 @@ HeaderVolume describe(const std::string& path) {
   volume.info.format = "meta-image";
   volume.info.file_bytes = file.size();
   volume.info.mtime_ns = file.mtime_ns();
+  volume.info.files = {file.state()};
   volume.info.mapping.scale = header.slope;
   volume.info.mapping.offset = header.offset;
   volume.extents = header.dim_size;
@@ -66,11 +67,11 @@ bool recognises_meta_image(std::string_view path, std::span<const std::byte>) {
 }
 
 std::unique_ptr<VolumeSource> open_meta_image(const std::string& path, const SourceOptions& options) {
-  return open_header_volume(describe(path), options);
+  return open_header_volume(describe_meta_image(path), options);
 }
 
 std::vector<DatasetInfo> list_meta_image(const std::string& path, const SourceOptions&) {
-  return list_header_volume(describe(path));
+  return list_header_volume(describe_meta_image(path));
 }
 
 }  // namespace weir

@@ -73,9 +73,9 @@ T load(std::span<const std::byte> bytes, std::size_t at, bool big_endian) {
 }
 
 template <typename Layout>
-class Reader {
+class FieldReader {
  public:
-  Reader(std::span<const std::byte> bytes, bool big_endian, const std::string& path)
+  FieldReader(std::span<const std::byte> bytes, bool big_endian, const std::string& path)
       : bytes_(bytes), big_endian_(big_endian), path_(path) {}
 
   NiftiHeader read() const {
@@ -227,8 +227,8 @@ NiftiHeader parse_nifti_header(std::span<const std::byte> bytes, const std::stri
   if (bytes.size() < size) {
     throw Error(ErrorKind::input, cat(path, ": ends after ", bytes.size(), " bytes, its header alone has ", size));
   }
-  return size == kBytes1 ? Reader<Layout1>(bytes, *big_endian, path).read()
-                         : Reader<Layout2>(bytes, *big_endian, path).read();
+  return size == kBytes1 ? FieldReader<Layout1>(bytes, *big_endian, path).read()
+                         : FieldReader<Layout2>(bytes, *big_endian, path).read();
 }
 
 }  // namespace weir

@@ -52,7 +52,7 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
-HeaderVolume describe(const std::string& path) {
+HeaderVolume describe_nifti(const std::string& path) {
   InputFile file(path, DirectIo::off);
   std::vector<std::byte> head = read_bytes(file, 0, kMaxNiftiHeader);
   HeaderVolume volume;
@@ -66,6 +66,7 @@ HeaderVolume describe(const std::string& path) {
   volume.info.format = "nifti";
   volume.info.file_bytes = file.size();
   volume.info.mtime_ns = file.mtime_ns();
+  volume.info.files = {file.state()};
   volume.info.mapping.scale = header.slope;
   volume.info.mapping.offset = header.intercept;
   volume.extents = header.extents;
@@ -85,11 +86,11 @@ bool recognises_nifti(std::string_view path, std::span<const std::byte> head) {
 }
 
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options) {
-  return open_header_volume(describe(path), options);
+  return open_header_volume(describe_nifti(path), options);
 }
 
 std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions&) {
-  return list_header_volume(describe(path));
+  return list_header_volume(describe_nifti(path));
 }
 
 }  // namespace weir

@@ -22,7 +22,7 @@ struct Field {
 
 using TypeNames = std::pair<ScalarType, std::string_view>;
 // The names of section 5.1, blanks in names taken out, framed by blanks.
-constexpr std::array<TypeNames, 10> kTypes{
+constexpr std::array<TypeNames, 10> kNrrdTypes{
     {{ScalarType::int8, " signedchar int8 int8_t "},
      {ScalarType::uint8, " uchar unsignedchar uint8 uint8_t "},
      {ScalarType::int16, " short shortint signedshort signedshortint int16 int16_t "},
@@ -115,10 +115,10 @@ ScalarType type_of(const Fields& fields) {
   std::string name = lower_case(fields.required("type").value);
   std::erase(name, ' ');
   const std::string framed = ' ' + name + ' ';
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeNames& t) {
+  const auto* const found = std::find_if(kNrrdTypes.begin(), kNrrdTypes.end(), [&](const TypeNames& t) {
     return t.second.find(framed) != std::string_view::npos;
   });
-  if (found == kTypes.end() || name.empty()) {
+  if (found == kNrrdTypes.end() || name.empty()) {
     throw fields.wrong("type", "integers of 8 to 64 bits, float and double can be read");
   }
   return found->first;

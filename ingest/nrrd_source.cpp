@@ -109,7 +109,7 @@ void locate(const NrrdHeader& header, HeaderVolume& volume) {
   (header.gzip ? volume.packed_offset : volume.data_offset) += header.byte_skip;
 }
 
-HeaderVolume describe(const std::string& path) {
+HeaderVolume describe_nrrd(const std::string& path) {
   InputFile file(path, DirectIo::off);
   const std::string head = read_head(file);
   const NrrdHeader header = parse_nrrd_header(head, head.size() == file.size(), path);
@@ -119,6 +119,7 @@ HeaderVolume describe(const std::string& path) {
   volume.info.format = "nrrd";
   volume.info.file_bytes = file.size();
   volume.info.mtime_ns = file.mtime_ns();
+  volume.info.files = {file.state()};
   volume.info.units = header.sample_units;
   for (std::size_t a = 0; a < 3 && first + a < header.labels.size(); ++a) {
     volume.info.axis_labels[a] = header.labels[first + a];
@@ -138,11 +139,11 @@ bool recognises_nrrd(std::string_view, std::span<const std::byte> head) {
 }
 
 std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options) {
-  return open_header_volume(describe(path), options);
+  return open_header_volume(describe_nrrd(path), options);
 }
 
 std::vector<DatasetInfo> list_nrrd(const std::string& path, const SourceOptions&) {
-  return list_header_volume(describe(path));
+  return list_header_volume(describe_nrrd(path));
 }
 
 }  // namespace weir

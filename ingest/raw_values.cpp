@@ -33,6 +33,7 @@ class RawValues final : public VolumeSource {
     info_.mapping = layout.mapping;
     if (info_.file_bytes == 0) info_.file_bytes = file_->size();
     if (info_.mtime_ns == 0) info_.mtime_ns = file_->mtime_ns();
+    if (info_.files.empty()) info_.files = {file_->state()};
   }
 
   const SourceInfo& info() const override { return info_; }

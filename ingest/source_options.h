@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,6 +40,7 @@ struct SourceOptions {
   // What opening and reading may use.
   std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process; a source that cannot do with less
                                                      ///< says so when it is opened
+  const std::atomic<bool>* cancel = nullptr;         ///< ends unpacking with Error(interrupted)
   std::string spool_directory;  ///< on a disk: where compressed streams are unpacked; empty: the input's directory
 };
 

@@ -76,6 +76,9 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
     if (!(s > 0.0) || !std::isfinite(s)) {
       throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "finite and above 0");
     }
+    if (s < kLeastSpacing || s > kMostSpacing) {
+      throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "within 1e-37 and 1e+37");
+    }
   }
   for (const double o : placed.origin) {
     if (!std::isfinite(o)) throw unusable(placed.path, options.origin.has_value(), "origin", o, "finite");

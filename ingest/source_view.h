@@ -9,6 +9,10 @@
 
 namespace weir {
 
+/// World units per voxel that a file can hold: it and its reciprocal stand there as float32, too.
+inline constexpr double kLeastSpacing = 1e-37;
+inline constexpr double kMostSpacing = 1e+37;
+
 /// The voxels of `region` (index space, half open) of `source`, as a volume of its own. Indices stay
 /// global: index_origin becomes region.lo, so every voxel keeps its index and world position.
 /// Throws Error(usage), naming region and domain, where region is empty or reaches outside.

@@ -35,11 +35,17 @@ SpoolFile::SpoolFile(FileSystem& files, const SourceOptions& options, std::strin
     : packed_path_(std::move(packed_path)),
       bytes_(bytes),
       direct_io_(options.direct_io),
+      cancel_(options.cancel),
       file_(create_spool(files, options.spool_directory, packed_path_)) {
   file_->preallocate(bytes);
 }
 
+void SpoolFile::check_cancel() const {
+  if (cancel_ != nullptr && *cancel_) throw Error(ErrorKind::interrupted, "interrupted");
+}
+
 void SpoolFile::write(std::span<const std::byte> bytes) {
+  check_cancel();
   if (bytes.size() > bytes_ - written_) {
     throw Error(ErrorKind::input, cat(packed_path_, ": unpacks to more than the ", bytes_,
                                       " bytes its header asks for; one of the two is damaged"));

@@ -2,6 +2,7 @@
 // name on a disk, of exactly the bytes expected. A crash leaves nothing behind.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,9 @@ class SpoolFile {
   /// in /var/tmp. Reserves the bytes. Throws Error(io) where there is no room or no such directory.
   SpoolFile(FileSystem& files, const SourceOptions& options, std::string packed_path, std::uint64_t bytes);
 
+  /// Throws Error(interrupted) where options.cancel is set; write looks, too.
+  void check_cancel() const;
+
   /// Appends. Throws Error(input) where that makes more bytes than expected, Error(io) where the device
   /// fails.
   void write(std::span<const std::byte> bytes);
@@ -35,6 +39,7 @@ class SpoolFile {
   std::string packed_path_;
   std::uint64_t bytes_;
   DirectIo direct_io_;
+  const std::atomic<bool>* cancel_;
   std::unique_ptr<File> file_;
   std::uint64_t written_ = 0;
 };

@@ -30,6 +30,7 @@ std::unique_ptr<InputFile> spool_inflated(InputFile& file, const PackedRange& pa
   SpoolFile spool(*files, options, file.path(), wanted.bytes);
   std::uint64_t position = 0;
   const auto keep = [&](std::span<const std::byte> bytes) {
+    spool.check_cancel();
     const std::uint64_t begin = position;
     position += bytes.size();
     if (position > wanted.end) {

@@ -20,7 +20,7 @@
 namespace weir {
 namespace {
 
-struct Slab {
+struct FileSlab {
   std::string path;
   Index3 origin;       ///< of the file's own index space
   std::int64_t z = 0;  ///< first plane in the stack
@@ -88,7 +88,7 @@ class StackSource final : public VolumeSource {
       throw Error(ErrorKind::internal, cat(info_.path, ": read of box ", box_text(box), " into ", values.size(),
                                            " values does not fit ", box_text(info_.domain())));
     }
-    const auto after = [](std::int64_t z, const Slab& slab) { return z < slab.z; };
+    const auto after = [](std::int64_t z, const FileSlab& slab) { return z < slab.z; };
     const auto first = std::upper_bound(slabs_.begin(), slabs_.end(), box.lo.z, after) - 1;
     const auto last = std::upper_bound(first, slabs_.end(), box.hi.z - 1, after);
     ConversionLoss total;
@@ -117,9 +117,11 @@ class StackSource final : public VolumeSource {
       info_.index_origin = {};
       info_.extent.z = 0;
       info_.file_bytes = 0;
+      info_.files.clear();
       access_ = source->access();
     }
     check_alike(path, info, first_);
+    info_.files.insert(info_.files.end(), info.files.begin(), info.files.end());
     slabs_.push_back({path, info.index_origin, info_.extent.z, info.extent.z});
     info_.extent.z += info.extent.z;
     info_.file_bytes += info.file_bytes;
@@ -130,7 +132,7 @@ class StackSource final : public VolumeSource {
   // Blocks of whole files where they are small, so that each is opened once a pass; else a file's own chunks, where
   // they end with it.
   void choose_access() {
-    const auto alike = [&](const Slab& slab) { return slab.planes == slabs_.front().planes; };
+    const auto alike = [&](const FileSlab& slab) { return slab.planes == slabs_.front().planes; };
     const bool regular = std::all_of(slabs_.begin(), slabs_.end() - 1, alike);
     const Index3 file{info_.extent.x, info_.extent.y, slabs_.front().planes};
     if (regular && static_cast<std::uint64_t>(volume(file)) * sizeof(float) <= kAmpleBlockBytes) {
@@ -142,7 +144,7 @@ class StackSource final : public VolumeSource {
   }
 
   ConversionLoss read_slab(std::size_t i, const Box& box, std::span<float> values) {
-    const Slab& slab = slabs_[i];
+    const FileSlab& slab = slabs_[i];
     const std::int64_t from = std::max(box.lo.z, slab.z);
     const std::int64_t to = std::min(box.hi.z, slab.z + slab.planes);
     const Index3 extent = box.extent();
@@ -180,7 +182,7 @@ class StackSource final : public VolumeSource {
   SourceInfo info_;
   SourceInfo first_;  ///< of the first file
   AccessShape access_;
-  std::vector<Slab> slabs_;
+  std::vector<FileSlab> slabs_;
   FileStates files_;
   std::uint64_t working_bytes_ = 0;  ///< of one file
   mutable std::mutex mutex_;

@@ -1,6 +1,5 @@
 #include "ingest/stream_inflater.h"
 
-#define ZLIB_CONST  // next_in points to const
 #include <zlib.h>
 
 #include <algorithm>
@@ -31,7 +30,8 @@ void StreamInflater::push(std::span<const std::byte> packed, const Sink& sink) {
   while (!packed.empty()) {
     if (ended_ && !restart(packed)) return;
     const auto piece = static_cast<uInt>(std::min<std::size_t>(packed.size(), std::numeric_limits<uInt>::max()));
-    stream_->next_in = reinterpret_cast<const Bytef*>(packed.data());
+    // zlib reads it only; without ZLIB_CONST, which a build in groups cannot define in time, its type says otherwise.
+    stream_->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
     stream_->avail_in = piece;
     // What zlib holds back when the output is full comes with the next call, even without input.
     do {

@@ -9,7 +9,7 @@ namespace {
 
 /// Voxels of a tile along x and along the faster one of y and z: a cache line of either side is used up while it is
 /// there.
-constexpr std::int64_t kTile = 16;
+constexpr std::int64_t kTileEdge = 16;
 
 using Offsets = std::array<std::int64_t, 3>;
 
@@ -18,10 +18,10 @@ template <std::size_t Bytes>
 void copy_tiles(const std::byte* source, const Offsets& stride, std::byte* out, const Offsets& out_stride,
                 const Offsets& extent) {
   for (std::int64_t slow = 0; slow < extent[2]; ++slow) {
-    for (std::int64_t fast = 0; fast < extent[1]; fast += kTile) {
-      const std::int64_t fast_end = std::min(fast + kTile, extent[1]);
-      for (std::int64_t left = 0; left < extent[0]; left += kTile) {
-        const std::int64_t x_end = std::min(left + kTile, extent[0]);
+    for (std::int64_t fast = 0; fast < extent[1]; fast += kTileEdge) {
+      const std::int64_t fast_end = std::min(fast + kTileEdge, extent[1]);
+      for (std::int64_t left = 0; left < extent[0]; left += kTileEdge) {
+        const std::int64_t x_end = std::min(left + kTileEdge, extent[0]);
         for (std::int64_t f = fast; f < fast_end; ++f) {
           const std::byte* const from = source + f * stride[1] + slow * stride[2];
           std::byte* const to = out + f * out_stride[1] + slow * out_stride[2];

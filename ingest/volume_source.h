@@ -12,6 +12,7 @@
 
 #include "format/index.h"
 #include "format/scalar_type.h"
+#include "ingest/file_state.h"
 #include "ingest/stored_value.h"
 
 namespace weir {
@@ -34,6 +35,7 @@ struct SourceInfo {
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
   std::int64_t mtime_ns = 0;                     ///< modification time, nanoseconds since 1970
   std::string files_digest;                      ///< FileStates of all files it lies in; empty where that is one
+  std::vector<FileState> files;                  ///< all it lies in, as they were opened; none: not in files
 
   /// The voxels as a box in index space.
   Box domain() const { return {index_origin, index_origin + extent}; }

@@ -1,16 +1,20 @@
 #!/usr/bin/env bash
-# Configures and builds build/PRESET/: tools/build.sh [release|asan|tsan|fuzz|tidy] [TARGET...]
-# The command is then build/PRESET/weir. Uses ccache where it is installed. Silent unless it fails or stdout
-# is a terminal.
+# Configures and builds: tools/build.sh [PRESET] [TARGET...]
+#   command (weir alone), package (all that is installed), release (the default: that, tests and benchmarks), these three in
+#   build/release; asan, tsan, fuzz, tidy, each in build/PRESET.
+# The command is then build/release/weir. Uses ccache where it is installed. Says how far it is, and all of what the build
+# prints is in build/PRESET/build.log. WEIR_CUDA=ON|OFF, in the environment, compiles the kernels or not; by default where a
+# CUDA device answers.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${1:-release}
 [[ $# -eq 0 ]] || shift
 case $preset in
-  release | asan | tsan | fuzz | tidy) ;;
+  command | package | release) folder=build/release ;;
+  asan | tsan | fuzz | tidy) folder=build/$preset ;;
   *)
-    echo "tools/build.sh: unknown preset '$preset': use release, asan, tsan, fuzz or tidy" >&2
+    echo "tools/build.sh: unknown preset '$preset': use command, package, release, asan, tsan, fuzz or tidy" >&2
     exit 2
     ;;
 esac
@@ -19,18 +23,38 @@ if command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
 fi
 
-mkdir -p "build/$preset"
-log=build/$preset/build.log
-if ! cmake --preset "$preset" >"$log" 2>&1; then
+mkdir -p "$folder"
+log=$folder/build.log
+options=()
+[[ $folder != build/release ]] || options+=(-DWEIR_CUDA="${WEIR_CUDA:-AUTO}")
+[[ -z ${WEIR_TESTS_LEFT_OUT+x} ]] || options+=(-DWEIR_TESTS_LEFT_OUT="$WEIR_TESTS_LEFT_OUT")
+if ! cmake --preset "$preset" "${options[@]}" >"$log" 2>&1; then
   cat "$log" >&2
   exit 1
 fi
 build=(cmake --build --preset "$preset" --parallel "$(nproc)")
 [[ $# -eq 0 ]] || build+=(--target "$@")
-# -k 0: one run names every file that fails.
+build+=(-- -k 0) # one run names every file that fails
 if [[ -t 1 ]]; then
-  "${build[@]}" -- -k 0
-elif ! "${build[@]}" -- -k 0 >"$log" 2>&1; then
+  # Ninja shows its steps on one line; script gives it the terminal that the log needs.
+  if command -v script >/dev/null; then
+    exec script --quiet --return --flush --log-out "$log" --command "${build[*]@Q}"
+  fi
+  exec "${build[@]}"
+fi
+
+# Elsewhere a line now and then.
+show_steps() {
+  local line next=$((SECONDS + 15))
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >>"$log"
+    if ((SECONDS >= next)) && [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      echo "  built ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps, $SECONDS s"
+      next=$((SECONDS + 15))
+    fi
+  done
+}
+if ! "${build[@]}" 2>&1 | show_steps; then
   grep -v '^\[[0-9]*/[0-9]*\] ' "$log" | tail -n 200 >&2
   echo "tools/build.sh: the $preset build failed; all of it is in $log" >&2
   exit 1

@@ -2,14 +2,17 @@
 // `add_NAME(CLI::App&)`, listed in main.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace weir {
 
-/// Set by SIGINT and SIGTERM (main.cpp); long work looks at it between blocks.
+/// Set by SIGINT, SIGTERM and SIGHUP (main.cpp); long work looks at it between blocks.
 const std::atomic<bool>& interrupt_flag();
 
 /// Adds --log-level, applied when the option is parsed.

@@ -1,5 +1,6 @@
 #include "tools/command_description.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "format/text.h"

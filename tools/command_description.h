@@ -2,9 +2,12 @@
 // cannot say anything else.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

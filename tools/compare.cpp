@@ -1,5 +1,6 @@
 // weir compare: the exact error of a NanoVDB file against its source.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,7 +27,7 @@ namespace weir {
 namespace {
 
 /// Leaves of the mapped file between two releases, stacks, the blocks' own waste.
-constexpr std::uint64_t kWorkingBytes = std::uint64_t{56} << 20U;
+constexpr std::uint64_t kCompareBytes = std::uint64_t{56} << 20U;
 constexpr std::uint64_t kLeastBlockBytes = std::uint64_t{1} << 20U;
 /// Larger blocks are no faster.
 constexpr std::uint64_t kMostBlockBytes = std::uint64_t{256} << 20U;
@@ -41,7 +42,7 @@ struct CompareArguments {
 };
 
 std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes) {
-  const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kWorkingBytes;
+  const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kCompareBytes;
   if (memory < fixed + 2 * kLeastBlockBytes) {
     throw Error(ErrorKind::usage, cat("--memory ", format_bytes(memory), " is too small; give at least ",
                                       ((fixed + 2 * kLeastBlockBytes) >> 20U) + 1, "MiB"));

@@ -1,4 +1,5 @@
 // weir completion: the script that lets a shell complete weir's command lines.
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <string>

@@ -1,5 +1,6 @@
 #include "tools/conversion_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <utility>
 
@@ -9,18 +10,16 @@
 namespace weir {
 namespace {
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 Budget parse_budget(const ConversionArguments& a) {
   const int given = (a.size.empty() ? 0 : 1) + (a.rate.empty() ? 0 : 1) + (a.psnr.empty() ? 0 : 1) +
                     (a.max_error.empty() ? 0 : 1) + (a.lossless ? 1 : 0);
-  if (given > 1) throw usage("--size, --rate, --psnr, --max-error and --lossless exclude each other; give one");
+  if (given > 1) throw usage_error("--size, --rate, --psnr, --max-error and --lossless exclude each other; give one");
   Budget budget;
   if (a.lossless) budget.kind = Budget::Kind::lossless;
   if (!a.size.empty()) {
     const auto bytes = parse_bytes(a.size);
     if (!bytes || *bytes == 0) {
-      throw usage(cat("--size is \"", a.size, "\", it must be a size such as 1048577, 64MiB or 1.5GB"));
+      throw usage_error(cat("--size is \"", a.size, "\", it must be a size such as 1048577, 64MiB or 1.5GB"));
     }
     budget.kind = Budget::Kind::size;
     budget.bytes = *bytes;
@@ -29,7 +28,8 @@ Budget parse_budget(const ConversionArguments& a) {
     const auto rate = parse_double(a.rate);
     // Above 2^60 no volume has a byte left; below 2^-20 no disk holds the file.
     if (!rate || !(*rate >= 0x1p-20 && *rate <= 0x1p60)) {
-      throw usage(cat("--rate is \"", a.rate, "\", it must be a positive number: dense float32 bytes / file bytes"));
+      throw usage_error(
+          cat("--rate is \"", a.rate, "\", it must be a positive number: dense float32 bytes / file bytes"));
     }
     budget.kind = Budget::Kind::rate;
     budget.rate = *rate;
@@ -37,7 +37,7 @@ Budget parse_budget(const ConversionArguments& a) {
   if (!a.psnr.empty()) {
     const auto target = parse_double(a.psnr);
     if (!target || !(*target >= -1000 && *target <= 1000)) {
-      throw usage(cat("--psnr is \"", a.psnr, "\", it must be a number of dB, 60 for instance"));
+      throw usage_error(cat("--psnr is \"", a.psnr, "\", it must be a number of dB, 60 for instance"));
     }
     budget.kind = Budget::Kind::psnr;
     budget.target = *target;
@@ -45,7 +45,8 @@ Budget parse_budget(const ConversionArguments& a) {
   if (!a.max_error.empty()) {
     const auto target = parse_double(a.max_error);
     if (!target || !(*target >= 0 && *target <= 1e300)) {
-      throw usage(cat("--max-error is \"", a.max_error, "\", it must be a number from 0 on, in the values' own unit"));
+      throw usage_error(
+          cat("--max-error is \"", a.max_error, "\", it must be a number from 0 on, in the values' own unit"));
     }
     budget.kind = Budget::Kind::max_error;
     budget.target = *target;
@@ -58,28 +59,28 @@ Encoding parse_encoding(const std::string& name) {
        {Encoding::automatic, Encoding::float32, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16}) {
     if (encoding_name(encoding) == name) return encoding;
   }
-  throw usage(cat("--encoding is \"", name, "\", it must be auto, float, fpn, fp4, fp8 or fp16"));
+  throw usage_error(cat("--encoding is \"", name, "\", it must be auto, float, fpn, fp4, fp8 or fp16"));
 }
 
 Metric parse_metric(const std::string& name) {
   for (const Metric metric : {Metric::sse, Metric::farthest, Metric::closest, Metric::median}) {
     if (metric_name(metric) == name) return metric;
   }
-  throw usage(cat("--metric is \"", name, "\", it must be sse, farthest, closest or median"));
+  throw usage_error(cat("--metric is \"", name, "\", it must be sse, farthest, closest or median"));
 }
 
 FillMode parse_fill(const std::string& name) {
   for (const FillMode fill : {FillMode::mean, FillMode::background}) {
     if (fill_name(fill) == name) return fill;
   }
-  throw usage(cat("--fill is \"", name, "\", it must be mean or background"));
+  throw usage_error(cat("--fill is \"", name, "\", it must be mean or background"));
 }
 
 NonFinitePolicy parse_policy(const std::string& name) {
   for (const NonFinitePolicy policy : {NonFinitePolicy::error, NonFinitePolicy::background, NonFinitePolicy::keep}) {
     if (policy_name(policy) == name) return policy;
   }
-  throw usage(cat("--nonfinite is \"", name, "\", it must be error, background or keep"));
+  throw usage_error(cat("--nonfinite is \"", name, "\", it must be error, background or keep"));
 }
 
 // Empty means "not given" everywhere: the defaults are those of ConversionOptions.
@@ -90,35 +91,35 @@ void parse_method(const ConversionArguments& a, ConversionOptions& options) {
   if (!a.brick.empty()) {
     const auto brick = parse_int(a.brick);
     if (!brick || (*brick != 8 && *brick != 16 && *brick != 32)) {
-      throw usage(cat("--brick is \"", a.brick, "\", it must be 8, 16 or 32"));
+      throw usage_error(cat("--brick is \"", a.brick, "\", it must be 8, 16 or 32"));
     }
     options.brick = *brick;
   }
   if (!a.preset.empty()) {
-    if (a.preset != "paper") throw usage(cat("--preset is \"", a.preset, "\", the one there is is paper"));
+    if (a.preset != "paper") throw usage_error(cat("--preset is \"", a.preset, "\", the one there is is paper"));
     for (const auto& [fixed, given] :
          {std::pair{"--metric", a.metric}, std::pair{"--fill", a.fill}, std::pair{"--background", a.background}}) {
-      if (!given.empty()) throw usage(cat("--preset paper sets ", fixed, "; leave one of them out"));
+      if (!given.empty()) throw usage_error(cat("--preset paper sets ", fixed, "; leave one of them out"));
     }
     if (!a.encoding.empty() && a.encoding != "float")
-      throw usage("--preset paper sets --encoding; leave one of them out");
+      throw usage_error("--preset paper sets --encoding; leave one of them out");
     options.encoding = Encoding::float32;
     options.metric = Metric::farthest;
     options.fill = FillMode::background;
     options.paper_background = true;
   }
   if (options.metric != Metric::sse && options.budget.by_error()) {
-    throw usage(cat("--metric ", a.metric, " has no error target; --psnr and --max-error select by sse"));
+    throw usage_error(cat("--metric ", a.metric, " has no error target; --psnr and --max-error select by sse"));
   }
   if (options.metric == Metric::sse && options.brick != 8) {
-    throw usage(
+    throw usage_error(
         cat("--brick ", options.brick, " is for --metric farthest, closest or median; sse chooses single leaves"));
   }
   if (!a.background.empty() && a.background != "auto") {
     const auto value = parse_double(a.background);
     const auto rounded = value ? static_cast<float>(*value) : 0.0F;
     if (!value || !(rounded - rounded == 0)) {
-      throw usage(cat("--background is \"", a.background, "\", it must be auto or a finite float32"));
+      throw usage_error(cat("--background is \"", a.background, "\", it must be auto or a finite float32"));
     }
     options.background = rounded;
   }

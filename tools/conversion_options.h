@@ -2,10 +2,13 @@
 // for every command that converts.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "compressor/conversion.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

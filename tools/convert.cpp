@@ -1,5 +1,6 @@
 // weir convert: volumes into NanoVDB files of exactly the asked size.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -10,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "compressor/build_commit.h"
 #include "compressor/conversion.h"
 #include "compressor/resume.h"
 #include "format/bandwidth.h"
 #include "format/error.h"
+#include "format/file_id.h"
 #include "format/limited_file_system.h"
 #include "format/output_files.h"
 #include "format/text.h"
@@ -50,8 +53,6 @@ struct ConvertArguments {
   bool json = false;
 };
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 std::string error_text(const Sidecar::CertifiedError& error) {
   if (error.lossless) return "lossless";
   return cat("PSNR ", error.psnr_db.value_or(0), " dB, largest error ", error.max_abs);
@@ -70,7 +71,7 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto bytes = parse_bytes(text);
   if (!bytes || *bytes == 0) {
-    throw usage(cat("--bandwidth is \"", text, "\", it must be a size above 0, like 200MB (a second)"));
+    throw usage_error(cat("--bandwidth is \"", text, "\", it must be a size above 0, like 200MB (a second)"));
   }
   return bytes;
 }
@@ -78,10 +79,15 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
 // What would be refused after minutes of work is refused before it.
 void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool may_exist) {
   std::error_code ignored;
+  std::vector<FileId> inputs;
+  for (const SeriesStep& step : steps) {
+    if (const auto id = file_id(step.path)) inputs.push_back(*id);
+  }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     check_output(steps[i].path, outputs[i]);
+    require_not_input(inputs, outputs[i]);
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
-      throw usage(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
+      throw usage_error(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
     }
   }
 }
@@ -122,8 +128,8 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions
       return std::nullopt;
     case FinishedOutput::State::foreign:
       if (options.overwrite) return std::nullopt;
-      throw usage(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
-                      "); choose another output with -o or pass --overwrite"));
+      throw usage_error(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
+                            "); choose another output with -o or pass --overwrite"));
   }
   throw Error(ErrorKind::internal, "unknown state of an output");
 }
@@ -162,7 +168,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
-  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system();
+  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({control.notice});
   std::unique_ptr<FileSystem> limited;
   if (bandwidth != nullptr) {
     source = limit_source(std::move(source), *bandwidth);
@@ -196,9 +202,10 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   options.work_dir = a.work_dir;
   options.save_interval_s = a.save_interval_s;
   options.resume = a.resume == "auto" ? Resume::automatic : a.resume == "on" ? Resume::on : Resume::off;
-  options.provenance = {WEIR_VERSION, WEIR_COMMIT, given_options(command)};
+  options.provenance = {WEIR_VERSION, build_commit(), given_options(command)};
   SourceOptions source_options = parse_input(a.source);
   source_options.memory = options.memory;
+  source_options.cancel = &interrupt_flag();
 
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options);
   const std::vector<std::string> outputs = series_outputs(steps, a.output);

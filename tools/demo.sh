@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# From nothing to a picture: installs packages, builds, makes a cloud, converts it to an eighth of its size,
-# verifies the file and renders it. Everything it makes goes to demo/.
+# From nothing to a picture: installs the packages that weir needs, builds the command, makes a cloud, converts it to an
+# eighth of its size, verifies the file and renders it. Everything it makes goes to demo/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/setup.sh
-tools/build.sh release
+echo "1/3 packages"
+tools/setup.sh build
+echo "2/3 building build/release/weir (the first time some minutes; log: build/release/build.log)"
+tools/build.sh command weir
 
+echo "3/3 a cloud: made, converted, verified, rendered"
 weir=build/release/weir
 volume=demo/cloud_256x256x256_float32.raw
 mkdir -p demo

@@ -20,14 +20,14 @@ namespace weir {
 namespace {
 
 /// Macrocells, pictures, stacks and libraries.
-constexpr std::uint64_t kWorkingBytes = std::uint64_t{128} << 20U;
+constexpr std::uint64_t kDenseBytes = std::uint64_t{128} << 20U;
 /// Values read in one call, so that an interrupt does not wait for all of them.
 constexpr std::int64_t kReadBytes = std::int64_t{64} << 20U;
 
 void check_memory(const VolumeSource& source) {
   const SourceInfo& info = source.info();
   const std::uint64_t values = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float);
-  const std::uint64_t needed = values + source.working_bytes() + kStagingBytes + kWorkingBytes;
+  const std::uint64_t needed = values + source.working_bytes() + kStagingBytes + kDenseBytes;
   const std::uint64_t available = available_bytes();
   if (needed <= available) return;
   throw Error(ErrorKind::usage,

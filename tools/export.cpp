@@ -1,5 +1,6 @@
 // weir export: a NanoVDB file as an OpenVDB file, for programs that read no other.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <string>
 
 #include "format/error.h"
+#include "format/file_id.h"
 #include "format/nanovdb_layout.h"
 #include "format/nvdb_file.h"
 #include "format/partial_file.h"
@@ -28,7 +30,7 @@ namespace weir {
 namespace {
 
 /// A batch of leaves, mapped, decoded and compressed; the output's buffer; stacks.
-constexpr std::uint64_t kWorkingBytes = std::uint64_t{24} << 20U;
+constexpr std::uint64_t kExportBytes = std::uint64_t{24} << 20U;
 
 struct ExportArguments {
   std::string volume;
@@ -48,7 +50,7 @@ std::uint32_t compression_flags(const std::string& name) {
 void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
   const auto [leaves, lower, upper] = grid.node_counts();
   const std::uint64_t needed =
-      resident_bytes() + std::max(kWorkingBytes, lower * nvdb::kLowerBytes + upper * nvdb::kUpperBytes);
+      resident_bytes() + std::max(kExportBytes, lower * nvdb::kLowerBytes + upper * nvdb::kUpperBytes);
   if (memory >= needed) return;
   throw Error(ErrorKind::usage,
               cat("--memory ", format_bytes(memory), " is too small; give at least ", (needed >> 20U) + 1, "MiB"));
@@ -117,6 +119,7 @@ void export_volume(const ExportArguments& arguments) {
   }
   const std::uint64_t memory = parse_memory(arguments.run);
   const auto threads = limit_threads(arguments.run);
+  if (const auto id = file_id(arguments.volume)) require_not_input({&*id, 1}, arguments.output);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
   require_memory(file.grid(), memory);

@@ -1,4 +1,5 @@
 // weir flip: how different two pictures look.
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <memory>

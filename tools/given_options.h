@@ -1,9 +1,12 @@
 // What a command line said, for the sidecar's weir.options.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

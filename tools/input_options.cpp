@@ -1,5 +1,6 @@
 #include "tools/input_options.h"
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <string_view>
 #include <utility>

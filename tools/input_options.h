@@ -2,11 +2,14 @@
 // for every command that reads a volume.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "format/index.h"
 #include "ingest/source_registry.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

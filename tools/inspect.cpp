@@ -1,9 +1,9 @@
 // weir inspect: what a NanoVDB file holds and what its sidecar says about it, or
 // what an input holds. Reads no leaf unless the histogram has to be counted (no
 // sidecar).
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -50,15 +50,9 @@ struct Inspection {
   Sidecar::Histogram histogram;
 };
 
-std::string text_of(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
-std::string text_of(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
+std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
+std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
 Json json_of(const Index3& i) { return {i.x, i.y, i.z}; }
-
-std::string hex(std::uint32_t value) {
-  std::array<char, 9> text{};
-  std::snprintf(text.data(), text.size(), "%08x", value);
-  return text.data();
-}
 
 const char* checksum_state(const NvdbGrid& grid) {
   if (grid.head_checksum() == static_cast<std::uint32_t>(nvdb::kNoChecksum)) return "absent";
@@ -100,11 +94,11 @@ void print_grid(const NvdbFile& file) {
   line("file        ", file.path());
   line("size        ", cat(file.bytes().size(), " bytes (", format_bytes(file.bytes().size()), "), grid at ",
                            g.grid_offset(), ", ", g.grid_bytes() - g.data_bytes(), " bytes of padding"));
-  line("format      ", cat("NanoVDB ", nvdb_version_text(g.version()), ", head checksum ", hex(g.head_checksum()), ' ',
-                           checksum_state(g)));
-  line("grid        ", cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), ", ", text_of(box.extent()),
+  line("format      ", cat("NanoVDB ", nvdb_version_text(g.version()), ", head checksum ", hex(g.head_checksum(), 8),
+                           ' ', checksum_state(g)));
+  line("grid        ", cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), ", ", shown_text(box.extent()),
                            " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
-  line("transform   ", cat("voxel size ", text_of(g.voxel_size()), ", origin ", text_of(g.world_origin())));
+  line("transform   ", cat("voxel size ", shown_text(g.voxel_size()), ", origin ", shown_text(g.world_origin())));
   const std::string range = g.value_min() <= g.value_max() ? cat(g.value_min(), " .. ", g.value_max()) : "none finite";
   line("values      ", cat(range, ", background ", g.background()));
   const auto nodes = g.node_counts();
@@ -113,9 +107,9 @@ void print_grid(const NvdbFile& file) {
                            " leaves; ", g.active_voxels(), " active voxels"));
   line("tiles       ", cat(tiles[0], " of 8^3, ", tiles[1], " of 128^3, ", tiles[2], " of 4096^3 active"));
   const MacrocellView cells = g.macrocells();
-  line("macrocells  ", cells.cells.empty()
-                           ? "none"
-                           : cat(text_of(cells.lattice.count), " of ", cells.cell, "^3 voxels, apron ", cells.apron));
+  line("macrocells  ", cells.cells.empty() ? "none"
+                                           : cat(shown_text(cells.lattice.count), " of ", cells.cell,
+                                                 "^3 voxels, apron ", cells.apron));
 }
 
 std::string certificate_text(const Sidecar::CertifiedError& error) {
@@ -128,7 +122,7 @@ void print_sidecar(const Sidecar& s) {
   const auto line = [](const char* key, const std::string& value) { std::cout << cat(key, value, '\n'); };
   line("source      ",
        cat(s.source.path, s.source.dataset.empty() ? "" : ":", s.source.dataset, ", ", s.source.format, ' ',
-           s.source.type, ", ", text_of(s.source.extent), ", range ", s.value_range[0], " .. ", s.value_range[1]));
+           s.source.type, ", ", shown_text(s.source.extent), ", range ", s.value_range[0], " .. ", s.value_range[1]));
   line("budget      ", cat(s.budget.kind, s.budget.requested ? cat(' ', *s.budget.requested) : std::string(), ": ",
                            s.budget.file_bytes, " of ", s.budget.dense_float32_bytes, " bytes, rate ", s.budget.rate));
   const auto& bits = s.selection.bits;
@@ -168,7 +162,7 @@ void print_json(const NvdbFile& file, const Inspection& found) {
         {"grid_bytes", g.grid_bytes()},
         {"data_bytes", g.data_bytes()},
         {"version", nvdb_version_text(g.version())},
-        {"head_checksum", hex(g.head_checksum())},
+        {"head_checksum", hex(g.head_checksum(), 8)},
         {"head_checksum_state", checksum_state(g)}}},
       {"grid",
        {{"name", g.name()},

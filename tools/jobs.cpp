@@ -1,7 +1,9 @@
 // weir jobs: what a running `weir watch` knows of its sources.
+#include <CLI/CLI.hpp>
 #include <ctime>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "daemon/job_state.h"

@@ -1,5 +1,6 @@
 // --log-level, of every command.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <string>
 

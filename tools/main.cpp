@@ -1,21 +1,29 @@
 // The `weir` command: options to subcommands, errors to one line and an exit code.
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "format/error.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/printable.h"
 
 namespace {
 
 int fail(const std::string& message, int code) {
-  std::fprintf(stderr, "weir: %s\n", message.c_str());
+  // Paths are what the user gave or a file said: control characters must neither break the line nor steer the terminal.
+  std::fprintf(stderr, "weir: %s\n", weir::one_line(message).c_str());
   return code;
+}
+
+int fail_internally(const std::exception& error) {
+  return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
 }
 
 std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
@@ -64,10 +72,11 @@ int main(int argc, char** argv) {
   } catch (const weir::ExitStatus& status) {
     return status.code;
   } catch (const weir::Error& error) {
-    return fail(error.what(), error.exit_code());
+    const bool interrupted = error.kind() == weir::ErrorKind::interrupted;
+    return fail(error.what(), interrupted ? weir::interrupted_exit_code() : error.exit_code());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
   } catch (const std::exception& error) {
-    return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
+    return fail_internally(error);
   }
 }

@@ -1,4 +1,5 @@
 // weir man, hidden: writes the manual pages, for the installation.
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <memory>

@@ -96,7 +96,7 @@ std::string options_of(const CommandDescription& command) {
 constexpr const char* kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\n"
     "bad or unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, permission\n"
-    ".TP\n130\ninterrupted\n";
+    ".TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n.TP\n130\ninterrupted\n";
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "tools/picture_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,12 +24,10 @@ constexpr std::int64_t kMaxSamples = 1 << 20;  // the mean is a sum of floats
 constexpr std::int64_t kMaxThreads = 4096;
 constexpr std::int64_t kMaxDevices = 64;
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 std::int64_t parse_count(std::string_view option, const std::string& text, std::int64_t low, std::int64_t high) {
   const std::optional<std::int64_t> value = parse_int(text);
   if (!value || *value < low || *value > high) {
-    throw usage(cat(option, " is \"", text, "\", it must be a whole number from ", low, " to ", high));
+    throw usage_error(cat(option, " is \"", text, "\", it must be a whole number from ", low, " to ", high));
   }
   return *value;
 }
@@ -36,8 +35,8 @@ std::int64_t parse_count(std::string_view option, const std::string& text, std::
 void parse_size(const std::string& text, RenderOptions& options) {
   const std::vector<std::string> parts = split(text, 'x');
   const auto bad = [&] {
-    return usage(cat("--size is \"", text, "\", it must be WxH in pixels, each from 1 to ", kMaxEdge, " and ",
-                     kMaxPixels, " together"));
+    return usage_error(cat("--size is \"", text, "\", it must be WxH in pixels, each from 1 to ", kMaxEdge, " and ",
+                           kMaxPixels, " together"));
   };
   if (parts.size() != 2) throw bad();
   const auto width = parse_int(parts[0]);
@@ -59,8 +58,8 @@ void parse_camera(const std::string& text, SceneCamera& camera) {
                      std::abs(numbers[0]) <= 3600 && std::abs(numbers[1]) <= 90 &&
                      (numbers.size() == 2 || (numbers[2] >= 0.01 && numbers[2] <= 100));
   if (!valid) {
-    throw usage(cat("--camera is \"", text, "\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees,",
-                    " elevation from -90 to 90, zoom from 0.01 to 100"));
+    throw usage_error(cat("--camera is \"", text, "\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees,",
+                          " elevation from -90 to 90, zoom from 0.01 to 100"));
   }
   camera.position.reset();
   camera.azimuth = numbers[0];
@@ -78,7 +77,7 @@ void parse_range(const std::string& text, SceneVolume& volume) {
     if (valid) range.at(i) = *number;
   }
   if (!valid || range[0] > range[1]) {
-    throw usage(cat("--range is \"", text, "\", it must be LOW,HIGH, two numbers that do not fall"));
+    throw usage_error(cat("--range is \"", text, "\", it must be LOW,HIGH, two numbers that do not fall"));
   }
   volume.range = range;
 }
@@ -89,7 +88,7 @@ std::vector<int> parse_devices(const std::string& text) {
     const std::optional<std::int64_t> number = parse_int(part);
     const bool valid = number && *number >= 0 && *number < kMaxDevices &&
                        std::find(devices.begin(), devices.end(), *number) == devices.end();
-    if (!valid) throw usage(cat("--devices is \"", text, "\", it must be numbers of CUDA devices, each once"));
+    if (!valid) throw usage_error(cat("--devices is \"", text, "\", it must be numbers of CUDA devices, each once"));
     devices.push_back(static_cast<int>(*number));
   }
   return devices;
@@ -107,7 +106,8 @@ Scene make_scene(const PictureArguments& arguments) {
   if (!arguments.range.empty()) parse_range(arguments.range, scene.volume);
   if (!arguments.iso.empty()) {
     const std::optional<double> iso = parse_double(arguments.iso);
-    if (!iso || !(std::abs(*iso) <= 3.4e38)) throw usage(cat("--iso is \"", arguments.iso, "\", it must be a number"));
+    if (!iso || !(std::abs(*iso) <= 3.4e38))
+      throw usage_error(cat("--iso is \"", arguments.iso, "\", it must be a number"));
     scene.volume.iso = iso;
   }
   return scene;

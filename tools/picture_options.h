@@ -1,13 +1,16 @@
 // What a picture looks like, as options: the same for every command that renders.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
 #include "format/scene.h"
 #include "gpu/backend.h"
 #include "tools/backend_choice.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

@@ -1,6 +1,7 @@
 // weir play: a series of NanoVDB files as frames, PNG files or raw RGB for an encoder.
 #include <spdlog/spdlog.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <atomic>
 #include <cerrno>
@@ -38,15 +39,13 @@ struct PlayArguments {
   bool json = false;
 };
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 void check_output(const PlayArguments& arguments) {
-  if (arguments.output.empty() == arguments.raw.empty()) throw usage("give one of -o DIR and --raw -");
+  if (arguments.output.empty() == arguments.raw.empty()) throw usage_error("give one of -o DIR and --raw -");
   if (!arguments.raw.empty() && arguments.raw != "-") {
-    throw usage(cat("--raw is \"", arguments.raw, "\", it must be -, frames on stdout; redirect it to a file"));
+    throw usage_error(cat("--raw is \"", arguments.raw, "\", it must be -, frames on stdout; redirect it to a file"));
   }
   if (!arguments.raw.empty() && arguments.json)
-    throw usage("--json and --raw - both take stdout; leave one of them out");
+    throw usage_error("--json and --raw - both take stdout; leave one of them out");
 }
 
 std::string frame_path(const std::string& directory, std::size_t frame) {

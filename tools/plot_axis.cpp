@@ -11,7 +11,7 @@ constexpr int kMostEvenSteps = 8;
 constexpr std::size_t kMostDecadeTicks = 10;
 
 // Shares of a step that rounding may have put a tick off by.
-constexpr double kRounding = 1e-9;
+constexpr double kTickRounding = 1e-9;
 
 // factor * 10^decade, the nearest double: negative powers of ten are no binary numbers.
 double scaled(double factor, int decade) {
@@ -47,8 +47,8 @@ double tick_step(double range, int most) {
 std::vector<double> even_ticks(double lo, double hi) {
   const double range = hi > lo ? hi - lo : std::max(std::abs(lo), 1.0);
   const double step = tick_step(range, kMostEvenSteps);
-  const double first = std::floor(lo / step + kRounding);
-  const double last = std::max(std::ceil(hi / step - kRounding), first + 1);
+  const double first = std::floor(lo / step + kTickRounding);
+  const double last = std::max(std::ceil(hi / step - kTickRounding), first + 1);
   std::vector<double> ticks;
   for (double i = first; i <= last; ++i) ticks.push_back(i * step);
   return ticks;

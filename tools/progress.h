@@ -4,11 +4,14 @@
 // stdout is never written.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

@@ -1,5 +1,6 @@
 // weir render: a picture of a NanoVDB file, or of the source it would be made from.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <cstdint>

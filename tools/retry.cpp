@@ -1,6 +1,8 @@
 // weir retry: has a running `weir watch` try jobs again.
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "format/error.h"

@@ -1,5 +1,7 @@
 #include "tools/run_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "format/error.h"
 #include "format/text.h"
 
@@ -9,7 +11,9 @@ void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--memory", arguments.memory, "ceiling of the whole process; default 512MiB")
       ->type_name("SIZE")
       ->group("Run");
-  command.add_option("--threads", arguments.threads, "0: all of the machine's")
+  command
+      .add_option("--threads", arguments.threads,
+                  "0: all of the machine's, for convert as many of them as --memory holds")
       ->check(CLI::Range(0, 4096))
       ->type_name("N")
       ->group("Run")

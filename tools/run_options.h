@@ -4,12 +4,15 @@
 
 #include <oneapi/tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "tools/progress.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

@@ -1,5 +1,6 @@
 // weir sample: a synthetic volume as a raw file.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,14 @@
 // `weir retry` ask a running `weir watch`. One request, one connection.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "daemon/listen_address.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

@@ -1,7 +1,7 @@
 // The service's JSON answers as text for a terminal.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace weir {

@@ -1,31 +1,47 @@
 #!/usr/bin/env bash
-# Installs the packages weir is built, run and checked with (Debian 12, Ubuntu 24.04); touches nothing else.
-# A no-op without apt or network where all are there already. Needs root, or sudo.
+# Installs packages (Debian 12, Ubuntu 24.04); touches nothing else. Needs root, or sudo, where some are missing; a no-op
+# without apt or network where all are there.
+#   tools/setup.sh build   to build and run weir
+#   tools/setup.sh package besides, to make its Debian package with the Python module in it (tools/package.sh)
+#   tools/setup.sh test    besides, to run its tests (tools/test.sh); the default
+#   tools/setup.sh check   besides, for the sanitizers, fuzzers and linters (tools/test.sh --ci and --full)
 set -euo pipefail
 
-packages=(
-  # to build
+size=${1:-test}
+build=(
   g++ cmake ninja-build git ca-certificates
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
-  zlib1g-dev libpng-dev libtinyexr-dev libnanovdb-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
-  libzfp-dev libsqlite3-dev pybind11-dev python3-dev python3-numpy
-  libopenmpi-dev openmpi-bin
-  # to test
-  libgtest-dev libbenchmark-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
-  python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
-  hdf5-filter-plugin-zfp-serial groff-base zsh fish dpkg-dev file gfortran pkg-config
-  # to check
-  clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck
+  zlib1g-dev libpng-dev libtinyexr-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
+  libzfp-dev libsqlite3-dev
 )
-# To test the daemon's page. Ubuntu has no such packages (its chromium is a snap); the tests are skipped there.
-if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(chromium chromium-driver); fi
-# ZFP's own command, to evaluate it; what needs it is skipped where it is missing. Looked for in Debian alone.
-if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then packages+=(zfp); fi
-
+package=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
+test=(
+  libgtest-dev libnanovdb-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
+  libopenmpi-dev openmpi-bin
+  python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
+  hdf5-filter-plugin-zfp-serial groff-base zsh fish gfortran pkg-config
+)
+check=(libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck)
+if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then
+  # For the tests of the daemon's page, and to evaluate ZFP's own command. Ubuntu has no such packages (its chromium is a
+  # snap); what needs them is skipped there.
+  test+=(chromium chromium-driver zfp)
+fi
 # VTK and a display for its pictures, to test bindings/paraview. ParaView has a VTK of its own, which this one would remove.
 if [[ $(dpkg-query --show --showformat '${db:Status-Abbrev}' python3-paraview 2>/dev/null || true) != ii* ]]; then
-  packages+=(python3-vtk9 xvfb xauth)
+  test+=(python3-vtk9 xvfb xauth)
 fi
+
+case $size in
+  build) packages=("${build[@]}") ;;
+  package) packages=("${build[@]}" "${package[@]}") ;;
+  test) packages=("${build[@]}" "${package[@]}" "${test[@]}") ;;
+  check) packages=("${build[@]}" "${package[@]}" "${test[@]}" "${check[@]}") ;;
+  *)
+    echo "tools/setup.sh: unknown size '$size': use build, package, test or check" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,7 +1,9 @@
 // weir status: how a running `weir watch` is.
+#include <CLI/CLI.hpp>
 #include <ctime>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "tools/command.h"
 #include "tools/service_client.h"

@@ -1,6 +1,7 @@
 // weir sweep: error, size and time against rate, with the paper's method and ZFP beside ours.
 #include <oneapi/tbb/global_control.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "compressor/budget.h"
+#include "compressor/build_commit.h"
 #include "compressor/conversion.h"
 #include "format/error.h"
 #include "format/partial_file.h"
@@ -49,14 +51,12 @@ struct SweepArguments {
   bool json = false;
 };
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 /// The directory of the results: made where it is missing, and removed again where nothing came to lie in it.
 class ResultDirectory {
  public:
   ResultDirectory(FileSystem& files, const std::string& path) : files_(files), path_(path), made_(!files.exists(path)) {
     if (!made_ && !std::filesystem::is_directory(path)) {
-      throw usage(cat(path, ": is no directory; choose another one with -o"));
+      throw usage_error(cat(path, ": is no directory; choose another one with -o"));
     }
     if (made_) files_.make_directory(path);
   }
@@ -98,13 +98,13 @@ void check_outputs(const ResultDirectory& directory, std::span<const SweepMethod
   std::error_code ignored;
   for (const std::string& path : paths) {
     if (std::filesystem::equivalent(a.input, path, ignored)) {
-      throw usage(cat(path, ": is the input; choose another directory with -o"));
+      throw usage_error(cat(path, ": is the input; choose another directory with -o"));
     }
     if (std::filesystem::is_directory(path, ignored)) {
-      throw usage(cat(path, ": is a directory; choose another one with -o"));
+      throw usage_error(cat(path, ": is a directory; choose another one with -o"));
     }
     if (!a.overwrite && std::filesystem::exists(path, ignored)) {
-      throw usage(cat(path, ": exists; choose another directory with -o or pass --overwrite"));
+      throw usage_error(cat(path, ": exists; choose another directory with -o or pass --overwrite"));
     }
   }
 }
@@ -150,7 +150,7 @@ class Sweep {
     options.memory = memory_;
     options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
     options.threads = static_cast<std::size_t>(arguments_.run.threads);
-    options.provenance = {WEIR_VERSION, WEIR_COMMIT, given_};
+    options.provenance = {WEIR_VERSION, build_commit(), given_};
     options.provenance.options.insert(method.options.begin(), method.options.end());
     options.provenance.options["rate"] = cat(row.rate);
     // What a conversion says of its file belongs to the row; of the source, and of the disk, it is said once.

@@ -19,8 +19,6 @@ std::map<std::string, std::string> options_of(const std::string& name) {
   return {{"encoding", name}};
 }
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 }  // namespace
 
 std::string sweep_method_names() {
@@ -33,10 +31,10 @@ std::vector<SweepMethod> parse_sweep_methods(std::string_view text) {
   std::vector<SweepMethod> methods;
   for (const std::string& name : split(text, ',')) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      throw usage(cat("--methods names \"", name, "\", the ones there are are ", sweep_method_names()));
+      throw usage_error(cat("--methods names \"", name, "\", the ones there are are ", sweep_method_names()));
     }
     if (std::any_of(methods.begin(), methods.end(), [&](const SweepMethod& m) { return m.name == name; })) {
-      throw usage(cat("--methods names ", name, " twice; leave one of them out"));
+      throw usage_error(cat("--methods names ", name, " twice; leave one of them out"));
     }
     methods.push_back({name, options_of(name)});
   }
@@ -62,12 +60,12 @@ std::vector<double> parse_rates(std::string_view text) {
     const auto rate = parse_double(part);
     // The limits of --rate: above 2^60 no volume has a byte left; below 2^-20 no disk holds the file.
     if (!rate || !(*rate >= 0x1p-20 && *rate <= 0x1p60)) {
-      throw usage(cat("--rates holds \"", part, "\", it must be positive numbers such as 20,10,8: dense float32 bytes ",
-                      "/ file bytes"));
+      throw usage_error(cat("--rates holds \"", part,
+                            "\", it must be positive numbers such as 20,10,8: dense float32 bytes ", "/ file bytes"));
     }
     // As text, which is in the names of kept files.
     if (std::any_of(rates.begin(), rates.end(), [&](double other) { return cat(other) == cat(*rate); })) {
-      throw usage(cat("--rates holds ", part, " twice; leave one of them out"));
+      throw usage_error(cat("--rates holds ", part, " twice; leave one of them out"));
     }
     rates.push_back(*rate);
   }

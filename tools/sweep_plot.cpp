@@ -16,11 +16,11 @@
 namespace weir {
 namespace {
 
-constexpr std::int32_t kWidth = 900;  // pixels
-constexpr std::int32_t kHeight = 600;
-constexpr std::int32_t kLeft = 112;
-constexpr std::int32_t kRight = 28;
-constexpr std::int32_t kBottom = 68;
+constexpr std::int32_t kSheetWidth = 900;  // pixels
+constexpr std::int32_t kSheetHeight = 600;
+constexpr std::int32_t kSheetLeft = 112;
+constexpr std::int32_t kSheetRight = 28;
+constexpr std::int32_t kSheetBottom = 68;
 constexpr std::int32_t kTitle = 20;       // top of its text
 constexpr std::int32_t kLegend = 56;      // centre of its first line
 constexpr std::int32_t kLegendLine = 26;  // from one line of it to the next
@@ -30,9 +30,9 @@ constexpr std::int32_t kTextRise = 7;  // from the middle of a line of text to i
 constexpr std::size_t kTitleCharacters = 60;
 constexpr float kLineWidth = 2.4F;
 constexpr float kMarkerRadius = 7;
-constexpr Float3 kPaper{1, 1, 1};
-constexpr Float3 kInk{0.02F, 0.02F, 0.02F};
-constexpr Float3 kGridLine{0.78F, 0.78F, 0.78F};
+constexpr Float3 kSheetPaper{1, 1, 1};
+constexpr Float3 kSheetInk{0.02F, 0.02F, 0.02F};
+constexpr Float3 kSheetGridLine{0.78F, 0.78F, 0.78F};
 
 /// How a method's points look: a regular polygon, so that methods can be told apart without colours.
 struct Style {
@@ -116,7 +116,7 @@ void draw_outline(PlotCanvas& canvas, const PlotPoint& centre, const Style& styl
 // The inside hides what lies below, of a hollow marker too.
 void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style) {
   for (float radius = 0; radius < kMarkerRadius; radius += kLineWidth / 2) {
-    draw_outline(canvas, centre, style, radius, style.filled ? style.ink : kPaper);
+    draw_outline(canvas, centre, style, radius, style.filled ? style.ink : kSheetPaper);
   }
   draw_outline(canvas, centre, style, kMarkerRadius, style.ink);
 }
@@ -125,19 +125,19 @@ void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style
 std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
   constexpr std::int32_t kSample = 40;  // a piece of line with a marker
   constexpr std::int32_t kGap = 28;
-  std::int32_t x = kLeft;
+  std::int32_t x = kSheetLeft;
   std::int32_t y = kLegend;
   for (const Series& series : all) {
     const std::int32_t width = kSample + 8 + PlotCanvas::text_width(series.name, kText);
-    if (x > kLeft && x + width > kWidth - kRight) {
-      x = kLeft;
+    if (x > kSheetLeft && x + width > kSheetWidth - kSheetRight) {
+      x = kSheetLeft;
       y += kLegendLine;
     }
     const auto middle = static_cast<float>(y);
     const auto left = static_cast<float>(x);
     canvas.line({left, middle}, {left + kSample, middle}, kLineWidth, series.style.ink);
     draw_marker(canvas, {left + kSample * 0.5F, middle}, series.style);
-    canvas.text(x + kSample + 8, y - kTextRise, series.name, kInk, kText);
+    canvas.text(x + kSample + 8, y - kTextRise, series.name, kSheetInk, kText);
     x += width + kGap;
   }
   return y + kLegendLine / 2;
@@ -169,50 +169,50 @@ Frame make_frame(const std::vector<Series>& all, std::int32_t top) {
   if (psnr.empty()) psnr = {0, 100};  // all are in the band; decibels as usual below it
   const auto [x_min, x_max] = std::minmax_element(x.begin(), x.end());
   const auto [psnr_min, psnr_max] = std::minmax_element(psnr.begin(), psnr.end());
-  constexpr std::int32_t kFloor = kHeight - kBottom;
-  return {top, kFloor, Scale(decade_ticks(*x_min, *x_max), true, kLeft, kWidth - kRight),
+  constexpr std::int32_t kFloor = kSheetHeight - kSheetBottom;
+  return {top, kFloor, Scale(decade_ticks(*x_min, *x_max), true, kSheetLeft, kSheetWidth - kSheetRight),
           Scale(even_ticks(*psnr_min, *psnr_max), false, kFloor, top + (band ? kLosslessBand : 0)), band};
 }
 
 void draw_axes(PlotCanvas& canvas, const Frame& frame, const std::string& x_label) {
   for (const double tick : frame.psnr.ticks()) {
     const std::int32_t y = frame.psnr.pixel(tick);
-    canvas.fill(kLeft, y, kWidth - kRight, y + 1, kGridLine);
+    canvas.fill(kSheetLeft, y, kSheetWidth - kSheetRight, y + 1, kSheetGridLine);
     const std::string label = cat(tick);
-    canvas.text(kLeft - 10 - PlotCanvas::text_width(label, kText), y - kTextRise, label, kInk, kText);
+    canvas.text(kSheetLeft - 10 - PlotCanvas::text_width(label, kText), y - kTextRise, label, kSheetInk, kText);
   }
   for (const double tick : frame.x.ticks()) {
     const std::int32_t x = frame.x.pixel(tick);
-    canvas.fill(x, frame.top, x + 1, frame.floor, kGridLine);
-    canvas.fill(x, frame.floor, x + 2, frame.floor + 8, kInk);
+    canvas.fill(x, frame.top, x + 1, frame.floor, kSheetGridLine);
+    canvas.fill(x, frame.floor, x + 2, frame.floor + 8, kSheetInk);
     const std::string label = cat(tick);
     const std::int32_t width = PlotCanvas::text_width(label, kText);
-    canvas.text(std::clamp(x - width / 2, 0, kWidth - width), frame.floor + 12, label, kInk, kText);
+    canvas.text(std::clamp(x - width / 2, 0, kSheetWidth - width), frame.floor + 12, label, kSheetInk, kText);
   }
   for (const double tick : minor_decade_ticks(frame.x.ticks().front(), frame.x.ticks().back())) {
     const std::int32_t x = frame.x.pixel(tick);
-    canvas.fill(x, frame.floor, x + 1, frame.floor + 4, kInk);
+    canvas.fill(x, frame.floor, x + 1, frame.floor + 4, kSheetInk);
   }
   if (frame.band) {
-    canvas.text(kLeft - 10 - PlotCanvas::text_width("lossless", kText), frame.top + kLosslessBand / 2 - kTextRise,
-                "lossless", kInk, kText);
+    canvas.text(kSheetLeft - 10 - PlotCanvas::text_width("lossless", kText), frame.top + kLosslessBand / 2 - kTextRise,
+                "lossless", kSheetInk, kText);
   }
-  canvas.fill(kLeft - 1, frame.top, kLeft + 1, frame.floor, kInk);
-  canvas.fill(kLeft - 1, frame.floor, kWidth - kRight, frame.floor + 2, kInk);
-  canvas.text(8, frame.top - 22, "PSNR (dB)", kInk, kText);
+  canvas.fill(kSheetLeft - 1, frame.top, kSheetLeft + 1, frame.floor, kSheetInk);
+  canvas.fill(kSheetLeft - 1, frame.floor, kSheetWidth - kSheetRight, frame.floor + 2, kSheetInk);
+  canvas.text(8, frame.top - 22, "PSNR (dB)", kSheetInk, kText);
   const std::int32_t width = PlotCanvas::text_width(x_label, kText);
-  canvas.text((kLeft + kWidth - kRight - width) / 2, kHeight - 24, x_label, kInk, kText);
+  canvas.text((kSheetLeft + kSheetWidth - kSheetRight - width) / 2, kSheetHeight - 24, x_label, kSheetInk, kText);
 }
 
 }  // namespace
 
 Image psnr_plot(const SweepReport& report, SweepAxis axis) {
-  PlotCanvas canvas(kWidth, kHeight, kPaper);
+  PlotCanvas canvas(kSheetWidth, kSheetHeight, kSheetPaper);
   const std::string title = std::filesystem::path(report.source).filename().string().substr(0, kTitleCharacters);
-  canvas.text(kLeft, kTitle, title, kInk, kText);
+  canvas.text(kSheetLeft, kTitle, title, kSheetInk, kText);
   const std::vector<Series> all = series_of(report, axis);
   if (std::none_of(report.rows.begin(), report.rows.end(), shown)) {
-    canvas.text(kLeft, kHeight / 2, "no rate with a PSNR", kInk, kText);
+    canvas.text(kSheetLeft, kSheetHeight / 2, "no rate with a PSNR", kSheetInk, kText);
     return canvas.image();
   }
   const Frame frame = make_frame(all, draw_legend(canvas, all) + 32);

@@ -17,7 +17,7 @@ std::string exact(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string quoted(const std::string& text) {
+std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string result;
   for (const char c : text) result.append(c == '"' ? 2 : 1, c);
@@ -27,16 +27,10 @@ std::string quoted(const std::string& text) {
 std::string joined(const std::vector<std::string>& fields) {
   std::string line;
   for (const std::string& field : fields) {
-    line += quoted(field);
+    line += csv_field(field);
     line += &field == &fields.back() ? '\n' : ',';
   }
   return line;
-}
-
-std::string fixed(double value, int digits) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
 }
 
 std::string short_text(double value) {

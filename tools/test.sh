@@ -1,34 +1,51 @@
 #!/usr/bin/env bash
-# The checks: tools/test.sh [--quick|--full]
-#   as CI runs them: the tests of the release build, a short run of each fuzzer, clang-format, shellcheck.
-#   --quick: the tests of the release build only.
-#   --full: besides, the tests of the AddressSanitizer + UndefinedBehaviorSanitizer build and, where threads run, of
-#   the ThreadSanitizer build, and clang-tidy; three more builds of everything, an hour on two cores.
-# Logs are in build/checks/. The last line is `N passed, N failed, N skipped`; failed and skipped checks are named
-# above it. Exits with 1 where anything failed.
+# The checks, in three sizes:
+#   tools/test.sh          the tests of the release build.
+#   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled, the format of C++ and the shell
+#                          scripts checked, and a short run of each fuzzer.
+#   tools/test.sh --full   besides, the tests again with AddressSanitizer and UndefinedBehaviorSanitizer (but a few heavy
+#                          ones) and, where threads run, with ThreadSanitizer; clang-tidy.
+# Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
+# N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-quick=false
-full=false
+size='test'
 case ${1-} in
   '') ;;
-  --quick) quick=true ;;
-  --full) full=true ;;
+  --ci) size=ci ;;
+  --full) size=full ;;
   *)
-    echo "tools/test.sh: unknown option '$1': there are --quick and --full" >&2
+    echo "tools/test.sh: unknown option '$1': there are --ci and --full" >&2
     exit 2
     ;;
 esac
 
 export PATH=/usr/lib/llvm-14/bin:$PATH
 logs=build/checks
+times=build/check_seconds # a line "SECONDS NAME" for each check that was done before
 rm -rf "$logs"
 mkdir -p "$logs"
+touch "$times"
 passed=0
 failed=()
 skipped=()
+
+# begin NAME: says what is done now, and how long it took last time. end: how long it took.
+begin() {
+  step=$1
+  step_start=$SECONDS
+  local last
+  last=$(sed -n "s/^\([0-9]*\) $step\$/\1/p" "$times")
+  echo "== $step${last:+ (last time $last s)}"
+}
+end() {
+  local took=$((SECONDS - step_start))
+  echo "   $step: $took s"
+  sed -i "/^[0-9]* $step\$/d" "$times"
+  echo "$took $step" >>"$times"
+}
 
 # check NAME COMMAND...: one check, its output kept and shown only where it fails; returns whether it passed.
 check() {
@@ -48,31 +65,62 @@ skip() { skipped+=("$1: $2"); }
 
 has() { command -v "$1" >/dev/null; }
 
-# names_with STATUS JUNIT: the test cases of that status.
-names_with() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"$1\".*/\1/p" "$2"; }
-
-# run_tests PRESET [COMMAND...]: builds the preset and counts each of its tests; COMMAND runs ctest.
-run_tests() {
-  local preset=$1 junit=$PWD/$logs/$1.xml log=$logs/$1.log
-  shift
-  check "build of $preset" tools/build.sh "$preset" || return 0
-  "$@" ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$junit" >"$log" 2>&1 || true
-  if [[ ! -s $junit ]]; then
-    failed+=("$preset tests")
-    tail -n 60 "$log"
-    return 0
-  fi
-  passed=$((passed + $(names_with run "$junit" | wc -l)))
-  local name
-  while read -r name; do failed+=("$preset $name"); done < <(names_with fail "$junit")
-  while read -r name; do skip "$preset $name" "see $log"; done < <(names_with notrun "$junit")
-  if [[ -n $(names_with fail "$junit") ]]; then
-    echo "--- $preset tests failed; from $log:"
-    grep -v -E '^ *[0-9]+/[0-9]+ Test|Passed|^ *Start ' "$log" | tail -n 200
+# build PRESET [TARGET...]: one check that shows how far it is.
+build() {
+  begin "build of $1"
+  local built=true
+  tools/build.sh "$@" || built=false
+  end
+  if $built; then
+    passed=$((passed + 1))
+  else
+    failed+=("build of $1")
+    return 1
   fi
 }
 
+# run_tests PRESET [COMMAND...]: counts each test of that build; COMMAND runs ctest.
+run_tests() {
+  local preset=$1 results=$PWD/build/$1/test_results log=$logs/$1.log
+  shift
+  begin "tests of $preset"
+  rm -rf "$results"
+  "$@" ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$results/ctest.xml" 2>&1 | show_tests "$results" "$log" || true
+  end
+  local kind name
+  while IFS=$'\t' read -r kind name; do
+    case $kind in
+      passed) passed=$((passed + name)) ;;
+      failed) failed+=("$preset $name") ;;
+      skipped) skip "$preset $name" "see $log" ;;
+    esac
+  done < <(tools/test_results.py "$results" "$logs/$preset.failures" || printf 'failed\ttests cannot be counted\n')
+  if [[ -s $logs/$preset.failures ]]; then
+    echo "--- tests of $preset that failed; all output is in $log:"
+    tail -n 200 "$logs/$preset.failures"
+  fi
+}
+
+# ctest's output to the log; how far it is, now and then.
+show_tests() {
+  local line next=$((SECONDS + 20))
+  : >"$2"
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >>"$2"
+    if ((SECONDS >= next)) && [[ $line =~ ^\ *([0-9]+)/([0-9]+)\ Test ]]; then
+      echo "   done ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} test processes ($(cat "$1"/*-*.xml 2>/dev/null | grep -c '<testcase') grouped tests)," \
+        "$((SECONDS - step_start)) s"
+      next=$((SECONDS + 20))
+    fi
+  done
+}
+
 run_tsan() {
+  if ! tools/tsan_tbb.sh >"$logs/tsan_tbb.log" 2>&1; then
+    skip "tests of tsan" "oneTBB cannot be built for ThreadSanitizer; see $logs/tsan_tbb.log"
+    return 0
+  fi
+  build tsan || return 0
   # The sanitizer's shadow memory needs less address randomisation than some kernels use.
   if setarch "$(uname -m)" -R true 2>/dev/null; then
     run_tests tsan setarch "$(uname -m)" -R
@@ -81,23 +129,40 @@ run_tsan() {
   fi
 }
 
+fuzz() {
+  local name=${1##*/}
+  local corpus=build/fuzz/corpus/$name seeds=tests/fuzz/corpus/$name
+  mkdir -p "$corpus"
+  [[ -d $seeds ]] || seeds=
+  # New inputs are kept in the first folder; the seeds only start the search.
+  "$1" -max_total_time="${WEIR_FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$logs/" "$corpus" \
+    ${seeds:+"$seeds"} >"$logs/fuzz_$name.log" 2>&1
+}
+
 run_fuzzers() {
   if ! has clang++ || ! compgen -G "$(clang++ -print-resource-dir)/lib/*/libclang_rt.fuzzer*" >/dev/null; then
     skip fuzzers "clang's libFuzzer is not installed"
     return 0
   fi
-  check "build of fuzz" tools/build.sh fuzz || return 0
-  local fuzzer name corpus
+  build fuzz || return 0
+  begin fuzzers
+  local fuzzer running=() names=()
   for fuzzer in build/fuzz/fuzz/*; do
-    name=${fuzzer##*/}
-    corpus=build/fuzz/corpus/$name
-    mkdir -p "$corpus"
-    local seeds=tests/fuzz/corpus/$name
-    [[ -d $seeds ]] || seeds=
-    # New inputs are kept in the first folder; the seeds only start the search.
-    check "fuzz $name" "$fuzzer" -max_total_time="${WEIR_FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 \
-      -artifact_prefix="$logs/" "$corpus" ${seeds:+"$seeds"} || true
+    fuzz "$fuzzer" &
+    running+=($!)
+    names+=("${fuzzer##*/}")
+    while (($(jobs -rp | wc -l) >= $(nproc))); do sleep 0.2; done
   done
+  local i
+  for i in "${!running[@]}"; do
+    if wait "${running[$i]}"; then
+      passed=$((passed + 1))
+    else
+      failed+=("fuzz ${names[$i]}")
+      tail -n 30 "$logs/fuzz_${names[$i]}.log"
+    fi
+  done
+  end
 }
 
 check_format() {
@@ -122,23 +187,32 @@ check_tidy() {
     skip clang-tidy "not installed"
     return 0
   fi
-  # A build, so only files that changed, or whose headers did, are looked at again.
-  check clang-tidy tools/build.sh tidy || true
+  build tidy || true # only files that changed, or whose headers did, are looked at again
 }
 
-check setup tools/setup.sh || true
+begin packages
+setup='test'
+[[ $size == test ]] || setup=check
+if tools/setup.sh "$setup"; then passed=$((passed + 1)); else failed+=(packages); fi
+end
 exec </dev/null
-run_tests release
-if ! $quick; then
+
+if [[ $size != test ]]; then
   check_format
   check_shell
+  if has nvcc || [[ -x /usr/local/cuda/bin/nvcc ]]; then export WEIR_CUDA=${WEIR_CUDA:-ON}; fi
+fi
+targets=(weir weir_tests)
+[[ $size == test ]] || targets=() # all, with the benchmarks
+if build release "${targets[@]}"; then run_tests release; fi
+if [[ $size != test ]]; then
   run_fuzzers
 fi
-if $full; then
-  run_tests asan
+if [[ $size == full ]]; then
+  if build asan; then run_tests asan; fi
   run_tsan
-  check_tidy
 fi
+[[ $size != full ]] || check_tidy
 
 [[ ${#skipped[@]} -eq 0 ]] || printf 'skipped: %s\n' "${skipped[@]}"
 [[ ${#failed[@]} -eq 0 ]] || printf 'failed: %s\n' "${failed[@]}"

@@ -1,5 +1,6 @@
 #include "tools/trace_option.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "format/error.h"

@@ -1,12 +1,15 @@
 // The option --trace of the commands that go through a volume.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <span>
 #include <string>
 
 #include "format/trace.h"
+
+namespace CLI {
+class App;
+}
 
 namespace weir {
 

@@ -22,9 +22,9 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kBatch = 2048;    ///< leaves between two looks at progress: some 4 MiB
-constexpr std::size_t kChunk = 64;      ///< leaves of one task
-constexpr std::uint32_t kLevelSet = 1;  ///< NanoVDB's GridClass
+constexpr std::size_t kLeavesAtOnce = 2048;  ///< leaves between two looks at progress: some 4 MiB
+constexpr std::size_t kChunk = 64;           ///< leaves of one task
+constexpr std::uint32_t kLevelSet = 1;       ///< NanoVDB's GridClass
 
 template <std::size_t Bits>
 using Mask = std::array<std::uint64_t, Bits / 64>;
@@ -56,7 +56,7 @@ void for_each_child(const std::byte* node, const nvdb::InternalLayout& layout, c
 }
 
 template <typename T>
-void put(std::ostream& out, const T& value) {
+void put_bytes(std::ostream& out, const T& value) {
   out.write(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
@@ -136,18 +136,18 @@ class Writer {
   float stored(float value) { return stored(value, written_.half_max_abs_error); }
 
   void topology(std::ostream& out) {
-    put(out, std::int32_t{1});  // buffers
-    put(out, storage_.background);
+    put_bytes(out, std::int32_t{1});  // buffers
+    put_bytes(out, storage_.background);
     const auto tiles =
         std::count_if(entries_.begin(), entries_.end(), [](const auto& e) { return e.upper == nullptr; });
-    put(out, static_cast<std::uint32_t>(tiles));
-    put(out, static_cast<std::uint32_t>(entries_.size()) - static_cast<std::uint32_t>(tiles));
+    put_bytes(out, static_cast<std::uint32_t>(tiles));
+    put_bytes(out, static_cast<std::uint32_t>(entries_.size()) - static_cast<std::uint32_t>(tiles));
     written_.topology.root_entries = entries_.size();
     for (const RootEntry& entry : entries_) {
       if (entry.upper != nullptr) continue;
       put_origin(out, entry.origin);
-      put(out, stored(entry.value));
-      put(out, std::uint8_t{entry.active});
+      put_bytes(out, stored(entry.value));
+      put_bytes(out, std::uint8_t{entry.active});
       if (entry.active) written_.active_voxels += cube(kUpperDim);
     }
     for (const RootEntry& entry : entries_) {
@@ -160,18 +160,18 @@ class Writer {
         internal<nvdb::kLower.entries>(out, lower, nvdb::kLower, kLeafDim);
         for_each_child<nvdb::kLower.entries>(lower, nvdb::kLower, [&](const std::byte* leaf) {
           const auto active = mask_at<kLeafVoxels>(leaf + nvdb::leaf::kValueMask);
-          put(out, active);
+          put_bytes(out, active);
           written_.active_voxels += count(active);
-          if (++written_.topology.nodes[0] % kBatch == 0) report(0.1, written_.topology.nodes[0], 0);
+          if (++written_.topology.nodes[0] % kLeavesAtOnce == 0) report(0.1, written_.topology.nodes[0], 0);
         });
         // One without leaves is 33 KiB of pages too.
-        if (written_.topology.nodes[1] % (kBatch / 16) == 0) report(0.1, written_.topology.nodes[0], 0);
+        if (written_.topology.nodes[1] % (kLeavesAtOnce / 16) == 0) report(0.1, written_.topology.nodes[0], 0);
       });
     }
   }
 
   static void put_origin(std::ostream& out, const Index3& origin) {
-    for (const std::int64_t c : {origin.x, origin.y, origin.z}) put(out, static_cast<std::int32_t>(c));
+    for (const std::int64_t c : {origin.x, origin.y, origin.z}) put_bytes(out, static_cast<std::int32_t>(c));
   }
 
   static std::uint64_t cube(std::int64_t dim) { return static_cast<std::uint64_t>(dim * dim * dim); }
@@ -186,8 +186,8 @@ class Writer {
       const bool child = (children[i / 64] >> i % 64 & 1U) != 0;
       values[i] = child ? 0 : stored(load<float>(node + layout.table + 8 * i));
     }
-    put(out, children);
-    put(out, active);
+    put_bytes(out, children);
+    put_bytes(out, active);
     write_vdb_values(out, values, active, children, storage_);
     written_.active_voxels += count(active) * cube(dim);
   }
@@ -206,7 +206,7 @@ class Writer {
       for_each_child<nvdb::kUpper.entries>(entry.upper, nvdb::kUpper, [&](const std::byte* lower) {
         for_each_child<nvdb::kLower.entries>(lower, nvdb::kLower, [&](const std::byte* leaf) {
           batch.push_back(leaf);
-          if (batch.size() == kBatch) flush();
+          if (batch.size() == kLeavesAtOnce) flush();
         });
       });
     }
@@ -235,7 +235,7 @@ class Writer {
     grid_.decode_leaf(leaf, values);
     for (float& value : values) value = stored(value, worst);
     const auto active = mask_at<kLeafVoxels>(leaf + nvdb::leaf::kValueMask);
-    put(out, active);
+    put_bytes(out, active);
     write_vdb_values(out, values, active, kNoChildren, storage_);
   }
 

@@ -1,5 +1,6 @@
 // weir verify: everything a volume and its sidecar say about each other and
 // themselves, checked. Exit 0 only if all holds.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <iostream>

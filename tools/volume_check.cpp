@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
@@ -27,12 +26,6 @@ std::string text_of(const std::array<T, N>& values) {
   return text + ')';
 }
 
-std::string hex(std::uint32_t value) {
-  std::array<char, 9> text{};
-  std::snprintf(text.data(), text.size(), "%08x", value);
-  return text.data();
-}
-
 template <typename T>
 VolumeCheck equal(const std::string& name, const T& found, const T& expected) {
   return {name, text_of(found), text_of(expected), found == expected};
@@ -45,9 +38,9 @@ bool same_value(double stored, double from_sidecar) {
 
 VolumeCheck head_checksum(const NvdbGrid& grid) {
   if (grid.head_checksum() == static_cast<std::uint32_t>(nvdb::kNoChecksum)) {
-    return {"head checksum", "none stored", hex(computed_head_checksum(grid)), false};
+    return {"head checksum", "none stored", hex(computed_head_checksum(grid), 8), false};
   }
-  return {"head checksum", hex(computed_head_checksum(grid)), hex(grid.head_checksum()),
+  return {"head checksum", hex(computed_head_checksum(grid), 8), hex(grid.head_checksum(), 8),
           computed_head_checksum(grid) == grid.head_checksum()};
 }
 
@@ -97,7 +90,7 @@ std::vector<VolumeCheck> check_sidecar(const NvdbGrid& grid, const TreeCensus& c
   checks.push_back(equal("sidecar file.bytes", std::uint64_t{grid.bytes().size()}, s.file.bytes));
   checks.push_back(equal("sidecar budget.file_bytes", std::uint64_t{grid.bytes().size()}, s.budget.file_bytes));
   checks.push_back(equal("sidecar file.grid_offset", grid.grid_offset(), s.file.grid_offset));
-  checks.push_back({"sidecar file.head_checksum", hex(grid.head_checksum()), hex(s.file.head_checksum),
+  checks.push_back({"sidecar file.head_checksum", hex(grid.head_checksum(), 8), hex(s.file.head_checksum, 8),
                     grid.head_checksum() == s.file.head_checksum});
   checks.push_back(equal("sidecar file.digest", digest, s.file.digest));
   checks.push_back(equal("sidecar grid.name", grid.name(), s.grid.name));

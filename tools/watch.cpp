@@ -1,4 +1,5 @@
 // weir watch: the daemon in the foreground, or what it would do.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -29,9 +29,9 @@ constexpr std::int64_t kPieceVoxels = std::int64_t{1} << 18U;
 /// A worker's stack and the allocator's waste; libraries' heaps and code pages touched later.
 constexpr std::uint64_t kWorkerBytes = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kSlackBytes = std::uint64_t{16} << 20U;
-constexpr std::uint64_t kLeastBlockBytes = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kLeastBlockTrialBytes = std::uint64_t{1} << 20U;
 /// Larger blocks are no faster.
-constexpr std::uint64_t kMostBlockBytes = std::uint64_t{64} << 20U;
+constexpr std::uint64_t kMostBlockTrialBytes = std::uint64_t{64} << 20U;
 
 inline bool is_finite(float v) { return v - v == 0.0F; }
 
@@ -171,12 +171,12 @@ class Trial {
                                  zfp_stream_bytes({kPieceVoxels / 16, 4, 4}, options_.block_bits) + kWorkerBytes;
     const std::uint64_t fixed =
         resident_bytes() + source_.working_bytes() + kStagingBytes + kSlackBytes + threads * worker;
-    if (options_.memory < fixed + 2 * kLeastBlockBytes) {
+    if (options_.memory < fixed + 2 * kLeastBlockTrialBytes) {
       throw Error(ErrorKind::usage,
                   cat("--memory ", format_bytes(options_.memory), " is too small for ZFP with ", threads,
-                      " threads; give at least ", ((fixed + 2 * kLeastBlockBytes) >> 20U) + 1, "MiB"));
+                      " threads; give at least ", ((fixed + 2 * kLeastBlockTrialBytes) >> 20U) + 1, "MiB"));
     }
-    return std::min((options_.memory - fixed) / 2, kMostBlockBytes);
+    return std::min((options_.memory - fixed) / 2, kMostBlockTrialBytes);
   }
 
   // Calls work(codec, piece's voxels, offset of its stream) for all pieces; those of a block run at once. The

@@ -9,6 +9,7 @@
 
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
+#include "compressor/build_commit.h"
 #include "format/text.h"
 
 namespace weir::c {
@@ -171,7 +172,7 @@ ConversionOptions read_options(const weir_convert_options& o) {
   if (o.memory > kMaxMemory) throw usage(cat("memory is ", o.memory, " bytes, it must be at most 2^50"));
   options.memory = o.memory == 0 ? kDefaultMemory : o.memory;
   if (o.work_dir != nullptr) options.work_dir = o.work_dir;
-  options.provenance = {WEIR_VERSION, WEIR_COMMIT, recorded_options(options)};
+  options.provenance = {WEIR_VERSION, build_commit(), recorded_options(options)};
   return options;
 }
 

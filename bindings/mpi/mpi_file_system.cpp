@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // of a call: counts are int
+constexpr std::size_t kMostFileBytes = std::size_t{1} << 30U;  // of a call: counts are int
 
 class MpiFile final : public File {
  public:
@@ -60,6 +60,12 @@ class MpiFile final : public File {
     const std::lock_guard lock(team_.calls());
     check_mpi(MPI_File_sync(file_), "flushing " + path_);
   }
+  bool exclusive() const override {
+    bool alone = true;
+    team_.lead([&] { alone = own_->exclusive(); });
+    team_.follow(alone);
+    return alone;
+  }
   std::uint64_t size() override {
     MPI_Offset bytes = 0;
     const std::lock_guard lock(team_.calls());
@@ -75,7 +81,7 @@ class MpiFile final : public File {
       MPI_Status status{};
       int count = 0;
       const std::lock_guard lock(team_.calls());
-      check_mpi(call(at, static_cast<int>(std::min(kMostBytes, bytes.size() - at)), &status), action + path_);
+      check_mpi(call(at, static_cast<int>(std::min(kMostFileBytes, bytes.size() - at)), &status), action + path_);
       MPI_Get_count(&status, MPI_BYTE, &count);
       if (count <= 0) throw Error(ErrorKind::io, cat(path_, ": nothing more is ", done));
       at += static_cast<std::size_t>(count);
@@ -123,8 +129,8 @@ class MpiFileSystem final : public FileSystem {
   void rename_new(const std::string& from, const std::string& to) override {
     team_.lead([&] { files_.rename_new(from, to); });
   }
-  void link(const std::string& from, const std::string& to) override {
-    team_.lead([&] { files_.link(from, to); });
+  bool link(const std::string& from, const std::string& to) override {
+    return ask<bool>([&] { return files_.link(from, to); });
   }
   void remove(const std::string& path) override {
     team_.lead([&] { files_.remove(path); });
@@ -140,6 +146,9 @@ class MpiFileSystem final : public FileSystem {
   }
   bool exists(const std::string& path) override {
     return ask<bool>([&] { return files_.exists(path); });
+  }
+  bool is_replaceable(const std::string& path) override {
+    return ask<bool>([&] { return files_.is_replaceable(path); });
   }
   bool is_memory(const std::string& directory) override {
     return ask<bool>([&] { return files_.is_memory(directory); });

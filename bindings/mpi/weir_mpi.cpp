@@ -10,6 +10,7 @@
 
 #include "bindings/mpi/mpi_file_system.h"
 #include "bindings/mpi/mpi_team.h"
+#include "compressor/build_commit.h"
 #include "compressor/conversion.h"
 #include "format/error.h"
 #include "format/output_files.h"
@@ -63,7 +64,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     options.memory = weir::parse_memory(a.run);
     options.threads = threads;
     options.work_dir = a.work_dir;
-    options.provenance = {WEIR_VERSION, WEIR_COMMIT, weir::given_options(command)};
+    options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command)};
     weir::SourceOptions source_options = weir::parse_input(a.source);
     source_options.memory = options.memory;
     source_options.spool_directory = a.work_dir.empty() ? weir::directory_of(a.output) : a.work_dir;

@@ -1,11 +1,13 @@
 #include "bindings/python/convert.h"
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <utility>
 
 #include "bindings/python/option_list.h"
 #include "bindings/python/watch.h"
+#include "compressor/build_commit.h"
 #include "compressor/conversion.h"
 #include "format/error.h"
 #include "format/output_files.h"
@@ -59,7 +61,7 @@ Request parse_request(const std::string& output, const std::vector<std::string>&
   request.conversion.threads = static_cast<std::size_t>(run.threads);
   request.conversion.work_dir = work_dir;
   request.conversion.resume = resume == "auto" ? Resume::automatic : resume == "on" ? Resume::on : Resume::off;
-  request.conversion.provenance = {WEIR_VERSION, WEIR_COMMIT, given_options(command)};
+  request.conversion.provenance = {WEIR_VERSION, build_commit(), given_options(command)};
   // The program's own data are in the process as well, and none of the conversion's business.
   request.conversion.memory = resident_bytes() + parse_memory(run);
   request.source = parse_input(input);

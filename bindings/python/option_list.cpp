@@ -1,5 +1,6 @@
 #include "bindings/python/option_list.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "format/error.h"

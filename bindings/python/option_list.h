@@ -2,7 +2,6 @@
 // messages for both.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 

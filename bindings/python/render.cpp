@@ -1,4 +1,5 @@
 // Grid::render: a picture by the renderer of `weir render`, as an array.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <memory>

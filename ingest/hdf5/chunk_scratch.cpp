@@ -12,7 +12,7 @@ namespace {
 /// zlib's own state: 7 KiB and a window of 32 KiB.
 constexpr std::uint64_t kInflaterBytes = 40 * 1024;
 /// Of --memory, for all scratch together: what is larger takes from the blocks, and saves fewer decodes.
-constexpr std::uint64_t kMemoryShare = 8;
+constexpr std::uint64_t kScratchShare = 8;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ ScratchPool::ScratchPool(const FilterPipeline& pipeline, std::size_t chunk_bytes
                     "; give at least ", (2 * scratch_bytes_ >> 20U) + 1, "MiB"));
   }
   const std::uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::uint64_t count = std::clamp<std::uint64_t>(memory / kMemoryShare / scratch_bytes_, 1, cores);
+  const std::uint64_t count = std::clamp<std::uint64_t>(memory / kScratchShare / scratch_bytes_, 1, cores);
   for (std::uint64_t i = 0; i < count; ++i) {
     all_.push_back(std::make_unique<ChunkScratch>(buffer_bytes, two));
     free_.push(all_.back().get());

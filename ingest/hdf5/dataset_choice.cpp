@@ -14,21 +14,21 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostNames = 8;  // in a message
+constexpr std::size_t kMostCandidates = 8;  // in a message
 
-struct Candidate {
+struct DatasetCandidate {
   std::string name;
   std::string axes;
   std::size_t positions = 0;
 };
 
-Error several(const std::string& path, const std::vector<Candidate>& candidates) {
+Error several(const std::string& path, const std::vector<DatasetCandidate>& candidates) {
   std::string names;
-  for (std::size_t i = 0; i < std::min(candidates.size(), kMostNames); ++i) {
+  for (std::size_t i = 0; i < std::min(candidates.size(), kMostCandidates); ++i) {
     names += cat(i == 0 ? "" : ", ", candidates[i].name, " (", candidates[i].axes, ")");
   }
-  if (candidates.size() > kMostNames) {
-    names += cat(" and ", candidates.size() - kMostNames, " more (weir inspect lists them)");
+  if (candidates.size() > kMostCandidates) {
+    names += cat(" and ", candidates.size() - kMostCandidates, " more (weir inspect lists them)");
   }
   return {ErrorKind::usage, cat(path, ": holds ", candidates.size(), " volumes; choose one with --dataset: ", names)};
 }
@@ -36,7 +36,7 @@ Error several(const std::string& path, const std::vector<Candidate>& candidates)
 }  // namespace
 
 Hdf5Object only_volume(hid_t file, const std::string& path, std::size_t positions) {
-  std::vector<Candidate> candidates;
+  std::vector<DatasetCandidate> candidates;
   std::size_t datasets = 0;
   std::string obstacle;
   walk_datasets(file, "/", [&](std::string name, Hdf5Handle handle) {
@@ -54,9 +54,9 @@ Hdf5Object only_volume(hid_t file, const std::string& path, std::size_t position
                                                 : cat(path, ": none of its ", datasets, " datasets is a volume (",
                                                       obstacle, "); weir inspect lists them"));
   }
-  std::vector<Candidate> fitting = candidates;
-  std::erase_if(fitting, [&](const Candidate& c) { return c.positions != positions; });
-  const std::vector<Candidate>& left = fitting.empty() ? candidates : fitting;
+  std::vector<DatasetCandidate> fitting = candidates;
+  std::erase_if(fitting, [&](const DatasetCandidate& c) { return c.positions != positions; });
+  const std::vector<DatasetCandidate>& left = fitting.empty() ? candidates : fitting;
   if (left.size() > 1) throw several(path, left);
   return find_dataset(file, path, left.front().name);
 }

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-constexpr const char* kPrefixVariable = "HDF5_EXTFILE_PREFIX";
+constexpr const char* kExternalPrefix = "HDF5_EXTFILE_PREFIX";
 
 class ExternalBoxes final : public StoredBoxes {
  public:
@@ -81,10 +81,10 @@ std::vector<ExternalPart> external_parts(hid_t creation, std::uint64_t bytes, co
         offset < 0) {
       throw Error(ErrorKind::input, cat(where, ": the names of its external files cannot be read"));
     }
-    const auto path = find_side_file(name.data(), parent, kPrefixVariable);
+    const auto path = find_side_file(name.data(), parent, kExternalPrefix);
     if (!path) {
       throw Error(ErrorKind::input, cat(where, ": its values lie in the file ", name.data(),
-                                        ", which is not there; put it beside ", parent, " or set ", kPrefixVariable));
+                                        ", which is not there; put it beside ", parent, " or set ", kExternalPrefix));
     }
     ExternalPart part{*path, static_cast<std::uint64_t>(offset), std::min<std::uint64_t>(size, bytes)};
     const std::uint64_t held = InputFile(part.path, DirectIo::off).size();

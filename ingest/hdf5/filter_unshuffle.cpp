@@ -11,7 +11,7 @@ namespace weir {
 namespace {
 
 /// Values put together at a time by unshuffle_any: one cache line of each plane.
-constexpr std::size_t kTile = 64;
+constexpr std::size_t kTileValues = 64;
 
 /// Bits byte j of a value is shifted by to lie in memory at j.
 template <typename Word>
@@ -36,8 +36,8 @@ void unshuffle_words(const std::byte* planes, std::size_t count, std::byte* valu
 }
 
 void unshuffle_any(const std::byte* planes, std::size_t count, std::size_t value_bytes, std::byte* values) {
-  for (std::size_t first = 0; first < count; first += kTile) {
-    const std::size_t end = std::min(first + kTile, count);
+  for (std::size_t first = 0; first < count; first += kTileValues) {
+    const std::size_t end = std::min(first + kTileValues, count);
     for (std::size_t j = 0; j < value_bytes; ++j) {
       for (std::size_t i = first; i < end; ++i) values[i * value_bytes + j] = planes[j * count + i];
     }

@@ -36,7 +36,7 @@ struct Attribute {
   H5T_class_t kind = H5T_NO_CLASS;
 };
 
-std::string trimmed(const char* text, std::size_t limit) {
+std::string attribute_text(const char* text, std::size_t limit) {
   std::string_view view(text, strnlen(text, limit));
   while (view.ends_with(' ')) view.remove_suffix(1);
   return std::string(view);
@@ -48,7 +48,7 @@ std::vector<std::string> fixed_texts(const Attribute& attribute) {
   std::vector<char> bytes(width * attribute.values);
   if (H5Aread(attribute.handle.get(), attribute.type.get(), bytes.data()) < 0) return {};
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < attribute.values; ++i) texts.push_back(trimmed(bytes.data() + i * width, width));
+  for (std::size_t i = 0; i < attribute.values; ++i) texts.push_back(attribute_text(bytes.data() + i * width, width));
   return texts;
 }
 
@@ -60,7 +60,7 @@ std::vector<std::string> variable_texts(const Attribute& attribute) {
   std::vector<char*> pointers(attribute.values, nullptr);
   std::vector<std::string> texts;
   if (H5Aread(attribute.handle.get(), memory_type.get(), pointers.data()) >= 0) {
-    for (const char* text : pointers) texts.push_back(text == nullptr ? "" : trimmed(text, kMaxAttributeBytes));
+    for (const char* text : pointers) texts.push_back(text == nullptr ? "" : attribute_text(text, kMaxAttributeBytes));
   }
   H5Dvlen_reclaim(memory_type.get(), attribute.space.get(), H5P_DEFAULT, pointers.data());
   return texts;

@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostNames = 8;  // in a message
+constexpr std::size_t kMostNearNames = 8;  // in a message
 
 std::vector<std::string> dataset_names(hid_t file, const std::string& group) {
   std::vector<std::string> names;
@@ -24,8 +24,9 @@ std::vector<std::string> dataset_names(hid_t file, const std::string& group) {
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) text += cat(i == 0 ? "" : ", ", names[i]);
-  if (names.size() > kMostNames) text += cat(" and ", names.size() - kMostNames, " more (weir inspect lists them)");
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNearNames); ++i) text += cat(i == 0 ? "" : ", ", names[i]);
+  if (names.size() > kMostNearNames)
+    text += cat(" and ", names.size() - kMostNearNames, " more (weir inspect lists them)");
   return text;
 }
 
@@ -58,7 +59,7 @@ Error missing(hid_t file, const std::string& path, const std::string& name) {
   }
   const std::vector<std::string> names = dataset_names(file, "/");
   if (names.empty()) return {ErrorKind::input, cat(path, ": no dataset ", name, "; the file holds none at all")};
-  const std::vector<std::string> near = near_names(name, names, kMostNames);
+  const std::vector<std::string> near = near_names(name, names, kMostNearNames);
   if (!near.empty()) {
     return {ErrorKind::input,
             cat(path, ": no dataset ", name, "; alike are ", joined(near), "; weir inspect lists all")};

@@ -66,6 +66,7 @@ struct Opening {
     files.add(info.path);
     for (const std::string& path : others) files.add(path);
     info.files_digest = files.digest();
+    info.files = files.files();
   }
   /// Bytes of the array before the slice.
   std::uint64_t first_byte() const {

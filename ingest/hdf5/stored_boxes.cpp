@@ -16,7 +16,7 @@ namespace weir {
 namespace {
 
 constexpr std::uint64_t kAmpleBuffer = std::uint64_t{4} << 20U;  // more saves no time
-constexpr std::uint64_t kMemoryShare = 16;                       // of --memory, for the buffer
+constexpr std::uint64_t kBufferShare = 16;                       // of --memory, for the buffer
 
 class StoredBoxSource final : public VolumeSource {
  public:
@@ -81,7 +81,7 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
   // A chunk may reach beyond the volume; what is asked for does not.
   const std::uint64_t chunk_bytes =
       static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * value_bytes;
-  const std::uint64_t ample = std::min(kAmpleBuffer, memory / kMemoryShare) / value_bytes * value_bytes;
+  const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / value_bytes * value_bytes;
   const std::uint64_t buffer_bytes = std::max(chunk_bytes, ample);
   const std::uint64_t needed = buffer_bytes + boxes->working_bytes();
   if (needed > memory / 2) {

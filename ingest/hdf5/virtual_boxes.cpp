@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kOpenSources = 4;           // files open at a time: there may be thousands of them
 constexpr std::uint64_t kBytesPerMapping = 4096;  // two selections and two names, about
-constexpr std::uint64_t kChunkCopies = 2;         // before and behind a filter
+constexpr std::uint64_t kSourceChunkCopies = 2;   // before and behind a filter
 
 // Where a box at a position of the leading axes lies in the dataset.
 AxisBox axis_box(const std::vector<std::int64_t>& index, const Box& box) {
@@ -50,7 +50,7 @@ class VirtualBoxes final : public StoredBoxes {
         mappings_(virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}), parent, where_)) {
     for (const VirtualMapping& mapping : mappings_) {
       if (mapping.chunk.empty()) continue;
-      std::uint64_t bytes = kChunkCopies * mapping.value_bytes;
+      std::uint64_t bytes = kSourceChunkCopies * mapping.value_bytes;
       for (const hsize_t elements : mapping.chunk) bytes *= elements;  // the library checks: below 2^32
       chunk_bytes_ = std::max(chunk_bytes_, bytes);
     }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostBlocks = std::size_t{1} << 20U;  // of all mappings of a volume
 constexpr std::size_t kMostNameBytes = 4096;
-constexpr const char* kPrefixVariable = "HDF5_VDS_PREFIX";
+constexpr const char* kVirtualPrefix = "HDF5_VDS_PREFIX";
 
 std::vector<hsize_t> dims_of(hid_t space) {
   std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
@@ -33,13 +33,13 @@ std::string list_text(const std::vector<T>& values) {
 }
 
 /// A hyperslab that may go on without end along one axis.
-struct Slab {
-  explicit Slab(std::size_t rank) : start(rank), stride(rank), count(rank), block(rank) {}
+struct MappedSlab {
+  explicit MappedSlab(std::size_t rank) : start(rank), stride(rank), count(rank), block(rank) {}
 
-  static std::optional<Slab> of(hid_t space) {
+  static std::optional<MappedSlab> of(hid_t space) {
     const int axes = H5Sget_simple_extent_ndims(space);
     if (axes <= 0 || H5Sget_select_type(space) != H5S_SEL_HYPERSLABS || H5Sis_regular_hyperslab(space) <= 0) return {};
-    Slab slab(static_cast<std::size_t>(axes));
+    MappedSlab slab(static_cast<std::size_t>(axes));
     if (H5Sget_regular_hyperslab(space, slab.start.data(), slab.stride.data(), slab.count.data(), slab.block.data()) <
         0) {
       return {};
@@ -126,7 +126,7 @@ class MappingReader {
   }
 
   void take(const StoredMapping& mapping) {
-    std::optional<Slab> slab = Slab::of(mapping.in_virtual.get());
+    std::optional<MappedSlab> slab = MappedSlab::of(mapping.in_virtual.get());
     if (slab && slab->endless && mapping.numbered()) return take_numbered(mapping, *slab);
     VirtualMapping found;
     found.in_virtual = Hdf5Handle(H5Scopy(space_.get()));
@@ -137,7 +137,7 @@ class MappingReader {
     }
     look_at_source(mapping, 0, found);
     if (endless) {
-      std::optional<Slab> source = Slab::of(mapping.in_source.get());
+      std::optional<MappedSlab> source = MappedSlab::of(mapping.in_source.get());
       if (!source || !source->endless || source->dense() != slab->dense()) {
         throw error(
             "a mapping goes on without end in a way that weir does not follow; write the dataset as one with h5repack");
@@ -154,11 +154,11 @@ class MappingReader {
     keep(std::move(found));
   }
 
-  void take_numbered(const StoredMapping& mapping, const Slab& slab) {
+  void take_numbered(const StoredMapping& mapping, const MappedSlab& slab) {
     const std::size_t axis = *slab.endless;
     const hsize_t extent = dims_of(space_.get())[axis];
     for (hsize_t block = 0;; ++block) {
-      Slab one = slab;
+      MappedSlab one = slab;
       one.start[axis] += block * slab.stride[axis];
       one.count[axis] = 1;
       if (slab.block[axis] == H5S_UNLIMITED || one.start[axis] >= extent || block > kMostBlocks) return;
@@ -193,10 +193,10 @@ class MappingReader {
     found.dataset = virtual_source_name(mapping.dataset, block);
     const std::string file = virtual_source_name(mapping.file, block);
     if (file != ".") {
-      const auto path = find_side_file(file, parent_, kPrefixVariable);
+      const auto path = find_side_file(file, parent_, kVirtualPrefix);
       if (!path) {
         throw error(
-            cat("its source file ", file, " is not there; put it beside ", parent_, " or set ", kPrefixVariable));
+            cat("its source file ", file, " is not there; put it beside ", parent_, " or set ", kVirtualPrefix));
       }
       found.file = *path;
     }
@@ -209,7 +209,7 @@ class MappingReader {
     }
     found.chunk = storage.chunk;
     found.in_source = Hdf5Handle(H5Dget_space(source.get()));
-    const bool endless = Slab::of(mapping.in_source.get()).value_or(Slab(0)).endless.has_value();
+    const bool endless = MappedSlab::of(mapping.in_source.get()).value_or(MappedSlab(0)).endless.has_value();
     if (!endless) {
       const bool all = H5Sget_select_type(mapping.in_source.get()) != H5S_SEL_HYPERSLABS;
       const bool fits = all || H5Sget_simple_extent_ndims(mapping.in_source.get()) ==

@@ -10,10 +10,10 @@
 namespace weir {
 namespace {
 
-constexpr float kGain = 0.66F;
-constexpr float kDeviation = 0.34F;
-constexpr float kCore = 0.45F;      // the envelope grows no further, so that the noise shows in the inside too
-constexpr float kRounding = 1e-3F;  // more than the rounding of a bound
+constexpr float kCloudGain = 0.66F;
+constexpr float kCloudDeviation = 0.34F;
+constexpr float kCore = 0.45F;           // the envelope grows no further, so that the noise shows in the inside too
+constexpr float kBoundRounding = 1e-3F;  // more than the rounding of a bound
 
 // From noise to density, in place.
 WEIR_SIMD void finish(const std::array<float, kTileDim>& q, float* row, std::int64_t count) {
@@ -28,7 +28,7 @@ WEIR_SIMD void finish(const std::array<float, kTileDim>& q, float* row, std::int
 class Cloud final : public SyntheticField {
  public:
   explicit Cloud(const SyntheticOptions& options)
-      : noise_(options.seed, options.extent, kGain, kDeviation), heap_(make_heap(options)) {}
+      : noise_(options.seed, options.extent, kCloudGain, kCloudDeviation), heap_(make_heap(options)) {}
 
   void fill(const Tile& tile) const override {
     const TileEllipsoids ellipsoids(heap_, tile.box);
@@ -54,7 +54,7 @@ class Cloud final : public SyntheticField {
   }
 
  private:
-  static bool empty(float least_q, float most_noise) { return 1.0F - least_q + most_noise <= -kRounding; }
+  static bool empty(float least_q, float most_noise) { return 1.0F - least_q + most_noise <= -kBoundRounding; }
 
   static void clear(const Tile& tile) {
     for (std::int64_t z = tile.box.lo.z; z < tile.box.hi.z; ++z) {

@@ -9,7 +9,7 @@ namespace weir {
 namespace {
 
 template <typename Value>
-std::unique_ptr<SyntheticField> make(Value value) {
+std::unique_ptr<SyntheticField> make_by_voxel(Value value) {
   return std::make_unique<VoxelField<Value>>(value);
 }
 
@@ -78,7 +78,9 @@ std::unique_ptr<SyntheticField> make_some_nonfinite(const SyntheticOptions& opti
 
 std::unique_ptr<SyntheticField> make_hot_voxel(const SyntheticOptions& options) {
   const Index3 hot = index_at(pick(derive_key(options.seed, 3), volume(options.extent)), options.extent);
-  return make([hot](std::int64_t x, std::int64_t y, std::int64_t z) { return Index3{x, y, z} == hot ? 1.0F : 0.0F; });
+  return make_by_voxel([hot](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return Index3{x, y, z} == hot ? 1.0F : 0.0F;
+  });
 }
 
 std::unique_ptr<SyntheticField> make_plateau(const SyntheticOptions& options) {
@@ -86,20 +88,21 @@ std::unique_ptr<SyntheticField> make_plateau(const SyntheticOptions& options) {
   const std::int64_t rest = volume(options.extent) % 3;
   const Index3 up = index_at(third, options.extent);
   const Index3 down = index_at(2 * third + 2 * rest / 3, options.extent);
-  return make([up, down](std::int64_t x, std::int64_t y, std::int64_t z) {
+  return make_by_voxel([up, down](std::int64_t x, std::int64_t y, std::int64_t z) {
     const Index3 i{x, y, z};
     return i == up ? 1e6F : i == down ? -1e6F : 1.0F;
   });
 }
 
 std::unique_ptr<SyntheticField> make_checkerboard() {
-  return make([](std::int64_t x, std::int64_t y, std::int64_t z) { return static_cast<float>((x + y + z) & 1); });
+  return make_by_voxel(
+      [](std::int64_t x, std::int64_t y, std::int64_t z) { return static_cast<float>((x + y + z) & 1); });
 }
 
 std::unique_ptr<SyntheticField> make_ties(const SyntheticOptions& options) {
   const Index3 extent = options.extent;
   const std::int64_t tied = volume(extent) / 4 * 4;
-  return make([extent, tied](std::int64_t x, std::int64_t y, std::int64_t z) {
+  return make_by_voxel([extent, tied](std::int64_t x, std::int64_t y, std::int64_t z) {
     const std::int64_t i = linear_index({x, y, z}, extent);
     return i < tied ? 0.125F + 0.25F * static_cast<float>(i & 3) : 0.0F;
   });

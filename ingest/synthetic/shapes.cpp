@@ -7,20 +7,20 @@ namespace weir {
 namespace {
 
 template <typename Value>
-std::unique_ptr<SyntheticField> make(Value value) {
+std::unique_ptr<SyntheticField> make_shape(Value value) {
   return std::make_unique<VoxelField<Value>>(value);
 }
 
 }  // namespace
 
 std::unique_ptr<SyntheticField> make_constant(float value) {
-  return make([value](std::int64_t, std::int64_t, std::int64_t) { return value; });
+  return make_shape([value](std::int64_t, std::int64_t, std::int64_t) { return value; });
 }
 
 std::unique_ptr<SyntheticField> make_gradient(const SyntheticOptions& options, double lo, double hi) {
   const std::int64_t last = options.extent.x + options.extent.y + options.extent.z - 3;
   const auto steps = static_cast<double>(std::max<std::int64_t>(1, last));
-  return make([lo, hi, steps](std::int64_t x, std::int64_t y, std::int64_t z) {
+  return make_shape([lo, hi, steps](std::int64_t x, std::int64_t y, std::int64_t z) {
     const double t = static_cast<double>(x + y + z) / steps;
     return static_cast<float>(lo * (1.0 - t) + hi * t);
   });
@@ -32,7 +32,7 @@ std::unique_ptr<SyntheticField> make_shells(const SyntheticOptions& options) {
   const float cx = 0.5F * static_cast<float>(e.x);
   const float cy = 0.5F * static_cast<float>(e.y);
   const float cz = 0.5F * static_cast<float>(e.z);
-  return make([=](std::int64_t x, std::int64_t y, std::int64_t z) {
+  return make_shape([=](std::int64_t x, std::int64_t y, std::int64_t z) {
     const float dx = (static_cast<float>(x) + 0.5F - cx) * unit;
     const float dy = (static_cast<float>(y) + 0.5F - cy) * unit;
     const float dz = (static_cast<float>(z) + 0.5F - cz) * unit;

@@ -12,7 +12,7 @@ namespace weir {
 namespace {
 
 constexpr std::int64_t kTaps = 4;
-constexpr float kRounding = 1e-5F;  // the weights of a voxel sum to one only up to rounding
+constexpr float kWeightRounding = 1e-5F;  // the weights of a voxel sum to one only up to rounding
 
 // Variance of one octave of amplitude 1: nodes uniform in [-1, 1) have 1/3, and the B-spline keeps
 // the integral of its square, 151/315, along each axis.
@@ -182,7 +182,7 @@ TileNoise::TileNoise(const SplineNoise& noise, const Box& box) : box_(box) {
       }
     }
     lattice.x_weights = tap_rows(octave.shift, lo.x + octave.offset.x);
-    upper_bound_ += highest + octave.amplitude * kRounding;
+    upper_bound_ += highest + octave.amplitude * kWeightRounding;
   }
 }
 
@@ -195,7 +195,7 @@ float TileNoise::set_plane(std::int64_t z) {
     const TapRows rows = tap_rows(lattice.octave.shift, position);
     blend_plane({*rows[0], *rows[1], *rows[2], *rows[3]}, lattice.nodes.data() + first * plane_nodes, plane_nodes,
                 lattice.plane.data(), plane_nodes);
-    bound += *std::max_element(lattice.plane.begin(), lattice.plane.end()) + lattice.octave.amplitude * kRounding;
+    bound += *std::max_element(lattice.plane.begin(), lattice.plane.end()) + lattice.octave.amplitude * kWeightRounding;
   }
   return bound;
 }

@@ -8,11 +8,11 @@
 namespace weir {
 namespace {
 
-constexpr float kGain = 0.7937005F;  // 2^(-1/3)
-constexpr float kDeviation = 0.2F;
+constexpr float kTurbulenceGain = 0.7937005F;  // 2^(-1/3)
+constexpr float kTurbulenceDeviation = 0.2F;
 
 SplineNoise inertial_range(const SyntheticOptions& options) {
-  return SplineNoise(options.seed, options.extent, kGain, kDeviation);
+  return SplineNoise(options.seed, options.extent, kTurbulenceGain, kTurbulenceDeviation);
 }
 
 /// finish(x, y, z, turbulence) is the voxel's value.
@@ -44,7 +44,7 @@ class Turbulence final : public SyntheticField {
 };
 
 template <typename Finish>
-std::unique_ptr<SyntheticField> make(const SyntheticOptions& options, Finish finish) {
+std::unique_ptr<SyntheticField> make_turbulent(const SyntheticOptions& options, Finish finish) {
   return std::make_unique<Turbulence<Finish>>(options, finish);
 }
 
@@ -54,11 +54,11 @@ float nearest_integer(float v) { return static_cast<float>(static_cast<int>(v + 
 }  // namespace
 
 std::unique_ptr<SyntheticField> make_turbulence(const SyntheticOptions& options, float scale) {
-  return make(options, [scale](std::int64_t, std::int64_t, std::int64_t, float v) { return scale * v; });
+  return make_turbulent(options, [scale](std::int64_t, std::int64_t, std::int64_t, float v) { return scale * v; });
 }
 
 std::unique_ptr<SyntheticField> make_stepped_turbulence(const SyntheticOptions& options, float base, float step) {
-  return make(options, [base, step](std::int64_t, std::int64_t, std::int64_t, float v) {
+  return make_turbulent(options, [base, step](std::int64_t, std::int64_t, std::int64_t, float v) {
     return base + step * nearest_integer(32.0F * v);
   });
 }
@@ -68,7 +68,7 @@ std::unique_ptr<SyntheticField> make_signed_ball(const SyntheticOptions& options
   const std::array<float, 3> slope{1.0F / (kRadius * static_cast<float>(options.extent.x)),
                                    1.0F / (kRadius * static_cast<float>(options.extent.y)),
                                    1.0F / (kRadius * static_cast<float>(options.extent.z))};
-  return make(options, [background, slope](std::int64_t x, std::int64_t y, std::int64_t z, float v) {
+  return make_turbulent(options, [background, slope](std::int64_t x, std::int64_t y, std::int64_t z, float v) {
     const float dx = (static_cast<float>(x) + 0.5F) * slope[0] - 0.5F / kRadius;
     const float dy = (static_cast<float>(y) + 0.5F) * slope[1] - 0.5F / kRadius;
     const float dz = (static_cast<float>(z) + 0.5F) * slope[2] - 0.5F / kRadius;

@@ -8,8 +8,6 @@
 namespace weir {
 namespace {
 
-std::string vector_text(const Vector3& v) { return cat(v[0], ',', v[1], ',', v[2]); }
-
 bool finite(const Vector3& v) {
   return std::all_of(v.begin(), v.end(), [](double c) { return std::isfinite(c); });
 }

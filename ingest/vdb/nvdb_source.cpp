@@ -1,6 +1,7 @@
 #include "ingest/vdb/nvdb_source.h"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -25,14 +26,14 @@ std::array<Vector3, 3> steps_of(const NvdbGrid& grid) {
 }
 
 /// One of a file's grids; what stands in the way of opening it is in volume.obstacle.
-struct Candidate {
+struct GridCandidate {
   NamedVolume volume;
   NvdbRecord record;
   std::optional<NvdbGrid> grid;
 };
 
-Candidate open_candidate(const FileMapping& mapping, const std::string& path, const NvdbRecord& record) {
-  Candidate candidate{{nvdb_grid_name(mapping.bytes(), record), {}}, record, {}};
+GridCandidate open_candidate(const FileMapping& mapping, const std::string& path, const NvdbRecord& record) {
+  GridCandidate candidate{{nvdb_grid_name(mapping.bytes(), record), {}}, record, {}};
   try {
     candidate.grid = NvdbGrid::open(mapping.bytes(), path, record);
     if (!placeable(steps_of(*candidate.grid), candidate.grid->world_origin())) {
@@ -47,18 +48,18 @@ Candidate open_candidate(const FileMapping& mapping, const std::string& path, co
 }
 
 // Several grids of one name are numbered as OpenVDB's tools do it.
-void number_equal_names(std::vector<Candidate>& all) {
+void number_equal_names(std::vector<GridCandidate>& all) {
   std::map<std::string, std::size_t> count;
-  for (const Candidate& candidate : all) ++count[candidate.volume.name];
+  for (const GridCandidate& candidate : all) ++count[candidate.volume.name];
   std::map<std::string, std::size_t> next;
-  for (Candidate& candidate : all) {
+  for (GridCandidate& candidate : all) {
     std::string& name = candidate.volume.name;
     if (count[name] > 1) name = cat(name, '[', next[name]++, ']');
   }
 }
 
-std::vector<Candidate> candidates_of(const FileMapping& mapping, const std::string& path) {
-  std::vector<Candidate> all;
+std::vector<GridCandidate> candidates_of(const FileMapping& mapping, const std::string& path) {
+  std::vector<GridCandidate> all;
   for (const NvdbRecord& record : all_nvdb_segments(mapping.bytes(), path)) {
     all.push_back(open_candidate(mapping, path, record));
   }
@@ -66,13 +67,13 @@ std::vector<Candidate> candidates_of(const FileMapping& mapping, const std::stri
   return all;
 }
 
-std::size_t choose(const std::vector<Candidate>& there, const std::string& path, const std::string& wanted) {
+std::size_t choose(const std::vector<GridCandidate>& there, const std::string& path, const std::string& wanted) {
   // The only grid of a file says itself what is wrong with it.
   if (there.size() == 1 && wanted.empty() && !there[0].volume.obstacle.empty()) {
     throw Error(ErrorKind::input, cat(path, ": ", there[0].volume.obstacle));
   }
   std::vector<NamedVolume> volumes;
-  for (const Candidate& candidate : there) volumes.push_back(candidate.volume);
+  for (const GridCandidate& candidate : there) volumes.push_back(candidate.volume);
   return choose_volume(path, "grid", volumes, wanted);
 }
 
@@ -87,11 +88,11 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   if (!options.index.empty()) {
     throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
   }
-  const InputFile file(path, DirectIo::off);
-  FileMapping mapping(path, ".nvdb");
+  auto file = std::make_unique<InputFile>(path, DirectIo::off);
+  const FileMapping mapping(path, ".nvdb");  // to choose and check a grid; its values are read otherwise
   auto candidates = candidates_of(mapping, path);
-  Candidate& chosen = candidates[choose(candidates, path, options.dataset)];
-  NvdbGrid grid = std::move(*chosen.grid);
+  const GridCandidate& chosen = candidates[choose(candidates, path, options.dataset)];
+  const NvdbGrid& grid = *chosen.grid;
   const Box domain = grid.index_bbox();
   const std::string where = cat(path, ": grid ", in_quotes(chosen.volume.name));
   if (domain.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
@@ -107,15 +108,17 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   const AxisPlacement placement = place_axes(steps_of(grid), grid.world_origin());
   info.spacing = placement.spacing;
   info.origin = placement.origin;
-  info.file_bytes = file.size();
-  info.mtime_ns = file.mtime_ns();
-  return make_leaf_source(make_nvdb_tree(std::move(mapping), std::move(grid), file.looks_cached()), std::move(info));
+  info.file_bytes = file->size();
+  info.mtime_ns = file->mtime_ns();
+  info.files = {file->state()};
+  const bool cached = file->looks_cached();
+  return make_leaf_source(make_nvdb_tree(std::move(file), grid, cached), std::move(info));
 }
 
 std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&) {
   const FileMapping mapping(path, ".nvdb");
   std::vector<DatasetInfo> list;
-  for (const Candidate& candidate : candidates_of(mapping, path)) {
+  for (const GridCandidate& candidate : candidates_of(mapping, path)) {
     DatasetInfo info;
     info.name = candidate.volume.name;
     info.obstacle = candidate.volume.obstacle;

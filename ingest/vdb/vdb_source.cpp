@@ -118,6 +118,7 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   info.origin = placement.origin;
   info.file_bytes = file.size();
   info.mtime_ns = file.mtime_ns();
+  info.files = {file.state()};
   return make_leaf_source(load_vdb_tree(stream, header, owner, type, where), std::move(info));
 }
 

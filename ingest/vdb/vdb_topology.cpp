@@ -16,7 +16,7 @@ constexpr std::uint64_t kMaxRootEntries = std::uint64_t{1} << 18U;
 
 /// A bit for each entry of a node of Side^3, z fastest.
 template <std::size_t Side>
-struct Mask {
+struct NodeMask {
   static constexpr std::size_t kSide = Side;
   static constexpr std::size_t kBits = Side * Side * Side;
   std::array<std::uint64_t, kBits / 64> words;
@@ -41,14 +41,14 @@ struct Mask {
   }
 };
 
-using UpperMask = Mask<32>;
-using LowerMask = Mask<16>;
-using LeafMask = Mask<8>;
+using UpperMask = NodeMask<32>;
+using LowerMask = NodeMask<16>;
+using LeafMask = NodeMask<8>;
 static_assert(sizeof(LeafMask) == kLeafMaskBytes);
 
-class Walk {
+class TreeWalk {
  public:
-  Walk(VdbReader& reader, const VdbGrid& grid, const VdbType& type)
+  TreeWalk(VdbReader& reader, const VdbGrid& grid, const VdbType& type)
       : reader_(reader), grid_(grid), type_(type), stored_bytes_(grid.half && type.real ? 2 : type.bytes) {}
 
   VdbTopology run() {
@@ -197,7 +197,7 @@ class Walk {
 }  // namespace
 
 VdbTopology walk_vdb_tree(VdbReader& reader, const VdbGrid& grid, const VdbType& type) {
-  return Walk(reader, grid, type).run();
+  return TreeWalk(reader, grid, type).run();
 }
 
 }  // namespace weir

@@ -40,23 +40,28 @@ class Leaves final : public LeafReader {
   openvdb::tree::ValueAccessor<const Tree, false> accessor_;  // false: not registered, for the tree does not change
 };
 
+// Made and filled through OpenVDB's own registry and virtual functions: a tree made here would compile all of its
+// class again, a minute for six of them.
 template <typename Tree>
 class LoadedTree final : public LeafTree {
  public:
-  LoadedTree(std::istream& in, bool as_half) {
+  LoadedTree(std::istream& in, const std::string& type, bool as_half) : grid_(openvdb::GridBase::createGrid(type)) {
     const std::streamoff begin = in.tellg();
-    tree_.readTopology(in, as_half);
-    tree_.readBuffers(in, as_half);
+    openvdb::TreeBase& tree = grid_->baseTree();
+    tree.readTopology(in, as_half);
+    tree.readBuffers(in, as_half);
     bytes_read_ = static_cast<std::uint64_t>(in.tellg() - begin);
   }
 
-  std::unique_ptr<LeafReader> reader() const override { return std::make_unique<Leaves<Tree>>(tree_); }
+  std::unique_ptr<LeafReader> reader() const override {
+    return std::make_unique<Leaves<Tree>>(static_cast<const Tree&>(grid_->constBaseTree()));
+  }
   bool in_memory() const override { return true; }
   std::uint64_t working_bytes() const override { return 0; }  // what it holds is resident already
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
  private:
-  Tree tree_;
+  openvdb::GridBase::Ptr grid_;
   std::uint64_t bytes_read_ = 0;
 };
 
@@ -78,11 +83,6 @@ auto with_tree(const VdbType& type, const Use& use) {
   }
 }
 
-template <typename Tree>
-std::unique_ptr<LeafTree> load(std::istream& in, bool as_half) {
-  return std::make_unique<LoadedTree<Tree>>(in, as_half);
-}
-
 }  // namespace
 
 std::uint64_t vdb_tree_bytes(const VdbType& type, const VdbTopology& topology) {
@@ -102,11 +102,14 @@ std::uint64_t vdb_tree_bytes(const VdbType& type, const VdbTopology& topology) {
 std::unique_ptr<LeafTree> load_vdb_tree(std::istream& in, const VdbHeader& header, const VdbGrid& grid,
                                         const VdbType& type, const std::string& where) {
   try {
+    openvdb::initialize();  // fills the registry, once
     openvdb::io::setVersion(in, openvdb::VersionId(header.library_major, header.library_minor), header.version);
     openvdb::io::setDataCompression(in, grid.compression);
     in.seekg(static_cast<std::streamoff>(grid.tree_offset));
-    return with_tree(type,
-                     [&](auto* of_type) { return load<std::remove_pointer_t<decltype(of_type)>>(in, grid.half); });
+    return with_tree(type, [&](auto* of_type) -> std::unique_ptr<LeafTree> {
+      using Tree = std::remove_pointer_t<decltype(of_type)>;
+      return std::make_unique<LoadedTree<Tree>>(in, std::string(type.tree), grid.half);
+    });
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::size_t kValuesAtATime = 16384;
 
-bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
 /// The words of a text; no number is longer than kMaxWord.
 class Words {
  public:

@@ -33,8 +33,6 @@ AxisPlacement placement(const VtkImage& image, bool cells, const std::string& pa
   return place_axes(steps, first);
 }
 
-std::string vector_text(const Vector3& v) { return cat(v[0], ',', v[1], ',', v[2]); }
-
 }  // namespace
 
 Index3 vtk_extent(const VtkImage& image, bool cells) {

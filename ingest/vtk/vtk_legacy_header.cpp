@@ -20,32 +20,32 @@ namespace {
 constexpr std::size_t kMaxArrays = 4096;
 constexpr std::uint64_t kMaxComponents = 1024;
 
-struct Type {
+struct LegacyType {
   std::string_view name;
   std::optional<ScalarType> scalar;  ///< nothing where weir does not read it
   std::uint64_t bits;
 };
 
 // As a 64-bit Linux writes them; vtkIdType is written as int (vtkDataWriter, WriteArray).
-constexpr std::array<Type, 14> kTypes{{{"unsigned_char", ScalarType::uint8, 8},
-                                       {"char", ScalarType::int8, 8},
-                                       {"signed_char", ScalarType::int8, 8},
-                                       {"unsigned_short", ScalarType::uint16, 16},
-                                       {"short", ScalarType::int16, 16},
-                                       {"unsigned_int", ScalarType::uint32, 32},
-                                       {"int", ScalarType::int32, 32},
-                                       {"vtkidtype", ScalarType::int32, 32},
-                                       {"unsigned_long", ScalarType::uint64, 64},
-                                       {"long", ScalarType::int64, 64},
-                                       {"vtktypeint64", ScalarType::int64, 64},
-                                       {"vtktypeuint64", ScalarType::uint64, 64},
-                                       {"float", ScalarType::float32, 32},
-                                       {"double", ScalarType::float64, 64}}};
-constexpr Type kBit{"bit", std::nullopt, 1};
+constexpr std::array<LegacyType, 14> kLegacyTypes{{{"unsigned_char", ScalarType::uint8, 8},
+                                                   {"char", ScalarType::int8, 8},
+                                                   {"signed_char", ScalarType::int8, 8},
+                                                   {"unsigned_short", ScalarType::uint16, 16},
+                                                   {"short", ScalarType::int16, 16},
+                                                   {"unsigned_int", ScalarType::uint32, 32},
+                                                   {"int", ScalarType::int32, 32},
+                                                   {"vtkidtype", ScalarType::int32, 32},
+                                                   {"unsigned_long", ScalarType::uint64, 64},
+                                                   {"long", ScalarType::int64, 64},
+                                                   {"vtktypeint64", ScalarType::int64, 64},
+                                                   {"vtktypeuint64", ScalarType::uint64, 64},
+                                                   {"float", ScalarType::float32, 32},
+                                                   {"double", ScalarType::float64, 64}}};
+constexpr LegacyType kBit{"bit", std::nullopt, 1};
 
-class Parser {
+class LegacyParser {
  public:
-  Parser(std::istream& in, std::uint64_t size, const std::string& path) : text_(in, size, path) {}
+  LegacyParser(std::istream& in, std::uint64_t size, const std::string& path) : text_(in, size, path) {}
 
   VtkLegacyHeader parse() {
     read_preamble();
@@ -202,23 +202,23 @@ class Parser {
     return {words_[1], cells_, {}, words_[type_word], 0, {}};
   }
 
-  static const Type* type_of(std::string_view name) {
+  static const LegacyType* type_of(std::string_view name) {
     const std::string lower = lower_case(name);
     if (lower == kBit.name) return &kBit;
-    const auto* const found =
-        std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& type) { return type.name == lower; });
-    return found == kTypes.end() ? nullptr : found;
+    const auto* const found = std::find_if(kLegacyTypes.begin(), kLegacyTypes.end(),
+                                           [&](const LegacyType& type) { return type.name == lower; });
+    return found == kLegacyTypes.end() ? nullptr : found;
   }
 
-  const Type& required_type(std::string_view name) const {
-    const Type* const type = type_of(name);
+  const LegacyType& required_type(std::string_view name) const {
+    const LegacyType* const type = type_of(name);
     if (type == nullptr) wrong(cat("the type ", in_quotes(name), " is not known, nor how long its values are"));
     return *type;
   }
 
   void add(VtkLegacyArray array, std::uint64_t components, std::uint64_t tuples) {
     if (header_.arrays.size() == kMaxArrays) text_.fail(cat("more than ", kMaxArrays, " arrays"));
-    const Type& type = required_type(array.type_name);
+    const LegacyType& type = required_type(array.type_name);
     array.name = decoded(array.name);
     array.offset = text_.position();
     if (!type.scalar) {
@@ -232,7 +232,7 @@ class Parser {
     header_.arrays.push_back(std::move(array));
   }
 
-  void skip(const Type& type, std::uint64_t components, std::uint64_t tuples) {
+  void skip(const LegacyType& type, std::uint64_t components, std::uint64_t tuples) {
     std::uint64_t values = 0;
     std::uint64_t bits = 0;
     if (components > kMaxComponents || __builtin_mul_overflow(components, tuples, &values) ||
@@ -284,7 +284,7 @@ class Parser {
 }  // namespace
 
 VtkLegacyHeader parse_vtk_legacy_header(std::istream& in, std::uint64_t size, const std::string& path) {
-  return Parser(in, size, path).parse();
+  return LegacyParser(in, size, path).parse();
 }
 
 }  // namespace weir

@@ -17,7 +17,7 @@
 namespace weir {
 namespace {
 
-VtkLegacyHeader read_header(InputFile& file) {
+VtkLegacyHeader read_legacy_header(InputFile& file) {
   FileStream stream(file);
   return parse_vtk_legacy_header(stream, file.size(), file.path());
 }
@@ -44,7 +44,7 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
     throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
   }
   auto file = std::make_unique<InputFile>(path, options.direct_io);
-  const VtkLegacyHeader header = read_header(*file);
+  const VtkLegacyHeader header = read_legacy_header(*file);
   std::vector<NamedVolume> volumes;
   for (const VtkLegacyArray& array : header.arrays) volumes.push_back({array.name, array.obstacle});
   const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
@@ -55,6 +55,7 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
   info.dataset = array.name;
   info.file_bytes = file->size();
   info.mtime_ns = file->mtime_ns();
+  info.files = {file->state()};
   place_vtk_image(header.image, array.cells, info);
   checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
   RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}};
@@ -65,7 +66,7 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
 
 std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOptions&) {
   InputFile file(path, DirectIo::off);
-  const VtkLegacyHeader header = read_header(file);
+  const VtkLegacyHeader header = read_legacy_header(file);
   std::vector<DatasetInfo> list;
   for (const VtkLegacyArray& array : header.arrays) {
     DatasetInfo info;

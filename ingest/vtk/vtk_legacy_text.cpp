@@ -5,11 +5,7 @@
 #include "ingest/header_text.h"
 
 namespace weir {
-namespace {
-
-bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
-}  // namespace
+namespace {}  // namespace
 
 int VtkLegacyText::next() {
   if (position_ == size_) return -1;

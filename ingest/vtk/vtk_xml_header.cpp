@@ -15,20 +15,20 @@ namespace weir {
 namespace {
 
 using TypeName = std::pair<std::string_view, ScalarType>;
-constexpr std::array<TypeName, 10> kTypes{{{"Int8", ScalarType::int8},
-                                           {"UInt8", ScalarType::uint8},
-                                           {"Int16", ScalarType::int16},
-                                           {"UInt16", ScalarType::uint16},
-                                           {"Int32", ScalarType::int32},
-                                           {"UInt32", ScalarType::uint32},
-                                           {"Int64", ScalarType::int64},
-                                           {"UInt64", ScalarType::uint64},
-                                           {"Float32", ScalarType::float32},
-                                           {"Float64", ScalarType::float64}}};
+constexpr std::array<TypeName, 10> kXmlTypes{{{"Int8", ScalarType::int8},
+                                              {"UInt8", ScalarType::uint8},
+                                              {"Int16", ScalarType::int16},
+                                              {"UInt16", ScalarType::uint16},
+                                              {"Int32", ScalarType::int32},
+                                              {"UInt32", ScalarType::uint32},
+                                              {"Int64", ScalarType::int64},
+                                              {"UInt64", ScalarType::uint64},
+                                              {"Float32", ScalarType::float32},
+                                              {"Float64", ScalarType::float64}}};
 
-class Parser {
+class XmlParser {
  public:
-  explicit Parser(const std::string& path) : path_(path) {}
+  explicit XmlParser(const std::string& path) : path_(path) {}
 
   VtkXmlHeader parse(const VtkXmlSkeleton& skeleton) {
     const std::string xml = skeleton.xml();
@@ -144,8 +144,8 @@ class Parser {
     array.cells = cells;
     array.type_name = node.attribute("type").value();
     const auto* const type =
-        std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeName& t) { return t.first == array.type_name; });
-    if (type == kTypes.end()) {
+        std::find_if(kXmlTypes.begin(), kXmlTypes.end(), [&](const TypeName& t) { return t.first == array.type_name; });
+    if (type == kXmlTypes.end()) {
       array.obstacle = cat("its type is ", in_quotes(array.type_name), ", and Int8 to Float64 can be read");
     } else {
       array.type = type->second;
@@ -201,7 +201,7 @@ class Parser {
 }  // namespace
 
 VtkXmlHeader parse_vtk_xml_header(const VtkXmlSkeleton& skeleton, const std::string& path) {
-  return Parser(path).parse(skeleton);
+  return XmlParser(path).parse(skeleton);
 }
 
 }  // namespace weir

@@ -4,13 +4,10 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "ingest/header_text.h"
 
 namespace weir {
-namespace {
-
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
-}  // namespace
+namespace {}  // namespace
 
 bool VtkXmlSkeleton::push(std::string_view bytes) {
   while (!bytes.empty() && state_ != State::ended) {

@@ -17,7 +17,7 @@
 namespace weir {
 namespace {
 
-VtkXmlHeader read_header(InputFile& file) {
+VtkXmlHeader read_xml_header(InputFile& file) {
   VtkXmlSkeleton skeleton(file.path());
   FileText text(file, 0, file.size());
   for (auto piece = text.next_piece(); !piece.empty() && skeleton.push(piece); piece = text.next_piece()) continue;
@@ -60,7 +60,7 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
     throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
   }
   auto file = std::make_unique<InputFile>(path, options.direct_io);
-  const VtkXmlHeader header = read_header(*file);
+  const VtkXmlHeader header = read_xml_header(*file);
   const VtkXmlArray& array = choose_array(header, path, options.dataset);
   const std::string where = cat(path, ": array ", in_quotes(array.name));
   SourceInfo info;
@@ -69,6 +69,7 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
   info.dataset = array.name;
   info.file_bytes = file->size();
   info.mtime_ns = file->mtime_ns();
+  info.files = {file->state()};
   place_vtk_image(header.image, array.cells, info);
   const std::uint64_t bytes = checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
   PlainValues plain = plain_vtk_values(std::move(file), header, array, bytes, options, where);
@@ -79,7 +80,7 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
 
 std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptions&) {
   InputFile file(path, DirectIo::off);
-  const VtkXmlHeader header = read_header(file);
+  const VtkXmlHeader header = read_xml_header(file);
   std::vector<DatasetInfo> list;
   for (const VtkXmlArray& array : header.arrays) {
     DatasetInfo info;

@@ -12,7 +12,7 @@
 #include "tests/compressor/converted.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::array_conversion_test {
 namespace {
 
 const Index3 kExtent{150, 37, 29};
@@ -78,4 +78,4 @@ TEST_P(ArrayConversion, HasTheBytesOfTheRawFiles) {
 INSTANTIATE_TEST_SUITE_P(Budgets, ArrayConversion, testing::Values(Budget::Kind::automatic, Budget::Kind::lossless));
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::array_conversion_test

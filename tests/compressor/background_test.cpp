@@ -14,7 +14,7 @@
 #include "tests/compressor/converted.h"
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::background_test {
 namespace {
 
 using test::bits_of;
@@ -240,4 +240,4 @@ TEST(PaperBackground, HoldsWhereTheRangeOverflowsFloat) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::background_test

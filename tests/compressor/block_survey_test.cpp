@@ -13,7 +13,7 @@
 #include "tests/compressor/memory_file_system.h"
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::block_survey_test {
 namespace {
 
 using test::MemoryVolume;
@@ -77,4 +77,4 @@ TEST(BlockSurvey, SumsUpToTheSurveyOfTheVolume) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::block_survey_test

@@ -7,7 +7,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::budget_test {
 namespace {
 
 SelectionBytes sizes(std::uint64_t minimum, std::uint64_t lossless) {
@@ -99,4 +99,4 @@ TEST(Budget, LosslessIsWhatLosslessTakes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::budget_test

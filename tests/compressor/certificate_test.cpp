@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace weir {
+namespace weir::certificate_test {
 namespace {
 
 TEST(Certificate, FollowsItsFormulas) {
@@ -63,4 +63,4 @@ TEST(CompensatedSum, LosesNothingToLargeTerms) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::certificate_test

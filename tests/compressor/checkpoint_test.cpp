@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace weir {
+namespace weir::checkpoint_test {
 namespace {
 
 Checkpoint sample() {
@@ -29,7 +29,7 @@ Checkpoint sample() {
   c.survey.done.add({{0, 0, 0}, {1, 2, 3}});
   c.survey.done.add({{0, 5, 0}, {9, 9, 9}});
   c.background = {-1e-30F, "sampled-mode", 1.0 / 3};
-  c.attempt = {3, std::numeric_limits<double>::infinity(), Encoding::fp8, "iso 3"};
+  c.attempt = {3, std::numeric_limits<double>::infinity(), Encoding::fp8, "iso 3", 0.3};
   c.plan.bytes[15] = std::byte{255};
   c.encoded.add({{0, 0, 0}, {4, 4, 4}});
   return c;
@@ -71,9 +71,10 @@ TEST(Checkpoint, ReadsBackBitForBit) {
   EXPECT_EQ(back->background->method, "sampled-mode");
   EXPECT_EQ(back->background->share, 1.0 / 3);
   EXPECT_EQ(back->attempt->number, 3);
-  EXPECT_EQ(back->attempt->squared_error, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(back->attempt->planned_error, std::numeric_limits<double>::infinity());
   EXPECT_EQ(back->attempt->encoding, Encoding::fp8);
   EXPECT_EQ(back->attempt->seen, "iso 3");
+  EXPECT_EQ(back->attempt->met, 0.3);
 }
 
 TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
@@ -88,7 +89,7 @@ TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
 
 TEST(Checkpoint, OneThatIsNotWholeIsNone) {
   const std::string text = to_text(sample());
-  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 2 ");
+  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 3 ");
   for (std::size_t length = 0; length < text.size(); ++length) {
     EXPECT_FALSE(parse_checkpoint(std::string_view(text).substr(0, length))) << length;
   }
@@ -101,4 +102,4 @@ TEST(Checkpoint, OneThatIsNotWholeIsNone) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::checkpoint_test

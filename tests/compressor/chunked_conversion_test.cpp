@@ -8,7 +8,7 @@
 #include "format/error.h"
 #include "tests/compressor/converted.h"
 
-namespace weir {
+namespace weir::chunked_conversion_test {
 namespace {
 
 using test::Converted;
@@ -65,4 +65,4 @@ TEST(ChunkedConversion, SaysWhatDecodingChunksTwiceCosts) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::chunked_conversion_test

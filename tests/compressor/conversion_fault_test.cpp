@@ -13,7 +13,7 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::conversion_fault_test {
 namespace {
 
 class ConversionFaultTest : public ::testing::Test {
@@ -105,4 +105,4 @@ TEST_F(ConversionFaultTest, RefusesAWorkDirectoryInMemory) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::conversion_fault_test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace weir {
+namespace weir::conversion_identity_test {
 namespace {
 
 SourceInfo source() {
@@ -23,6 +23,8 @@ TEST(ConversionIdentity, ChangesWithAllThatDecidesTheBytes) {
       [](SourceInfo& s) { s.file_bytes = 1; },
       [](SourceInfo& s) { s.mtime_ns = 1; },
       [](SourceInfo& s) { s.files_digest = "f"; },
+      [](SourceInfo& s) { s.files = {{.path = "a.raw", .exists = true, .inode = 1}}; },
+      [](SourceInfo& s) { s.files = {{.path = "a.raw", .exists = true, .ctime_ns = 1}}; },
       [](SourceInfo& s) { s.dataset = "d"; },
       [](SourceInfo& s) {
         s.index = {1, 2};
@@ -105,4 +107,4 @@ TEST(ConversionIdentity, IsTheSameOnAnyMachineAndAtAnyPlace) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::conversion_identity_test

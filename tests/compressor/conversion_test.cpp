@@ -16,7 +16,7 @@
 #include "tests/compressor/hard_cases.h"
 #include "tests/compressor/measured.h"
 
-namespace weir {
+namespace weir::conversion_test {
 namespace {
 
 using test::Converted;
@@ -173,4 +173,4 @@ TEST(Conversion, UserBackgroundCountsOutsideAndInFill) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::conversion_test

@@ -13,9 +13,9 @@
 #include "format/leaf_decode.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/converted.h"
-#include "tests/compressor/stock_tree.h"
+#include "tests/stock/stock_tree.h"
 
-namespace weir {
+namespace weir::error_target_test {
 namespace {
 
 using test::Converted;
@@ -196,4 +196,4 @@ TEST(ErrorTargets, HoldForAFusedDecoderToo) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::error_target_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace weir {
+namespace weir::exact_sum_test {
 namespace {
 
 double sum_of(const std::vector<double>& terms) {
@@ -65,4 +65,4 @@ TEST(ExactSum, CarriesTravelAllTheWay) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::exact_sum_test

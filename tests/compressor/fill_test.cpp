@@ -7,7 +7,7 @@
 
 #include "compressor/leaf_summary.h"
 
-namespace weir {
+namespace weir::fill_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -51,4 +51,4 @@ TEST(Fill, NonFiniteVoxelsReadAsTheBackgroundUnlessKept) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::fill_test

@@ -13,7 +13,7 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::golden_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -191,4 +191,4 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                          name_of);
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::golden_test

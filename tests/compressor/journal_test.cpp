@@ -14,7 +14,7 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::journal_test {
 namespace {
 
 using test::MemoryFileSystem;
@@ -264,4 +264,4 @@ TEST(Journal, TheFilesOfALivingConversionAreLocked) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::journal_test

@@ -7,7 +7,7 @@
 
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::leaf_choice_test {
 namespace {
 
 TEST(LeafWidth, BytesAreThoseOfTheFormat) {
@@ -60,4 +60,4 @@ TEST(ChoiceStore, GivesBackWhatWasWrittenAndTilesElsewhere) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_choice_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace weir {
+namespace weir::leaf_difference_test {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -95,4 +95,4 @@ TEST(AbsDifference, ZeroWhereEitherIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_difference_test

@@ -9,7 +9,7 @@
 
 #include "compressor/bounds.h"
 
-namespace weir {
+namespace weir::leaf_faces_test {
 namespace {
 
 // Bounds of the finite values of the voxels of `extent` that `is_in` holds for.
@@ -56,4 +56,4 @@ TEST(LeafFaces, LeaveOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_faces_test

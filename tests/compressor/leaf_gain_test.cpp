@@ -14,7 +14,7 @@
 #include "tests/compressor/converted.h"
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::leaf_gain_test {
 namespace {
 
 using test::MemoryVolume;
@@ -218,4 +218,4 @@ TEST(LeafGain, WidthsThatFloatCannotHoldGainNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_gain_test

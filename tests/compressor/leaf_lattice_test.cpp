@@ -10,7 +10,7 @@
 
 #include "format/leaf_decode.h"
 
-namespace weir {
+namespace weir::leaf_lattice_test {
 namespace {
 
 std::optional<LeafLattice> lattice_of(const std::vector<float>& values) {
@@ -100,4 +100,4 @@ TEST(LeafLattice, BitsFor) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_lattice_test

@@ -10,7 +10,7 @@
 
 #include "format/leaf_decode.h"
 
-namespace weir {
+namespace weir::leaf_quantiser_test {
 namespace {
 
 ValueRange range_of(const std::vector<float>& values) {
@@ -157,4 +157,4 @@ TEST(LeafQuantiser, EstimatesStopWhereTheValuesAreExact) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_quantiser_test

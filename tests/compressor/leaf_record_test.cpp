@@ -8,7 +8,7 @@
 
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::leaf_record_test {
 namespace {
 
 TEST(LeafRecord, OutwardLayersFaceOutOfTheMacrocell) {
@@ -71,4 +71,4 @@ TEST(RecordStore, GivesBackRecordsByOrdinal) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_record_test

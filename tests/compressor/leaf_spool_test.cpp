@@ -16,7 +16,7 @@
 #include "format/error.h"
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::leaf_spool_test {
 namespace {
 
 using State = SpooledLeaf::State;
@@ -206,4 +206,4 @@ TEST_F(LeafSpoolTest, RefusesToReadWhatWasNeverWritten) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_spool_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace weir {
+namespace weir::leaf_summary_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -210,4 +210,4 @@ TEST(LeafSummary, SamplePositionIsInRangeAndSpread) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_summary_test

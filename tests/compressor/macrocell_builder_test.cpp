@@ -12,7 +12,7 @@
 #include "format/macrocells.h"
 #include "tests/compressor/converted.h"
 
-namespace weir {
+namespace weir::macrocell_builder_test {
 namespace {
 
 using test::bits_of;
@@ -120,4 +120,4 @@ TEST(Macrocells, BytesDoNotDependOnTheOrderOfRegions) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::macrocell_builder_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/compressor/stock_tree.h"
+#include "tests/stock/stock_tree.h"
 
 namespace weir::test {
 namespace {

@@ -107,8 +107,7 @@ std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& direct
 }
 
 void MemoryFileSystem::rename(const std::string& from, const std::string& to) {
-  link(from, to);
-  remove(from);
+  if (link(from, to)) remove(from);
 }
 
 void MemoryFileSystem::rename_new(const std::string& from, const std::string& to) {
@@ -116,11 +115,12 @@ void MemoryFileSystem::rename_new(const std::string& from, const std::string& to
   rename(from, to);
 }
 
-void MemoryFileSystem::link(const std::string& from, const std::string& to) {
+bool MemoryFileSystem::link(const std::string& from, const std::string& to) {
   const std::scoped_lock lock(mutex_);
   const auto found = files_.find(from);
   if (found == files_.end()) throw Error(ErrorKind::io, cat(from, ": missing"));
   files_[to] = found->second;
+  return true;
 }
 
 void MemoryFileSystem::remove(const std::string& path) {

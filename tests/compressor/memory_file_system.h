@@ -34,7 +34,7 @@ class MemoryFileSystem final : public FileSystem {
   std::unique_ptr<File> create_unnamed(const std::string& directory) override;
   void rename(const std::string& from, const std::string& to) override;
   void rename_new(const std::string& from, const std::string& to) override;
-  void link(const std::string& from, const std::string& to) override;
+  bool link(const std::string& from, const std::string& to) override;
   void remove(const std::string& path) override;
   void make_directory(const std::string& path) override;
   void remove_directory(const std::string& path) override;

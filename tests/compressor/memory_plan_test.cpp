@@ -9,7 +9,7 @@
 #include "format/error.h"
 #include "ingest/staging.h"
 
-namespace weir {
+namespace weir::memory_plan_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -80,5 +80,30 @@ TEST(MemoryPlan, ACeilingForLargerBlocksHoldsThem) {
   }
 }
 
+TEST(MemoryPlan, ThreadsDefaultToTheProcessorsThatTheCeilingHolds) {
+  const auto chosen = [](std::size_t processors) {
+    return choose_threads(0, processors, 512 * kMiB, 40 * kMiB, {{0, 0, 0}, {512, 512, 512}});
+  };
+  EXPECT_EQ(chosen(0), 1U);
+  EXPECT_EQ(chosen(1), 1U);
+  EXPECT_EQ(chosen(8), 8U);
+  for (const std::size_t processors : {112U, 128U, 512U, 4096U}) {
+    const std::size_t threads = chosen(processors);
+    EXPECT_GT(threads, 48U) << processors;
+    EXPECT_LT(threads, 112U) << processors;
+    EXPECT_NO_THROW(plan_memory(512 * kMiB, 40 * kMiB, threads, {{0, 0, 0}, {512, 512, 512}}));
+  }
+}
+
+TEST(MemoryPlan, ThreadsThatWereAskedForAreNotReduced) {
+  EXPECT_EQ(choose_threads(300, 8, 64 * kMiB, 40 * kMiB, kLarge), 300U);
+  EXPECT_EQ(choose_threads(0, 8, kMiB, 40 * kMiB, kLarge), 1U) << "the plan refuses it then";
+}
+
+TEST(MemoryPlan, NoticeNamesTheFewerThreads) {
+  EXPECT_EQ(fewer_threads_notice(60, 128, 512 * kMiB),
+            "--memory 512.0 MiB holds 60 of 128 threads; give more to use them all");
+}
+
 }  // namespace
-}  // namespace weir
+}  // namespace weir::memory_plan_test

@@ -17,9 +17,9 @@
 #include "format/nanovdb_layout.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/converted.h"
-#include "tests/compressor/stock_tree.h"
+#include "tests/stock/stock_tree.h"
 
-namespace weir {
+namespace weir::oracle_test {
 namespace {
 
 using test::bits_of;
@@ -301,4 +301,4 @@ INSTANTIATE_TEST_SUITE_P(Volumes, OracleTest, testing::ValuesIn(cases()),
                          [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::oracle_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-namespace weir {
+namespace weir::plane_set_test {
 namespace {
 
 using Ranges = std::vector<PlaneRange>;
@@ -63,4 +63,4 @@ TEST(PlaneSet, NamesPlanes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::plane_set_test

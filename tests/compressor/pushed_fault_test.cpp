@@ -24,7 +24,7 @@
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::pushed_fault_test {
 namespace {
 
 using test::MemoryVolume;
@@ -189,4 +189,4 @@ TEST_F(PushedFaultTest, NoThreadHangsOnAFullDisk) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::pushed_fault_test

@@ -15,7 +15,7 @@
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::pushed_memory_test {
 namespace {
 
 constexpr std::uint64_t kMemory = std::uint64_t{64} << 20U;
@@ -75,4 +75,4 @@ TEST(PushedMemory, StaysUnderTheCeilingWithPlanesInRandomOrder) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::pushed_memory_test

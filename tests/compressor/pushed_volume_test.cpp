@@ -24,7 +24,7 @@
 #include "tests/compressor/pushed.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::pushed_volume_test {
 namespace {
 
 using test::Converted;
@@ -397,4 +397,4 @@ TEST_F(PushMisuse, IsInterruptedForGood) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::pushed_volume_test

@@ -14,7 +14,7 @@
 #include "tests/compressor/hard_cases.h"
 #include "tests/compressor/measured.h"
 
-namespace weir {
+namespace weir::quantised_budget_test {
 namespace {
 
 using test::Converted;
@@ -186,4 +186,4 @@ TEST(QuantisedBudget, ReplacedVoxelsAreOnTheLatticeOfTheirLeafOrWidenIt) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::quantised_budget_test

@@ -19,9 +19,9 @@
 #include "tests/compressor/converted.h"
 #include "tests/compressor/hard_cases.h"
 #include "tests/compressor/measured.h"
-#include "tests/compressor/stock_tree.h"
+#include "tests/stock/stock_tree.h"
 
-namespace weir {
+namespace weir::quantised_conversion_test {
 namespace {
 
 using test::bits_of;
@@ -277,4 +277,4 @@ INSTANTIATE_TEST_SUITE_P(Volumes, QuantisedConversionTest, testing::ValuesIn(tes
                          [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::quantised_conversion_test

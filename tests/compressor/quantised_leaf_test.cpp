@@ -11,7 +11,7 @@
 #include "format/leaf_decode.h"
 #include "format/quantised_codec.h"
 
-namespace weir {
+namespace weir::quantised_leaf_test {
 namespace {
 
 constexpr Box kNode{{8, -16, 0}, {16, -8, 8}};
@@ -170,4 +170,4 @@ TEST(QuantisedLeaf, TheImageDecodesToTheDecodedValues) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::quantised_leaf_test

@@ -17,7 +17,7 @@
 #include "compressor/leaf_lattice.h"
 #include "compressor/leaf_quantiser.h"
 
-namespace weir {
+namespace weir::quantised_reference_test {
 namespace {
 
 constexpr std::size_t kLanes = 16;
@@ -225,4 +225,4 @@ TEST(QuantisedReference, LatticesAreThoseOfExactArithmetic) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::quantised_reference_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace weir {
+namespace weir::range_histogram_test {
 namespace {
 
 struct Expected {
@@ -221,4 +221,4 @@ TEST(RangeHistogram, HasNoNegativeZeroForAnEdge) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::range_histogram_test

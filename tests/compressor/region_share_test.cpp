@@ -6,7 +6,7 @@
 
 #include "tests/compressor/thread_team.h"
 
-namespace weir {
+namespace weir::region_share_test {
 namespace {
 
 TEST(RegionShare, RunsAreAFewBoxesInOrder) {
@@ -54,4 +54,4 @@ TEST(RegionShare, AloneOwnsAnyBoxInOnePiece) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::region_share_test

@@ -145,5 +145,43 @@ TEST_F(ResumeKillOfHoles, ThePapersMethod) {
   expect_same_bytes(options, 24);
 }
 
+// The result is there: the same command says so, and what it was made from is not needed any more.
+TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
+  const ConversionOptions options = base();
+  for (const int call : {0, 1, 2}) {
+    MemoryFileSystem memory;
+    FaultyFileSystem files(memory, -1, EIO, FaultyFileSystem::After::fails);
+    files.fail_after_rename_to("out.nvdb", call);
+    try {
+      run(options, files);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+    }
+    ASSERT_TRUE(files.failed()) << call;
+    EXPECT_TRUE(memory.exists("out.nvdb.partial")) << "the lock goes last";
+    try {
+      run(options, memory);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "out.nvdb: exists; choose another output with -o or pass --overwrite");
+    }
+    EXPECT_EQ(memory.names(), kResult) << call;
+    EXPECT_EQ(memory.directories(), Names{}) << call;
+  }
+}
+
+// Of an --overwrite that somebody interrupted, and will continue.
+TEST_F(ResumeKill, BeforeTheCommit_ARefusedCommandKeepsWhatIsDone) {
+  ConversionOptions options = base();
+  MemoryFileSystem memory;
+  run(options, memory);
+  options.overwrite = true;
+  ASSERT_TRUE(killed(options, memory, calls_of(options) / 2));
+  const Names before = memory.names();
+  options.overwrite = false;
+  EXPECT_THROW(run(options, memory), Error);
+  EXPECT_EQ(memory.names(), before);
+}
+
 }  // namespace
 }  // namespace weir::test

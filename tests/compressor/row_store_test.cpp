@@ -9,7 +9,7 @@
 #include "compressor/region_rows.h"
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::row_store_test {
 namespace {
 
 // Rows whose `sse` is their linear index.
@@ -90,4 +90,4 @@ TEST(RegionRows, VisitsABoxOfRegionsOnly) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::row_store_test

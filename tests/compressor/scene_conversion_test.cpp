@@ -18,7 +18,7 @@
 #include "format/scene_opacity.h"
 #include "tests/compressor/converted.h"
 
-namespace weir {
+namespace weir::scene_conversion_test {
 namespace {
 
 using test::Converted;
@@ -285,4 +285,4 @@ TEST(ScenePictures, ThePapersMetricsHaveNothingToWeigh) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_conversion_test

@@ -14,7 +14,7 @@
 #include "tests/compressor/child_answer.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::selection_memory_test {
 namespace {
 
 constexpr std::uint64_t kMemory = std::uint64_t{64} << 20U;
@@ -70,4 +70,4 @@ TEST(SelectionMemory, StaysUnderTheCeilingWithRowsSixteenTimesAsLarge) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::selection_memory_test

@@ -17,7 +17,7 @@
 #include "tests/compressor/memory_file_system.h"
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::selection_test {
 namespace {
 
 using test::Choice;
@@ -340,4 +340,4 @@ TEST(Selection, TiesGoByLeafIndex) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::selection_test

@@ -18,7 +18,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::slice_intake_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -251,4 +251,4 @@ TEST_F(SliceIntakeTest, CanBeGivenUp) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::slice_intake_test

@@ -18,7 +18,7 @@
 #include "compressor/tree_plan.h"
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::statistics_scale_test {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -216,4 +216,4 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::statistics_scale_test

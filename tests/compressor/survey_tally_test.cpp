@@ -4,7 +4,7 @@
 
 #include <bit>
 
-namespace weir {
+namespace weir::survey_tally_test {
 namespace {
 
 SurveyTally tally(float low, float high, std::int64_t bad) {
@@ -56,4 +56,4 @@ TEST(SurveyTally, NothingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::survey_tally_test

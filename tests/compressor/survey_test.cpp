@@ -15,7 +15,7 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::survey_test {
 namespace {
 
 using test::MemoryVolume;
@@ -123,4 +123,4 @@ TEST(Survey, SourceDigestSeesEveryBit) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::survey_test

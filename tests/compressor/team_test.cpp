@@ -13,7 +13,7 @@
 #include "format/text.h"
 #include "tests/compressor/thread_team.h"
 
-namespace weir {
+namespace weir::team_test {
 namespace {
 
 // What `work` gives on each of `size` ranks, by rank.
@@ -115,4 +115,4 @@ TEST(Team, TheLowestRanksErrorIsEveryones) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::team_test

@@ -7,7 +7,7 @@
 
 #include "tests/compressor/surveyed.h"
 
-namespace weir {
+namespace weir::tree_plan_test {
 namespace {
 
 using test::Choice;
@@ -60,4 +60,4 @@ TEST(TreePlan, UsesUpTheBudgetButForLessThanOneNodeAndLeaf) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::tree_plan_test

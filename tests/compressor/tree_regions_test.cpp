@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace weir {
+namespace weir::tree_regions_test {
 namespace {
 
 TEST(TreeRegions, CoversTheDomainWithRegionsAndUppers) {
@@ -117,4 +117,4 @@ TEST(TileSums, OfNothingIsTheFallback) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::tree_regions_test

@@ -7,7 +7,7 @@
 #include "compressor/bounds.h"
 #include "format/error.h"
 
-namespace weir {
+namespace weir::visibility_test {
 namespace {
 
 constexpr Box kDomain{{0, 0, 0}, {64, 64, 64}};
@@ -119,4 +119,4 @@ TEST(Visibility, RefusesScenesThatDecideNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::visibility_test

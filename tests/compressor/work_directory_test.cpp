@@ -10,7 +10,7 @@
 #include "format/error.h"
 #include "tests/compressor/memory_file_system.h"
 
-namespace weir {
+namespace weir::work_directory_test {
 namespace {
 
 // Remembers directories, and says which lie in memory.
@@ -26,7 +26,7 @@ class Directories final : public FileSystem {
   }
   void rename(const std::string& from, const std::string& to) override { files_.rename(from, to); }
   void rename_new(const std::string& from, const std::string& to) override { files_.rename_new(from, to); }
-  void link(const std::string& from, const std::string& to) override { files_.link(from, to); }
+  bool link(const std::string& from, const std::string& to) override { return files_.link(from, to); }
   void remove(const std::string& path) override { files_.remove(path); }
   void make_directory(const std::string& path) override { existing.push_back(path); }
   void remove_directory(const std::string& path) override { std::erase(existing, path); }
@@ -101,4 +101,4 @@ TEST(WorkDirectory, AMissingOneIsAnError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::work_directory_test

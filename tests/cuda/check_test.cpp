@@ -8,7 +8,7 @@
 #include "format/text.h"
 #include "tests/cuda/refusal.h"
 
-namespace weir {
+namespace weir::check_test {
 namespace {
 
 using test::refusal;
@@ -32,4 +32,4 @@ TEST(CheckCuda, NamesTheRemedyWhereThereIsNoDevice) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::check_test

@@ -15,10 +15,10 @@
 #include "gpu/cuda/device_memory.h"
 #include "gpu/cuda/device_volume.h"
 #include "tests/cuda/device_reads.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::cuda_backend_test {
 namespace {
 
 using test::TestGrid;
@@ -314,4 +314,4 @@ TEST_F(CudaBackendTest, LoadsAndUnloadsWithoutALeak) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::cuda_backend_test

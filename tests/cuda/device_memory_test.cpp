@@ -9,7 +9,7 @@
 #include "gpu/cuda/device_array.h"
 #include "tests/cuda/device_reads.h"
 
-namespace weir {
+namespace weir::device_memory_test {
 namespace {
 
 constexpr std::uint64_t kMuch = 1ULL << 30U;
@@ -26,4 +26,4 @@ TEST(FreeDeviceBytes, CountsWhatThePoolKeepsWhereItIsWanted) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::device_memory_test

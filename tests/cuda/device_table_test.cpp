@@ -8,9 +8,9 @@
 #include "gpu/cuda/brick_atlas.h"
 #include "gpu/cuda/device_macrocells.h"
 #include "tests/cuda/device_reads.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::device_table_test {
 namespace {
 
 using test::TestGrid;
@@ -195,4 +195,4 @@ TEST(DeviceMacrocells, MajorantsAreTheHosts) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::device_table_test

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "format/nanovdb_layout.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
 namespace weir::test {
 

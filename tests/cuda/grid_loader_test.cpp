@@ -22,7 +22,7 @@
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::grid_loader_test {
 namespace {
 
 using test::GridFileOptions;
@@ -251,4 +251,4 @@ TEST_F(GridLoader, LeavesNothingBehindAfterAThousandLoads) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::grid_loader_test

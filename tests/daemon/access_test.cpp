@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::access_test {
 namespace {
 
 unsigned status_of(const std::optional<HttpResponse>& refusal) { return refusal ? refusal->status : 0; }
@@ -84,4 +84,4 @@ TEST(Access, RefusesAPostThatAForeignPageCanSend) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::access_test

@@ -9,7 +9,7 @@
 #include "tests/daemon/fake_control.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::api_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -291,4 +291,4 @@ TEST_F(ApiTest, IsNoUseToForeignPages) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::api_test

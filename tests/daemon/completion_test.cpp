@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::completion_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -223,4 +223,4 @@ TEST(FileSampleTest, RegularFilesAndTheirMarkers) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::completion_test

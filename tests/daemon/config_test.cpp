@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "format/error.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 #include "tools/convert_syntax.h"
 
-namespace weir {
+namespace weir::config_test {
 namespace {
 
 const std::string kWatch = "[[watch]]\ndirectory = 'in'\noutput = 'out'\n";
@@ -307,4 +307,4 @@ TEST_F(Config, UnreadableFiles) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::config_test

@@ -7,7 +7,7 @@
 #include "tests/daemon/raw_client.h"
 #include "tests/daemon/served.h"
 
-namespace weir {
+namespace weir::control_server_test {
 namespace {
 
 ControlServerSettings settings(const ListenAddress& address, const std::string& token) {
@@ -75,4 +75,4 @@ TEST(ControlServer, TakesPostsOfItsOwnClientsOnly) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::control_server_test

@@ -10,9 +10,9 @@
 #include "daemon/file_identity.h"
 #include "format/error.h"
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::conversion_job_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,6 +119,27 @@ TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
   EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
 }
 
+// The header, which is what is watched, stays as it is.
+TEST_F(ConversionJobTest, DataOfAHeaderRewrittenMeanwhile_IsASourceThatChanged) {
+  write_source("a.bin", 128 << 14U);
+  write_file(directory_ / "a.nhdr",
+             "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 128 128 128\nencoding: raw\ndata file: a.bin\n");
+  ConversionTask limited = task(directory_ / "a.nhdr");
+  limited.bandwidth = 4 << 20U;
+  bool rewritten = false;
+  const TaskReport report = run(limited, [&](ConversionJob& job) {
+    if (rewritten || !job.fraction()) return;
+    rewritten = true;
+    fs::last_write_time(directory_ / "a.bin", fs::last_write_time(directory_ / "a.bin") + std::chrono::hours(1));
+  });
+  EXPECT_TRUE(rewritten);
+  EXPECT_EQ(report.end, TaskEnd::source_changed);
+  EXPECT_EQ(report.result.exit_code, 3);
+  EXPECT_TRUE(report.result.reason.starts_with(directory_ / "a.bin: changed while it was read: it was written to at "))
+      << report.result.reason;
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
 TEST_F(ConversionJobTest, ASourceThatVanishedIsGone) {
   EXPECT_EQ(run(task(directory_ / "a_48x40x32_uint8.raw")).end, TaskEnd::source_gone);
 }
@@ -193,4 +214,4 @@ TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::conversion_job_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::conversion_task_test {
 namespace {
 
 WatchConfig make_watch() {
@@ -78,4 +78,4 @@ TEST(ConversionTask, OptionsTextChangesWithWhatDecidesTheOutput) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::conversion_task_test

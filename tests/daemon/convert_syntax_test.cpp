@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::convert_syntax_test {
 namespace {
 
 const std::string kPath = "/etc/weir/c.toml";
@@ -97,4 +97,4 @@ TEST(ConvertSyntax, OtherErrorsPass) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::convert_syntax_test

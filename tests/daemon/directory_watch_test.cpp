@@ -13,7 +13,7 @@
 
 #include "tests/daemon/watched_directory.h"
 
-namespace weir {
+namespace weir::directory_watch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -544,4 +544,4 @@ TEST(ChoosingWatchTest, AutomaticPollsWhatIsNotKnownToBeLocal) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::directory_watch_test

@@ -6,9 +6,9 @@
 #include <regex>
 
 #include "format/error.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::event_log_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ TEST(EventLog, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::event_log_test

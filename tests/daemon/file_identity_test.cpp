@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::file_identity_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,4 +55,4 @@ TEST(FileIdentity, OnlyAnErrorOfThePathItselfSaysThatNothingIsThere) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_identity_test

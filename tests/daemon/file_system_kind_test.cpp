@@ -4,7 +4,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::file_system_kind_test {
 namespace {
 
 TEST(FileSystemKind, DisksOfThisMachineTellAllAndOthersDoNot) {
@@ -33,4 +33,4 @@ TEST(FileSystemKind, OfAPath) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_system_kind_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace weir {
+namespace weir::glob_test {
 namespace {
 
 TEST(Glob, StarsAndQuestionMarksStopAtSlashes) {
@@ -70,4 +70,4 @@ TEST(Glob, LongNamesAndManyStarsTakeNoTime) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::glob_test

@@ -15,7 +15,7 @@
 #include "tests/daemon/served.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::http_server_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -327,4 +327,4 @@ TEST(HttpServer, MayBeGoneBeforeItsConnections) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::http_server_test

@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "format/text.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::job_history_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -77,4 +77,4 @@ TEST_F(JobHistoryTest, GoesThroughAllOfThemInPieces) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::job_history_test

@@ -9,9 +9,9 @@
 #include "daemon/file_identity.h"
 #include "format/file_system.h"
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::job_runner_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,4 +201,4 @@ TEST_F(JobRunnerTest, ShutDownAbandonsWhatTakesLongerAtNoCost) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::job_runner_test

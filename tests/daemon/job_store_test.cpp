@@ -12,11 +12,11 @@
 
 #include "format/error.h"
 #include "format/text.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
-#include "tests/tools/scoped_mount.h"
 
-namespace weir {
+namespace weir::job_store_test {
 namespace {
 
 constexpr FileIdentity kIdentity{1000, 1'700'000'000'123'456'789, 77};
@@ -248,6 +248,16 @@ TEST_F(StoredJobs, PostponedAndInterruptedOnesCostNothing) {
     EXPECT_EQ(job(id).due_ms, 0);
   }
   EXPECT_EQ(candidates(Priority::oldest), (Names{"/in/a.raw", "/in/b.raw"}));
+}
+
+TEST_F(StoredJobs, PostponedWithADelay_WaitsForItAndCountsNothing) {
+  const std::int64_t id = running("/in/a.raw");
+  EXPECT_TRUE(store_->postpone(id, "the source changed", 2000));
+  EXPECT_EQ(job(id).state, JobState::waiting);
+  EXPECT_EQ(job(id).attempts, 0);
+  EXPECT_EQ(candidates(Priority::oldest), Names{});
+  now_ += 2000;
+  EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
 }
 
 TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
@@ -484,4 +494,4 @@ TEST_F(StoredJobs, AKillAtAnyMomentLosesNothingThatReturned) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::job_store_test

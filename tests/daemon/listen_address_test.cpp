@@ -5,7 +5,7 @@
 #include "format/error.h"
 #include "format/text.h"
 
-namespace weir {
+namespace weir::listen_address_test {
 namespace {
 
 TEST(ListenAddress, ReadsHostAndPort) {
@@ -41,4 +41,4 @@ TEST(ListenAddress, KnowsWhatStaysOnThisMachine) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::listen_address_test

@@ -6,7 +6,7 @@
 
 #include "format/text.h"
 
-namespace weir {
+namespace weir::metrics_test {
 namespace {
 
 StatusView sample_status() {
@@ -130,4 +130,4 @@ TEST(Metrics, NameEveryFamilyOnce) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::metrics_test

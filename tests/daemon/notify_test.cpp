@@ -10,9 +10,9 @@
 
 #include "format/descriptor.h"
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::notify_test {
 namespace {
 
 /// The manager's end.
@@ -67,4 +67,4 @@ TEST(ServiceNotifier, DoesNothingWhereNobodyListens) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::notify_test

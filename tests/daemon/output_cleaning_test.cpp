@@ -12,9 +12,9 @@
 #include "format/error.h"
 #include "format/file_system.h"
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::output_cleaning_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ TEST(OutputCleaning, WaitsForAWriterThatIsDying) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::output_cleaning_test

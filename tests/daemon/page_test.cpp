@@ -11,10 +11,10 @@
 #include "tests/daemon/sample_jobs.h"
 #include "tests/daemon/served.h"
 #include "tests/support/python.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::page_test {
 namespace {
 
 bool is_installed(const std::string& command) {
@@ -118,4 +118,4 @@ TEST_F(PageTest, AsksForTheToken) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::page_test

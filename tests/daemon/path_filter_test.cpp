@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::path_filter_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST_F(PathFilterTest, LinksAreJudgedByWhereTheyEnd) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::path_filter_test

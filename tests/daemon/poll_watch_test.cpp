@@ -6,7 +6,7 @@
 
 #include "tests/daemon/watched_directory.h"
 
-namespace weir {
+namespace weir::poll_watch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST(PollWatchTest, ATimeThatJumpsBackIsAChange) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::poll_watch_test

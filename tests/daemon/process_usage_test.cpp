@@ -7,7 +7,7 @@
 #include <future>
 #include <thread>
 
-namespace weir {
+namespace weir::process_usage_test {
 namespace {
 
 TEST(ProcessUsage, CountsDescriptorsAndThreads) {
@@ -26,4 +26,4 @@ TEST(ProcessUsage, CountsDescriptorsAndThreads) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::process_usage_test

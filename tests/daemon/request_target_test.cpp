@@ -4,7 +4,7 @@
 
 #include "format/text.h"
 
-namespace weir {
+namespace weir::request_target_test {
 namespace {
 
 using Path = std::vector<std::string>;
@@ -43,4 +43,4 @@ TEST(RequestTarget, DecodesWhatItEncoded) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::request_target_test

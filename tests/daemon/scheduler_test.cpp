@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weir {
+namespace weir::scheduler_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -102,4 +102,4 @@ TEST(Scheduler, AFullDiskIsTriedAgainEvenWithoutMoreRoom) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scheduler_test

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
 namespace weir {
 

@@ -6,7 +6,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::sqlite_test {
 namespace {
 
 std::int64_t count(const Database& database) {
@@ -119,4 +119,4 @@ TEST_F(Sqlite, ErrorsNameTheFileAndTheReason) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sqlite_test

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
-#include "tests/tools/scoped_mount.h"
 
-namespace weir {
+namespace weir::state_file_test {
 namespace {
 
 class StateFile : public testing::Test {
@@ -128,4 +128,4 @@ TEST_F(StateFile, OnAReadOnlyFileSystemIsRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::state_file_test

@@ -7,7 +7,7 @@
 #include "format/text.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::watch_conflicts_test {
 namespace {
 
 WatchConfig watch(const std::string& directory, const std::string& output) {
@@ -85,4 +85,4 @@ TEST(WatchConflicts, LinksAreFollowed) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_conflicts_test

@@ -12,7 +12,7 @@
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 
-namespace weir {
+namespace weir::watch_control_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ TEST(WatchControl, ThumbnailsAreServed) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_control_test

@@ -8,9 +8,9 @@
 #include "daemon/job_store.h"
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
-#include "tests/tools/scoped_mount.h"
+#include "tests/support/scoped_mount.h"
 
-namespace weir {
+namespace weir::watch_faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ TEST(WatchFaults, ClocksOfSourcesMayJump) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_faults_test

@@ -11,7 +11,7 @@
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 
-namespace weir {
+namespace weir::watch_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,14 +167,14 @@ TEST_P(WatchFiles, AMarkerOpensTheGate) {
   EXPECT_EQ(list_directory(service.in()), Names{}) << "the source and its marker are deleted";
 }
 
-/// The kernel's limit on queued events, the whole machine's, made tiny while this lives: for a moment only, since a
+/// The kernel's limit on queued events, the whole machine's, made small while this lives: for a moment only, since a
 /// queue keeps the limit that it was made with, and a test that is killed meanwhile leaves it so.
-class TinyQueue {
+class SmallQueue {
  public:
-  TinyQueue() : before_(read_file(kPath)) { std::ofstream(kPath) << 16; }
-  ~TinyQueue() { std::ofstream(kPath) << before_; }
-  TinyQueue(const TinyQueue&) = delete;
-  TinyQueue& operator=(const TinyQueue&) = delete;
+  SmallQueue() : before_(read_file(kPath)) { std::ofstream(kPath) << 16; }
+  ~SmallQueue() { std::ofstream(kPath) << before_; }
+  SmallQueue(const SmallQueue&) = delete;
+  SmallQueue& operator=(const SmallQueue&) = delete;
   bool works() const { return read_file(kPath) == "16\n"; }
 
  private:
@@ -182,12 +182,12 @@ class TinyQueue {
   std::string before_;
 };
 
-TEST(WatchManyFiles, TwoThousandAtOnceThroughATinyQueue) {
-  auto tiny = std::make_unique<TinyQueue>();
-  if (!tiny->works()) GTEST_SKIP() << "fs.inotify.max_queued_events cannot be set here";
+TEST(WatchManyFiles, TwoThousandAtOnceThroughASmallQueue) {
+  auto small = std::make_unique<SmallQueue>();
+  if (!small->works()) GTEST_SKIP() << "fs.inotify.max_queued_events cannot be set here";
   ServiceHarness service("jobs = 2\nmemory = \"1GiB\"\n", "watch = \"inotify\"\n");
   service.start();
-  tiny.reset();
+  small.reset();
   constexpr int kFiles = 2000;
   const std::string volume = ServiceHarness::volume(3).substr(0, 8 * 8 * 8);
   for (int i = 0; i < kFiles; ++i) write_file(service.in(cat("f", i, "_8x8x8_uint8.raw")), volume);
@@ -203,4 +203,4 @@ TEST(WatchManyFiles, TwoThousandAtOnceThroughATinyQueue) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_files_test

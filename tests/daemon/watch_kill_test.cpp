@@ -9,7 +9,7 @@
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 
-namespace weir {
+namespace weir::watch_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,7 +52,8 @@ TEST(WatchKill, FiftyKillsLoseNothingAndRedoNothing) {
   }
   service.start();
   ASSERT_TRUE(service.eventually_done(kFiles, std::chrono::seconds(90))) << service.get("/api/status");
-  for (const auto& job : service.get("/api/jobs?limit=1000")["jobs"]) EXPECT_EQ(job["attempts"], 0) << job;
+  const auto jobs = service.get("/api/jobs?limit=1000");
+  for (const auto& job : jobs["jobs"]) EXPECT_EQ(job["attempts"], 0) << job;
   for (const auto& [name, time] : finished) EXPECT_EQ(fs::last_write_time(service.out(name)), time) << name;
   EXPECT_EQ(service.stop(), 0);
   EXPECT_EQ(service.leftovers(), Names{});
@@ -66,4 +67,4 @@ TEST(WatchKill, FiftyKillsLoseNothingAndRedoNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_kill_test

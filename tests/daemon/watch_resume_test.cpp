@@ -8,7 +8,7 @@
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 
-namespace weir {
+namespace weir::watch_resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,4 +48,4 @@ TEST(WatchResume, ALargeConversionGoesOnAfterAStop) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::watch_resume_test

@@ -16,8 +16,8 @@
 
 #include "daemon/directory_watch.h"
 #include "daemon/inotify.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
 namespace weir {
 

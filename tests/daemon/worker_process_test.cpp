@@ -10,9 +10,9 @@
 
 #include "format/error.h"
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::worker_process_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -174,4 +174,4 @@ TEST(WorkerProcess, DiesWithTheDaemon) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::worker_process_test

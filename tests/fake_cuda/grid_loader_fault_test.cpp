@@ -12,7 +12,7 @@
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::grid_loader_fault_test {
 namespace {
 
 using test::FakeRuntime;
@@ -169,4 +169,4 @@ TEST_F(GridLoaderFault, KeepsTheRingForTheNextLoad) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::grid_loader_fault_test

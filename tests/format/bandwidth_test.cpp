@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace weir {
+namespace weir::bandwidth_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,4 +50,4 @@ TEST_F(BandwidthTest, ACancellationEndsTheWaiting) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::bandwidth_test

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-namespace weir {
+namespace weir::box_set_test {
 namespace {
 
 using Boxes = std::vector<Box>;
@@ -74,4 +74,4 @@ TEST(BoxSet, AgreesWithSinglePositions) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::box_set_test

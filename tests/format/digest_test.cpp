@@ -6,7 +6,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::digest_test {
 namespace {
 
 std::vector<std::byte> pattern(std::size_t bytes) {
@@ -71,4 +71,4 @@ TEST(Digest, OfFileThroughTheFileSystemIsTheSame) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::digest_test

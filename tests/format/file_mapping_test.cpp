@@ -12,7 +12,7 @@
 #include "format/error.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::file_mapping_test {
 namespace {
 
 template <class Call>
@@ -97,4 +97,4 @@ TEST(FileMapping, TellsARewrittenFileOfTheSameSize) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_mapping_test

@@ -14,7 +14,7 @@
 #include "format/error.h"
 #include "format/little_endian.h"
 
-namespace weir {
+namespace weir::grid_head_test {
 namespace {
 
 GridHead sample_head() {
@@ -161,4 +161,4 @@ TEST(GridHead, MacrocellRecordDescribesTheData) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::grid_head_test

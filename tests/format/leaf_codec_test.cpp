@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace weir {
+namespace weir::leaf_codec_test {
 namespace {
 
 using StockLeaf = nanovdb::NanoLeaf<float>;
@@ -128,4 +128,4 @@ TEST(LeafCodec, LeavesSideBySideHaveTheStatisticsOfEachAlone) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_codec_test

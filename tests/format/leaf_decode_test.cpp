@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace weir {
+namespace weir::leaf_decode_test {
 namespace {
 
 TEST(LeafDecode, RoundsTwice) {
@@ -59,4 +59,4 @@ TEST(LeafDecode, ActiveBitsAreOfTheValueMask) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_decode_test

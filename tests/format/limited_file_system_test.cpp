@@ -6,7 +6,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::limited_file_system_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -35,4 +35,4 @@ TEST(LimitedFileSystem, BytesOfEveryFileCountBothWaysAndArriveAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::limited_file_system_test

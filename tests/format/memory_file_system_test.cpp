@@ -11,7 +11,7 @@
 #include "format/error.h"
 #include "format/output_files.h"
 
-namespace weir {
+namespace weir::memory_file_system_test {
 namespace {
 
 std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
@@ -125,4 +125,4 @@ TEST(MemoryFileSystem, TakesAnOutput) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::memory_file_system_test

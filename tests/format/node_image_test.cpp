@@ -8,7 +8,7 @@
 #include <new>
 #include <vector>
 
-namespace weir {
+namespace weir::node_image_test {
 namespace {
 
 // The image at NanoVDB's alignment, as its own node type.
@@ -76,4 +76,4 @@ TEST(NodeImage, LowerIsStocksLower) { expect_entries<nanovdb::NanoLower<float>>(
 TEST(NodeImage, UpperIsStocksUpper) { expect_entries<nanovdb::NanoUpper<float>>(NodeImage::Level::upper, 32); }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::node_image_test

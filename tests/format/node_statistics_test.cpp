@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace weir {
+namespace weir::node_statistics_test {
 namespace {
 
 using StockStats = nanovdb::Stats<float>;
@@ -104,4 +104,4 @@ TEST(NodeStatistics, BoxIsTheUnionAndInvertedAtFirst) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::node_statistics_test

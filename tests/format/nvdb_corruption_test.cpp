@@ -13,10 +13,10 @@
 #include "format/macrocells.h"
 #include "format/nanovdb_layout.h"
 #include "format/nvdb_grid.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::nvdb_corruption_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -377,4 +377,4 @@ TEST(NvdbCorruption, Macrocells) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nvdb_corruption_test

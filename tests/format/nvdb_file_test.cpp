@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "format/error.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::nvdb_file_test {
 namespace {
 
 std::string message_at(const std::string& path) {
@@ -59,4 +59,4 @@ TEST(NvdbFile, MapsAndMoves) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nvdb_file_test

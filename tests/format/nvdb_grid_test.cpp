@@ -10,9 +10,9 @@
 
 #include "format/leaf_decode.h"
 #include "format/nvdb_checksum.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::nvdb_grid_test {
 namespace {
 
 using test::StockNvdb;
@@ -164,4 +164,4 @@ TEST(NvdbGrid, CoordinatesBeyond32BitsAreBackground) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nvdb_grid_test

@@ -6,9 +6,9 @@
 
 #include "format/error.h"
 #include "format/nvdb_grid.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::nvdb_header_test {
 namespace {
 
 TEST(NvdbHeader, FindsTheGridsOfEverySegment) {
@@ -57,4 +57,4 @@ TEST(NvdbHeader, AGridThatIsCutIsTheLastOne) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nvdb_header_test

@@ -10,11 +10,12 @@
 #include <iterator>
 #include <map>
 
+#include "format/commit_traces.h"
 #include "format/error.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::output_files_test {
 namespace {
 
 // Names and contents of all files of a directory.
@@ -126,8 +127,15 @@ TEST_F(OutputFilesTest, RefusesAnExistingOutput) {
 
 // Killed between the two renames: the lock's file tells its sidecar from one that somebody keeps.
 TEST_F(OutputFilesTest, ReplacesASidecarThatAKilledCommitLeft) {
-  put("out.nvdb.json", "sidecar of a killed commit");
-  put("out.nvdb.partial", "volume");
+  FaultyFileSystem files(*real_, 7, EIO, FaultyFileSystem::After::fails);  // the second rename
+  {
+    OutputFiles output_files(files, output(), false);
+    output_files.write_to(real_->open(directory_ / "half"));
+    EXPECT_THROW(output_files.commit("sidecar"), Error);
+  }
+  EXPECT_EQ(listing(),
+            (Listing{{"half", ""}, {"out.nvdb.json", "sidecar"}, {"out.nvdb.partial", commit_record("sidecar")}}));
+  std::filesystem::remove(directory_ / "half");
   EXPECT_EQ(write_output(*real_, false), "");
   EXPECT_EQ(listing(), written_);
 }
@@ -226,4 +234,4 @@ TEST(DirectoryOf, IsThePathBeforeTheLastSlash) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::output_files_test

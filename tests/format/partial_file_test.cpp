@@ -17,7 +17,7 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::partial_file_test {
 namespace {
 
 using Listing = std::map<std::string, std::string>;
@@ -105,4 +105,4 @@ TEST_F(PartialFileTest, OneWriterAtATime) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::partial_file_test

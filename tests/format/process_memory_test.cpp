@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weir {
+namespace weir::process_memory_test {
 namespace {
 
 TEST(ProcessMemory, FollowsWhatIsTaken) {
@@ -22,4 +22,4 @@ TEST(ProcessMemory, SomethingIsLeft) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::process_memory_test

@@ -10,7 +10,7 @@
 #include "format/leaf_codec.h"
 #include "format/leaf_decode.h"
 
-namespace weir {
+namespace weir::quantised_codec_test {
 namespace {
 
 constexpr Box kNode{{-16, 8, 0}, {-8, 16, 8}};
@@ -75,4 +75,4 @@ TEST(QuantisedCodec, OneLevelHasStatisticsOfZero) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::quantised_codec_test

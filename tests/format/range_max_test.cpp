@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace weir {
+namespace weir::range_max_test {
 namespace {
 
 TEST(RangeMax, IsTheLargestOfEveryStretch) {
@@ -25,4 +25,4 @@ TEST(RangeMax, IsTheLargestOfEveryStretch) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::range_max_test

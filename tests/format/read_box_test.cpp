@@ -5,9 +5,9 @@
 #include <bit>
 #include <vector>
 
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::read_box_test {
 namespace {
 
 class ReadBox : public testing::TestWithParam<GridType> {};
@@ -36,4 +36,4 @@ TEST_P(ReadBox, ReadsWhatTheStockAccessorReads) {
 INSTANTIATE_TEST_SUITE_P(Types, ReadBox, testing::Values(GridType::float32, GridType::fp8, GridType::fpn));
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::read_box_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::scene_opacity_test {
 namespace {
 
 TEST(SceneOpacity, IsLinearBetweenPointsAndConstantBeyond) {
@@ -23,4 +23,4 @@ TEST(SceneOpacity, TwoPointsAtOnePlaceAreAStep) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_opacity_test

@@ -6,7 +6,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::scene_test {
 namespace {
 
 std::string message(const std::string& text) {
@@ -207,4 +207,4 @@ TEST(Scene, RegionIsWholeVoxels) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_test

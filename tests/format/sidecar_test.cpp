@@ -16,7 +16,7 @@
 #include "format/error.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::sidecar_test {
 namespace {
 
 // Every member differs from its default and from its neighbours.
@@ -159,9 +159,11 @@ TEST(Sidecar, NumbersBeyondDoubleAreRefused) {
             "a.nvdb.json: a number is beyond the range of double; write the sidecar again with weir convert");
 }
 
-TEST(Sidecar, SurvivesDeepNesting) {
+TEST(Sidecar, DeepNesting_IsRefusedBeforeItTakesMemory) {
   const std::string deep = "{\"weir_sidecar\": " + std::string(1000000, '[') + std::string(1000000, ']') + "}";
   EXPECT_EQ(message(deep),
+            "a.nvdb.json: nested deeper than 16 levels, no sidecar is; write it again with weir convert");
+  EXPECT_EQ(message("{\"weir_sidecar\": " + std::string(15, '[') + std::string(15, ']') + "}"),
             "a.nvdb.json: key weir_sidecar: expected a whole number, found an array of 1; write the sidecar again with "
             "weir convert");
 }
@@ -231,4 +233,4 @@ TEST(Sidecar, UtcText) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sidecar_test

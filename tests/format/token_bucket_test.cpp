@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::token_bucket_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -49,4 +49,4 @@ TEST(TokenBucket, CenturiesOfDebtStayATime) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::token_bucket_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::toml_reader_test {
 namespace {
 
 const std::string kPath = "f.toml";
@@ -67,4 +67,4 @@ TEST(TomlReader, NamesTheKeyNobodyAskedFor) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::toml_reader_test

@@ -11,7 +11,7 @@
 #include "format/error.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::trace_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -100,4 +100,4 @@ TEST(Trace, SaysWhatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::trace_test

@@ -6,7 +6,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::tree_layout_test {
 namespace {
 
 TEST(TreeLayout, PartsFollowEachOther) {
@@ -65,4 +65,4 @@ TEST(TreeLayout, PaddingIsAnyNumberOfBytesAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::tree_layout_test

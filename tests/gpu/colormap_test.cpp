@@ -7,7 +7,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::colormap_test {
 namespace {
 
 TEST(Colormap, GrayIsLinearInSrgb) {
@@ -66,4 +66,4 @@ TEST(Srgb, RoundTripAndClamp) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::colormap_test

@@ -11,9 +11,9 @@
 
 #include "format/error.h"
 #include "gpu/render_scene.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::cpu_renderer_test {
 namespace {
 
 using test::TestGrid;
@@ -182,4 +182,4 @@ TEST(RenderCpu, CancelIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::cpu_renderer_test

@@ -7,7 +7,7 @@
 
 #include "gpu/random.h"
 
-namespace weir {
+namespace weir::dda_test {
 namespace {
 
 constexpr CellLattice kLattice{{4, 3, 2}, {0, 0, 0}, 16};
@@ -184,4 +184,4 @@ TEST(Enter, MovesTheOriginToTheBox) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::dda_test

@@ -10,9 +10,9 @@
 
 #include "gpu/backend.h"
 #include "gpu/leaf_table.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::dense_volume_test {
 namespace {
 
 using test::TestGrid;
@@ -123,4 +123,4 @@ TEST(DenseVolume, RendersOnTheCpu) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::dense_volume_test

@@ -10,7 +10,7 @@
 #include "tests/gpu/test_environment.h"
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::environment_light_test {
 namespace {
 
 using test::Estimate;
@@ -214,4 +214,4 @@ TEST(EnvironmentLight, SurfacesTakeTheMean) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::environment_light_test

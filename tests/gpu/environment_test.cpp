@@ -11,7 +11,7 @@
 #include "format/error.h"
 #include "tests/gpu/test_environment.h"
 
-namespace weir {
+namespace weir::environment_test {
 namespace {
 
 using test::surroundings;
@@ -280,4 +280,4 @@ TEST(Environment, ExtremeRadiance) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::environment_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace weir {
+namespace weir::flip_color_test {
 namespace {
 
 void expect_near(const Float3& found, const Float3& expected, float tolerance) {
@@ -60,4 +60,4 @@ TEST(FlipColor, NoTwoColorsDifferMoreThanGreenAndBlue) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::flip_color_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace weir {
+namespace weir::flip_filters_test {
 namespace {
 
 constexpr double kPpd = 67.0206433;
@@ -64,4 +64,4 @@ TEST(FlipFilters, Shapes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::flip_filters_test

@@ -15,7 +15,7 @@
 #include "gpu/colormap.h"
 #include "tests/gpu/flip_pairs.h"
 
-namespace weir {
+namespace weir::flip_test {
 namespace {
 
 Image image_of(const std::vector<test::Srgb>& pixels, std::int32_t width, std::int32_t height) {
@@ -256,4 +256,4 @@ TEST(FlipPicture, BlackToYellow) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::flip_test

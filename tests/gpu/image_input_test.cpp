@@ -9,9 +9,10 @@
 #include "gpu/environment.h"
 #include "gpu/image_output.h"
 #include "tests/gpu/test_environment.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::image_input_test {
 namespace {
 
 const ImageSizeCheck kAny = [](std::int32_t, std::int32_t) {};
@@ -78,6 +79,7 @@ TEST_F(ImageInput, Errors) {
 
 // Cut short or changed: an error or a picture, never a fault.
 TEST_F(ImageInput, BrokenExr) {
+  const LeaksOfLibraries of_tinyexr;
   const std::vector<std::byte> bytes = encode_exr(test::surroundings(40, [](int x, int y) {
     return Float3{static_cast<float>(x * 7919 % 101), static_cast<float>(y), 1};
   }));
@@ -106,4 +108,4 @@ TEST_F(ImageInput, LoadsASceneEnvironment) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::image_input_test

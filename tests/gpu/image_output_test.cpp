@@ -13,7 +13,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::image_output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ TEST(ToneMap, ExposureAndHardClip) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::image_output_test

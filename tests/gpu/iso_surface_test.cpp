@@ -8,7 +8,7 @@
 #include "gpu/random.h"
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::iso_surface_test {
 namespace {
 
 using test::TestMedium;
@@ -73,4 +73,4 @@ TEST(ShadeIso, LambertByTheGradient) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::iso_surface_test

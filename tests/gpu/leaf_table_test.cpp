@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "format/error.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::leaf_table_test {
 namespace {
 
 using test::TestGrid;
@@ -121,4 +121,4 @@ TEST(LeafTable, EmptyGridIsAnError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::leaf_table_test

@@ -8,9 +8,9 @@
 
 #include "gpu/leaf_table.h"
 #include "gpu/volume_sampler.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::macrocell_grid_test {
 namespace {
 
 using test::TestGrid;
@@ -144,4 +144,4 @@ TEST(MacrocellGrid, MajorantsBoundEveryLookup) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::macrocell_grid_test

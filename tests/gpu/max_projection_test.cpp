@@ -6,7 +6,7 @@
 
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::max_projection_test {
 namespace {
 
 using test::TestMedium;
@@ -49,4 +49,4 @@ TEST(ProjectMax, LiesOverTheBackground) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::max_projection_test

@@ -7,7 +7,7 @@
 #include "gpu/ray_march.h"
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::path_tracer_test {
 namespace {
 
 using test::Estimate;
@@ -133,4 +133,4 @@ TEST(TracePath, CameraInsideAndOnBorders) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::path_tracer_test

@@ -4,7 +4,7 @@
 
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::phase_test {
 namespace {
 
 TEST(Phase, IntegratesToOneAndHasMeanCosineG) {
@@ -50,4 +50,4 @@ TEST(SamplePhase, EndsOfTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::phase_test

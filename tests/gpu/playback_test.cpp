@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "format/error.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::playback_test {
 namespace {
 
 // Counts the volumes there are at a time.
@@ -181,4 +181,4 @@ TEST_F(Playback, SoDoesTheLastOne) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::playback_test

@@ -14,7 +14,7 @@
 #include "gpu/image_output.h"
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::png_input_test {
 namespace {
 
 class PngInput : public ::testing::Test {
@@ -115,4 +115,4 @@ TEST_F(PngInput, AHeaderAloneTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::png_input_test

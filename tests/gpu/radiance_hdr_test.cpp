@@ -7,7 +7,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::radiance_hdr_test {
 namespace {
 
 const std::string kHead = "#?RADIANCE\n# by hand\nFORMAT=32-bit_rle_rgbe\n\n";
@@ -124,4 +124,4 @@ TEST(RadianceHdr, SizeIsRefusedBeforeMemoryIsTaken) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::radiance_hdr_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace weir {
+namespace weir::random_test {
 namespace {
 
 TEST(Random, SameSeedSameStream) {
@@ -48,4 +48,4 @@ TEST(FreeDepth, EndsOfTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::random_test

@@ -6,7 +6,7 @@
 
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::ray_march_test {
 namespace {
 
 using test::TestMedium;
@@ -71,4 +71,4 @@ TEST(March, ShadingFacesTheCamera) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::ray_march_test

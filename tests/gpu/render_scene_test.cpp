@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "format/error.h"
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::render_scene_test {
 namespace {
 
 using test::TestGrid;
@@ -127,4 +127,4 @@ TEST(RenderScene, RefusesARegionOutsideTheVolume) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::render_scene_test

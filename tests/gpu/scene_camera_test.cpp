@@ -9,7 +9,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::scene_camera_test {
 namespace {
 
 const GridFrame kCube{{{10, 20, 30}, {110, 120, 130}}, {0.5, 0.5, 0.5}, {1, 2, 3}};
@@ -135,4 +135,4 @@ TEST(Camera, CornersOfThePicture) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_camera_test

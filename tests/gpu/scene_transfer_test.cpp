@@ -7,7 +7,7 @@
 #include "format/error.h"
 #include "gpu/colormap.h"
 
-namespace weir {
+namespace weir::scene_transfer_test {
 namespace {
 
 TEST(MakeTransferFunction, BackgroundIsTransparentByDefault) {
@@ -62,4 +62,4 @@ TEST(MakeTransferFunction, TheScenesColormapWins) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_transfer_test

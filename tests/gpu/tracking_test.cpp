@@ -6,7 +6,7 @@
 
 #include "tests/gpu/test_medium.h"
 
-namespace weir {
+namespace weir::tracking_test {
 namespace {
 
 using test::Estimate;
@@ -126,4 +126,4 @@ TEST(DeltaTrack, NotANumberIsVacuum) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::tracking_test

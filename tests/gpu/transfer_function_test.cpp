@@ -8,7 +8,7 @@
 #include "format/error.h"
 #include "gpu/random.h"
 
-namespace weir {
+namespace weir::transfer_function_test {
 namespace {
 
 const TransferFunction kRamp({{0, 0, 0, 0}, {0.5F, 0, 1, 0.25F}, {1, 0, 0, 1}}, -1, 3);
@@ -94,4 +94,4 @@ TEST(TransferFunction, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::transfer_function_test

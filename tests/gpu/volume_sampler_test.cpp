@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/gpu/test_grid.h"
 #include "tests/gpu/test_medium.h"
+#include "tests/stock/test_grid.h"
 
-namespace weir {
+namespace weir::volume_sampler_test {
 namespace {
 
 using test::estimate;
@@ -126,4 +126,4 @@ TEST(Sampler, HugeValuesOfBothSigns) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::volume_sampler_test

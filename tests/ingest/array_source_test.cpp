@@ -9,7 +9,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::array_source_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -230,4 +230,4 @@ TEST(ArraySource, BoxesOutsideAreAFaultOfTheCaller) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::array_source_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace weir {
+namespace weir::axis_placement_test {
 namespace {
 
 TEST(AxisPlacement, KeepsAxesOfTheWorld) {
@@ -61,4 +61,4 @@ TEST(AxisPlacement, StepsOfNoLengthAreLeftToTheReader) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::axis_placement_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace weir {
+namespace weir::block_axis_test {
 namespace {
 
 constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
@@ -57,4 +57,4 @@ TEST(BlockAxis, UsefulCutsGetLongerAndBetter) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::block_axis_test

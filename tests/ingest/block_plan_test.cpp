@@ -5,7 +5,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::block_plan_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -275,4 +275,4 @@ TEST(BlockPlan, RandomDomainsAndBudgets) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::block_plan_test

@@ -10,7 +10,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::block_stream_test {
 namespace {
 
 /// Values are their linear index; can fail at one read, and remembers who read and into where.
@@ -279,4 +279,4 @@ TEST(BlockStream, InPlaceRestsBetweenGroupsAndCancelsThere) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::block_stream_test

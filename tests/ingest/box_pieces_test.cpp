@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weir {
+namespace weir::box_pieces_test {
 namespace {
 
 /// Follows the pieces through a file whose voxel i has the value i, and checks that every value of the
@@ -87,4 +87,4 @@ TEST(BoxPieces, OffsetsBeyond32Bits) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::box_pieces_test

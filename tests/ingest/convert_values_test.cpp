@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace weir {
+namespace weir::convert_values_test {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -184,4 +184,4 @@ TEST(ConvertValues, NothingFromNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::convert_values_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace weir {
+namespace weir::decode_values_test {
 namespace {
 
 constexpr bool kNativeIsBig = std::endian::native == std::endian::big;
@@ -142,5 +142,15 @@ TEST(DecodeValues, WithoutMappingBytesPassAsTheyAre) {
   EXPECT_EQ(std::memcmp(values.data(), bits.data(), 12), 0);
 }
 
+TEST(DecodeValues, StoredNaNOfTheMissingBits_IsNotMissing) {
+  const std::vector<std::uint32_t> bits{kMissingBits, 0xBF800000U, kMissingBits | 0x80000000U};
+  std::vector<float> values(3);
+  decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, {1, 0, {StoredValue{-1.0}}}, values);
+  EXPECT_TRUE(std::isnan(values[0]));
+  EXPECT_FALSE(is_missing(values[0]));
+  EXPECT_TRUE(is_missing(values[1]));
+  EXPECT_FALSE(is_missing(values[2]));
+}
+
 }  // namespace
-}  // namespace weir
+}  // namespace weir::decode_values_test

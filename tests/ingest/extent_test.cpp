@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::extent_test {
 namespace {
 
 std::string refusal(const Index3& extent, std::size_t bytes) {
@@ -39,4 +39,4 @@ TEST(Extent, Text) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::extent_test

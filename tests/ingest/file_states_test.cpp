@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_directory.h"
 
-namespace weir {
+namespace weir::file_states_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ TEST_F(FileStatesTest, AMissingFileIsAStateToo) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_states_test

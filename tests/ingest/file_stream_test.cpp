@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::file_stream_test {
 namespace {
 
 TEST(FileStream, SeeksAndReadsAcrossItsBuffer) {
@@ -40,4 +40,4 @@ TEST(FileStream, ThrowsAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_stream_test

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace weir {
+namespace weir::for_pieces_test {
 namespace {
 
 TEST(ForPieces, EachPieceOnce) {
@@ -46,4 +46,4 @@ TEST(ForPieces, AnExceptionStopsTheRestAndComesBack) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::for_pieces_test

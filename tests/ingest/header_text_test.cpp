@@ -5,7 +5,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::header_text_test {
 namespace {
 
 TEST(LineReader, EndsLinesAtLfAndCrLf) {
@@ -63,4 +63,4 @@ TEST(HeaderText, ReadsNoMoreThanTheLimit) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::header_text_test

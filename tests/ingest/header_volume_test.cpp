@@ -5,7 +5,7 @@
 #include "tests/ingest/header_file.h"
 #include "tests/ingest/packed.h"
 
-namespace weir {
+namespace weir::header_volume_test {
 namespace {
 
 std::vector<std::uint16_t> ramp(std::size_t count) {
@@ -205,4 +205,4 @@ TEST_F(HeaderVolumeTest, ListsWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::header_volume_test

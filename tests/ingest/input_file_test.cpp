@@ -11,7 +11,7 @@
 #include "ingest/page_buffer.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::input_file_test {
 namespace {
 
 constexpr std::size_t kPage = 4096;
@@ -214,4 +214,4 @@ TEST(InputFileRefused, FileSystemsWithoutDirectIo) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::input_file_test

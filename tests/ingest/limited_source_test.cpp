@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace weir {
+namespace weir::limited_source_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -51,4 +51,4 @@ TEST(LimitedSource, ReadsTheSameAndNoFasterThanAllowed) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::limited_source_test

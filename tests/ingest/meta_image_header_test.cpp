@@ -3,7 +3,7 @@
 #include "ingest/header_text.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::meta_image_header_test {
 namespace {
 
 const std::string kMinimal =
@@ -124,4 +124,4 @@ TEST(MetaImageHeader, CutAtAnyByteItIsRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::meta_image_header_test

@@ -6,7 +6,7 @@
 #include "tests/ingest/header_file.h"
 #include "tests/ingest/packed.h"
 
-namespace weir {
+namespace weir::meta_image_source_test {
 namespace {
 
 std::vector<std::uint8_t> ramp() {
@@ -145,4 +145,4 @@ TEST(MetaImageSource, GarbageAndBombsAreRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::meta_image_source_test

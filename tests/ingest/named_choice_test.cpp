@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::named_choice_test {
 namespace {
 
 std::string refusal(ErrorKind kind, const std::vector<NamedVolume>& there, const std::string& wanted) {
@@ -33,4 +33,4 @@ TEST(NamedChoice, ListsStayShort) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::named_choice_test

@@ -6,7 +6,7 @@
 #include "tests/ingest/nifti_file.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::nifti_header_test {
 namespace {
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
@@ -161,4 +161,4 @@ TEST(NiftiHeader, CutAtAnyByteItIsRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nifti_header_test

@@ -9,7 +9,7 @@
 #include "tests/ingest/packed.h"
 #include "tests/support/python.h"
 
-namespace weir {
+namespace weir::nifti_source_test {
 namespace {
 
 std::vector<std::uint8_t> ramp() {
@@ -212,4 +212,4 @@ for order, word in (("<", "le"), (">", "be")):
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nifti_source_test

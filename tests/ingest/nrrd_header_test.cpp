@@ -5,7 +5,7 @@
 #include "ingest/header_text.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::nrrd_header_test {
 namespace {
 
 const std::string kMinimal =
@@ -190,4 +190,4 @@ TEST(NrrdHeader, CutAtAnyByteItIsRefusedOrDetached) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nrrd_header_test

@@ -8,7 +8,7 @@
 #include "tests/ingest/header_file.h"
 #include "tests/ingest/packed.h"
 
-namespace weir {
+namespace weir::nrrd_source_test {
 namespace {
 
 std::vector<std::uint8_t> ramp() {
@@ -203,4 +203,4 @@ TEST(NrrdSource, HostileHeadersCostNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nrrd_source_test

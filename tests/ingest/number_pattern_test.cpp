@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::number_pattern_test {
 namespace {
 
 TEST(NumberPattern, NamesAndMatchesEachOther) {
@@ -55,4 +55,4 @@ TEST(NumberedFiles, ByRisingNumber) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::number_pattern_test

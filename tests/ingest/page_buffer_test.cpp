@@ -5,7 +5,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::page_buffer_test {
 namespace {
 
 TEST(PageBuffer, AlignedAndZero) {
@@ -27,4 +27,4 @@ TEST(PageBuffer, RefusedMemoryIsAnError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::page_buffer_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace weir {
+namespace weir::raw_name_test {
 namespace {
 
 TEST(RawName, ReadsExtentAndType) {
@@ -64,4 +64,4 @@ TEST(RawName, OtherNamesSayNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::raw_name_test

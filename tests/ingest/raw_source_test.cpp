@@ -11,7 +11,7 @@
 #include "ingest/staging.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::raw_source_test {
 namespace {
 
 const Index3 kExtent{7, 5, 9};
@@ -273,4 +273,4 @@ TEST(RawSource, AFileCutAfterOpening) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::raw_source_test

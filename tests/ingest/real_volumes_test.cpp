@@ -9,7 +9,7 @@
 #include "ingest/source_registry.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::real_volumes_test {
 namespace {
 
 struct Volume {
@@ -68,4 +68,4 @@ INSTANTIATE_TEST_SUITE_P(Manifest, RealVolumes,
                          });
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::real_volumes_test

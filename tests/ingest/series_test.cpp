@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::series_test {
 namespace {
 
 std::vector<SeriesStep> expand(const std::vector<std::string>& inputs, const SourceOptions& options = {}) {
@@ -92,4 +92,4 @@ TEST(Series, RawFilesHaveNoDatasets) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::series_test

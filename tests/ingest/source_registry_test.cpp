@@ -7,9 +7,9 @@
 
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
-#include "tests/ingest/vdb/openvdb_file.h"
+#include "tests/stock/openvdb_file.h"
 
-namespace weir {
+namespace weir::source_registry_test {
 namespace {
 
 constexpr Index3 kExtent{4, 3, 2};
@@ -126,4 +126,4 @@ TEST(SourceRegistry, MissingFilesAreAnErrorOfTheInput) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::source_registry_test

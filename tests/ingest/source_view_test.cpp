@@ -9,7 +9,7 @@
 #include "ingest/raw_source.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::source_view_test {
 namespace {
 
 std::unique_ptr<VolumeSource> open_ramp(const Scratch& scratch) {
@@ -85,10 +85,14 @@ TEST(SourceView, RefusesAnImpossiblePlace) {
   EXPECT_EQ(refusal(options), path + ": --spacing has 0; each must be finite and above 0");
   options.spacing = {1.0, 1.0, std::numeric_limits<double>::infinity()};
   EXPECT_EQ(refusal(options), path + ": --spacing has inf; each must be finite and above 0");
+  options.spacing = {1, 1e-200, 1};
+  EXPECT_EQ(refusal(options), path + ": --spacing has 1e-200; each must be within 1e-37 and 1e+37");
+  options.spacing = {1, 1, 1e200};
+  EXPECT_EQ(refusal(options), path + ": --spacing has 1e+200; each must be within 1e-37 and 1e+37");
   options.spacing.reset();
   options.origin = {0.0, std::nan(""), 0.0};
   EXPECT_EQ(refusal(options), path + ": --origin has nan; each must be finite");
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::source_view_test

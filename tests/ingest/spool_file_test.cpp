@@ -6,7 +6,7 @@
 #include "tests/ingest/scratch.h"
 #include "tests/support/faulty_file_system.h"
 
-namespace weir {
+namespace weir::spool_file_test {
 namespace {
 
 std::vector<std::byte> bytes_of(std::size_t count, std::byte value) { return std::vector<std::byte>(count, value); }
@@ -109,4 +109,4 @@ TEST_F(SpoolFileTest, LiesBesideThePackedFileWhereNoDirectoryIsChosen) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::spool_file_test

@@ -3,7 +3,7 @@
 #include "tests/ingest/packed.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::spool_inflated_test {
 namespace {
 
 /// Several of the reader's pieces when packed, so that piece borders are crossed.
@@ -78,5 +78,18 @@ TEST_F(SpoolInflated, RoomThatTheStreamCannotFillIsNotAskedFor) {
                 "damaged");
 }
 
+TEST_F(SpoolInflated, Cancelled_EndsBeforeTheStreamDoes) {
+  const std::string path = pack(noise(100), 0);
+  const std::atomic<bool> cancel{true};
+  SourceOptions options;
+  options.cancel = &cancel;
+  InputFile file(path, DirectIo::automatic);
+  // What is skipped takes as long as what is kept.
+  for (const UnpackedRange& wanted : {UnpackedRange{0, 100, 100}, UnpackedRange{100, 0, 100}}) {
+    EXPECT_EQ(message_of_error(ErrorKind::interrupted, [&] { spool_inflated(file, packed_, wanted, options); }),
+              "interrupted");
+  }
+}
+
 }  // namespace
-}  // namespace weir
+}  // namespace weir::spool_inflated_test

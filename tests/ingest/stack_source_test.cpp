@@ -6,7 +6,7 @@
 #include "ingest/source_registry.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::stack_source_test {
 namespace {
 
 constexpr Index3 kExtent{6, 5, 40};
@@ -110,4 +110,4 @@ TEST(StackSource, RefusesHoles) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::stack_source_test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace weir {
+namespace weir::staging_test {
 namespace {
 
 TEST(StagingPool, LendsDistinctAlignedBuffers) {
@@ -54,4 +54,4 @@ TEST(StagingPool, NeverLendsMoreThanItHas) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::staging_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace weir {
+namespace weir::stored_value_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -64,4 +64,4 @@ TEST(ValueMapping, IsTheIdentityUnlessSomethingIsSaid) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::stored_value_test

@@ -5,7 +5,7 @@
 #include "tests/ingest/packed.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::stream_inflater_test {
 namespace {
 
 /// Larger than the inflater's output buffer, and not a multiple of it.
@@ -100,4 +100,4 @@ TEST(StreamInflater, LetsTheSinkStopABomb) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::stream_inflater_test

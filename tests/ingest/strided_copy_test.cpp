@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace weir {
+namespace weir::strided_copy_test {
 namespace {
 
 constexpr Box kBox{{-3, 5, 100}, {37, 28, 109}};
@@ -83,4 +83,4 @@ TEST(StridedCopy, RepeatsWhatHasNoStride) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::strided_copy_test

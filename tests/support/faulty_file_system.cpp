@@ -35,6 +35,7 @@ class FaultyFile final : public File {
   }
   std::uint64_t size() override { return real_->size(); }
   int descriptor() const override { return real_->descriptor(); }
+  bool exclusive() const override { return real_->exclusive(); }
 
  private:
   FaultyFileSystem& files_;
@@ -97,9 +98,9 @@ void FaultyFileSystem::rename_new(const std::string& from, const std::string& to
   renamed(to);
 }
 
-void FaultyFileSystem::link(const std::string& from, const std::string& to) {
+bool FaultyFileSystem::link(const std::string& from, const std::string& to) {
   count("link", from);
-  real_.link(from, to);
+  return has_links_ && real_.link(from, to);
 }
 
 void FaultyFileSystem::remove(const std::string& path) {
@@ -123,6 +124,8 @@ void FaultyFileSystem::sync_directory(const std::string& path) {
 }
 
 bool FaultyFileSystem::exists(const std::string& path) { return real_.exists(path); }
+
+bool FaultyFileSystem::is_replaceable(const std::string& path) { return real_.is_replaceable(path); }
 
 bool FaultyFileSystem::is_memory(const std::string& directory) { return real_.is_memory(directory); }
 

@@ -25,6 +25,9 @@ class FaultyFileSystem final : public FileSystem {
   /// Instead of a number from the beginning: call number `fail_at` after something got the name `path`.
   void fail_after_rename_to(const std::string& path, int fail_at);
 
+  /// From here on as on exFAT: link does nothing.
+  void take_links_away() { has_links_ = false; }
+
   /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
   std::vector<std::string> calls() const;
   bool failed() const { return failed_; }
@@ -34,12 +37,13 @@ class FaultyFileSystem final : public FileSystem {
   std::unique_ptr<File> create_unnamed(const std::string& directory) override;
   void rename(const std::string& from, const std::string& to) override;
   void rename_new(const std::string& from, const std::string& to) override;
-  void link(const std::string& from, const std::string& to) override;
+  bool link(const std::string& from, const std::string& to) override;
   void remove(const std::string& path) override;
   void make_directory(const std::string& path) override;
   void remove_directory(const std::string& path) override;
   void sync_directory(const std::string& path) override;
   bool exists(const std::string& path) override;
+  bool is_replaceable(const std::string& path) override;
   bool is_memory(const std::string& directory) override;
   std::uint64_t free_bytes(const std::string& directory) override;
 
@@ -55,6 +59,7 @@ class FaultyFileSystem final : public FileSystem {
   After after_;
   std::string awaited_name_;
   int fail_after_it_ = -1;
+  bool has_links_ = true;
   mutable std::mutex mutex_;
   std::vector<std::string> calls_;
   std::atomic<bool> failed_{false};

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <limits>
 
-#include "tests/tools/run_command.h"
-#include "tests/tools/scoped_mount.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
 
-namespace weir {
+namespace weir::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ TEST_F(BadInput, CommandLine) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::bad_input_test

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::bandwidth_option_test {
 namespace {
 
 class BandwidthOptionTest : public testing::Test {
@@ -38,4 +38,4 @@ TEST_F(BandwidthOptionTest, WhatIsNoBandwidthIsRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::bandwidth_option_test

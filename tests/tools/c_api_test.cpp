@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::c_api_test {
 namespace {
 
 const std::string kBindings = WEIR_SOURCE_DIR "/bindings/c";
@@ -183,4 +183,4 @@ TEST_F(CExamples, PkgConfigLeadsToTheLibrary) {
 #endif
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::c_api_test

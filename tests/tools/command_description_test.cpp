@@ -4,7 +4,7 @@
 
 #include "tests/tools/described_app.h"
 
-namespace weir {
+namespace weir::command_description_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -51,4 +51,4 @@ TEST(CommandDescription, EveryShapeOfOption) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::command_description_test

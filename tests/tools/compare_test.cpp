@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::compare_test {
 namespace {
 
 /// A directory with a source and its conversion.
@@ -146,4 +146,4 @@ TEST(Compare, Refusals) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::compare_test

@@ -6,7 +6,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::convert_syntax_test {
 namespace {
 
 TEST(ConvertSyntaxOfTheCommand, IsItsInputAndConversionOptions) {
@@ -43,4 +43,4 @@ TEST(ConvertSyntaxOfTheCommand, ChecksAsTheCommandDoes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::convert_syntax_test

@@ -9,7 +9,7 @@
 
 #include "format/nvdb_file.h"
 #include "format/sidecar.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 #include "tools/read_sidecar.h"
 
 namespace weir {

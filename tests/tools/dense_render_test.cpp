@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::dense_render_test {
 namespace {
 
 class DenseRender : public ::testing::Test {
@@ -149,4 +149,4 @@ TEST_F(DenseRender, MoreThanTheMemoryThereIs) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::dense_render_test

@@ -6,10 +6,10 @@
 
 #include "daemon/file_system_kind.h"
 #include "format/text.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::describe_config_test {
 namespace {
 
 class WatchCheck : public testing::Test {
@@ -118,4 +118,4 @@ TEST_F(WatchCheck, WithoutAFileIsAUsageError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::describe_config_test

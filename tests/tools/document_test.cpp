@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "format/text.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::document_test {
 namespace {
 
 using test::CommandBlock;
@@ -135,4 +135,4 @@ TEST(DocumentationIndex, TheReadmeLeadsToEveryPage) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::document_test

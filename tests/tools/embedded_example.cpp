@@ -41,6 +41,7 @@ EmbeddedExample::EmbeddedExample(const std::vector<std::string>& options) {
                                      "-G",
                                      WEIR_GENERATOR,
                                      "-DCMAKE_BUILD_TYPE=Release",
+                                     "-DCMAKE_UNITY_BUILD=ON",
                                      "-DCMAKE_CXX_COMPILER=" WEIR_CXX,
                                      "-DCMAKE_CXX_COMPILER_LAUNCHER=" WEIR_LAUNCHER};
   configure.insert(configure.end(), options.begin(), options.end());

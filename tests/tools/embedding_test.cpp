@@ -8,7 +8,7 @@
 #include "format/text.h"
 #include "tests/tools/embedded_example.h"
 
-namespace weir {
+namespace weir::embedding_test {
 namespace {
 
 const std::string kExample = WEIR_SOURCE_DIR "/examples/embed";
@@ -49,4 +49,4 @@ TEST(Embedding, ADeviceProgramBuildsAloneAndPrintsTheValues) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::embedding_test

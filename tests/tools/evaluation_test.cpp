@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "tests/support/python.h"
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::evaluation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ TEST_F(Evaluation, NamesItsExperiments) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::evaluation_test

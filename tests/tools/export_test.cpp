@@ -16,13 +16,13 @@
 
 #include "format/nvdb_file.h"
 #include "format/text.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
+#include "tests/stock/vdb_oracle.h"
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
-#include "tests/tools/vdb_oracle.h"
 #include "tools/vdb_node_values.h"
 
-namespace weir {
+namespace weir::export_test {
 namespace {
 
 class ExportCommand : public testing::Test {
@@ -246,4 +246,4 @@ TEST_F(ExportCommand, Refusals) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::export_test

@@ -7,9 +7,9 @@
 
 #include "format/error.h"
 #include "tests/support/faulty_file_system.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::file_sink_test {
 namespace {
 
 TEST(FileSink, WritesInOrderFromItsOffset) {
@@ -50,4 +50,4 @@ TEST(FileSink, ThrowsWhatTheFileThrows) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::file_sink_test

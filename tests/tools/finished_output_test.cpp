@@ -10,9 +10,9 @@
 
 #include "compressor/journal.h"
 #include "format/file_system.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::finished_output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -247,4 +247,4 @@ TEST_F(SkipDone, RefusesAClosedDescriptor) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::finished_output_test

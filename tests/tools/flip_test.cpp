@@ -8,9 +8,9 @@
 #include "gpu/flip.h"
 #include "gpu/image_output.h"
 #include "gpu/png_input.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::flip_test {
 namespace {
 
 class FlipCommand : public ::testing::Test {
@@ -113,4 +113,4 @@ TEST_F(FlipCommand, Refusals) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::flip_test

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::hdf5_memory_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -122,4 +122,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_memory_test

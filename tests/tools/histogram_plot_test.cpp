@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace weir {
+namespace weir::histogram_plot_test {
 namespace {
 
 TEST(HistogramText, IsLogarithmicAndShowsASingleVoxel) {
@@ -87,4 +87,4 @@ TEST(HistogramImage, SurvivesExtremeRanges) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::histogram_plot_test

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::input_listing_test {
 namespace {
 
 TEST(InputListing, CommandsAreQuotedForAShell) {
@@ -44,4 +44,4 @@ TEST(InputListing, AnInputHasNoHistogramToPlot) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::input_listing_test

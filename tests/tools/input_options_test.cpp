@@ -1,12 +1,13 @@
 #include "tools/input_options.h"
 
 #include <gtest/gtest.h>
+#include <CLI/CLI.hpp>
 
 #include <functional>
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::input_options_test {
 namespace {
 
 SourceOptions parse(const std::string& command_line) {
@@ -115,4 +116,4 @@ TEST(InputOptions, DirectIo) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::input_options_test

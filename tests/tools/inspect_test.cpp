@@ -6,7 +6,7 @@
 
 #include "tests/tools/converted_volume.h"
 
-namespace weir {
+namespace weir::inspect_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,4 +40,4 @@ TEST_F(Inspect, WorksWithoutSidecar) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::inspect_test

@@ -10,12 +10,12 @@
 
 #include "format/text.h"
 #include "tests/support/python.h"
+#include "tests/support/run_command.h"
 #include "tests/tools/embedded_example.h"
-#include "tests/tools/run_command.h"
 
 #ifdef WEIR_INSTALLS  // not in builds with sanitizers
 
-namespace weir {
+namespace weir::install_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -264,6 +264,6 @@ TEST(Changelog, NamesTheVersionFirst) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::install_test
 
 #endif

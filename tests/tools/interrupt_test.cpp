@@ -9,9 +9,9 @@
 #include <random>
 #include <thread>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::interrupt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST(Interrupt, KilledAgainAndAgainItEndsWithTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::interrupt_test

@@ -5,16 +5,16 @@
 #include <algorithm>
 
 #include "format/text.h"
+#include "tests/support/run_command.h"
 #include "tests/tools/described_app.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::man_page_test {
 namespace {
 
 const std::string kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\nbad or "
     "unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, "
-    "permission\n.TP\n130\ninterrupted\n";
+    "permission\n.TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n.TP\n130\ninterrupted\n";
 
 TEST(ManPage, OfTheCommandItself) {
   test::DescribedApp described;
@@ -118,4 +118,4 @@ TEST(ManPage, ADirectoryIsNeeded) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::man_page_test

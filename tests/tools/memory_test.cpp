@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::memory_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -54,4 +54,4 @@ TEST(Memory, ATwoGibibyteVolumeStaysUnderTheCeiling) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::memory_test

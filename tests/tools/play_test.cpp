@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::play_test {
 namespace {
 
 class Play : public ::testing::Test {
@@ -201,4 +201,4 @@ TEST_F(Play, AClosedPipeIsAnError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::play_test

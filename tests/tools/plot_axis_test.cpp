@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace weir {
+namespace weir::plot_axis_test {
 namespace {
 
 using Ticks = std::vector<double>;
@@ -56,4 +56,4 @@ TEST(PlotAxis, MinorTicksAreInside) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::plot_axis_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::plot_canvas_test {
 namespace {
 
 TEST(PlotCanvas, ClipsWhatLiesOutside) {
@@ -54,4 +54,4 @@ TEST(PlotCanvas, TextScales) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::plot_canvas_test

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <array>
 #include <cstdlib>
@@ -10,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace weir {
+namespace weir::progress_test {
 namespace {
 
 /// A temporary stream and a clock that the test turns.
@@ -150,4 +151,4 @@ TEST(Progress, OptionNamesAreTheModes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::progress_test

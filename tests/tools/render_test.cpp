@@ -15,9 +15,9 @@
 #include "format/nvdb_file.h"
 #include "gpu/cpu_renderer.h"
 #include "gpu/render_scene.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::render_test {
 namespace {
 
 class Render : public ::testing::Test {
@@ -261,4 +261,4 @@ TEST_F(Render, MajorantsFromTheFileBoundEveryLookup) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::render_test

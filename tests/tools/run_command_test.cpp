@@ -1,4 +1,4 @@
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <system_error>
 #include <thread>
 
-namespace weir {
+namespace weir::run_command_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -84,4 +84,4 @@ TEST(TemporaryDirectory, ListsAllAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::run_command_test

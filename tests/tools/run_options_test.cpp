@@ -1,10 +1,11 @@
 #include "tools/run_options.h"
 
 #include <gtest/gtest.h>
+#include <CLI/CLI.hpp>
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::run_options_test {
 namespace {
 
 RunArguments parse(const std::string& command_line) {
@@ -43,4 +44,4 @@ TEST(RunOptions, ThreadsLimitTheWorkers) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::run_options_test

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "ingest/synthetic/synthetic.h"
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::sample_test {
 namespace {
 
 std::string expected_bytes(std::string_view kind, const Index3& extent, std::uint64_t seed) {
@@ -222,4 +222,4 @@ TEST(Sample, InterruptKeepsWhatWasThereBefore) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sample_test

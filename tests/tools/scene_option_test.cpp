@@ -5,7 +5,7 @@
 #include "format/text.h"
 #include "tests/tools/converted_volume.h"
 
-namespace weir {
+namespace weir::scene_option_test {
 namespace {
 
 class SceneOption : public ConvertedVolume {
@@ -65,4 +65,4 @@ TEST_F(SceneOption, RefusesScenesByNameAndPlace) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::scene_option_test

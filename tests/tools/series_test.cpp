@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::series_test {
 namespace {
 
 class SeriesCommand : public testing::Test {
@@ -101,4 +101,4 @@ TEST_F(SeriesCommand, AStackIsOneVolume) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::series_test

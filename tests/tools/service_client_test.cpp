@@ -2,6 +2,7 @@
 #include "tools/service_client.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <boost/asio/io_context.hpp>
 #include <filesystem>
@@ -12,10 +13,10 @@
 #include "format/text.h"
 #include "tests/daemon/fake_control.h"
 #include "tests/daemon/served.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::service_client_test {
 namespace {
 
 class ServiceCommands : public testing::Test {
@@ -171,4 +172,4 @@ TEST_F(ServiceCommands, KnowAnotherServersAnswer) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::service_client_test

@@ -1,10 +1,11 @@
 #include "tools/service_report.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/api_json.h"
 
-namespace weir {
+namespace weir::service_report_test {
 namespace {
 
 JobView sample_job() {
@@ -88,4 +89,4 @@ TEST(ServiceReport, ShowsTheStatus) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::service_report_test

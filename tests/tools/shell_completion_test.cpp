@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "format/text.h"
+#include "tests/support/run_command.h"
 #include "tests/tools/described_app.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::shell_completion_test {
 namespace {
 
 bool is_installed(const std::string& shell) { return run_command({"sh", "-c", "command -v " + shell}).exit_code == 0; }
@@ -120,4 +120,4 @@ TEST_F(ShellCompletion, EachShellReadsTheRealScript) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::shell_completion_test

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "format/nvdb_file.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::stock_tools_test {
 namespace {
 
 bool is_installed(const std::string& program) {
@@ -154,4 +154,4 @@ TEST_F(StockTools, ConvertToVdbAndBack) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::stock_tools_test

@@ -4,7 +4,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::sweep_method_test {
 namespace {
 
 template <typename Parse>
@@ -66,4 +66,4 @@ TEST(SweepMethod, OptionsAreThoseOfTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sweep_method_test

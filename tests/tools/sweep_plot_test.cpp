@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace weir {
+namespace weir::sweep_plot_test {
 namespace {
 
 constexpr Float3 kPaper{1, 1, 1};
@@ -101,4 +101,4 @@ TEST(SweepPlot, Extremes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sweep_plot_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace weir {
+namespace weir::sweep_report_test {
 namespace {
 
 // 10 x 10 x 10 voxels: 4000 dense bytes.
@@ -71,4 +71,4 @@ TEST(SweepReport, InfiniteNmse) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sweep_report_test

@@ -12,11 +12,11 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
-#include "tests/tools/run_command.h"
 #include "tools/zfp_codec.h"
 
-namespace weir {
+namespace weir::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -285,4 +285,4 @@ TEST_F(SweepCommand, BoundedMemory) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::sweep_test

@@ -10,9 +10,9 @@
 #include <set>
 #include <thread>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::trace_option_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -188,4 +188,4 @@ TEST_F(TraceOption, IsNoFileOfTheConversion) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::trace_option_test

@@ -6,7 +6,7 @@
 
 #include "tests/tools/converted_volume.h"
 
-namespace weir {
+namespace weir::tree_census_test {
 namespace {
 
 using TreeCensusTest = ConvertedVolume;
@@ -27,4 +27,4 @@ TEST_F(TreeCensusTest, CountsWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::tree_census_test

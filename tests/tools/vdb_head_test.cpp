@@ -8,7 +8,7 @@
 
 #include "ingest/vdb/vdb_header.h"
 
-namespace weir {
+namespace weir::vdb_head_test {
 namespace {
 
 VdbHeader parse(const std::string& bytes) {
@@ -86,4 +86,4 @@ TEST(VdbHead, TransformsThatOpenVdbCannotRead) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_head_test

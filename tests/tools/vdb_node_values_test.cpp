@@ -15,7 +15,7 @@
 
 #include "ingest/vdb/vdb_header.h"
 
-namespace weir {
+namespace weir::vdb_node_values_test {
 namespace {
 
 using LeafMask = openvdb::util::NodeMask<3>;
@@ -139,4 +139,4 @@ TEST(VdbNodeValues, HalfRounding) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_node_values_test

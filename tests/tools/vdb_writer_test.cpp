@@ -11,13 +11,13 @@
 #include "format/error.h"
 #include "format/nanovdb_layout.h"
 #include "ingest/vdb/vdb_header.h"
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
+#include "tests/stock/vdb_oracle.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/vdb_oracle.h"
 #include "tools/vdb_node_values.h"
 
-namespace weir {
+namespace weir::vdb_writer_test {
 namespace {
 
 constexpr std::uint32_t kCompressions[] = {0, kVdbZip, kVdbBlosc};
@@ -196,4 +196,4 @@ TEST_F(VdbWriter, AFullDiskIsSaid) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_writer_test

@@ -10,7 +10,7 @@
 #include "format/nanovdb_layout.h"
 #include "tests/tools/converted_volume.h"
 
-namespace weir {
+namespace weir::verify_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST_F(Verify, SidecarOfAnotherVolume) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::verify_test

@@ -6,7 +6,7 @@
 
 #include "tests/tools/converted_volume.h"
 
-namespace weir {
+namespace weir::volume_check_test {
 namespace {
 
 using VolumeCheckTest = ConvertedVolume;
@@ -51,4 +51,4 @@ TEST_F(VolumeCheckTest, EachKeyOfTheSidecarIsCompared) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::volume_check_test

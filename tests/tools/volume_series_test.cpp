@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "format/error.h"
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
-namespace weir {
+namespace weir::volume_series_test {
 namespace {
 
 TEST(NaturalLess, RunsOfDigitsAreNumbers) {
@@ -74,4 +74,4 @@ TEST(SummariseSeries, RangeBackgroundAndBoxes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::volume_series_test

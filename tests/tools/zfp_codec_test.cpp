@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace weir {
+namespace weir::zfp_codec_test {
 namespace {
 
 std::vector<float> waves(const Index3& extent) {
@@ -102,4 +102,4 @@ TEST(ZfpCodec, FewestAndMostBits) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::zfp_codec_test

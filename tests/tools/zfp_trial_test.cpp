@@ -14,7 +14,7 @@
 #include "tests/support/temporary_directory.h"
 #include "tools/zfp_codec.h"
 
-namespace weir {
+namespace weir::zfp_trial_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -137,4 +137,4 @@ TEST_F(ZfpTrialTest, Refusals) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::zfp_trial_test

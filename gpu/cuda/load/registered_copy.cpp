@@ -21,7 +21,7 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kChunksBeyondThreads = 3;  // copied, unlocked, waiting to be copied
-constexpr std::size_t kReadAhead = 4;            // chunks asked from the disk before one is prepared
+constexpr std::size_t kRegisterAhead = 4;        // chunks asked from the disk before one is prepared
 
 class Pipeline {
  public:
@@ -35,7 +35,7 @@ class Pipeline {
     std::vector<std::thread> threads;
     double copy_wait_s = 0;
     try {
-      for (std::size_t k = 0; k < std::min(kReadAhead, chunks_.size()); ++k) prefetch(chunks_[k]);
+      for (std::size_t k = 0; k < std::min(kRegisterAhead, chunks_.size()); ++k) prefetch(chunks_[k]);
       for (int t = 0; t < task_.threads; ++t) threads.emplace_back([this] { run_stage(&Pipeline::prepare); });
       threads.emplace_back([this] { run_stage(&Pipeline::retire); });
       copy_wait_s = copy();
@@ -95,7 +95,7 @@ class Pipeline {
     LoadStages mine;
     while (const std::optional<std::size_t> k = claim()) {
       task_.check_cancelled();
-      if (*k + kReadAhead < chunks_.size()) prefetch(chunks_[*k + kReadAhead]);
+      if (*k + kRegisterAhead < chunks_.size()) prefetch(chunks_[*k + kRegisterAhead]);
       const LoadChunk& chunk = chunks_[*k];
       {
         const StageClock clock(mine.populate_s);

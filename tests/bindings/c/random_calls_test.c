@@ -186,7 +186,7 @@ static weir_status grid_call(weir_error* error, int slot) {
     case 1:
       return weir_value(*grid, MAYBE(lo), MAYBE(out), error);
     case 2: {
-      const size_t count = (size_t)(5 * (8 - lo[1]) * (9 - lo[2]));
+      const size_t count = 5 * (8 - (size_t)lo[1]) * (9 - (size_t)lo[2]);
       return weir_read_box(*grid, MAYBE(lo), MAYBE(hi), MAYBE(out), count <= 512 ? count : 512, error);
     }
     case 3: {

@@ -7,10 +7,10 @@
 
 #include "bindings/c/weir.h"
 #include "format/text.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/tools/run_command.h"
 
-namespace weir {
+namespace weir::mpi_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -262,4 +262,4 @@ TEST(MpiDocument, ShowsTheExampleAsItIs) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::mpi_test

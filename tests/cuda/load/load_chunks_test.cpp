@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::load_chunks_test {
 namespace {
 
 constexpr std::uint64_t kPage = 4096;
@@ -54,4 +54,4 @@ TEST(LoadChunks, CoverEveryByteOnceForAnyRange) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::load_chunks_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weir {
+namespace weir::box_cuts_test {
 namespace {
 
 TEST(BoxCuts, PartsAreTheBoxOnce) {
@@ -51,4 +51,4 @@ TEST(BoxCuts, GrowsAlongXThenYThenZ) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::box_cuts_test

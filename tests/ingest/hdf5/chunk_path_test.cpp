@@ -14,7 +14,7 @@
 #include "tests/ingest/scratch.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::chunk_path_test {
 namespace {
 
 std::vector<std::int32_t> field(std::size_t count) {
@@ -86,4 +86,4 @@ TEST(ChunkPath, GzipAndShuffleUseMoreThanOneThread) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::chunk_path_test

@@ -14,7 +14,7 @@
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::chunk_reader_test {
 namespace {
 
 constexpr std::uint64_t kMemory = std::uint64_t{512} << 20U;
@@ -322,4 +322,4 @@ TEST(ChunkReader, AFileThatIsCutShortIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::chunk_reader_test

@@ -5,7 +5,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::chunk_scratch_test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
@@ -52,4 +52,4 @@ TEST(ChunkScratch, NoMoreAreLentThanThereAre) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::chunk_scratch_test

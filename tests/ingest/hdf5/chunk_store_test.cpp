@@ -7,7 +7,7 @@
 #include "tests/ingest/hdf5/chunked_file.h"
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::chunk_store_test {
 namespace {
 
 using Corner = std::vector<hsize_t>;
@@ -85,4 +85,4 @@ TEST(ChunkStore, CornersAreNamedInTheFilesOrder) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::chunk_store_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::coverage_test {
 namespace {
 
 using Element = std::vector<hsize_t>;
@@ -69,4 +69,4 @@ TEST(Coverage, ThousandsOfPlanesTakeNoTime) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::coverage_test

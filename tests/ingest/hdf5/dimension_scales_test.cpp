@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace weir {
+namespace weir::dimension_scales_test {
 namespace {
 
 constexpr double kDouble = std::numeric_limits<double>::epsilon();
@@ -67,4 +67,4 @@ TEST(DimensionScales, NoneOrNotFiniteSayNothing) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::dimension_scales_test

@@ -6,7 +6,7 @@
 #include "ingest/hdf5/side_files.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
-namespace weir {
+namespace weir::external_files_test {
 namespace {
 
 TEST(ExternalFiles, AreReadAndTheirLackIsAnError) {
@@ -52,4 +52,4 @@ TEST(SideFiles, AreLookedForInThePrefixBesideAndHere) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::external_files_test

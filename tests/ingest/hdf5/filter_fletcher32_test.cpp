@@ -5,7 +5,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::filter_fletcher32_test {
 namespace {
 
 std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
@@ -51,4 +51,4 @@ TEST(Fletcher32, ChecksWhatFollowsTheBytes) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_fletcher32_test

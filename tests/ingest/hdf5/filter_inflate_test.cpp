@@ -4,7 +4,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::filter_inflate_test {
 namespace {
 
 std::vector<std::byte> deflated(const std::vector<std::byte>& bytes) {
@@ -78,4 +78,4 @@ TEST(ChunkInflater, RefusesDamagedStreams) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_inflate_test

@@ -6,7 +6,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::filter_lzf_test {
 namespace {
 
 std::string unpacked(std::string_view stream, std::size_t bytes) {
@@ -51,4 +51,4 @@ TEST(FilterLzf, DamageIsAnError) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_lzf_test

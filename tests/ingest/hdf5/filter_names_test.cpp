@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::filter_names_test {
 namespace {
 
 TEST(FilterNames, RegisteredOnesHaveTheirName) {
@@ -26,4 +26,4 @@ TEST(FilterNames, RemediesNameThePackageWhereThereIsOne) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_names_test

@@ -8,7 +8,7 @@
 #include "tests/ingest/scratch.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::filter_pipeline_test {
 namespace {
 
 std::optional<FilterPipeline> pipeline_after(const std::function<void(hid_t)>& set_filters) {
@@ -112,4 +112,4 @@ TEST(FilterPipeline, TheChunkMustComeOutWhole) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_pipeline_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace weir {
+namespace weir::filter_unshuffle_test {
 namespace {
 
 /// Byte i is i, so that each byte's place tells where it came from.
@@ -44,4 +44,4 @@ TEST(Unshuffle, EveryWidthLengthAndRemainder) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::filter_unshuffle_test

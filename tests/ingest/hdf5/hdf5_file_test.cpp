@@ -7,7 +7,7 @@
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
-namespace weir {
+namespace weir::hdf5_file_test {
 namespace {
 
 class Hdf5File : public ::testing::Test {
@@ -190,4 +190,4 @@ claim("deep packed.h5", (2**62, 11, 13, 17), 4, chunks=(1, 4, 4, 4))
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_file_test

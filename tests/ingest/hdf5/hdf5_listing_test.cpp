@@ -5,7 +5,7 @@
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
-namespace weir {
+namespace weir::hdf5_listing_test {
 namespace {
 
 class Hdf5Listing : public ::testing::Test {
@@ -81,4 +81,4 @@ with h5py.File("a.h5", "w", libver="latest") as f:
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_listing_test

@@ -5,7 +5,7 @@
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
-namespace weir {
+namespace weir::hdf5_placement_test {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -262,4 +262,4 @@ with h5py.File("a.h5", "w") as f:
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_placement_test

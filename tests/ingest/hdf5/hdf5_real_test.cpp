@@ -5,7 +5,7 @@
 #include "format/text.h"
 #include "tests/ingest/hdf5/h5py_file.h"
 
-namespace weir {
+namespace weir::hdf5_real_test {
 namespace {
 
 class Hdf5Real : public ::testing::Test {
@@ -77,4 +77,4 @@ expect("density", f["/Grid00000001/Density"][...])
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_real_test

@@ -12,7 +12,7 @@
 #include "tests/ingest/hdf5/h5py_file.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::hdf5_source_test {
 namespace {
 
 class Hdf5Source : public ::testing::Test {
@@ -431,4 +431,4 @@ TEST_F(Hdf5Source, PrintsNothingItself) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::hdf5_source_test

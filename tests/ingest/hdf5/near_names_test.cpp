@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::near_names_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -20,4 +20,4 @@ TEST(NearNames, FindsOtherCasePathsAndSlips) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::near_names_test

@@ -4,7 +4,7 @@
 
 #include "ingest/hdf5/hdf5_handle.h"
 
-namespace weir {
+namespace weir::selection_blocks_test {
 namespace {
 
 using Dims = std::vector<hsize_t>;
@@ -49,4 +49,4 @@ TEST(SelectionBlocks, IrregularOnesAreListed) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::selection_blocks_test

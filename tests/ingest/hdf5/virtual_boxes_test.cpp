@@ -8,7 +8,7 @@
 #include "tests/ingest/hdf5/h5py_file.h"
 #include "tests/support/sanitized.h"
 
-namespace weir {
+namespace weir::virtual_boxes_test {
 namespace {
 
 class VirtualDataset : public ::testing::Test {
@@ -204,4 +204,4 @@ TEST(VirtualSourceName, NumbersBlocks) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::virtual_boxes_test

@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::volume_slice_test {
 namespace {
 
 std::vector<AxisPlace> axes(const std::vector<std::int64_t>& extents) {
@@ -47,4 +47,4 @@ TEST(VolumeSlice, AnIndexThatDoesNotFitIsAnErrorOfUse) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::volume_slice_test

@@ -10,7 +10,7 @@
 
 #include "ingest/synthetic/synthetic.h"
 
-namespace weir {
+namespace weir::fields_test {
 namespace {
 
 struct Volume {
@@ -260,4 +260,4 @@ TEST(NearlyConstant, OneOddVoxelInEveryLeafPartialOnesToo) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::fields_test

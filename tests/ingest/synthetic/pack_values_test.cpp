@@ -9,7 +9,7 @@
 
 #include "format/error.h"
 
-namespace weir {
+namespace weir::pack_values_test {
 namespace {
 
 template <typename T>
@@ -95,4 +95,4 @@ TEST(ValuePacker, RefusesWhatATypeCannotHold) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::pack_values_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace weir {
+namespace weir::slabs_test {
 namespace {
 
 TEST(Slabs, WholePlanesInRoundNumbers) {
@@ -44,4 +44,4 @@ TEST(Slabs, CoverEveryVoxelOnceInFileOrder) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::slabs_test

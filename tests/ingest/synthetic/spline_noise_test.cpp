@@ -8,7 +8,7 @@
 
 #include "ingest/synthetic/hash.h"
 
-namespace weir {
+namespace weir::spline_noise_test {
 namespace {
 
 // The definition, in double: the sum over octaves and 4^3 nodes.
@@ -106,4 +106,4 @@ TEST(Hash, UnitFloatReachesNeitherEnd) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::spline_noise_test

@@ -15,7 +15,7 @@
 #include "format/error.h"
 #include "format/text.h"
 
-namespace weir {
+namespace weir::synthetic_test {
 namespace {
 
 std::vector<float> read_box(VolumeSource& source, const Box& box) {
@@ -32,7 +32,7 @@ std::vector<float> make_volume(std::string_view kind, const Index3& extent, std:
 }
 
 std::string digest(const std::vector<float>& values) {
-  return cat(std::hex, XXH3_64bits(values.data(), values.size() * sizeof(float)));
+  return hex(XXH3_64bits(values.data(), values.size() * sizeof(float)));
 }
 
 std::string message_of(const std::function<void()>& call) {
@@ -164,4 +164,4 @@ TEST(Synthetic, ExtentOutOfRange) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::synthetic_test

@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "ingest/source_registry.h"
-#include "tests/format/stock_nvdb.h"
 #include "tests/ingest/header_file.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::nvdb_source_test {
 namespace {
 
 using test::StockNvdb;
@@ -141,4 +141,4 @@ TEST(NvdbSource, AFileCutAnywhereIsRefused) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::nvdb_source_test

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "tests/ingest/scratch.h"
-#include "tests/ingest/vdb/openvdb_file.h"
+#include "tests/stock/openvdb_file.h"
 
-namespace weir {
+namespace weir::vdb_header_test {
 namespace {
 
 using test::GridKind;
@@ -87,4 +87,4 @@ TEST(VdbHeader, RefusesGridsThatLieBeforeThemselves) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_header_test

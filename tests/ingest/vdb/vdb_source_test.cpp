@@ -7,11 +7,11 @@
 
 #include "format/text.h"
 #include "ingest/source_registry.h"
-#include "tests/format/stock_nvdb.h"
 #include "tests/ingest/header_file.h"
-#include "tests/ingest/vdb/openvdb_file.h"
+#include "tests/stock/openvdb_file.h"
+#include "tests/stock/stock_nvdb.h"
 
-namespace weir {
+namespace weir::vdb_source_test {
 namespace {
 
 using test::Compression;
@@ -342,4 +342,4 @@ TEST(VdbSource, ReadsThePublishedCloud) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_source_test

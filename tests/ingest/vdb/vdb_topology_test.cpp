@@ -4,9 +4,9 @@
 
 #include "ingest/vdb/vdb_tree.h"
 #include "tests/ingest/header_file.h"
-#include "tests/ingest/vdb/openvdb_file.h"
+#include "tests/stock/openvdb_file.h"
 
-namespace weir {
+namespace weir::vdb_topology_test {
 namespace {
 
 using test::Compression;
@@ -136,4 +136,4 @@ TEST(VdbTopology, RefusesARootEntryThatIsThereTwice) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vdb_topology_test

@@ -2,7 +2,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::encoded_bytes_test {
 namespace {
 
 std::string decoded(const std::string& text, std::size_t count, bool is_base64 = true) {
@@ -44,4 +44,4 @@ TEST(EncodedBytes, RefusesOtherTexts) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::encoded_bytes_test

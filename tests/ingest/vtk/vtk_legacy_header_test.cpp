@@ -4,7 +4,7 @@
 
 #include "tests/ingest/scratch.h"
 
-namespace weir {
+namespace weir::vtk_legacy_header_test {
 namespace {
 
 VtkLegacyHeader parse(const std::string& text) {
@@ -71,4 +71,4 @@ TEST(VtkLegacyHeader, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vtk_legacy_header_test

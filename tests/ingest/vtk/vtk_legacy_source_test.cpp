@@ -7,7 +7,7 @@
 #include "ingest/source_registry.h"
 #include "tests/ingest/header_file.h"
 
-namespace weir {
+namespace weir::vtk_legacy_source_test {
 namespace {
 
 std::string head(const std::string& encoding, const std::string& more = "") {
@@ -169,4 +169,4 @@ TEST(VtkLegacySource, ReadsThePublishedCarotid) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vtk_legacy_source_test

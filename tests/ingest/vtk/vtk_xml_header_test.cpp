@@ -2,7 +2,7 @@
 
 #include "tests/ingest/vtk/vtk_xml_file.h"
 
-namespace weir {
+namespace weir::vtk_xml_header_test {
 namespace {
 
 VtkXmlHeader parse(const std::string& text) {
@@ -107,4 +107,4 @@ TEST(VtkXmlHeader, ArraysThatAreNotReadSayWhy) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vtk_xml_header_test

@@ -6,7 +6,7 @@
 #include "ingest/source_registry.h"
 #include "tests/ingest/vtk/vtk_xml_file.h"
 
-namespace weir {
+namespace weir::vtk_xml_source_test {
 namespace {
 
 enum class Form { raw, appended_base64, inline_base64 };
@@ -274,4 +274,4 @@ TEST(VtkXmlSource, ReadsWhatOtherWritersEncodeApart) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::vtk_xml_source_test

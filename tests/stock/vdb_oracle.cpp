@@ -1,4 +1,4 @@
-#include "tests/tools/vdb_oracle.h"
+#include "tests/stock/vdb_oracle.h"
 
 #include <openvdb/openvdb.h>
 

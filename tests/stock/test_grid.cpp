@@ -1,4 +1,4 @@
-#include "tests/gpu/test_grid.h"
+#include "tests/stock/test_grid.h"
 
 #include <gtest/gtest.h>
 #include <nanovdb/util/IO.h>
@@ -11,12 +11,11 @@
 #include <stdexcept>
 
 #include "format/text.h"
+#include "tests/stock/coord.h"
 
 namespace weir::test {
 
 namespace {
-
-openvdb::Coord coord(const Index3& i) { return {static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z)}; }
 
 template <typename BuildT>
 std::vector<std::byte> converted(const openvdb::FloatGrid& grid) {
@@ -58,12 +57,13 @@ TestGrid::TestGrid(const Box& box, const Value& value, const TestGridOptions& op
   auto accessor = grid->getAccessor();
   for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
     for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) accessor.setValue(coord({x, y, z}), value({x, y, z}));
+      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x)
+        accessor.setValue(coord<openvdb::Coord>({x, y, z}), value({x, y, z}));
     }
   }
   for (const TestTile& tile : options.tiles) {
     const openvdb::Index level = tile.dim == 8 ? 1 : (tile.dim == 128 ? 2 : 3);
-    grid->tree().addTile(level, coord(tile.origin), tile.value, tile.active);
+    grid->tree().addTile(level, coord<openvdb::Coord>(tile.origin), tile.value, tile.active);
   }
   file_ = written(options.type, *grid);
   grid_ = std::make_unique<NvdbGrid>(NvdbGrid::open(file_, "test.nvdb"));

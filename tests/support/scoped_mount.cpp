@@ -1,4 +1,4 @@
-#include "tests/tools/scoped_mount.h"
+#include "tests/support/scoped_mount.h"
 
 #include <sys/mount.h>
 

@@ -1,4 +1,4 @@
-#include "tests/format/stock_nvdb.h"
+#include "tests/stock/stock_nvdb.h"
 
 #include <gtest/gtest.h>
 #include <nanovdb/util/IO.h>

@@ -1,4 +1,4 @@
-#include "tests/ingest/vdb/openvdb_file.h"
+#include "tests/stock/openvdb_file.h"
 
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "tests/stock/coord.h"
+
 namespace weir::test {
 namespace {
-
-openvdb::Coord coord(const Index3& i) { return {static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z)}; }
 
 template <typename Value>
 Value convert(double value) {
@@ -37,9 +37,10 @@ struct OpenVdbGrid::Implementation {
   template <typename Grid>
   void use() {
     using Value = typename Grid::ValueType;
-    auto typed = Grid::create(convert<Value>(2));
-    grid = typed;
-    typename Grid::TreeType& tree = typed->tree();
+    // From OpenVDB's registry: a grid made here would compile all of its class again.
+    grid = openvdb::GridBase::createGrid(Grid::gridType());
+    auto& tree = static_cast<typename Grid::TreeType&>(grid->baseTree());
+    tree.root().setBackground(convert<Value>(2), false);
     set_on = [&tree](const openvdb::Coord& at, double v) {
       if constexpr (std::is_same_v<Grid, openvdb::MaskGrid>) {
         if (convert<bool>(v)) tree.setValueOn(at);
@@ -77,7 +78,7 @@ OpenVdbGrid::OpenVdbGrid(GridKind kind, const std::string& name) : implementatio
       implementation_->use<openvdb::MaskGrid>();
       break;
     case GridKind::vec3:
-      implementation_->grid = openvdb::Vec3fGrid::create(openvdb::Vec3f(0, 0, 1));
+      implementation_->grid = openvdb::GridBase::createGrid(openvdb::Vec3fGrid::gridType());
       break;
   }
   implementation_->grid->setName(name);
@@ -87,7 +88,8 @@ OpenVdbGrid& OpenVdbGrid::fill(const Box& box, double scale) {
   for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
     for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
       for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-        implementation_->set_on(coord({x, y, z}), scale * (static_cast<double>(x + 3 * y - 7 * z) + 0.125));
+        implementation_->set_on(coord<openvdb::Coord>({x, y, z}),
+                                scale * (static_cast<double>(x + 3 * y - 7 * z) + 0.125));
       }
     }
   }
@@ -95,17 +97,17 @@ OpenVdbGrid& OpenVdbGrid::fill(const Box& box, double scale) {
 }
 
 OpenVdbGrid& OpenVdbGrid::set_on(const Index3& i, double value) {
-  implementation_->set_on(coord(i), value);
+  implementation_->set_on(coord<openvdb::Coord>(i), value);
   return *this;
 }
 
 OpenVdbGrid& OpenVdbGrid::set_off(const Index3& i, double value) {
-  implementation_->set_off(coord(i), value);
+  implementation_->set_off(coord<openvdb::Coord>(i), value);
   return *this;
 }
 
 OpenVdbGrid& OpenVdbGrid::tile(unsigned level, const Index3& origin, double value, bool active) {
-  implementation_->tile(level, coord(origin), value, active);
+  implementation_->tile(level, coord<openvdb::Coord>(origin), value, active);
   return *this;
 }
 
@@ -141,7 +143,7 @@ OpenVdbGrid OpenVdbGrid::instance(const std::string& name) const {
   return copy;
 }
 
-double OpenVdbGrid::value(const Index3& i) const { return implementation_->value(coord(i)); }
+double OpenVdbGrid::value(const Index3& i) const { return implementation_->value(coord<openvdb::Coord>(i)); }
 
 Box OpenVdbGrid::active() const {
   const openvdb::CoordBBox b = implementation_->grid->evalActiveVoxelBoundingBox();

@@ -1,4 +1,4 @@
-#include "tests/compressor/stock_tree.h"
+#include "tests/stock/stock_tree.h"
 
 #include <iostream>  // GridValidator.h of 10.0.1 uses it without saying so
 
@@ -12,17 +12,9 @@
 #include <stdexcept>
 
 #include "format/nanovdb_layout.h"
+#include "tests/stock/coord.h"
 
 namespace weir::test {
-namespace {
-
-template <typename Coord>
-Coord coord(const Index3& i) {
-  return Coord(static_cast<int>(i.x), static_cast<int>(i.y), static_cast<int>(i.z));
-}
-
-}  // namespace
-
 struct StockTree::Implementation {
   openvdb::FloatGrid::Ptr grid;
 };
