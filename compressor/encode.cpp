@@ -10,7 +10,7 @@
 
 #include "compressor/quantised_leaf.h"
 #include "compressor/region_share.h"
-#include "compressor/surveyed_digests.h"
+#include "compressor/surveyed_leaves.h"
 #include "format/leaf_codec.h"
 #include "format/quantised_codec.h"
 #include "format/simd.h"
@@ -67,7 +67,7 @@ class LeafEncoder {
  public:
   // The kept leaves of one x layer of one region, as far as they lie in the block.
   void add_layer(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
-                 const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
+                 const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
     const TreeRegions& tree = target.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
     const Box box = intersect(tree.leaf_box(region_index), leaf_box);
@@ -78,9 +78,10 @@ class LeafEncoder {
         if (!places.kept(position)) continue;
         surveyed.check(leaf, block.values, block.voxels);
         const LeafPlaces::Place before = places.before(position);
+        const LeafWidth width = places.width(position);
         gather(target, block, leaf,
-               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes,
-                places.width(position)});
+               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes, width,
+                width == LeafWidth::float32 ? 0 : surveyed.narrower_error(leaf, bits_log2_of(width))});
       }
     }
   }
@@ -115,6 +116,7 @@ class LeafEncoder {
     std::uint64_t ordinal;
     std::uint64_t offset;
     LeafWidth width;
+    double narrower_error;  // of a quantised one: see fit_quantiser
   };
 
   void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, const Leaf& place) {
@@ -139,8 +141,9 @@ class LeafEncoder {
     if (target.type != GridType::float32) {
       for (std::size_t i = 0; i < batch_; ++i) {
         const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
-        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i],
-                                      bits_log2_of(leaves_[first + i].width), target.fit);
+        const Leaf& leaf = leaves_[first + i];
+        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target.fit,
+                                      leaf.narrower_error);
         values_[i] = quantised_[i].decoded;
       }
     }
@@ -191,7 +194,7 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bo
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
     const LeafPlaces places(target.choices.read(region));
     const Box box = intersect(tree.leaf_box(region), leaf_box);
-    const SurveyedDigests surveyed(target.rows, box, info);
+    const SurveyedLeaves surveyed(target.rows, box, info);
     for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x); });
   });
 }
@@ -243,7 +246,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       LeafEncoder& encoder = encoders.local();
       for_each_layer(
           target, source.info(), leaf_box, in_turn,
-          [&](std::int64_t region, const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
+          [&](std::int64_t region, const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
             const TraceSpan span(target.trace, "encode");
             encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);
           });
@@ -258,7 +261,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
     for_each_layer(target, source.info(), leaf_box, in_parallel,
-                   [&](std::int64_t region, const LeafPlaces& places, const SurveyedDigests& surveyed, std::int64_t x) {
+                   [&](std::int64_t region, const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
                      const TraceSpan span(target.trace, "encode");
                      LeafEncoder& encoder = encoders.local();
                      encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);

@@ -132,8 +132,9 @@ struct Attempts {
       throw Error(ErrorKind::internal, cat(request.path, ": float leaves miss what was asked; report this"));
     }
     if (request.budget.kind != Budget::Kind::psnr) {
-      if (!kept) take_float(encoded);
-      return !kept;
+      if (kept && seen_error(encoded) <= encoded.file.float_error) return false;
+      take_float(encoded);
+      return true;
     }
     // Within 2 % of the error asked is small enough.
     const double error = seen_error(encoded);

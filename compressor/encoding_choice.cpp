@@ -157,8 +157,15 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   if (quantised.plan.loses_nothing) return quantised;
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
-  FilePlan plain = other.plan(size.kind == "minimum" ? size : other.size_for(request.budget));
-  return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
+  if (size.kind == "minimum") return quantised;
+  FilePlan plain = other.plan(other.size_for(request.budget));
+  if (request.rule.visibility != nullptr) {  // what a scene weighs is not measured: expectations decide
+    return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
+  }
+  if (plain.plan.expected_error == 0) return plain;
+  // The estimate may be wrong by a million, where values lie near a lattice that a width happens to hold.
+  quantised.float_error = plain.plan.expected_error;
+  return quantised;
 }
 
 FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {

@@ -27,6 +27,9 @@ struct FilePlan {
   std::unique_ptr<ChoiceStore> choices;
   FileSize size;
   TreePlan plan;  ///< its layout is padded to the size
+  /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
+  /// which is exact. Infinite where there is none.
+  double float_error = std::numeric_limits<double>::infinity();
 };
 
 struct FileRequest {
@@ -43,7 +46,8 @@ struct FileRequest {
 };
 
 /// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
-/// asked error. Throws Error(budget) where size, error or exactness cannot be met, naming what can, Error(usage)
+/// asked error. What a quantised file loses is estimated: Encoding::automatic means that where it turns out to lose more
+/// than `float_error`, the float file is to be taken. Throws Error(budget) where size, error or exactness cannot be met, naming what can, Error(usage)
 /// where the encoding cannot hold the volume.
 /// Where planned_error was lowered and this encoding is not expected to reach it, the plan is all that it has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);

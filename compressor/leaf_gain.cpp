@@ -69,6 +69,11 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
 
 }  // namespace
 
+double least_estimate(const LeafRow& row, unsigned below_log2) {
+  const auto end = row.quantised.begin() + std::min<std::ptrdiff_t>(below_log2, std::ssize(row.quantised));
+  return row.sse * static_cast<double>(*std::min_element(row.quantised.begin(), end));
+}
+
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
   if (width == LeafWidth::float32) return 0;
   const unsigned log2 = bits_log2_of(width);
@@ -76,17 +81,18 @@ double quantised_error(const LeafRow& row, std::int64_t voxels, float background
   const bool all_finite = row.finite == voxels;
   if (all_finite) {
     if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
-    if (log2 < row.quantised.size()) return row.sse * static_cast<double>(row.quantised[log2]);
+    if (log2 < row.quantised.size()) return least_estimate(row, log2 + 1);
   }
   // The survey did not know what would take the place of NaN: it may lie far from the other values.
   const float low = all_finite ? row.min : std::min(row.min, background);
   const float high = all_finite ? row.max : std::max(row.max, background);
   const auto quantum = static_cast<double>(range_quantiser({low, high, row.mean}, bits).quantum);
-  if (!(quantum > 0)) return row.sse;  // float holds one level only
+  const double least = all_finite ? least_estimate(row, log2) : row.sse;
+  if (!(quantum > 0)) return least;  // float holds one level only, or not all of the range
   // Errors uniform over a quantum, q^2 / 12 a value; the ends of the range are levels. Sparse data has most of its
   // values there: without them 8 bits would seem bad enough for 16 to be bought.
   const int between = all_finite ? row.finite - row.at_ends : row.finite;
-  return std::min(row.sse, between * quantum * quantum / 12);
+  return std::min(least, between * quantum * quantum / 12);
 }
 
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {

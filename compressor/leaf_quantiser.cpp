@@ -17,6 +17,10 @@ constexpr std::size_t kQuantiserLanes = 16;
 constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
+/// Squared errors below this part of the squared deviations are measured, for any number of bits.
+constexpr double kCancelled = 1e-4;
+/// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
+constexpr double kWidest = 0x1.fffffp+127;
 
 // What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
 // brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
@@ -131,6 +135,13 @@ bool usable(const Quantiser& q, float top) {
          std::isfinite(q.quantum * top + q.minimum);
 }
 
+double width_of(const ValueRange& range) { return static_cast<double>(range.max) - static_cast<double>(range.min); }
+
+// Whether float has levels of `bits` bits for some of the range at least.
+bool divisible(const ValueRange& range, unsigned bits) {
+  return width_of(range) > kWidest || range_quantiser(range, bits).quantum > 0;
+}
+
 // One leaf being fitted, at one width after the other.
 class Fitter {
  public:
@@ -150,10 +161,16 @@ class Fitter {
 
   // Refits from levels over `share` of the range; keeps what is better than before.
   void start(double share, int rounds) {
-    const double half = (static_cast<double>(range_.max) - static_cast<double>(range_.min)) / 2 * share;
-    const double middle = share == 1 ? static_cast<double>(range_.min) + half : static_cast<double>(range_.mean);
-    Quantiser q{share == 1 ? range_.min : static_cast<float>(middle - half),
-                static_cast<float>(2 * half / static_cast<double>(top_))};
+    const double width = width_of(range_);
+    const double half = std::min(width * share, kWidest) / 2;
+    const double middle = share == 1 ? static_cast<double>(range_.min) + width / 2 : static_cast<double>(range_.mean);
+    refine({share == 1 && width <= kWidest ? range_.min : static_cast<float>(middle - half),
+            static_cast<float>(2 * half / static_cast<double>(top_))},
+           rounds);
+  }
+
+  // The same from the levels of `q`.
+  void refine(Quantiser q, int rounds) {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q, top_); ++round) {
       const Sums sums = assigned(q);
@@ -184,8 +201,10 @@ class Fitter {
     const double quantum = static_cast<double>(q.quantum) * scale;
     const double minimum = (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * scale;
     const auto n = static_cast<double>(values_.size());
-    sums.squares = std::max(0.0, squares_ + quantum * (quantum * sums.code_squares - 2 * sums.code_values) +
-                                     minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_)));
+    sums.squares = squares_ + quantum * (quantum * sums.code_squares - 2 * sums.code_values) +
+                   minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_));
+    // A difference that small is the roundings of what it is between.
+    if (!(sums.squares > kCancelled * squares_)) sums.squares = measure(values_.data(), values_.size(), levels, scale_);
     return sums;
   }
 
@@ -218,19 +237,32 @@ class Fitter {
 
 Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
   const float top = top_code(bits);
-  const double width = static_cast<double>(range.max) - static_cast<double>(range.min);
+  const double width = width_of(range);
+  if (width > kWidest) return {range.mean, 0};
   const Quantiser q{range.min, static_cast<float>(width / static_cast<double>(top))};
   return usable(q, top) ? q : Quantiser{range.mean, 0};
 }
 
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
-  const Quantiser whole = range_quantiser(range, bits);
-  if (!(whole.quantum > 0)) return whole;
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits, double narrower_error) {
+  if (!divisible(range, bits)) return {range.mean, 0};
   Fitter fitter(values, range);
+  const auto fit = [&](unsigned width) {
+    fitter.set_bits(width);
+    fitter.start(1, width <= 4 ? 3 : 2);
+    if (width <= 2) fitter.start(0.45, 3);
+    return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
+  };
+  const Quantiser own = fit(bits);
+  // Most values gain so much by twice the bits that estimates leave no doubt.
+  const double doubt = bits == 2 ? 2 : 4;
+  if (bits == 1 || !(narrower_error < doubt * fitter.squared_error())) return own;
+  std::array<Quantiser, 4> narrower;
+  std::size_t count = 0;
+  for (unsigned width = 1; width < bits; width *= 2) narrower[count++] = fit(width);
   fitter.set_bits(bits);
-  fitter.start(1, bits <= 4 ? 3 : 2);
-  if (bits <= 2) fitter.start(0.45, 3);
-  return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
+  fitter.refine(own, 1);
+  for (const Quantiser& levels : std::span(narrower).first(count)) fitter.refine(levels, 2);
+  return fitter.found() ? fitter.quantiser() : own;
 }
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
@@ -243,10 +275,10 @@ std::array<double, 3> estimated_errors(std::span<const float> values, const Valu
   };
   constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.93}, {1, 3, 0.89}, {1, 1, 0.93}}};
   std::array<double, 3> errors{1, 1, 1};
-  if (below_bits <= 1 || !(range_quantiser(range, 1).quantum > 0)) return errors;
+  if (below_bits <= 1 || !divisible(range, 1)) return errors;
   Fitter fitter(values, range);
   for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
-    if (!(range_quantiser(range, 1U << log2).quantum > 0)) continue;
+    if (!divisible(range, 1U << log2)) continue;
     fitter.set_bits(1U << log2);
     fitter.start(kStarts[log2].share, kStarts[log2].rounds);
     if (fitter.found()) errors[log2] = std::min(1.0, kStarts[log2].gain * fitter.squared_error() / squares);

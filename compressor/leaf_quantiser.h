@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace weir {
@@ -26,17 +27,21 @@ struct ValueRange {
 /// the whole range at first and, at 1 and 2 bits, over less of it around the mean as well, each refitted by
 /// least squares (Lloyd's iteration with equidistant levels, as in k-means). More starts and more rounds
 /// gain less than 0.2 dB on the volumes of the tests.
-/// Where float cannot hold the levels (a range beyond it, or one so small that the quantum has no
-/// reciprocal) there is one level, the mean.
-/// The same on every machine: fixed lanes, nothing fused.
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
+/// Levels are at most float's largest number apart, so that code * quantum is one: values of a wider range may lie
+/// beyond the outer levels. Where the range is so small that the quantum has no reciprocal there is one level, the
+/// mean. `narrower_error`: what the squared error is estimated to be at fewer bits. Where that is near what this comes
+/// to or below, the levels of fewer bits are tried as well, so that more bits never do worse: values near a lattice may
+/// lie on the levels of a few bits, and beside those of many. The same on every machine: fixed lanes, nothing fused.
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
+                        double narrower_error = std::numeric_limits<double>::infinity());
 
 /// What the squared error of fit_quantiser will be at 1, 2 and 4 bits, from a third of the work: within 15 % on
 /// average, relative to `squares`, the squared error about the mean (above 0). 1 for what is not below `below_bits`.
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
                                        double squares);
 
-/// Levels over the whole range: the largest error is half a quantum, and the roundings of the decoder.
+/// Levels over the whole range: the largest error is half a quantum, and the roundings of the decoder. One level, the
+/// mean, where float cannot hold them.
 Quantiser range_quantiser(const ValueRange& range, unsigned bits);
 
 /// The code of each value, the nearest level. `codes` is as long as `values`.

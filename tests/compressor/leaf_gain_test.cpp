@@ -207,14 +207,32 @@ TEST(LeafGain, WhatReplacesNaNWidensTheRangeOfALeaf) {
   EXPECT_EQ(quantised_error(row, 512, 1000, LeafWidth::bits1), row.sse);
 }
 
-TEST(LeafGain, WidthsThatFloatCannotHoldGainNothing) {
-  for (const float most : {3e38F, 0x1p-130F}) {
-    std::vector<float> values(512, -most);
-    for (std::size_t i = 0; i < 512; i += 3) values[i] = most / static_cast<float>(1 + i);
-    const LeafRow row = summarized(values);
-    for (unsigned log2 = 0; log2 < 5; ++log2) EXPECT_EQ(quantised_error(row, 512, 0, width_of(log2)), row.sse);
-    EXPECT_EQ(quantised_error(row, 512, 0, LeafWidth::float32), 0);
+// -most, and every third value one part in 512 of it or more above.
+LeafRow nearly_all_at_one_end(float most) {
+  std::vector<float> values(512, -most);
+  for (std::size_t i = 0; i < 512; i += 3) values[i] = most / static_cast<float>(1 + i);
+  return summarized(values);
+}
+
+TEST(LeafGain, WidthsThatFloatCannotHold_GainNothing) {
+  const LeafRow row = nearly_all_at_one_end(0x1p-130F);
+  for (unsigned log2 = 0; log2 < 5; ++log2) EXPECT_EQ(quantised_error(row, 512, 0, width_of(log2)), row.sse);
+  EXPECT_EQ(quantised_error(row, 512, 0, LeafWidth::float32), 0);
+}
+
+TEST(LeafGain, RangesBeyondFloat_GainByAFewBitsAndNothingByMore) {
+  const LeafRow row = nearly_all_at_one_end(3e38F);
+  double least = row.sse;
+  for (unsigned log2 = 0; log2 < 5; ++log2) {
+    const double error = quantised_error(row, 512, 0, width_of(log2));
+    EXPECT_LE(error, least);
+    if (log2 > 2) {
+      EXPECT_EQ(error, least);
+    }
+    least = std::min(least, error);
   }
+  EXPECT_LT(least, 0.7 * row.sse);
+  EXPECT_EQ(quantised_error(row, 512, 0, LeafWidth::float32), 0);
 }
 
 }  // namespace

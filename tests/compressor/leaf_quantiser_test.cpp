@@ -97,20 +97,41 @@ TEST(LeafQuantiser, SmallSignalOnALargeOffset) {
   }
 }
 
-TEST(LeafQuantiser, WhatFloatCannotHoldIsOneLevel) {
-  const std::vector<float> huge{-3e38F, 3e38F, 1e38F};
-  const std::vector<float> tiny{0, 1e-44F, 3e-44F};
-  for (const auto& values : {huge, tiny}) {
-    const ValueRange range = range_of(values);
-    for (const unsigned bits : {2U, 8U, 16U}) {
-      const Quantiser fit = fit_quantiser(values, range, bits);
-      EXPECT_EQ(fit.quantum, 0.0F);
-      EXPECT_EQ(fit.minimum, range.mean);
-      std::vector<std::uint16_t> codes(values.size());
-      quantise(values, fit, bits, codes);
-      EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
-    }
+TEST(LeafQuantiser, ARangeTooSmallForFloat_IsOneLevel) {
+  const std::vector<float> values{0, 1e-44F, 3e-44F};
+  const ValueRange range = range_of(values);
+  for (const unsigned bits : {2U, 8U, 16U}) {
+    const Quantiser fit = fit_quantiser(values, range, bits);
+    EXPECT_EQ(fit.quantum, 0.0F);
+    EXPECT_EQ(fit.minimum, range.mean);
+    std::vector<std::uint16_t> codes(values.size());
+    quantise(values, fit, bits, codes);
+    EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
   }
+}
+
+// Noise over nearly all that float holds: levels cover the middle of it. Errors in parts of what the mean alone leaves.
+TEST(LeafQuantiser, ARangeBeyondFloat_HasLevelsOverAsMuchAsFloatHolds) {
+  std::vector<float> values = noise(512, 1, 0, 7);
+  const float most = std::fabs(
+      *std::max_element(values.begin(), values.end(), [](float a, float b) { return std::fabs(a) < std::fabs(b); }));
+  for (float& v : values) v *= 3.2e38F / most;
+  const ValueRange range = range_of(values);
+  const double about_mean = decoded_error(values, {range.mean, 0}, 1);
+  const std::array<double, 3> estimated = estimated_errors(values, range, 32, about_mean);
+  double last = 0.5 * about_mean;
+  for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+    const Quantiser fit = fit_quantiser(values, range, bits);
+    EXPECT_GT(fit.quantum, 0.0F);
+    EXPECT_TRUE(std::isfinite(fit.quantum * static_cast<float>((1U << bits) - 1U))) << bits;
+    const double error = decoded_error(values, fit, bits);
+    EXPECT_LE(error, last) << bits;
+    if (bits <= 4) {
+      EXPECT_NEAR(estimated[bits / 2] * about_mean / error, 1, 0.25) << bits;
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 0.1 * about_mean);
 }
 
 TEST(LeafQuantiser, RangeLevelsAreWithinHalfAQuantum) {

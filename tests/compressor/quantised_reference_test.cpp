@@ -88,9 +88,10 @@ class Reference {
       const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
       const double minimum =
           (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
-      const double followed = std::max(
-          0.0, squares_ + quantum * (quantum * cc - 2 * cv) + minimum * (n * minimum + 2 * (quantum * c - deviation_)));
-      const double squares = bits_ >= 8 ? static_cast<double>(measured.value()) : followed;
+      const double followed =
+          squares_ + quantum * (quantum * cc - 2 * cv) + minimum * (n * minimum + 2 * (quantum * c - deviation_));
+      const double squares =
+          bits_ >= 8 || !(followed > 1e-4 * squares_) ? static_cast<double>(measured.value()) : followed;
       if (squares < best_) {
         best_ = squares;
         fit = q;
