@@ -75,6 +75,7 @@ class Candidate {
     file.fill = request_.rule.fill;
     file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
+    check_countable(file.plan.layout.counts, request_.path);
     file.size = size;
     if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
     file.plan.layout = padded_to(file.plan.layout, file.size.bytes);

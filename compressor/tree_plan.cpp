@@ -121,6 +121,7 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
       region.first_leaf = counts.leaves;
       region.first_byte = counts.leaf_bytes;
       counts.leaves += region.leaves;
+      counts.leaf_tiles += static_cast<std::uint64_t>(tree.leaf_box(r).voxels()) - region.leaves;
       counts.leaf_bytes += region.leaf_bytes;
     });
   });
@@ -180,6 +181,7 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   counts.root_tiles = tree.uppers.size();
   counts.macrocells = static_cast<std::uint64_t>(make_lattice(tree.leaves.domain, kMacrocell).size());
   number_in_file_order(tree, counts);
+  if (!rule.fill.active()) counts.leaf_tiles = 0;
   plan.layout = make_layout(counts);
   return plan;
 }

@@ -66,6 +66,12 @@ void store_map(Image image, std::size_t offset, const GridHead& head) {
   store(image, offset + 21 * sizeof(T), T{1});  // taper, for the frustums weir never writes
 }
 
+// What NanoVDB counts in 32 bits; plans hold no more.
+void store_count(Image image, std::size_t offset, std::uint64_t count) {
+  if (count > 0xFFFFFFFFULL) throw Error(ErrorKind::internal, cat("a count of ", count, " is more than 32 bits hold"));
+  store(image, offset, static_cast<std::uint32_t>(count));
+}
+
 void store_tree(Image tree, const GridHead& head, const TreeLayout& layout) {
   using namespace nvdb::tree;
   const std::uint64_t start = layout.grid + nvdb::kTreeOffset;
@@ -76,8 +82,8 @@ void store_tree(Image tree, const GridHead& head, const TreeLayout& layout) {
   const NodeCounts& counts = layout.counts;
   const std::array<std::uint64_t, 3> nodes{counts.leaves, counts.lowers, counts.uppers};
   for (std::size_t i = 0; i < 3; ++i) {
-    store(tree, kNodeCount + 4 * i, static_cast<std::uint32_t>(nodes[i]));
-    store(tree, kTileCount + 4 * i, static_cast<std::uint32_t>(head.active_tiles[i]));
+    store_count(tree, kNodeCount + 4 * i, nodes[i]);
+    store_count(tree, kTileCount + 4 * i, head.active_tiles[i]);
   }
   store(tree, kVoxelCount, head.statistics.count);
 }
@@ -85,7 +91,7 @@ void store_tree(Image tree, const GridHead& head, const TreeLayout& layout) {
 void store_root(Image root, const GridHead& head, const TreeLayout& layout) {
   using namespace nvdb::root;
   store_index_box(root, kBBox, head.statistics.bbox);
-  store(root, kTableSize, static_cast<std::uint32_t>(head.tiles.size()));
+  store_count(root, kTableSize, head.tiles.size());
   store(root, kBackground, head.background);
   store(root, kMin, head.statistics.min);
   store(root, kMax, head.statistics.max);
@@ -143,9 +149,9 @@ void store_file_meta(Image file, const GridHead& head, const TreeLayout& layout)
   store(file, meta::kNameSize, static_cast<std::uint32_t>(layout.grid - nvdb::kNameOffset));
   const NodeCounts& counts = layout.counts;
   const std::array<std::uint64_t, 4> nodes{counts.leaves, counts.lowers, counts.uppers, 1};
-  for (std::size_t i = 0; i < 4; ++i) store(file, meta::kNodeCount + 4 * i, static_cast<std::uint32_t>(nodes[i]));
+  for (std::size_t i = 0; i < 4; ++i) store_count(file, meta::kNodeCount + 4 * i, nodes[i]);
   for (std::size_t i = 0; i < 3; ++i) {
-    store(file, meta::kTileCount + 4 * i, static_cast<std::uint32_t>(head.active_tiles[i]));
+    store_count(file, meta::kTileCount + 4 * i, head.active_tiles[i]);
   }
   // Bytes 186..187 are the blind-data count in current NanoVDB and unused in 10.0.1.
   store(file, meta::kBlindCount, std::uint16_t{1});

@@ -12,13 +12,15 @@ constexpr std::uint64_t align(std::uint64_t offset) {
 
 }  // namespace
 
+void check_countable(const NodeCounts& counts, const std::string& path) {
+  constexpr std::uint64_t kMost = 0xFFFFFFFFULL;
+  if (counts.leaves <= kMost && counts.leaf_tiles <= kMost) return;
+  throw Error(ErrorKind::budget, cat(path, ": the grid would have ", counts.leaves, " leaves and ", counts.leaf_tiles,
+                                     " tiles of 8^3 voxels, NanoVDB counts up to ", kMost,
+                                     " of each; ask for a smaller size or a larger error"));
+}
+
 TreeLayout make_layout(const NodeCounts& counts) {
-  // NanoVDB counts nodes and active tiles in 32 bits.
-  constexpr std::uint64_t kMaxNodes = 0xFFFFFFFFULL;
-  if (counts.leaves > kMaxNodes || counts.lowers > kMaxNodes || counts.uppers > kMaxNodes) {
-    throw Error(ErrorKind::budget, cat("the grid would have ", counts.leaves,
-                                       " leaves, NanoVDB counts up to 4294967295; ask for a smaller size"));
-  }
   TreeLayout layout;
   layout.counts = counts;
   layout.grid = nvdb::kPage;  // the name field is padded up to it

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "format/nanovdb_layout.h"
 
@@ -16,6 +17,7 @@ struct NodeCounts {
   std::uint64_t leaves = 0;
   std::uint64_t leaf_bytes = 0;  ///< of all leaves together
   std::uint64_t macrocells = 0;
+  std::uint64_t leaf_tiles = 0;  ///< active tiles of 8^3 voxels, in lower nodes
 };
 
 /// Byte offsets from the file's start, and sizes.
@@ -35,7 +37,12 @@ struct TreeLayout {
   std::uint64_t lower_offset(std::uint64_t i) const { return lowers + i * nvdb::kLowerBytes; }
 };
 
-/// Layout without padding: file_bytes == content_end. Pads to nothing but the nodes' own alignment.
+/// Throws Error(budget) where NanoVDB, which counts the nodes and active tiles of a level in 32 bits, cannot count
+/// these; `path` is that of the output, for the message.
+void check_countable(const NodeCounts& counts, const std::string& path);
+
+/// Layout without padding: file_bytes == content_end. Pads to nothing but the nodes' own alignment. Any counts have
+/// one, also those that no file can have: what a full tree would take bounds what is asked.
 TreeLayout make_layout(const NodeCounts& counts);
 
 /// The same layout in a file of exactly `file_bytes` bytes, which is at least content_end.

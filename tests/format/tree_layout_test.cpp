@@ -5,6 +5,7 @@
 #include <string>
 
 #include "format/error.h"
+#include "format/text.h"
 
 namespace weir::tree_layout_test {
 namespace {
@@ -42,14 +43,27 @@ TEST(TreeLayout, OffsetsPass32Bits) {
   EXPECT_EQ(layout.blind_meta, 4096U + 832 + 270400 + 1'048'576ULL * 33856 + leaves * 2144);
 }
 
-TEST(TreeLayout, MoreLeavesThan32BitsCountIsAnErrorThatSaysSo) {
-  try {
-    make_layout({1, 1, 1, 0x100000000ULL, 0, 0});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::budget);
-    EXPECT_STREQ(error.what(),
-                 "the grid would have 4294967296 leaves, NanoVDB counts up to 4294967295; ask for a smaller size");
+// 13,001^3 voxels have more than 2^32 leaves: what all of them take is asked for any budget.
+TEST(TreeLayout, MoreLeavesThanNanoVdbCounts_HaveALayout) {
+  const std::uint64_t leaves = 1626ULL * 1626 * 1626;
+  EXPECT_EQ(make_layout({1, 1, 1, leaves, leaves * 2144, 0}).blind_meta, 4096U + 832 + 270400 + 33856 + leaves * 2144);
+}
+
+TEST(TreeLayout, MoreLeavesOrTilesThanNanoVdbCounts_AreNoFile) {
+  NodeCounts counts{1, 1, 1, 0xFFFFFFFFULL, 0, 0, 0xFFFFFFFFULL};
+  check_countable(counts, "out.nvdb");
+  for (std::uint64_t NodeCounts::*count : {&NodeCounts::leaves, &NodeCounts::leaf_tiles}) {
+    NodeCounts more{1, 1, 1, 5, 0, 0, 5};
+    more.*count = 0x100000000ULL;
+    try {
+      check_countable(more, "out.nvdb");
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::budget);
+      EXPECT_EQ(error.what(), cat("out.nvdb: the grid would have ", more.leaves, " leaves and ", more.leaf_tiles,
+                                  " tiles of 8^3 voxels, NanoVDB counts up to 4294967295 of each; ask for a smaller "
+                                  "size or a larger error"));
+    }
   }
 }
 
