@@ -53,7 +53,7 @@ std::string mapping_text(const ValueMapping& mapping) {
 }  // namespace
 
 std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options) {
-  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "direct-io", "overwrite"})
+  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "within", "direct-io", "overwrite"})
     options.erase(name);
   return options;
 }

@@ -34,6 +34,7 @@ constexpr Choices<WatchMethod, 3> kWatchMethods{
 constexpr Choices<Priority, 2> kPriorities{{{"newest", Priority::newest}, {"oldest", Priority::oldest}}};
 constexpr Choices<AfterDone, 2> kAfterDone{
     {{"keep", AfterDone::keep}, {"delete-after-verify", AfterDone::delete_after_verify}}};
+constexpr Choices<Follow, 2> kFollow{{{"inside", Follow::inside}, {"anywhere", Follow::anywhere}}};
 constexpr Choices<IoClass, 3> kIoClasses{
     {{"none", IoClass::none}, {"best-effort", IoClass::best_effort}, {"idle", IoClass::idle}}};
 constexpr Choices<std::string_view, 6> kLogLevels{
@@ -237,6 +238,7 @@ WatchConfig read_watch(const toml::table& table, const std::string& path, const 
   }
   reader.choose("priority", watch.priority, kPriorities);
   reader.choose("source", watch.source, kAfterDone);
+  reader.choose("follow", watch.follow, kFollow);
   reader.toml.read("thumbnails", watch.thumbnails);
   watch.convert_options = read_convert_options(reader.toml, table, convert);
   reader.toml.finish();
@@ -269,6 +271,7 @@ std::string_view completion_name(Completion completion) { return name_of(kComple
 std::string_view watch_method_name(WatchMethod method) { return name_of(kWatchMethods, method); }
 std::string_view priority_name(Priority priority) { return name_of(kPriorities, priority); }
 std::string_view after_done_name(AfterDone source) { return name_of(kAfterDone, source); }
+std::string_view follow_name(Follow follow) { return name_of(kFollow, follow); }
 std::string_view io_class_name(IoClass io_class) { return name_of(kIoClasses, io_class); }
 
 std::optional<std::string> WatchConfig::convert_option(std::string_view option) const {

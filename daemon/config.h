@@ -47,11 +47,13 @@ std::uint64_t job_memory(const ServiceConfig& service);
 enum class Completion { automatic, close, rename, marker, size, stable };
 enum class WatchMethod { automatic, inotify, poll };
 enum class AfterDone { keep, delete_after_verify };
+enum class Follow { inside, anywhere };  ///< where the files may lie that a source names
 
 std::string_view completion_name(Completion completion);  ///< "auto", "close", ...
 std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
 std::string_view priority_name(Priority priority);        ///< "newest", "oldest"
 std::string_view after_done_name(AfterDone source);       ///< "keep", "delete-after-verify"
+std::string_view follow_name(Follow follow);              ///< "inside", "anywhere"
 std::string_view io_class_name(IoClass io_class);         ///< "none", "best-effort", "idle"
 
 /// One [[watch]]. Directories are absolute and lexically normal, without a trailing slash.
@@ -73,6 +75,7 @@ struct WatchConfig {
   double poll_interval_s = 1;
   Priority priority = Priority::oldest;
   AfterDone source = AfterDone::keep;
+  Follow follow = Follow::inside;  ///< inside: in `directory` and below, symbolic links resolved
   bool thumbnails = true;
   std::vector<std::string> convert_options;  ///< arguments of `weir convert`, in the form of ConvertSyntax::check
 

@@ -113,6 +113,7 @@ void ConversionJob::convert() {
   std::vector<std::string> arguments{task_.source, cat("--output=", task_.output), "--skip-done",
                                      cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
   if (task_.bandwidth != 0) arguments.push_back(cat("--bandwidth=", task_.bandwidth));
+  if (!task_.within.empty()) arguments.push_back(cat("--within=", task_.within));
   if (!task_.work_dir.empty()) arguments.push_back(cat("--work-dir=", task_.work_dir));
   arguments.insert(arguments.end(), task_.convert_options.begin(), task_.convert_options.end());
   run("convert", std::move(arguments), &ConversionJob::converted);

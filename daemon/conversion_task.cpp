@@ -30,6 +30,7 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.identity = job.identity;
   task.output = cat(output_directory(watch, job.source), '/', watch.name);
   task.convert_options = watch.convert_options;
+  if (watch.follow == Follow::inside) task.within = watch.directory;
   task.memory = job_memory(service);
   // Limited it stays, also where a share is less than a byte.
   if (service.bandwidth != 0) task.bandwidth = std::max<std::uint64_t>(1, service.bandwidth / jobs);

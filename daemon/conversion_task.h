@@ -16,6 +16,7 @@ struct ConversionTask {
   FileIdentity identity;                     ///< of the source as it was found complete
   std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
   std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
+  std::string within;                        ///< the directory that the source's files must lie in; empty: anywhere
   std::uint64_t memory = 0;                  ///< bytes, of each process
   std::uint64_t bandwidth = 0;               ///< bytes per second that the conversion may read and write; 0: no limit
   int threads = 0;

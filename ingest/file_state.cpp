@@ -1,5 +1,9 @@
 #include "ingest/file_state.h"
 
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
 #include "format/file_time.h"
 #include "format/sidecar.h"
 #include "format/text.h"
@@ -51,6 +55,22 @@ void check_unchanged(std::span<const FileState> files) {
     const FileState now = look_at_file(before.path);
     if (now != before) throw changed_error(before.path, difference(before, now));
   }
+}
+
+std::optional<std::string> file_outside(std::span<const FileState> files, const std::string& directory) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path inside = fs::canonical(directory, error);
+  if (error) throw Error(ErrorKind::input, cat(directory, ": look at the directory: ", error.message()));
+  for (const FileState& file : files) {
+    const fs::path target = fs::weakly_canonical(file.path, error);
+    if (error) return file.path;
+    const auto [in_directory, rest] = std::mismatch(inside.begin(), inside.end(), target.begin(), target.end());
+    if (in_directory != inside.end()) return target.string();
+    const FileState now = look_at_file(target.string());
+    if (now.device != file.device || now.inode != file.inode) return file.path;
+  }
+  return std::nullopt;
 }
 
 }  // namespace weir

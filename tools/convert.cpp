@@ -45,6 +45,7 @@ struct ConvertArguments {
   RunArguments run;
   std::string work_dir;
   std::string resume = "auto";
+  std::string within;  ///< a directory; empty: not asked for
   std::string trace;
   double save_interval_s = ConversionOptions{}.save_interval_s;
   std::string bandwidth;  ///< a size, per second
@@ -89,6 +90,25 @@ void check_outputs(std::span<const SeriesStep> steps, std::span<const std::strin
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
       throw usage_error(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
     }
+  }
+}
+
+// A header may name any file that this process may read. Whoever lets others choose the inputs keeps them to a
+// directory; to others it is said.
+void check_files(const SourceInfo& info, const std::string& within) {
+  if (info.files.empty()) return;
+  if (const auto outside = within.empty() ? std::nullopt : file_outside(info.files, within)) {
+    throw Error(ErrorKind::input, cat(info.path, ": lies in ", *outside, ", outside ", within,
+                                      "; move it there, or convert it without --within, in a watch with follow = "
+                                      "\"anywhere\""));
+  }
+  std::vector<FileState> others;
+  for (const FileState& file : info.files) {
+    if (file.path != info.path) others.push_back(file);
+  }
+  if (others.empty() || !within.empty()) return;
+  if (const auto outside = file_outside(others, directory_of(info.path))) {
+    spdlog::warn("{}: lies in {}, outside the directory of this file", info.path, *outside);
   }
 }
 
@@ -149,13 +169,14 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
 }
 
 Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
-                     const Sidecar* first, bool skip_done, Bandwidth* bandwidth, Trace* trace,
-                     const ProgressOptions& shown) {
+                     const Sidecar* first, const ConvertArguments& a, Bandwidth* bandwidth, Trace* trace) {
+  const ProgressOptions& shown = a.run.progress;
   source_options.dataset = step.dataset;
   source_options.index = step.index;
   std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
+  check_files(source->info(), a.within);
   if (first != nullptr) check_alike(*first, source->info(), options.budget);
-  if (skip_done) {
+  if (a.skip_done) {
     if (auto record = skip_or_replace(source->info(), options)) {
       announce_output(shown, options.output, true, *record);
       return *std::move(record);
@@ -224,8 +245,8 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
-    sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(),
-                                    a.skip_done, bandwidth ? &*bandwidth : nullptr, trace.get(), a.run.progress));
+    sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(), a,
+                                    bandwidth ? &*bandwidth : nullptr, trace.get()));
   }
   if (trace) trace->close();
   if (a.json) print_json(sidecars);
@@ -271,6 +292,13 @@ void add_convert(CLI::App& app) {
       ->type_name("SECONDS")
       ->group("Run")
       ->capture_default_str();
+  command
+      ->add_option("--within", a->within,
+                   "refuse inputs that lie in files outside this directory, symbolic links resolved: what a header, an "
+                   "external or a virtual HDF5 dataset names; default: any file, with a notice where it is elsewhere")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIRECTORY")
+      ->group("Input");
   add_trace_option(*command, a->trace);
   command->add_flag("--overwrite", a->overwrite, "replace an existing output");
   command->add_flag("--skip-done", a->skip_done,

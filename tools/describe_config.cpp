@@ -70,6 +70,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
           : cat(completion_name(watch.complete), ", settled after ", watch.settle_s, " s"));
   say(out, "priority", std::string(priority_name(watch.priority)));
   say(out, "source", std::string(after_done_name(watch.source)));
+  say(out, "follow", watch.follow == Follow::inside ? "what sources name, in the directory and below" : "anywhere");
   say(out, "convert", joined(watch.convert_options, " ", "as weir convert does by default"));
 }
 
