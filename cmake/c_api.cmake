@@ -51,6 +51,9 @@ function(weir_c_tests)
     target_compile_options(${target} PRIVATE -pedantic -Wall -Wextra -Wconversion -Wshadow -Werror)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
                                                RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests_c)
+    if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+      set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)  # for the part of the sanitizer that C++ calls
+    endif()
     add_test(NAME c/${name} COMMAND ${target})
     add_dependencies(weir_tests_c ${target})
   endforeach()

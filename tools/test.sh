@@ -2,9 +2,10 @@
 # The checks, in three sizes:
 #   tools/test.sh          the tests of the release build.
 #   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled, the format of C++ and the shell
-#                          scripts checked, and a short run of each fuzzer.
-#   tools/test.sh --full   besides, the tests again with AddressSanitizer and UndefinedBehaviorSanitizer (but a few heavy
-#                          ones) and, where threads run, with ThreadSanitizer; clang-tidy.
+#                          scripts checked, the tests again with AddressSanitizer and UndefinedBehaviorSanitizer (but heavy
+#                          ones) and, where threads run, with ThreadSanitizer, and a short run of each fuzzer.
+#   tools/test.sh --full   besides, the heavy ones with the sanitizers, the property tests over a thousand volumes, and
+#                          clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
 # N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
@@ -131,7 +132,7 @@ run_tsan() {
 
 fuzz() {
   local name=${1##*/}
-  local corpus=build/fuzz/corpus/$name seeds=tests/fuzz/corpus/$name
+  local corpus=build/asan/corpus/$name seeds=tests/fuzz/corpus/$name
   mkdir -p "$corpus"
   [[ -d $seeds ]] || seeds=
   # New inputs are kept in the first folder; the seeds only start the search.
@@ -140,14 +141,9 @@ fuzz() {
 }
 
 run_fuzzers() {
-  if ! has clang++ || ! compgen -G "$(clang++ -print-resource-dir)/lib/*/libclang_rt.fuzzer*" >/dev/null; then
-    skip fuzzers "clang's libFuzzer is not installed"
-    return 0
-  fi
-  build fuzz || return 0
   begin fuzzers
   local fuzzer running=() names=()
-  for fuzzer in build/fuzz/fuzz/*; do
+  for fuzzer in build/asan/fuzz/*; do
     fuzz "$fuzzer" &
     running+=($!)
     names+=("${fuzzer##*/}")
@@ -162,6 +158,29 @@ run_fuzzers() {
       tail -n 30 "$logs/fuzz_${names[$i]}.log"
     fi
   done
+  end
+}
+
+run_asan() {
+  if ! has clang++ || ! compgen -G "$(clang++ -print-resource-dir)/lib/*/libclang_rt.fuzzer*" >/dev/null; then
+    skip "tests of asan and fuzzers" "clang or its sanitizers are not installed"
+    return 0
+  fi
+  # What measures the process would measure the sanitizer.
+  [[ $size != full ]] || export WEIR_TESTS_LEFT_OUT='*Memory*:*Ceiling*'
+  if build asan; then
+    run_fuzzers
+    run_tests asan
+  fi
+  unset WEIR_TESTS_LEFT_OUT
+}
+
+run_property_tests() {
+  begin "property tests"
+  local program=build/release/weir_tests_compressor test
+  while read -r test; do
+    WEIR_PROPERTY_VOLUMES=1000 check "1000 volumes of $test" "$program" --gtest_filter="$test" || true
+  done < <("$program" --gtest_filter='*Property.A*' --gtest_list_tests | awk '/^[^ ]/ {suite = $1} /^ / {print suite $1}')
   end
 }
 
@@ -204,15 +223,17 @@ if [[ $size != test ]]; then
 fi
 targets=(weir weir_tests)
 [[ $size == test ]] || targets=() # all, with the benchmarks
+[[ $size != full ]] || export WEIR_MANY_FILES=2000
 if build release "${targets[@]}"; then run_tests release; fi
+unset WEIR_MANY_FILES
 if [[ $size != test ]]; then
-  run_fuzzers
-fi
-if [[ $size == full ]]; then
-  if build asan; then run_tests asan; fi
+  run_asan
   run_tsan
 fi
-[[ $size != full ]] || check_tidy
+if [[ $size == full ]]; then
+  run_property_tests
+  check_tidy
+fi
 
 [[ ${#skipped[@]} -eq 0 ]] || printf 'skipped: %s\n' "${skipped[@]}"
 [[ ${#failed[@]} -eq 0 ]] || printf 'failed: %s\n' "${failed[@]}"
