@@ -10,10 +10,12 @@
 #include "compressor/conversion_control.h"
 #include "compressor/memory_plan.h"
 #include "compressor/resume.h"
+#include "compressor/startable_threads.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/error.h"
 #include "format/file_id.h"
 #include "format/process_memory.h"
+#include "format/text.h"
 #include "ingest/file_state.h"
 
 namespace weir {
@@ -72,17 +74,33 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
-  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t processors =
+      options.processors > 0 ? options.processors : std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t resident = held + source.working_bytes();
-  const std::size_t threads = choose_threads(options.threads, processors, options.memory, resident, domain);
+  std::size_t threads = choose_threads(options.threads, processors, options.memory, resident, domain);
   if (options.threads == 0 && threads < processors && control.notice) {
     control.notice(fewer_threads_notice(threads, processors, options.memory));
+  }
+  // Beside the workers, of which this thread is one, run those that read, write back and save.
+  constexpr std::size_t kOthers = 6;
+  const std::size_t wanted = threads - 1 + kOthers;
+  const std::size_t startable = startable_threads(wanted);
+  if (startable < wanted) {
+    threads = startable > kOthers ? startable - kOthers + 1 : 1;
+    if (control.notice) {
+      control.notice(cat("the system lets this process start ", startable, startable == 1 ? " thread" : " threads",
+                         " more; working on ", threads, "; raise the limit of processes (ulimit -u)"));
+    }
   }
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
   ReadingPlan reading;
   team.run([&] {
+    if (startable < 2) {  // one reads, and oneTBB may start one for itself
+      throw Error(ErrorKind::io,
+                  "no more threads can be started; raise the limit of processes (ulimit -u) or end some");
+    }
     memory = plan_memory(options.memory, resident, threads, domain);
     reading = plan_reading(source, memory);
   });

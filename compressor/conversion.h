@@ -48,8 +48,9 @@ struct ConversionOptions {
   bool paper_background = false;    ///< the paper's histogram; one more pass over most types
   NonFinitePolicy non_finite = NonFinitePolicy::error;
   std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process
-  std::size_t threads = 0;                           ///< workers, 0: one per core
-  std::string work_dir;                              ///< for spill files; empty: a hidden directory beside the output
+  std::size_t threads = 0;     ///< workers, 0: one for each processor, as far as `memory` holds them
+  std::size_t processors = 0;  ///< that there are for it, 0: all of the machine's
+  std::string work_dir;        ///< for spill files; empty: a hidden directory beside the output
   Resume resume = Resume::automatic;
   double save_interval_s = 5;  ///< between two points that it can be continued from; 0: after every block, for tests
   Sidecar::Weir provenance;    ///< recorded as it is

@@ -35,7 +35,8 @@ std::string spill_name_of(const std::string& output) {
   std::error_code ignored;
   const std::string whole = (fs::weakly_canonical(directory_of(output), ignored) / name).string();
   const std::string digest = piece_digest(std::as_bytes(std::span(whole))).hex().substr(0, 16);
-  return cat('.', name.string(), '.', digest, ".work");
+  // The output's own name may be the longest that a file system takes.
+  return cat('.', name.string().substr(0, 200), '.', digest, ".work");
 }
 
 // Checkpoint::spill_directory: the next process may have another working directory.

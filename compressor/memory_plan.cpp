@@ -18,7 +18,7 @@ namespace {
 // (1.3 MiB), leaves being encoded (700 KiB).
 constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image.
-constexpr std::uint64_t kSlackBytes = 16ULL << 20U;
+constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
 // A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for
 // both passes' small buffers and the allocator's waste.

@@ -1,4 +1,5 @@
 // The `weir` command: options to subcommands, errors to one line and an exit code.
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
@@ -6,8 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "format/error.h"
 #include "tools/command.h"
@@ -26,13 +29,29 @@ int fail_internally(const std::exception& error) {
   return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
 }
 
+// What is logged, as one line: it names the same paths.
+class OneLine : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+    const std::string line = weir::one_line(std::string(message.payload.data(), message.payload.size()));
+    out.append(line.data(), line.data() + line.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<OneLine>(); }
+};
+
+void log_in_lines() {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<OneLine>('*').set_pattern("%H:%M:%S %l %*");
+  spdlog::set_formatter(std::move(formatter));
+}
+
 std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
-  spdlog::set_pattern("%H:%M:%S %l %v");
+  log_in_lines();
   weir::catch_interrupts();
   std::signal(SIGPIPE, SIG_IGN);
 
@@ -76,6 +95,10 @@ int main(int argc, char** argv) {
     return fail(error.what(), interrupted ? weir::interrupted_exit_code() : error.exit_code());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) return fail_internally(error);
+    return fail("no more threads can be started; raise the limit of processes (ulimit -u) or end some",
+                static_cast<int>(weir::ErrorKind::io));
   } catch (const std::exception& error) {
     return fail_internally(error);
   }

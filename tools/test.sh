@@ -177,10 +177,13 @@ run_asan() {
 
 run_property_tests() {
   begin "property tests"
-  local program=build/release/weir_tests_compressor test
-  while read -r test; do
-    WEIR_PROPERTY_VOLUMES=1000 check "1000 volumes of $test" "$program" --gtest_filter="$test" || true
-  done < <("$program" --gtest_filter='*Property.A*' --gtest_list_tests | awk '/^[^ ]/ {suite = $1} /^ / {print suite $1}')
+  local program test
+  for program in compressor tools; do
+    while read -r test; do
+      WEIR_PROPERTY_VOLUMES=1000 check "1000 times $test" "build/release/weir_tests_$program" --gtest_filter="$test" || true
+    done < <("build/release/weir_tests_$program" --gtest_filter='*Property.A*' --gtest_list_tests |
+      awk '/^[^ ]/ {suite = $1} /^ / {print suite $1}')
+  done
   end
 }
 

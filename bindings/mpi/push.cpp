@@ -87,8 +87,7 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
       conversion.output = checked_output(output);
     });
     require_alike(made->team, said_by_all(info, conversion));
-    const std::size_t cores = made->team.own_cores();
-    if (conversion.threads == 0) conversion.threads = cores;
+    conversion.processors = made->team.own_cores();
     made->boxes = std::make_unique<PushedBoxes>(std::move(info), conversion, made->control, made->team);
     *push = made.release();
   });

@@ -53,7 +53,7 @@ void add_convert(CLI::App& app, Arguments& a) {
 }
 
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
-  const std::size_t threads = a.run.threads > 0 ? static_cast<std::size_t>(a.run.threads) : team.own_cores();
+  const std::size_t processors = team.own_cores();
   weir::ConversionOptions options;
   std::unique_ptr<weir::VolumeSource> source;
   team.run([&] {
@@ -62,7 +62,8 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     options.overwrite = a.overwrite;
     options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
     options.memory = weir::parse_memory(a.run);
-    options.threads = threads;
+    options.threads = static_cast<std::size_t>(a.run.threads);
+    options.processors = processors;
     options.work_dir = a.work_dir;
     options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command)};
     weir::SourceOptions source_options = weir::parse_input(a.source);

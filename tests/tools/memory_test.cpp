@@ -53,5 +53,23 @@ TEST(Memory, ATwoGibibyteVolumeStaysUnderTheCeiling) {
   EXPECT_EQ(measured["max_abs"].get<double>(), certified["max_abs"].get<double>());
 }
 
+// The least --memory there is, and one thread: again and again, as the process is not laid out the same each time.
+TEST(Memory, SmallVolumesConvertInTheLeastCeiling) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const TemporaryDirectory directory;
+  for (const std::string edge : {"64", "160"}) {
+    const std::string input = directory / ("v_" + edge + "x" + edge + "x" + edge + "_float32.raw");
+    ASSERT_EQ(run_weir({"sample", "cloud", "-o", input}).exit_code, 0);
+    for (int round = 0; round < 5; ++round) {
+      for (const std::string encoding : {"auto", "float"}) {
+        const CommandResult result = run_weir({"convert", input, "-o", directory / "out.nvdb", "--overwrite", "--rate",
+                                               "2", "--memory", "64MiB", "--threads", "1", "--encoding", encoding});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_LT(result.peak_rss_bytes, 64 * kMiB);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weir::memory_test

@@ -2,6 +2,7 @@
 // of its kind, nothing left.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -81,6 +82,26 @@ TEST_F(ProcessLimits, NewlineInAPath_KeepsTheErrorOnOneLine) {
       "weir: " + (directory_ / "a\\nb\\x1b[2J_8x8x8_uint8.raw: cannot open for reading: No such file or directory\n"));
 }
 
+TEST_F(ProcessLimits, TheLongestName_HasAWorkDirectoryOfItsOwn) {
+  const std::string output = directory_ / ("out/" + std::string(236, 'n') + ".nvdb");
+  fs::create_directory(directory_ / "work");
+  const CommandResult result = run_weir(
+      {"convert", volume(64), "-o", output, "--work-dir", directory_ / "work", "--resume", "on", "--lossless"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(fs::exists(output));
+  EXPECT_EQ(list_directory(directory_ / "work"), std::vector<std::string>{});
+}
+
+TEST_F(ProcessLimits, NewlineInAPath_KeepsANoticeOnOneLine) {
+  const std::string path = directory_ / "a\nb_16x16x16_uint8.raw";
+  fs::rename(volume(16), path);
+  const CommandResult result = run_weir({"convert", path, "-o", directory_ / "out/a\nb.nvdb", "--log-level", "warn"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find(" warning " + (directory_ / "out/a\\nb.nvdb: --rate 8 would be ")), std::string::npos)
+      << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
 TEST_F(ProcessLimits, Hangup_EndsWith129AndNothingIsLeft) {
   const std::string path = directory_ / "zeros_1024x1024x1024_uint8.raw";
   write_file(path, "");
@@ -91,6 +112,54 @@ TEST_F(ProcessLimits, Hangup_EndsWith129AndNothingIsLeft) {
   const CommandResult result = child.wait();
   EXPECT_EQ(result.exit_code, 129);
   EXPECT_EQ(result.err, "weir: interrupted; nothing was written\n");
+  EXPECT_EQ(left(), std::vector<std::string>{});
+}
+
+TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const std::string path = volume(96);
+  const auto convert_with = [&](int threads) {
+    CommandOptions options;
+    options.environment = preload(
+        "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <errno.h>\n#include <pthread.h>\n#include <stdlib.h>\n"
+        "static int running;\n"
+        "struct call { void* (*run)(void*); void* with; };\n"
+        "static void* counted(void* p) {\n"
+        "  struct call c = *(struct call*)p; free(p);\n"
+        "  void* result = c.run(c.with);\n"
+        "  __sync_fetch_and_sub(&running, 1); return result;\n}\n"
+        "int pthread_create(pthread_t* t, const pthread_attr_t* a, void* (*run)(void*), void* with) {\n"
+        "  if (__sync_fetch_and_add(&running, 1) >= " +
+        std::to_string(threads) +
+        ") { __sync_fetch_and_sub(&running, 1); return EAGAIN; }\n"
+        "  struct call* c = malloc(sizeof *c); c->run = run; c->with = with;\n"
+        "  int (*real)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*) = dlsym(RTLD_NEXT, "
+        "\"pthread_create\");\n"
+        "  return real(t, a, counted, c);\n}\n");
+    return run_weir({"convert", path, "-o", output_, "--overwrite", "--threads", "8"}, options);
+  };
+  const CommandResult all = convert_with(1000);
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const std::string bytes = read_file(output_);
+  // OpenVDB's library for logging has four before main() begins.
+  constexpr int kFirst = 4;
+  for (const int threads : {9, 2}) {
+    const CommandResult fewer = convert_with(kFirst + threads);
+    EXPECT_EQ(fewer.exit_code, 0) << fewer.err;
+    EXPECT_NE(
+        fewer.err.find("the system lets this process start " + std::to_string(threads) + " threads more; working on " +
+                       (threads == 9 ? "4" : "1") + "; raise the limit of processes (ulimit -u)\n"),
+        std::string::npos)
+        << fewer.err;
+    EXPECT_TRUE(read_file(output_) == bytes) << threads;
+  }
+  fs::remove(output_);
+  fs::remove(output_ + ".json");
+  const CommandResult none = convert_with(kFirst);
+  EXPECT_EQ(none.exit_code, 5);
+  EXPECT_TRUE(none.err.ends_with(
+      "weir: no more threads can be started; raise the limit of processes (ulimit -u) or end some\n"))
+      << none.err;
   EXPECT_EQ(left(), std::vector<std::string>{});
 }
 
