@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # The checks, in three sizes:
 #   tools/test.sh          the tests of the release build.
-#   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled, the format of C++ and the shell
-#                          scripts checked, the tests again with AddressSanitizer and UndefinedBehaviorSanitizer (but heavy
-#                          ones) and, where threads run, with ThreadSanitizer, and a short run of each fuzzer.
+#   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled; the format of C++, the shell
+#                          scripts and the structure of the sources checked; the tests again with AddressSanitizer and
+#                          UndefinedBehaviorSanitizer (but heavy ones) and, where threads run, with ThreadSanitizer; a
+#                          short run of each fuzzer.
 #   tools/test.sh --full   besides, the heavy ones with the sanitizers, the property tests over a thousand volumes, and
 #                          clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
@@ -222,6 +223,7 @@ exec </dev/null
 if [[ $size != test ]]; then
   check_format
   check_shell
+  check structure tools/structure.py || true
   if has nvcc || [[ -x /usr/local/cuda/bin/nvcc ]]; then export WEIR_CUDA=${WEIR_CUDA:-ON}; fi
 fi
 targets=(weir weir_tests)

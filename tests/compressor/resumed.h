@@ -51,7 +51,7 @@ inline std::uint64_t least_memory(MemoryVolume& volume, std::size_t threads) {
 }
 
 // What the process grows by between the question and the conversion; a sanitizer's takes all for one block.
-inline constexpr std::uint64_t kMargin = std::uint64_t{kSanitized ? 48 : 2} << 20U;
+inline constexpr std::uint64_t kMargin = std::uint64_t{kSanitized ? 160 : 2} << 20U;
 
 // All but the seconds and bytes of this machine and run.
 inline std::string record_of(Sidecar sidecar) {
