@@ -9,6 +9,10 @@ namespace weir {
 
 namespace fs = std::filesystem;
 
+bool lies_in(const WatchConfig& watch, const std::string& source) {
+  return source.starts_with(watch.directory.ends_with('/') ? watch.directory : watch.directory + '/');
+}
+
 std::string output_directory(const WatchConfig& watch, const std::string& source) {
   const fs::path place = fs::path(source).parent_path().lexically_relative(watch.directory);
   if (place.empty() || place == ".") return watch.output;

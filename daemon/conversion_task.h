@@ -31,7 +31,10 @@ struct ConversionTask {
 ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
                          const Job& job);
 
-/// Where the outputs of `source` go: the watch's output directory and below it the source's own place in the tree.
+/// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
+bool lies_in(const WatchConfig& watch, const std::string& source);
+
+/// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's own place in the tree.
 /// Ends without a slash.
 std::string output_directory(const WatchConfig& watch, const std::string& source);
 

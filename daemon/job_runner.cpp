@@ -74,9 +74,9 @@ void JobRunner::configure(const DaemonConfig& config) {
 }
 
 void JobRunner::forget_other_watches() {
-  std::vector<std::string> labels;
-  for (const WatchConfig& watch : config_.watches) labels.push_back(watch.label);
-  record([this, labels] { store_.forget_other_watches(labels); });
+  std::vector<JobStore::Watched> watches;
+  for (const WatchConfig& watch : config_.watches) watches.push_back({watch.label, watch.directory});
+  record([this, watches] { store_.forget_other_watches(watches); });
 }
 
 const WatchConfig* JobRunner::watch_of(const std::string& label) const {
@@ -121,6 +121,11 @@ bool JobRunner::start_next() {
 }
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
+  if (!lies_in(watch, job.source)) {  // retried after the watch was given another directory: its output has no place
+    log_.warn("not-watched", {{"job", job.id}, {"source", job.source}, {"directory", watch.directory}});
+    store_.cancel(job.id);
+    return;
+  }
   scheduler_.started(watch.label);
   const auto now = identify(job.source);
   if (now ? *now != job.identity : is_gone(job.source)) {
@@ -171,7 +176,9 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
     const std::optional<Job> now = store_.job(job.id);
     if (now && now->state == JobState::cancelled) discard_work(job, directory);
   });
-  if (watch_of(run.job.watch) == nullptr) forget_other_watches();
+  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !lies_in(*watch, run.job.source)) {
+    forget_other_watches();
+  }
   if (stopping_ && running_.empty() && stopped_) {
     grace_timer_.cancel();
     boost::asio::post(io_, std::exchange(stopped_, nullptr));

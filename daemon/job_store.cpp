@@ -270,14 +270,17 @@ bool JobStore::remove(std::int64_t id) {
   return removed;
 }
 
-void JobStore::forget_other_watches(const std::vector<std::string>& labels) {
-  std::string kept;
-  for (std::size_t i = 0; i < labels.size(); ++i) kept += i == 0 ? "?" : ", ?";
+void JobStore::forget_other_watches(const std::vector<Watched>& watches) {
+  std::string kept = "0";
+  for (std::size_t i = 0; i < watches.size(); ++i) kept += " OR (watch = ? AND substr(source, 1, length(?)) = ?)";
   Transaction transaction(database_);
   Statement forget = database_.prepare(
-      cat("DELETE FROM jobs WHERE watch NOT IN (", kept, ") AND ",
+      cat("DELETE FROM jobs WHERE NOT (", kept, ") AND ",
           in_state({JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined})));
-  for (const std::string& label : labels) forget.bind(label);
+  for (const Watched& watch : watches) {
+    const std::string below = watch.directory.ends_with('/') ? watch.directory : watch.directory + '/';
+    forget.bind(watch.label).bind(below).bind(below);
+  }
   forget.step();
   if (database_.changes() > 0) database_.prepare("DELETE FROM outputs WHERE job NOT IN (SELECT id FROM jobs)").step();
   transaction.commit();

@@ -92,9 +92,14 @@ class JobStore {
   /// Either way no attempt counts any more.
   bool retry(std::int64_t id);
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
-  /// Forgets the jobs of all watches but those with these labels: what is not over, and what failed. Running ones,
-  /// results and what was cancelled stay.
-  void forget_other_watches(const std::vector<std::string>& labels);
+  /// A watch as it is now: jobs of its label whose sources lie elsewhere are of one that it was before.
+  struct Watched {
+    std::string label;
+    std::string directory;  ///< as in WatchConfig
+  };
+  /// Forgets the jobs of all watches but these: what is not over, and what failed. Running ones, results and what was
+  /// cancelled stay.
+  void forget_other_watches(const std::vector<Watched>& watches);
 
   std::optional<Job> job(std::int64_t id) const;
   std::optional<Job> find(const std::string& watch, const std::string& source) const;

@@ -23,6 +23,19 @@ Error open_error(const std::string& path, const std::string& what) {
 
 std::string message_of(int errno_value) { return std::generic_category().message(errno_value); }
 
+// What is wrong with the name is wrong with the input; rights, devices, servers, descriptors and memory may come back,
+// and then the same file can be read.
+Error refused_open(const std::string& path, int errno_value) {
+  const bool name = errno_value == ENOENT || errno_value == ENOTDIR || errno_value == ELOOP ||
+                    errno_value == ENAMETOOLONG || errno_value == EINVAL;
+  const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
+                       : errno_value == EACCES || errno_value == EPERM
+                           ? "; give this user the right to read it and to enter its directories"
+                           : "";
+  return Error(name ? ErrorKind::input : ErrorKind::io,
+               cat(path, ": cannot open for reading: ", message_of(errno_value), remedy));
+}
+
 std::uint64_t page_bytes() {
   static const auto bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
   return bytes;
@@ -42,14 +55,9 @@ bool may_see_residency(const std::string& path, const struct stat& status) {
 InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& shown) : path_(shown), mode_(mode) {
   // O_NONBLOCK: opening a pipe must not wait for its writer. Regular files ignore it.
   buffered_.reset(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  // Of this process or machine, and not of the file.
-  if (!buffered_ && (errno == EMFILE || errno == ENFILE)) {
-    throw Error(ErrorKind::io, cat(shown, ": cannot open for reading: ", message_of(errno),
-                                   "; raise the limit of open files (ulimit -n)"));
-  }
-  if (!buffered_) throw open_error(shown, cat("cannot open for reading: ", message_of(errno)));
+  if (!buffered_) throw refused_open(shown, errno);
   struct stat status {};
-  if (::fstat(buffered_.get(), &status) != 0) throw open_error(shown, cat("cannot look at: ", message_of(errno)));
+  if (::fstat(buffered_.get(), &status) != 0) throw io_error(shown, "look at it", errno);
   if (S_ISDIR(status.st_mode)) throw open_error(shown, "is a directory; name a file in it");
   if (!S_ISREG(status.st_mode)) throw open_error(shown, "is not a regular file; copy its content to one");
   if (status.st_size == 0) throw open_error(shown, "is empty (0 bytes)");

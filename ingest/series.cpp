@@ -161,7 +161,8 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
     const auto of_this_file =
         std::count_if(steps.begin(), steps.end(), [&](const SeriesStep& other) { return other.path == step.path; });
     const std::string name = step_name(of_this_file > 1 ? "{stem}_{step}.nvdb" : "{stem}.nvdb", step);
-    std::filesystem::path path = step_name(output, step);
+    const std::size_t directory_end = output.rfind('/') + 1;  // braces in a directory's name are its own
+    std::filesystem::path path = output.substr(0, directory_end) + step_name(output.substr(directory_end), step);
     if (output.empty()) path = std::filesystem::path(step.path).replace_filename(name);
     if (directory) path /= name;
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);

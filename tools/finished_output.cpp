@@ -47,6 +47,20 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
   return {};
 }
 
+// A file that took the source's place, with its size and time (cp -p, rsync -t), or was rewritten and had its time set
+// back, got its status at that moment, which no program sets. The sidecar was written after the last look at the
+// source.
+std::string touched_since(const std::string& record_path, const SourceInfo& source) {
+  const FileState record = look_at_file(record_path);
+  for (const FileState& file : source.files) {
+    if (file.ctime_ns >= record.mtime_ns) {
+      return cat(file.path, " was replaced or changed at ", utc_text(file.ctime_ns),
+                 ", after the volume was made of it");
+    }
+  }
+  return {};
+}
+
 // Empty where the volume is the one that the sidecar describes.
 std::string broken(const std::string& output, const Sidecar& sidecar) {
   try {
@@ -81,6 +95,7 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
     return {FinishedOutput::State::foreign, {}, cat("was made of ", found.source.path)};
   }
   std::string reason = difference(found, expected, source);
+  if (reason.empty()) reason = touched_since(record_path, source);
   if (reason.empty()) reason = broken(output, found);
   const auto state = reason.empty() ? FinishedOutput::State::done : FinishedOutput::State::stale;
   return {state, std::move(found), std::move(reason)};

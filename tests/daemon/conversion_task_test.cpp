@@ -19,6 +19,16 @@ TEST(ConversionTask, RepeatsTheTreeBelowTheOutput) {
   EXPECT_EQ(output_directory(watch, "/in/deep/er/a.raw"), "/out/deep/er");
 }
 
+TEST(ConversionTask, ASourceLiesInItsWatchByItsName) {
+  WatchConfig watch = make_watch();
+  EXPECT_TRUE(lies_in(watch, "/in/a.raw"));
+  EXPECT_TRUE(lies_in(watch, "/in/deep/a.raw"));
+  EXPECT_FALSE(lies_in(watch, "/inside/a.raw"));
+  EXPECT_FALSE(lies_in(watch, "/old/a.raw"));
+  watch.directory = "/";
+  EXPECT_TRUE(lies_in(watch, "/a.raw"));
+}
+
 TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
   ServiceConfig service;
   service.memory = kDaemonMemory + (std::uint64_t{256} << 20U);

@@ -323,8 +323,8 @@ TEST_F(StoredJobs, NumbersAreNotUsedAgain) {
 TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
   const std::int64_t kept = observe("/in/kept.raw", kIdentity, "a");
   std::vector<std::int64_t> ids;
-  for (const char* source : {"discovered", "waiting", "failed", "quarantined", "running", "done", "cancelled"}) {
-    ids.push_back(observe(source, kIdentity, "b"));
+  for (const char* name : {"discovered", "waiting", "failed", "quarantined", "running", "done", "cancelled"}) {
+    ids.push_back(observe(std::string("/in/") + name, kIdentity, "b"));
   }
   for (const int at : {1, 2, 4, 5}) store_->enqueue(ids[static_cast<std::size_t>(at)]);
   for (const int at : {2, 4, 5}) store_->start(ids[static_cast<std::size_t>(at)]);
@@ -335,14 +335,22 @@ TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
   store_->finish(ids[5], success());
   store_->cancel(ids[6]);
 
-  store_->forget_other_watches({"a", "b"});
+  store_->forget_other_watches({{"a", "/in"}, {"b", "/"}});
   EXPECT_EQ(store_->count({}), 8U);
-  store_->forget_other_watches({"a", "c"});
-  EXPECT_EQ(sources({std::nullopt, "b", ""}), (Names{"cancelled", "done", "running"}));
+  store_->forget_other_watches({{"a", "/in"}, {"c", "/in"}});
+  EXPECT_EQ(sources({std::nullopt, "b", ""}), (Names{"/in/cancelled", "/in/done", "/in/running"}));
   EXPECT_TRUE(store_->job(kept));
   EXPECT_EQ(job(ids[5]).result.outputs, success().outputs);
   store_->forget_other_watches({});
   EXPECT_FALSE(store_->job(kept));
+}
+
+TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
+  observe("/old/a.raw", kIdentity, "w");
+  observe("/new/a.raw", kIdentity, "w");
+  observe("/newer/a.raw", kIdentity, "w");
+  store_->forget_other_watches({{"w", "/new"}});
+  EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{"/new/a.raw"});
 }
 
 TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {

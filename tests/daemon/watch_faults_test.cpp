@@ -155,18 +155,20 @@ TEST(WatchFaults, AnOutputThatCannotBeADirectoryIsSaid) {
   EXPECT_EQ(service.job(name + ".raw")["reason"], service.path("file/out") + ": make the directory: Not a directory");
 }
 
-TEST(WatchFaults, AnUnreadableFileIsQuarantinedUntilItChanges) {
+TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
   ServiceHarness service;
   service.run_unprivileged();
   const std::string name = service.add("locked");
   fs::permissions(service.in(name + ".raw"), fs::perms::none);
   service.start();
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("quarantined") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
   const auto job = service.job(name + ".raw");
-  EXPECT_EQ(job["exit_code"], 3);
-  EXPECT_NE(job["reason"].get<std::string>().find("Permission denied"), std::string::npos) << job;
-  fs::permissions(service.in(name + ".raw"), fs::perms::all);
-  service.add("locked", 5);
+  EXPECT_EQ(job["state"], "waiting");
+  EXPECT_EQ(job["exit_code"], 5);
+  EXPECT_NE(job["reason"].get<std::string>().find("Permission denied; give this user the right to read it"),
+            std::string::npos)
+      << job;
+  fs::permissions(service.in(name + ".raw"), fs::perms::all);  // the file itself is as it was
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 

@@ -70,7 +70,9 @@ TEST(InputFile, RefusesWhatMayNotBeRead) {
   ASSERT_EQ(::chmod(path.c_str(), 0), 0);
   const uid_t self = ::geteuid();
   ASSERT_EQ(::seteuid(self == 0 ? 65534 : self), 0);  // root may read everything
-  EXPECT_EQ(open_refusal(path), path + ": cannot open for reading: Permission denied");
+  EXPECT_EQ(open_refusal(path, ErrorKind::io), path +
+                                                   ": cannot open for reading: Permission denied; give this user the "
+                                                   "right to read it and to enter its directories");
   ASSERT_EQ(::seteuid(self), 0);
 }
 

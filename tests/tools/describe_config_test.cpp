@@ -77,6 +77,7 @@ watch "@/in"
   complete    auto, settled after 2 s
   priority    oldest
   source      keep
+  follow      what sources name, in the directory and below
   convert     --dims=64,64,64 --type=uint8 --rate=4
 watch "all"
   directory   @/later, and below, which is not there yet
@@ -88,6 +89,7 @@ watch "all"
   complete    marker .done
   priority    oldest
   source      keep
+  follow      what sources name, in the directory and below
   convert     as weir convert does by default
 )"));
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"in/", "watch.toml"}))

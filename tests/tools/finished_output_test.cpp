@@ -68,6 +68,22 @@ TEST_F(SkipDone, ConvertsAgainWhatChanged) {
   EXPECT_FALSE(leaves_it()) << "a nanosecond";
 }
 
+TEST_F(SkipDone, ConvertsAgainWhatTookItsPlaceWithItsSizeAndTime) {
+  ASSERT_EQ(convert().exit_code, 0);
+  const auto time = fs::last_write_time(source_);
+  const std::string first = source_;
+  source_ = directory_ / "other_40x32x24_uint8.raw";
+  write_source('\5');
+  fs::last_write_time(source_, time);  // as cp -p does
+  fs::rename(source_, first);
+  source_ = first;
+  EXPECT_FALSE(leaves_it()) << "another file";
+  EXPECT_TRUE(leaves_it());
+  write_source('\7');
+  fs::last_write_time(source_, time);
+  EXPECT_FALSE(leaves_it()) << "the same file, rewritten";
+}
+
 TEST_F(SkipDone, ConvertsAgainWhatASceneSaysOtherwise) {
   const TemporaryDirectory beside;
   const std::string scene = beside / "s.toml";

@@ -170,7 +170,7 @@ TEST_F(Play, Refusals) {
 TEST_F(Play, InterruptLeavesWholeFramesAlone) {
   std::vector<std::string> arguments{WEIR_COMMAND, "play"};
   for (int step = 0; step < 4; ++step) arguments.push_back(make("s_" + std::to_string(step) + ".nvdb", "cloud", step));
-  arguments.insert(arguments.end(), {"-o", out_, "--size", "40x30", "--spp", "300"});
+  arguments.insert(arguments.end(), {"-o", out_, "--size", "40x30", "--spp", "300", "--progress", "never"});
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove_all(out_);
     ChildProcess child(arguments);

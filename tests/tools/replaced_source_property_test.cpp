@@ -82,12 +82,15 @@ TEST_F(ReplacedSourceProperty, AnyKillAndReplacement_NeverCertifiesAnotherVolume
   const std::vector<std::string> command{WEIR_COMMAND, "convert", source_,           "-o", output_,
                                          "--rate",     "4",       "--threads",       "1",  "--overwrite",
                                          "--resume",   "on",      "--save-interval", "0"};
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run_command(command).exit_code, 0);
+  const auto one_run = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin);
   int ended = 0;
   int refused = 0;
   for (int run = 0; run < runs; ++run) {
     if (draw(2) == 0) replace_source();
     ChildProcess child(command);
-    std::this_thread::sleep_for(std::chrono::microseconds(draw(80'000)));
+    std::this_thread::sleep_for(std::chrono::microseconds(draw(static_cast<int>(one_run.count()))));
     const int fate = draw(4);
     if (fate < 2) child.send_signal(SIGKILL);
     if (fate == 2) replace_source();
