@@ -62,6 +62,8 @@ struct ConversionControl {
   std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   std::function<void(const std::string& line)> notice;
+  std::function<void(std::uint64_t bytes)>
+      planned;             ///< of the file, before room is taken for it; again where it is replanned
   Trace* trace = nullptr;  ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
 };
 

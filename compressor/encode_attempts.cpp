@@ -66,6 +66,7 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   }
   const FilePlan& file = encoded.file;
   std::shared_ptr<File> records = open_targets(job, file);
+  if (job.planned) job.planned(file.size.bytes);
   if (!job.output.reserve(file.size.bytes) && job.notice) {
     job.notice(
         cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));

@@ -39,6 +39,7 @@ struct EncodeJob {
   const StreamOptions& stream;
   std::function<void()> pass_started;                   ///< may throw Error(interrupted)
   std::function<void(const std::string& line)> notice;  ///< may be empty
+  std::function<void(std::uint64_t bytes)> planned;     ///< may be empty
 };
 
 /// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.

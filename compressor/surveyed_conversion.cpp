@@ -210,7 +210,7 @@ Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, c
   const EncodedFile encoded =
       encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
                    options.scene ? visible_values(options.scene->scene) : "", stream,
-                   [&] { team.run([&] { start_pass(control, "encode", voxels); }); }, control.notice},
+                   [&] { team.run([&] { start_pass(control, "encode", voxels); }); }, control.notice, control.planned},
                   std::move(request));
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;

@@ -238,6 +238,7 @@ WatchConfig read_watch(const toml::table& table, const std::string& path, const 
   }
   reader.choose("priority", watch.priority, kPriorities);
   reader.choose("source", watch.source, kAfterDone);
+  reader.toml.read("delete_after", watch.delete_after_s, {0, 31'536'000});
   reader.choose("follow", watch.follow, kFollow);
   reader.toml.read("thumbnails", watch.thumbnails);
   watch.convert_options = read_convert_options(reader.toml, table, convert);

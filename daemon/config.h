@@ -75,6 +75,7 @@ struct WatchConfig {
   double poll_interval_s = 1;
   Priority priority = Priority::oldest;
   AfterDone source = AfterDone::keep;
+  double delete_after_s = 600;     ///< between the end of a job and the deletion of its source
   Follow follow = Follow::inside;  ///< inside: in `directory` and below, symbolic links resolved
   bool thumbnails = true;
   std::vector<std::string> convert_options;  ///< arguments of `weir convert`, in the form of ConvertSyntax::check

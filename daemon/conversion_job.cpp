@@ -137,6 +137,10 @@ void ConversionJob::heard(std::string_view line) {
     outputs_.push_back(std::move(output));
     return;
   }
+  if (told.contains("planned")) {
+    report_.planned_bytes = told.value("planned", std::uint64_t{0});
+    return;
+  }
   const auto total = told.value("total", 0.0);
   if (total <= 0) return;
   const double part = told.value("done", 0.0) / total;
@@ -210,6 +214,12 @@ void ConversionJob::rendered(const WorkerEnd& end) {
     return;
   }
   JobOutput& output = outputs_[next_].job;
+  if (end.exit_code > kSignal &&
+      !std::exchange(render_killed_, true)) {  // by somebody, or for want of memory: once more
+    render_next();
+    return;
+  }
+  render_killed_ = false;
   if (end.exit_code == 0) {
     output.thumbnail = thumbnail_path_of(output.path);
   } else {
@@ -224,11 +234,6 @@ void ConversionJob::finish() {
   if (now && *now != task_.identity) {
     end(TaskEnd::source_changed);
     return;
-  }
-  for (const std::string& path : task_.delete_after) {
-    std::error_code error;
-    fs::remove(path, error);
-    if (error) report_.notices.push_back(cat(path, ": not deleted after its conversion: ", error.message()));
   }
   end(TaskEnd::done);
 }

@@ -1,5 +1,4 @@
-// One job while it runs: convert, verify each output, a thumbnail of each, and
-// what is done with the source afterwards. Every step is a process of its own
+// One job while it runs: convert, verify each output, a thumbnail of each. Every step is a process of its own
 // (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken
 // file, a fault of a library or a lack of memory ends that process and not the
 // daemon; which bytes come out is decided there, as on the command line.
@@ -33,6 +32,7 @@ enum class TaskEnd {
 struct TaskReport {
   TaskEnd end = TaskEnd::done;
   JobResult result;
+  std::uint64_t planned_bytes = 0;   ///< of the output that was to be written last; 0: not known
   bool converted = false;            ///< false where all outputs had been made before
   std::vector<std::string> notices;  ///< what went wrong and does not matter to the result; one line each
 };
@@ -83,6 +83,7 @@ class ConversionJob {
   std::string_view step_ = "convert";
   std::optional<double> fraction_;
   bool stopping_ = false;
+  bool render_killed_ = false;  ///< the one before of the present output
   std::vector<Output> outputs_;
   std::size_t next_ = 0;  ///< of outputs_, in the present step
   TaskReport report_;

@@ -43,11 +43,6 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.io_class = service.io_class;
   task.work_dir = service.work_dir;
   task.thumbnails = watch.thumbnails;
-  if (watch.source == AfterDone::delete_after_verify) {
-    task.delete_after = {job.source};
-    // A marker left behind would call the next file of that name complete before it is.
-    if (watch.complete == Completion::marker) task.delete_after.push_back(job.source + watch.marker);
-  }
   return task;
 }
 

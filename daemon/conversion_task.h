@@ -24,7 +24,6 @@ struct ConversionTask {
   IoClass io_class = IoClass::none;
   std::string work_dir;  ///< spill files; empty: beside the output
   bool thumbnails = true;
-  std::vector<std::string> delete_after;  ///< removed once all outputs are verified: the source, its marker
 };
 
 /// The task of `job`, which is of `watch`.
@@ -34,8 +33,8 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
 /// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
 bool lies_in(const WatchConfig& watch, const std::string& source);
 
-/// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's own place in the tree.
-/// Ends without a slash.
+/// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's
+/// own place in the tree. Ends without a slash.
 std::string output_directory(const WatchConfig& watch, const std::string& source);
 
 /// All of `watch` that decides what an output holds and where it lies, as text: JobStore::observe's `options`.

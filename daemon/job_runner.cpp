@@ -1,5 +1,6 @@
 #include "daemon/job_runner.h"
 
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 
 #include <algorithm>
@@ -27,12 +28,22 @@ constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
 
+struct Room {
+  std::uint64_t device = 0;  ///< tells file systems apart
+  std::uint64_t free = 0;    ///< bytes
+  std::uint64_t total = 0;
+};
+
 // Of the file system of the nearest directory there is.
-std::uint64_t free_bytes(const std::string& directory) {
-  struct statvfs status {};
+Room room_in(const std::string& directory) {
   for (fs::path at = directory;; at = at.parent_path()) {
-    if (::statvfs(at.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
-    if (at == at.parent_path()) return 0;
+    struct statvfs status {};
+    struct stat place {};
+    if (::statvfs(at.c_str(), &status) == 0 && ::stat(at.c_str(), &place) == 0) {
+      return {static_cast<std::uint64_t>(place.st_dev), static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize,
+              static_cast<std::uint64_t>(status.f_blocks) * status.f_frsize};
+    }
+    if (at == at.parent_path()) return {};
   }
 }
 
@@ -63,6 +74,7 @@ JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLo
       program_(std::move(program)),
       look_again_(std::move(look_again)),
       scheduler_(SchedulerLimits{}),
+      deletion_(io, store, log),
       timer_(io),
       grace_timer_(io) {}
 
@@ -71,6 +83,7 @@ void JobRunner::configure(const DaemonConfig& config) {
   const ServiceConfig& service = config.service;
   scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
   forget_other_watches();
+  record([this] { deletion_.configure(config_); });
 }
 
 void JobRunner::forget_other_watches() {
@@ -105,12 +118,9 @@ bool JobRunner::start_next() {
   for (const WatchConfig& watch : config_.watches) {
     WatchLoad load{watch.label, false, 0};
     for (const auto& [id, run] : running_) load.running += run.job.watch == watch.label ? 1 : 0;
-    // A job may wait again while the processes of its last attempt still end.
-    for (const Job& job : store_.candidates(watch.label, watch.priority, running_.size() + 1)) {
-      if (running_.contains(job.id)) continue;
-      first.emplace(watch.label, job);
+    if (const std::optional<Job> job = next_job(watch)) {
+      first.emplace(watch.label, *job);
       load.waiting = true;
-      break;
     }
     loads.push_back(std::move(load));
   }
@@ -118,6 +128,17 @@ bool JobRunner::start_next() {
   if (!label) return false;
   start(*watch_of(*label), first.at(*label));
   return true;
+}
+
+// The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
+std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
+  constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
+  const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
+  const std::uint64_t device = full_disks_.empty() ? 0 : room_in(watch.output).device;
+  for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
+    if (!running_.contains(job.id) && full_disks_.admits(device, job.identity.bytes)) return job;
+  }
+  return std::nullopt;
 }
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
@@ -206,7 +227,10 @@ void JobRunner::source_changed(const Job& job) {
 
 void JobRunner::done(const RunningJob& run, const TaskReport& report) {
   const JobResult& result = report.result;
-  record([this, id = run.job.id, result] { store_.finish(id, result); });
+  record([this, id = run.job.id, result] {
+    store_.finish(id, result);
+    deletion_.done(id);
+  });
   std::uint64_t bytes_out = 0;
   for (const JobOutput& output : result.outputs) bytes_out += output.bytes;
   log_.info("done", {{"job", run.job.id},
@@ -233,10 +257,18 @@ void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
 }
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
+  const std::string directory = fs::path(run.work->task().output).parent_path().string();
+  const Room room = room_in(directory);
+  if (report.planned_bytes > room.total) {  // waiting makes no disk larger
+    TaskReport never = report;
+    never.result.reason =
+        cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",
+            format_bytes(room.total), "; choose another output or a smaller size");
+    failed(run, never);
+    return;
+  }
   ++figures_.errors["disk-full"];
-  const WatchConfig* watch = watch_of(run.job.watch);
-  const std::string directory = watch == nullptr ? run.job.source : output_directory(*watch, run.job.source);
-  scheduler_.disk_full(directory, free_bytes(directory), Clock::now());
+  full_disks_.add(room.device, directory, room.free, run.job.identity.bytes, report.planned_bytes, Clock::now());
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
   record([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
 }
@@ -266,10 +298,11 @@ void JobRunner::say_fault(const Error& error) {
   store_fault_ = error.what();
 }
 
-void JobRunner::look_at_disk() {
-  const auto directory = scheduler_.full_directory();
-  if (!directory || !scheduler_.disk_has(free_bytes(*directory), Clock::now())) return;
-  log_.info("disk-has-room", {{"directory", *directory}, {"free", format_bytes(free_bytes(*directory))}});
+void JobRunner::look_at_disks() {
+  const auto free_of = [](const std::string& directory) { return room_in(directory).free; };
+  for (const std::string& directory : full_disks_.look(free_of, Clock::now())) {
+    log_.info("disk-has-room", {{"directory", directory}, {"free", format_bytes(free_of(directory))}});
+  }
 }
 
 void JobRunner::arm_timer() {
@@ -279,7 +312,7 @@ void JobRunner::arm_timer() {
   }
   auto delay = milliseconds::max();
   const Clock::time_point now = Clock::now();
-  if (!pending_.empty() || !store_fault_.empty() || scheduler_.full_directory() || !running_.empty()) delay = kLook;
+  if (!pending_.empty() || !store_fault_.empty() || !full_disks_.empty() || !running_.empty()) delay = kLook;
   if (const auto until = scheduler_.bandwidth_until(now)) {
     delay = std::min(delay, std::chrono::ceil<milliseconds>(*until - now));
   }
@@ -297,7 +330,7 @@ void JobRunner::arm_timer() {
   timer_.expires_after(delay);
   timer_.async_wait([this](boost::system::error_code error) {
     if (error) return;
-    look_at_disk();
+    look_at_disks();
     write_pending();
     wake();
   });
@@ -316,10 +349,12 @@ void JobRunner::resume() {
 
 std::string JobRunner::hold() const {
   if (!store_fault_.empty()) return store_fault_;
-  if (const auto directory = scheduler_.full_directory()) {
-    return cat("no room in ", *directory, ", where ", format_bytes(free_bytes(*directory)),
-               " are free; goes on when there is more");
+  std::string full;
+  for (const std::string& directory : full_disks_.directories()) {
+    full += cat(full.empty() ? "" : "; ", "no room in ", directory, ", where ", format_bytes(room_in(directory).free),
+                " are free; what needs more waits for it");
   }
+  if (!full.empty()) return full;
   return scheduler_.paused() ? "paused by request" : "";
 }
 

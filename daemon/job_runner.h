@@ -18,9 +18,11 @@
 #include "daemon/config.h"
 #include "daemon/conversion_job.h"
 #include "daemon/event_log.h"
+#include "daemon/full_disks.h"
 #include "daemon/job_store.h"
 #include "daemon/scheduler.h"
 #include "daemon/seconds_histogram.h"
+#include "daemon/source_deletion.h"
 #include "format/error.h"
 
 namespace weir {
@@ -29,10 +31,11 @@ namespace weir {
 struct RunnerFigures {
   SecondsHistogram seconds;  ///< of conversions that ended well
   std::uint64_t done = 0;
-  std::uint64_t bytes_in = 0;                   ///< of the sources of those
-  std::uint64_t bytes_out = 0;                  ///< of their outputs
-  std::map<std::string, std::uint64_t> errors;  ///< failed attempts: "input", "io", "budget", "usage", "internal",
-                                                ///< "killed", "disk-full", "source-changed"
+  std::uint64_t bytes_in = 0;   ///< of the sources of those
+  std::uint64_t bytes_out = 0;  ///< of their outputs
+  /// Failed attempts, by what was wrong; all of them from the start on, so that a rate can be taken of the first one.
+  std::map<std::string, std::uint64_t> errors{{"input", 0},    {"io", 0},     {"budget", 0},    {"usage", 0},
+                                              {"internal", 0}, {"killed", 0}, {"disk-full", 0}, {"source-changed", 0}};
 };
 
 struct RunningJob {
@@ -94,7 +97,8 @@ class JobRunner {
   void write_pending();
   void say_fault(const Error& error);
   void arm_timer();
-  void look_at_disk();
+  void look_at_disks();
+  std::optional<Job> next_job(const WatchConfig& watch) const;
   const WatchConfig* watch_of(const std::string& label) const;
 
   boost::asio::io_context& io_;
@@ -104,6 +108,8 @@ class JobRunner {
   LookAgain look_again_;
   DaemonConfig config_;
   Scheduler scheduler_;
+  FullDisks full_disks_;
+  SourceDeletion deletion_;
   std::map<std::int64_t, RunningJob> running_;
   std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
   std::string store_fault_;

@@ -24,6 +24,11 @@ constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
     "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', log_tail = ''";
 
+/// What a retry changes, of the jobs that follow it; binds the time.
+constexpr const char* kRetried =
+    "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, attempts = 0, due_ms = 0, "
+    "reason = '', changed_ms = ? ";
+
 std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) {
   Statement rows =
       database.prepare("SELECT path, bytes, rate, psnr_db, thumbnail FROM outputs WHERE job = ? ORDER BY place");
@@ -251,14 +256,33 @@ bool JobStore::cancel(std::int64_t id) {
 
 bool JobStore::retry(std::int64_t id) {
   database_
-      .prepare(cat("UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, "
-                   "attempts = 0, due_ms = 0, reason = '', changed_ms = ? WHERE id = ? AND (",
+      .prepare(cat(kRetried, "WHERE id = ? AND (",
                    in_state({JobState::done, JobState::failed, JobState::quarantined, JobState::cancelled}),
                    " OR (state = 'waiting' AND due_ms != 0))"))
       .bind(clock_())
       .bind(id)
       .step();
   return database_.changes() == 1;
+}
+
+std::vector<Job> JobStore::retry_all_failed() {
+  Transaction transaction(database_);
+  std::vector<Job> all;
+  for (const JobState state : {JobState::failed, JobState::quarantined}) {
+    const JobFilter filter{state, "", ""};
+    const std::vector<Job> found = jobs(filter, 0, count(filter));
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  database_.prepare(cat(kRetried, "WHERE ", in_state({JobState::failed, JobState::quarantined}))).bind(clock_()).step();
+  transaction.commit();
+  return all;
+}
+
+void JobStore::retry_failed_io() {
+  database_.prepare(cat(kRetried, "WHERE ", in_state({JobState::failed}), " AND exit_code = ?"))
+      .bind(clock_())
+      .bind(static_cast<std::int64_t>(ErrorKind::io))
+      .step();
 }
 
 bool JobStore::remove(std::int64_t id) {

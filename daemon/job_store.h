@@ -91,6 +91,10 @@ class JobStore {
   /// done, failed, quarantined or cancelled -> discovered, as if just seen; waiting after a failure -> due at once.
   /// Either way no attempt counts any more.
   bool retry(std::int64_t id);
+  /// retry() of all failed and quarantined ones, in one write; the jobs as they were.
+  std::vector<Job> retry_all_failed();
+  /// retry() of all that failed by exit code 5: at a start of the service the device or the rights may be other ones.
+  void retry_failed_io();
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
   /// A watch as it is now: jobs of its label whose sources lie elsewhere are of one that it was before.
   struct Watched {

@@ -7,7 +7,7 @@ namespace weir {
 
 std::optional<std::string> Scheduler::next(std::span<const WatchLoad> watches, std::uint64_t available_memory,
                                            Time now) const {
-  if (paused_ || full_disk_ || bandwidth_until(now)) return std::nullopt;
+  if (paused_ || bandwidth_until(now)) return std::nullopt;
   int running = 0;
   for (const WatchLoad& watch : watches) running += watch.running;
   if (running >= limits_.jobs) return std::nullopt;
@@ -36,21 +36,6 @@ void Scheduler::finished(std::uint64_t bytes, Time begin) {
 std::optional<Scheduler::Time> Scheduler::bandwidth_until(Time now) const {
   if (limits_.bandwidth == 0 || paid_until_ <= now) return std::nullopt;
   return paid_until_;
-}
-
-void Scheduler::disk_full(const std::string& directory, std::uint64_t free, Time now) {
-  full_disk_ = FullDisk{directory, free, now};
-}
-
-std::optional<std::string> Scheduler::full_directory() const {
-  if (!full_disk_) return std::nullopt;
-  return full_disk_->directory;
-}
-
-bool Scheduler::disk_has(std::uint64_t free, Time now) {
-  if (!full_disk_ || (free < full_disk_->free + kMoreRoom && now - full_disk_->since < kDiskRetry)) return false;
-  full_disk_.reset();
-  return true;
 }
 
 }  // namespace weir

@@ -1,5 +1,5 @@
 // Which watch's turn it is, and when nothing may start. Pure: it is told the
-// time, the memory and the room on the disk, and starts nothing itself. Within a
+// time and the memory, and starts nothing itself. Within a
 // watch the order is the state file's (JobStore::candidates).
 //
 // Fair: of the watches that have something waiting, the one with the fewest jobs
@@ -34,11 +34,6 @@ class Scheduler {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// After a full disk: tried again when so much more room is there, or after so long at the latest (a quota
-  /// shows in no figure).
-  static constexpr std::uint64_t kMoreRoom = std::uint64_t{1} << 20;
-  static constexpr std::chrono::seconds kDiskRetry{60};
-
   explicit Scheduler(const SchedulerLimits& limits) : limits_(limits) {}
   void set_limits(const SchedulerLimits& limits) { limits_ = limits; }
 
@@ -58,25 +53,11 @@ class Scheduler {
   void resume() { paused_ = false; }
   bool paused() const { return paused_; }
 
-  /// A job found no room in `directory`, where `free` bytes were left: nothing starts.
-  void disk_full(const std::string& directory, std::uint64_t free, Time now);
-  /// The directory without room; none where there is room.
-  std::optional<std::string> full_directory() const;
-  /// `free` bytes are there now. True where that ends the pause.
-  bool disk_has(std::uint64_t free, Time now);
-
  private:
-  struct FullDisk {
-    std::string directory;
-    std::uint64_t free;
-    Time since;
-  };
-
   SchedulerLimits limits_;
   std::map<std::string, std::uint64_t> last_start_;  ///< by label: the number of that start
   std::uint64_t starts_ = 0;
   bool paused_ = false;
-  std::optional<FullDisk> full_disk_;
   Time paid_until_{};  ///< what was read is within the bandwidth from here on
 };
 

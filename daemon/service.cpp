@@ -103,6 +103,7 @@ void Service::watch_trees() {
 }
 
 void Service::run() {
+  store_.retry_failed_io();
   runner_.configure(config_);
   watch_trees();
   history_.keep(config_.service.history_days);

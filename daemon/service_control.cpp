@@ -72,14 +72,14 @@ JobChange ServiceControl::retry(std::int64_t id) {
 }
 
 std::uint64_t ServiceControl::retry_all_failed() {
-  std::uint64_t retried = 0;
-  for (const JobState state : {JobState::failed, JobState::quarantined}) {
-    const JobFilter filter{state, "", ""};
-    for (const Job& job : store_.jobs(filter, 0, store_.count(filter))) {
-      retried += retry(job.id) == JobChange::made ? 1 : 0;
+  const std::vector<Job> retried = store_.retry_all_failed();
+  for (const auto& tree : trees_) {
+    for (const Job& job : retried) {
+      if (tree->config().label == job.watch) tree->look_again(job.source);
     }
   }
-  return retried;
+  runner_.wake();
+  return retried.size();
 }
 
 JobChange ServiceControl::cancel(std::int64_t id) {

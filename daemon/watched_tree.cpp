@@ -31,6 +31,13 @@ bool is_text(const std::string& path) {
   }
 }
 
+// Whether a file that was rewritten after its conversion had begun may have the time that it had before: file systems
+// count in ticks of a few milliseconds, some in whole seconds, FAT in two. As git says of its index, the time is racy.
+bool may_hide_a_write(const Job& job) {
+  const bool coarse = job.identity.mtime_ns % 1'000'000'000 == 0;
+  return job.started_ms <= job.identity.mtime_ns / 1'000'000 + (coarse ? 2000 : 20);
+}
+
 }  // namespace
 
 WatchedTree::WatchedTree(boost::asio::io_context& io, WatchConfig config, JobStore& store, const EventLog& log,
@@ -50,9 +57,8 @@ WatchedTree::WatchedTree(boost::asio::io_context& io, WatchConfig config, JobSto
 }
 
 WatchedTree::Status WatchedTree::status() const {
-  const bool up = watch_->up();
-  return {std::string(watch_method_name(watch_->method())), up, up ? "" : config_.directory + " is not there",
-          watch_->figures().overflows};
+  const std::string reason = !watch_->up() ? config_.directory + " is not there" : store_fault_;
+  return {std::string(watch_method_name(watch_->method())), reason.empty(), reason, watch_->figures().overflows};
 }
 
 void WatchedTree::look_again(const std::string& path) { take({FileEventKind::found, path}); }
@@ -83,13 +89,12 @@ void WatchedTree::work() {
       work_off(events);
     });
     known_looked_at_ = true;
-    store_fault_said_ = false;
+    store_fault_.clear();
   } catch (const CorruptDatabase&) {
     throw;
   } catch (const Error& error) {
-    if (!std::exchange(store_fault_said_, true)) {
-      log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
-    }
+    if (store_fault_.empty()) log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
+    store_fault_ = error.what();
     ready_ = false;
     superseded_.clear();
     // What was looked at is due again; what was thought to be known is new again.
@@ -152,6 +157,8 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events) {
           at = tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path))}).first;
         }
         at->second.completion.happened(event.kind, now);
+        at->second.written = at->second.written || event.kind == FileEventKind::written ||
+                             event.kind == FileEventKind::closed || event.kind == FileEventKind::moved_in;
         changed.insert(event.path);
         break;
       }
@@ -185,7 +192,9 @@ void WatchedTree::look(const std::string& path, Time now) {
   } else if (seen.change == JobStore::Change::changed && seen.before == JobState::running) {
     superseded_.push_back(seen.job.id);
   }
-  if (seen.job.state != JobState::discovered) {
+  const bool again = seen.job.state == JobState::done && tracked_.at(path).written && may_hide_a_write(seen.job) &&
+                     store_.retry(seen.job.id);
+  if (seen.job.state != JobState::discovered && !again) {
     forget(path);  // known, and as it was
     return;
   }

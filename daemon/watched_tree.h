@@ -40,7 +40,7 @@ class WatchedTree {
   struct Status {
     std::string method;  ///< "inotify", "poll", or "auto" where the directory was never there
     bool up = false;
-    std::string reason;  ///< why not
+    std::string reason;  ///< why not: the directory is not there, or the state file cannot be written
     std::uint64_t overflows = 0;
   };
   Status status() const;
@@ -53,6 +53,7 @@ class WatchedTree {
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
+    bool written = false;      ///< a program was seen to write to it
     bool unreachable = false;  ///< it could not be looked at, which was said
   };
 
@@ -77,7 +78,7 @@ class WatchedTree {
   std::vector<FileEvent> events_;
   std::set<std::string> looked_at_;  ///< paths, in the last transaction
   bool known_looked_at_ = false;
-  bool store_fault_said_ = false;
+  std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;
   bool ready_ = false;                    ///< to report after the transaction
   std::vector<std::int64_t> superseded_;  ///< the same

@@ -39,8 +39,8 @@ inline constexpr std::string_view kChangedWhileRead = "changed while it was read
 /// Error(input), "PATH: changed while it was read: WHAT; convert it again once nothing writes to it".
 Error changed_error(const std::string& path, const std::string& what);
 
-/// The first of `files` that does not lie in `directory`, which exists, or below, symbolic links resolved, or is no longer
-/// the file that was opened by that name; as the path that its name leads to. nullopt: all of them do.
+/// The first of `files` that does not lie in `directory`, which exists, or below, symbolic links resolved, or is no
+/// longer the file that was opened by that name; as the path that its name leads to. nullopt: all of them do.
 std::optional<std::string> file_outside(std::span<const FileState> files, const std::string& directory);
 
 /// Looks at the files again. Throws changed_error of the first that is not as it was in `files`.

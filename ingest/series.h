@@ -37,9 +37,9 @@ std::vector<SeriesStep> expand_series(std::span<const std::string> inputs, const
 std::string step_name(std::string_view name, const SeriesStep& step);
 
 /// Where each step's file goes: beside its input where `output` is empty; into `output` where that ends with a
-/// slash, or is a directory and there are several; else to the name it gives, with the braces of its last part replaced. A name
-/// says {stem}.nvdb by default, {stem}_{step}.nvdb for several steps of one file. Throws Error(usage) where two steps
-/// would share one name.
+/// slash, or is a directory and there are several; else to the name it gives, with the braces of its last part
+/// replaced. A name says {stem}.nvdb by default, {stem}_{step}.nvdb for several steps of one file. Throws Error(usage)
+/// where two steps would share one name.
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output);
 
 }  // namespace weir

@@ -189,6 +189,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
+  control.planned = [&](std::uint64_t bytes) { announce(shown, nlohmann::json{{"planned", bytes}}.dump()); };
   const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({control.notice});
   std::unique_ptr<FileSystem> limited;
   if (bandwidth != nullptr) {

@@ -69,7 +69,13 @@ void describe(std::ostream& out, const WatchConfig& watch) {
           ? cat("marker ", watch.marker)
           : cat(completion_name(watch.complete), ", settled after ", watch.settle_s, " s"));
   say(out, "priority", std::string(priority_name(watch.priority)));
-  say(out, "source", std::string(after_done_name(watch.source)));
+  const bool deletes = watch.source == AfterDone::delete_after_verify;
+  say(out, "source",
+      cat(after_done_name(watch.source), deletes ? cat(", ", watch.delete_after_s, " s after its job") : ""));
+  if (deletes && watch.complete != Completion::rename && watch.complete != Completion::marker) {
+    say(out, "warning",
+        "a writer that pauses may look like one that is done; complete = \"rename\" or \"marker\" tells");
+  }
   say(out, "follow", watch.follow == Follow::inside ? "what sources name, in the directory and below" : "anywhere");
   say(out, "convert", joined(watch.convert_options, " ", "as weir convert does by default"));
 }

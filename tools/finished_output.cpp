@@ -53,7 +53,9 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
 std::string touched_since(const std::string& record_path, const SourceInfo& source) {
   const FileState record = look_at_file(record_path);
   for (const FileState& file : source.files) {
-    if (file.ctime_ns >= record.mtime_ns) {
+    const std::int64_t tick =
+        file.ctime_ns % 1'000'000'000 == 0 ? 1'000'000'000 : 0;  // of file systems that count seconds
+    if (file.ctime_ns + tick > record.mtime_ns) {
       return cat(file.path, " was replaced or changed at ", utc_text(file.ctime_ns),
                  ", after the volume was made of it");
     }

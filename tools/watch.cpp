@@ -1,11 +1,13 @@
 // weir watch: the daemon in the foreground, or what it would do.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "daemon/config.h"
 #include "daemon/service.h"
+#include "format/error.h"
 #include "tools/command.h"
 #include "tools/convert_syntax.h"
 #include "tools/describe_config.h"
@@ -29,8 +31,11 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
     std::fputs(describe_config(load()).c_str(), stdout);
     return;
   }
+  std::signal(SIGHUP, SIG_IGN);  // until the service takes it for a reload: what it asks for is read below anyway
   // The very program that runs now converts, also where another has been installed in its place since.
-  Service(load, "/proc/self/exe", WEIR_VERSION).run();
+  Service service(load, "/proc/self/exe", WEIR_VERSION);
+  if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
+  service.run();
 }
 
 }  // namespace

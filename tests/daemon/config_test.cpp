@@ -102,6 +102,7 @@ watch = "poll"
 poll_interval = 3
 priority = "newest"
 source = "delete-after-verify"
+delete_after = 5
 follow = "anywhere"
 thumbnails = false
 dataset = "/fields/density"
@@ -142,6 +143,7 @@ index = [0, "*"]
   EXPECT_EQ(watch.poll_interval_s, 3);
   EXPECT_EQ(watch.priority, Priority::newest);
   EXPECT_EQ(watch.source, AfterDone::delete_after_verify);
+  EXPECT_EQ(watch.delete_after_s, 5);
   EXPECT_EQ(watch.follow, Follow::anywhere);
   EXPECT_FALSE(watch.thumbnails);
   EXPECT_EQ(watch.convert_options, (std::vector<std::string>{"--dataset=/fields/density", "--index=0,*", "--psnr=60"}));

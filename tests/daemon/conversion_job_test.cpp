@@ -112,9 +112,7 @@ TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
   const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
   ConversionTask stale = task(source);
   ++stale.identity.mtime_ns;
-  stale.delete_after = {source};
   EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
-  EXPECT_TRUE(fs::exists(source));
   fs::resize_file(source, 10);  // and one that fails for it costs no attempt
   EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
 }
@@ -142,18 +140,6 @@ TEST_F(ConversionJobTest, DataOfAHeaderRewrittenMeanwhile_IsASourceThatChanged) 
 
 TEST_F(ConversionJobTest, ASourceThatVanishedIsGone) {
   EXPECT_EQ(run(task(directory_ / "a_48x40x32_uint8.raw")).end, TaskEnd::source_gone);
-}
-
-TEST_F(ConversionJobTest, DeletesTheSourceOnlyAfterVerification) {
-  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
-  write_file(source + ".done", "");
-  ConversionTask deleting = task(source);
-  deleting.delete_after = {source, source + ".done"};
-  const TaskReport report =
-      run(deleting, [&](ConversionJob& job) { EXPECT_TRUE(fs::exists(source) || job.step() == "render"); });
-  EXPECT_EQ(report.end, TaskEnd::done);
-  EXPECT_FALSE(fs::exists(source));
-  EXPECT_FALSE(fs::exists(source + ".done"));
 }
 
 TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
@@ -211,6 +197,23 @@ TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
   EXPECT_EQ(report.end, TaskEnd::failed);
   EXPECT_EQ(report.result.exit_code, 5);
   EXPECT_EQ(report.result.reason, (directory_ / "file/out") + ": make the directory: Not a directory");
+}
+
+TEST_F(ConversionJobTest, AKilledRenderIsDoneOnceMore) {
+  ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  killed.thumbnails = true;
+  const std::string killer = directory_ / "weir.sh";
+  const std::string mark = directory_ / "killed";
+  write_file(killer, "#!/bin/sh\nif [ \"$1\" = render ] && [ ! -e " + mark + " ]; then touch " + mark +
+                         "; kill -9 $$; fi\nexec " + killed.program + " \"$@\"\n");
+  fs::permissions(killer, fs::perms::owner_all);
+  killed.program = killer;
+  const TaskReport report = run(killed);
+  EXPECT_EQ(report.end, TaskEnd::done);
+  EXPECT_TRUE(fs::exists(mark));
+  EXPECT_EQ(report.notices, std::vector<std::string>{});
+  ASSERT_EQ(report.result.outputs.size(), 1U);
+  EXPECT_TRUE(fs::exists(report.result.outputs[0].thumbnail));
 }
 
 }  // namespace

@@ -53,7 +53,6 @@ TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
   EXPECT_EQ(task.nice, 4);
   EXPECT_EQ(task.io_class, IoClass::idle);
   EXPECT_EQ(task.work_dir, "/spill");
-  EXPECT_TRUE(task.delete_after.empty());
 }
 
 TEST(ConversionTask, AShareOfTheBandwidthIsNeverNoLimit) {
@@ -64,16 +63,12 @@ TEST(ConversionTask, AShareOfTheBandwidthIsNeverNoLimit) {
   EXPECT_EQ(make_task("", service, make_watch(), {}).bandwidth, 1U);
 }
 
-TEST(ConversionTask, DeletesTheMarkerWithTheSource) {
+TEST(ConversionTask, TheOutputHasTheNameThatTheWatchGives) {
   WatchConfig watch = make_watch();
   watch.name = "{stem}_{step}.nvdb";
-  watch.source = AfterDone::delete_after_verify;
   Job job;
   job.source = "/in/a.raw";
-  EXPECT_EQ(make_task("", {}, watch, job).delete_after, std::vector<std::string>{"/in/a.raw"});
   EXPECT_EQ(make_task("", {}, watch, job).output, "/out/{stem}_{step}.nvdb");
-  watch.complete = Completion::marker;
-  EXPECT_EQ(make_task("", {}, watch, job).delete_after, (std::vector<std::string>{"/in/a.raw", "/in/a.raw.done"}));
 }
 
 TEST(ConversionTask, OptionsTextChangesWithWhatDecidesTheOutput) {

@@ -353,6 +353,47 @@ TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
   EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{"/new/a.raw"});
 }
 
+TEST_F(StoredJobs, AllThatFailedAreRetriedTogether) {
+  JobResult wrong_options;
+  wrong_options.exit_code = 2;
+  const std::int64_t failed = running("/in/failed.raw");
+  store_->fail(failed, wrong_options);
+  const std::int64_t bad = observe("/in/bad.raw");
+  store_->quarantine(bad, "bad");
+  const std::int64_t done = running("/in/done.raw");
+  store_->finish(done, success());
+  std::vector<Job> retried = store_->retry_all_failed();
+  ASSERT_EQ(retried.size(), 2U);
+  EXPECT_EQ(retried[0].source, "/in/failed.raw");
+  EXPECT_EQ(retried[1].source, "/in/bad.raw");
+  for (const std::int64_t id : {failed, bad}) {
+    EXPECT_EQ(job(id).state, JobState::discovered);
+    EXPECT_EQ(job(id).attempts, 0);
+    EXPECT_EQ(job(id).result.reason, "");
+  }
+  EXPECT_EQ(job(done).state, JobState::done);
+}
+
+TEST_F(StoredJobs, FailuresOfADeviceAreRetriedAtAStart) {
+  JobResult device;
+  device.exit_code = 5;
+  const std::int64_t io = running("/in/io.raw");
+  for (int attempt = 1; attempt < kMaxAttempts; ++attempt) {
+    store_->fail(io, device);
+    now_ += 24 * 3'600'000;
+    store_->start(io);
+  }
+  store_->fail(io, device);
+  ASSERT_EQ(job(io).state, JobState::failed);
+  JobResult wrong_options;
+  wrong_options.exit_code = 2;
+  const std::int64_t usage = running("/in/usage.raw");
+  store_->fail(usage, wrong_options);
+  store_->retry_failed_io();
+  EXPECT_EQ(job(io).state, JobState::discovered);
+  EXPECT_EQ(job(usage).state, JobState::failed);
+}
+
 TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {
   const std::int64_t first = running("/in/first.raw");
   const std::int64_t second = running("/in/second.raw");

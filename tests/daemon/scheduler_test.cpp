@@ -81,25 +81,5 @@ TEST(Scheduler, BandwidthIsTheMeanOverJobs) {
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart + 101s), "a") << "no cap any more";
 }
 
-TEST(Scheduler, AFullDiskHoldsUpAllUntilThereIsRoom) {
-  Scheduler scheduler({1, 0, 0});
-  const std::vector<WatchLoad> watches{{"a", true, 0}};
-  EXPECT_FALSE(scheduler.disk_has(kPlenty, kStart)) << "there was no pause to end";
-  scheduler.disk_full("/out", 5000, kStart);
-  EXPECT_EQ(scheduler.full_directory(), "/out");
-  EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), none());
-  EXPECT_FALSE(scheduler.disk_has(5000 + Scheduler::kMoreRoom - 1, kStart + 59s));
-  EXPECT_TRUE(scheduler.disk_has(5000 + Scheduler::kMoreRoom, kStart + 1s));
-  EXPECT_EQ(scheduler.full_directory(), none());
-  EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), "a");
-}
-
-TEST(Scheduler, AFullDiskIsTriedAgainEvenWithoutMoreRoom) {
-  Scheduler scheduler({1, 0, 0});
-  scheduler.disk_full("/out", 5000, kStart);
-  EXPECT_FALSE(scheduler.disk_has(5000, kStart + Scheduler::kDiskRetry - 1s));
-  EXPECT_TRUE(scheduler.disk_has(5000, kStart + Scheduler::kDiskRetry)) << "a quota shows in no figure";
-}
-
 }  // namespace
 }  // namespace weir::scheduler_test

@@ -155,6 +155,27 @@ TEST(WatchControl, AReloadWithoutAWatchLetsItsJobEndAndForgetsWhatWaits) {
   EXPECT_EQ(service.logged(" start "), 2U) << "the first one is known";
 }
 
+// Else its output would lie as far from the output directory as its source from the new one.
+TEST(WatchControl, AWatchThatIsGivenAnotherDirectory_ForgetsWhatWaitedInTheFirst) {
+  ServiceHarness service("", "label = \"w\"\n");
+  service.start();
+  service.post("/api/pause");
+  service.add("old");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 1; })) << service.log();
+  fs::create_directory(service.path("other"));
+  std::string text = read_file(service.path("weir.toml"));
+  text.replace(text.find("directory = \"in\""), 16, "directory = \"other\"");
+  write_file(service.path("weir.toml"), text);
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 0; })) << service.log();
+  write_file(service.path(std::string("other/new") + ServiceHarness::kSuffix + ".raw"), ServiceHarness::volume(3));
+  service.post("/api/resume");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.get("/api/jobs")["total"], 1);
+  EXPECT_TRUE(fs::exists(service.out(std::string("new") + ServiceHarness::kSuffix + ".nvdb")));
+  EXPECT_EQ(service.logged(" start "), 1U);
+}
+
 TEST(WatchControl, TheLogCanBeRotatedByOthers) {
   ServiceHarness service("log_size = \"0\"\n");
   service.start();

@@ -85,6 +85,9 @@ TEST(WatchFaults, AFullDiskOfTheStateFileHoldsAllUntilThereIsRoom) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" state-file-fault ") > 0; })) << service.log();
   std::this_thread::sleep_for(milliseconds(2500));  // tried again each second
   EXPECT_LE(service.logged(" state-file-fault "), 2U) << "said once by each who needs it\n" << service.log();
+  const auto watch = service.get("/api/status")["watches"][0];
+  EXPECT_EQ(watch["up"], false) << "what is found cannot be written down: /readyz says so";
+  EXPECT_NE(watch["reason"].get<std::string>().find("weir.db"), std::string::npos) << watch;
   fs::remove(service.path("state/ballast"));
   ASSERT_TRUE(service.eventually_done(20)) << service.log();
   EXPECT_EQ(service.logged(" start "), 20U);
@@ -126,6 +129,40 @@ TEST(WatchFaults, AFullDiskPausesUntilThereIsRoom) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
   EXPECT_EQ(service.logged(" disk-has-room "), 1U);
+  EXPECT_EQ(service.stop(), 0);
+}
+
+// One output is larger than the rest of its disk, and one than the whole of another: neither holds up what fits.
+TEST(WatchFaults, AnOutputThatDoesNotFitHoldsUpItsLikeOnly) {
+  ServiceHarness service("", "size = \"400000\"\nsettle = 0.2\n");
+  ScopedMount mount(service.out(), 2 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  fs::create_directory(service.path("far"));
+  fs::create_directory(service.path("far_out"));
+  std::string text = read_file(service.path("weir.toml"));
+  text += "[[watch]]\ndirectory = \"far\"\noutput = \"far_out\"\n";
+  text += "[[watch]]\ndirectory = \"large\"\noutput = \"out/large\"\nsize = \"5000000\"\n";
+  write_file(service.path("weir.toml"), text);
+  fs::create_directory(service.path("large"));
+  write_file(service.out("ballast"), std::string(1700 << 10, 'x'));
+  service.start();
+  const std::string waits = service.add("waits", 3);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" disk-full ") == 1; })) << service.log();
+  const std::string never = service.path(std::string("large/never") + ServiceHarness::kSuffix + ".raw");
+  write_file(never, ServiceHarness::volume(4));
+  write_file(service.path(std::string("far/goes") + ServiceHarness::kSuffix + ".raw"), ServiceHarness::volume(5));
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_TRUE(fs::exists(service.path(std::string("far_out/goes") + ServiceHarness::kSuffix + ".nvdb")));
+  EXPECT_EQ(service.job(waits + ".raw")["attempts"], 0) << "there may be room another time";
+  EXPECT_NE(service.get("/api/status")["reason"].get<std::string>().find("; what needs more waits for it"),
+            std::string::npos);
+  fs::remove(service.out("ballast"));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") > 0; })) << service.log();
+  EXPECT_NE(service.log().find("4.8 MiB are needed, and its whole file system has 2.0 MiB; choose another output or a "
+                               "smaller size"),
+            std::string::npos)
+      << service.log();
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
   EXPECT_EQ(service.stop(), 0);
 }
 

@@ -1,15 +1,20 @@
 // How files come into a watched directory, with the real `weir watch`: each is converted exactly once, to the bytes
 // of a plain `weir convert`, and none half-read. By inotify with polling out of reach, and by polling with inotify out
 // of reach.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <thread>
 
+#include "format/descriptor.h"
 #include "format/text.h"
 #include "tests/daemon/service_harness.h"
 
@@ -179,8 +184,29 @@ TEST_P(WatchFiles, AHeaderThatNamesAFileOutside_IsConvertedWhereTheWatchFollowsA
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 
+// As on a file system whose times are whole seconds: size, time and inode are those of what was converted.
+TEST(WatchRacyTimes, ARewriteThatTheTimeHides_IsConverted) {
+  ServiceHarness service("", "watch = \"inotify\"\nsettle = 0.2\n");
+  service.start();
+  const timespec second{std::time(nullptr), 0};
+  const auto write_in_place = [&](int seed) {
+    const std::string path = service.in(std::string("a") + ServiceHarness::kSuffix + ".raw");
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+    const std::string bytes = ServiceHarness::volume(seed);
+    EXPECT_EQ(::write(file.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+    const timespec times[2]{second, second};
+    EXPECT_EQ(::futimens(file.get(), times), 0);
+  };
+  write_in_place(3);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  write_in_place(5);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" done job=1 ") == 2; })) << service.log();
+  const std::string stem = std::string("a") + ServiceHarness::kSuffix;
+  EXPECT_EQ(service.difference(stem + ".raw", stem + ".nvdb"), "");
+}
+
 TEST_P(WatchFiles, AMarkerOpensTheGate) {
-  ServiceHarness service("", keys("complete = \"marker\"\nsource = \"delete-after-verify\"\n"));
+  ServiceHarness service("", keys("complete = \"marker\"\nsource = \"delete-after-verify\"\ndelete_after = 0.2\n"));
   service.start();
   const std::string name = service.add("marked");
   const std::string plain = service.path("plain.nvdb");
@@ -190,7 +216,8 @@ TEST_P(WatchFiles, AMarkerOpensTheGate) {
   write_file(service.in(name + ".raw.done"), "");
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(read_file(service.out(name + ".nvdb")), read_file(plain));
-  EXPECT_EQ(list_directory(service.in()), Names{}) << "the source and its marker are deleted";
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return list_directory(service.in()).empty(); }))
+      << "the source and its marker are deleted";
 }
 
 /// The kernel's limit on queued events, the whole machine's, made small while this lives: for a moment only, since a

@@ -1,0 +1,48 @@
+// File systems on which a job found no room, and which jobs wait for it: those for other file systems go on, and so do
+// those whose outputs are small enough. Pure: it is told the time and the room.
+//
+// What an output takes is known once its source has been read. Before, it is estimated from that of the job that found
+// no room, in proportion to the sizes of their sources.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace weir {
+
+class FullDisks {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Tried again when so much more room is there, or after so long at the latest (a quota shows in no figure).
+  static constexpr std::uint64_t kMoreRoom = std::uint64_t{1} << 20;
+  static constexpr std::chrono::seconds kRetry{60};
+
+  /// Where `free` bytes were left on the file system `device`, in `directory`, a source of `source_bytes` found no room
+  /// for the `needed` bytes of its output (0: not known, then all others wait).
+  void add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::uint64_t source_bytes,
+           std::uint64_t needed, Time now);
+  /// Whether a source of that size may be converted to `device` now.
+  bool admits(std::uint64_t device, std::uint64_t source_bytes) const;
+  bool empty() const { return full_.empty(); }
+  /// A directory of each.
+  std::vector<std::string> directories() const;
+  /// Forgets those that are to be tried again; `free_of` tells the room there now. Returns their directories.
+  std::vector<std::string> look(const std::function<std::uint64_t(const std::string& directory)>& free_of, Time now);
+
+ private:
+  struct Full {
+    std::string directory;
+    std::uint64_t free = 0;
+    double need = 0;            ///< bytes of output for a byte of source; the least that was refused
+    std::uint64_t refused = 0;  ///< bytes of the smallest output that found no room; 0: not known
+    Time since;
+  };
+  std::map<std::uint64_t, Full> full_;  ///< by device
+};
+
+}  // namespace weir
