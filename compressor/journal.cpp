@@ -36,7 +36,11 @@ std::string spill_name_of(const std::string& output) {
   const std::string whole = (fs::weakly_canonical(directory_of(output), ignored) / name).string();
   const std::string digest = piece_digest(std::as_bytes(std::span(whole))).hex().substr(0, 16);
   // The output's own name may be the longest that a file system takes.
-  return cat('.', name.string().substr(0, 200), '.', digest, ".work");
+  std::string head = name.string().substr(0, 200);
+  if (head.size() < name.string().size()) {  // not in the middle of a character of UTF-8
+    while (!head.empty() && (static_cast<unsigned char>(name.string()[head.size()]) & 0xC0U) == 0x80U) head.pop_back();
+  }
+  return cat('.', head, '.', digest, ".work");
 }
 
 // Checkpoint::spill_directory: the next process may have another working directory.

@@ -244,7 +244,10 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
 }
 
 Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits, double narrower_error) {
-  if (!divisible(range, bits)) return {range.mean, 0};
+  // Levels of fewer bits are levels of more.
+  if (!divisible(range, bits)) {
+    return bits == 1 ? Quantiser{range.mean, 0} : fit_quantiser(values, range, bits / 2, narrower_error);
+  }
   Fitter fitter(values, range);
   const auto fit = [&](unsigned width) {
     fitter.set_bits(width);
@@ -253,8 +256,9 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
     return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
   };
   const Quantiser own = fit(bits);
-  // Most values gain so much by twice the bits that estimates leave no doubt.
-  const double doubt = bits == 2 ? 2 : 4;
+  // Most values gain so much by twice the bits that estimates, which are of one round where fits are of three, leave no
+  // doubt.
+  const double doubt = bits == 2 ? 2 : bits == 4 ? 4 : 64;
   if (bits == 1 || !(narrower_error < doubt * fitter.squared_error())) return own;
   std::array<Quantiser, 4> narrower;
   std::size_t count = 0;

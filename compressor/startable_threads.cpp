@@ -15,6 +15,9 @@ std::size_t startable_threads(std::size_t wanted) {
     while (started.size() < wanted) started.emplace_back([&counted] { counted.wait(); });
   } catch (const std::system_error&) {
     // as many as there are
+  } catch (...) {
+    counted.count_down();
+    throw;
   }
   const std::size_t count = started.size();
   counted.count_down();

@@ -23,7 +23,7 @@ SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const 
       const LeafRow& row = layer[i];
       Leaf leaf{row.digest, {}};
       const Index3 position = box.lo + index_at(static_cast<std::int64_t>(i), box.extent());
-      leaf.narrower_errors.fill(std::numeric_limits<double>::infinity());
+      leaf.narrower_errors.fill(0);  // not known: then all are tried
       if (row.finite == leaves_.voxels(position).voxels()) {
         for (unsigned log2 = 1; log2 <= leaf.narrower_errors.size(); ++log2) {
           leaf.narrower_errors[log2 - 1] = least_estimate(row, log2);

@@ -41,14 +41,19 @@ std::string reason_of(std::string_view step, const WorkerEnd& end) {
   return reason.empty() ? cat(step, " ended with exit code ", end.exit_code, " and no message") : reason;
 }
 
-// Exit code 5 is any failure of a device; weir's message ends with the system's words for this one.
+// Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
 bool says_disk_full(const std::string& reason) {
-  const auto says = [&](int error) { return reason.find(std::strerror(error)) != std::string::npos; };
+  const auto says = [&](int error) {
+    return reason.ends_with(
+        cat(": ", std::strerror(error), "; free space on that file system or choose another with -o or --work-dir"));
+  };
   return says(ENOSPC) || says(EDQUOT);
 }
 
 // The source's own identity says nothing of the planes of a stack and of the files that a header names.
-bool says_changed(const std::string& reason) { return reason.find(kChangedWhileRead) != std::string::npos; }
+bool says_changed(const std::string& reason) {
+  return reason.ends_with(kConvertAgain) && reason.find(kChangedWhileRead) != std::string::npos;
+}
 
 // Whether the picture was made after the volume got its name.
 bool newer(const std::string& thumbnail, const std::string& volume) {

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,10 +14,21 @@
 #include <string>
 #include <system_error>
 
+#include "daemon/file_system_kind.h"
+
 namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool sees_all_changes(int file) {
+  const int kept = errno;
+  struct statfs status {};
+  const bool local =
+      ::fstatfs(file, &status) == 0 && file_system_kind(static_cast<std::uint64_t>(status.f_type)).sees_all_changes;
+  errno = kept;
+  return local;
+}
 
 bool is_process(const fs::path& directory) {
   return directory.filename().string().find_first_not_of("0123456789") == std::string::npos;
@@ -76,18 +88,20 @@ FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O
   static_cast<void>(ignored);
   struct stat status {};
   if (!file_ || ::fstat(file_.get(), &status) != 0) {
-    known_ = false;
+    some_ = true;  // one with a lease for writing, as file servers take it, is the reason to expect
     return;
   }
   if (::fcntl(file_.get(), F_SETLEASE, F_RDLCK) == 0) {
     leased_ = true;
     return;
   }
-  if (errno == EAGAIN) {
+  // A file server grants no lease without one of its own, whoever writes.
+  const bool local = sees_all_changes(file_.get());
+  if (errno == EAGAIN && local) {
     some_ = true;
     return;
   }
-  known_ = ::geteuid() == 0;  // may look at all processes; a server's other clients are nobody's to see
+  known_ = local && ::geteuid() == 0;  // who may look at all processes
   std::error_code error;
   for (fs::directory_iterator at("/proc", error), end; !error && at != end && !some_; at.increment(error)) {
     if (is_process(at->path())) some_ = has_descriptor(at->path(), status) || has_mapping(at->path(), status);

@@ -19,7 +19,7 @@ class FileWriters {
   FileWriters(const FileWriters&) = delete;
   FileWriters& operator=(const FileWriters&) = delete;
 
-  /// A writer was found.
+  /// A writer was found, or the file cannot be opened.
   bool some() const { return some_; }
   /// Whether all writers on this machine would have been found; never those of other clients of a file server.
   bool known() const { return known_; }

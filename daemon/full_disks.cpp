@@ -4,23 +4,21 @@
 
 namespace weir {
 
-void FullDisks::add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::uint64_t source_bytes,
-                    std::uint64_t needed, Time now) {
+void FullDisks::add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::int64_t job,
+                    std::uint64_t source_bytes, std::uint64_t needed, Time now) {
   const double need = source_bytes == 0 ? 0 : static_cast<double>(needed) / static_cast<double>(source_bytes);
-  const auto [at, is_new] = full_.try_emplace(device, Full{directory, free, need, needed, now});
-  if (is_new) return;
-  Full& full = at->second;
+  Full& full = full_.try_emplace(device, Full{directory, free, need, needed, {}, now}).first->second;
   full.free = std::min(full.free, free);
   full.need = std::min(full.need, need);
   full.refused = std::min(full.refused, needed);
-  full.since = now;
+  full.jobs.insert(job);
 }
 
-bool FullDisks::admits(std::uint64_t device, std::uint64_t source_bytes) const {
+bool FullDisks::admits(std::uint64_t device, std::int64_t job, std::uint64_t source_bytes) const {
   const auto at = full_.find(device);
   if (at == full_.end()) return true;
   const Full& full = at->second;
-  if (full.refused == 0 || full.need == 0) return false;
+  if (full.jobs.contains(job) || full.refused == 0 || full.need == 0) return false;
   const double estimate = full.need * static_cast<double>(source_bytes);
   return estimate < static_cast<double>(full.refused) && estimate <= static_cast<double>(full.free);
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,12 @@ class FullDisks {
   static constexpr std::uint64_t kMoreRoom = std::uint64_t{1} << 20;
   static constexpr std::chrono::seconds kRetry{60};
 
-  /// Where `free` bytes were left on the file system `device`, in `directory`, a source of `source_bytes` found no room
-  /// for the `needed` bytes of its output (0: not known, then all others wait).
-  void add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::uint64_t source_bytes,
-           std::uint64_t needed, Time now);
-  /// Whether a source of that size may be converted to `device` now.
-  bool admits(std::uint64_t device, std::uint64_t source_bytes) const;
+  /// Where `free` bytes were left on the file system `device`, in `directory`, the source of `job`, of `source_bytes`,
+  /// found no room for the `needed` bytes of its output (0: not known, then all others wait).
+  void add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::int64_t job,
+           std::uint64_t source_bytes, std::uint64_t needed, Time now);
+  /// Whether that job, whose source has that size, may write to `device` now. One that found no room waits in any case.
+  bool admits(std::uint64_t device, std::int64_t job, std::uint64_t source_bytes) const;
   bool empty() const { return full_.empty(); }
   /// A directory of each.
   std::vector<std::string> directories() const;
@@ -38,9 +39,10 @@ class FullDisks {
   struct Full {
     std::string directory;
     std::uint64_t free = 0;
-    double need = 0;            ///< bytes of output for a byte of source; the least that was refused
-    std::uint64_t refused = 0;  ///< bytes of the smallest output that found no room; 0: not known
-    Time since;
+    double need = 0;              ///< bytes of output for a byte of source; the least that was refused
+    std::uint64_t refused = 0;    ///< bytes of the smallest output that found no room; 0: not known
+    std::set<std::int64_t> jobs;  ///< that were refused
+    Time since;                   ///< of the first
   };
   std::map<std::uint64_t, Full> full_;  ///< by device
 };

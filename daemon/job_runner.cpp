@@ -134,9 +134,11 @@ bool JobRunner::start_next() {
 std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
   constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
-  const std::uint64_t device = full_disks_.empty() ? 0 : room_in(watch.output).device;
   for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
-    if (!running_.contains(job.id) && full_disks_.admits(device, job.identity.bytes)) return job;
+    if (running_.contains(job.id)) continue;
+    if (full_disks_.empty()) return job;
+    const std::uint64_t device = room_in(output_directory(watch, job.source)).device;
+    if (full_disks_.admits(device, job.id, job.identity.bytes)) return job;
   }
   return std::nullopt;
 }
@@ -268,7 +270,8 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
     return;
   }
   ++figures_.errors["disk-full"];
-  full_disks_.add(room.device, directory, room.free, run.job.identity.bytes, report.planned_bytes, Clock::now());
+  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
+                  Clock::now());
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
   record([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
 }

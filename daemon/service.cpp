@@ -103,7 +103,13 @@ void Service::watch_trees() {
 }
 
 void Service::run() {
-  store_.retry_failed_io();
+  try {
+    store_.retry_failed_io();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error& error) {  // a full disk of the state file, which all wait for from here on
+    log_.error("state-file-fault", {{"reason", error.what()}});
+  }
   runner_.configure(config_);
   watch_trees();
   history_.keep(config_.service.history_days);

@@ -1,15 +1,22 @@
 #include "daemon/source_deletion.h"
 
+#include <fcntl.h>
+#include <stdio.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "daemon/conversion_task.h"
 #include "daemon/file_identity.h"
 #include "daemon/file_writers.h"
+#include "daemon/path_filter.h"
+#include "format/error.h"
 #include "format/sidecar.h"
 #include "format/text.h"
+#include "ingest/file_state.h"
 
 namespace weir {
 namespace {
@@ -18,7 +25,8 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
 // In one turn of the event loop, which has others to serve: file systems may be slow.
-constexpr int kLooks = 50;
+constexpr int kLooks = 4;
+constexpr std::size_t kTakenUp = 100;
 // Between two looks at a source that is in use.
 constexpr milliseconds kAgain{10'000};
 constexpr milliseconds kSoon{200};  // where delete_after is shorter than that
@@ -27,22 +35,41 @@ milliseconds delay_of(const WatchConfig& watch) {
   return milliseconds(static_cast<std::int64_t>(watch.delete_after_s * 1000));
 }
 
+// Why the certificate is not that of the source as it is; empty: it is.
+std::string certificate_fault(const Job& job, const std::string& path) {
+  const FileState record = look_at_file(path);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return cat(path, " is not there");
+  std::ifstream file(path);
+  const nlohmann::json sidecar = nlohmann::json::parse(file, nullptr, false);
+  if (!sidecar.is_object() || !sidecar.contains("source") || !sidecar["source"].is_object()) {
+    return cat(path, " cannot be read");
+  }
+  const nlohmann::json& source = sidecar["source"];
+  if (source.contains("files_digest")) return "its values lie in several files, which other headers may name";
+  const auto is = [&](const char* key, const nlohmann::json& value) {
+    return source.contains(key) && source[key] == value;
+  };
+  if (!is("path", job.source) || !is("bytes", job.identity.bytes) || !is("mtime", utc_text(job.identity.mtime_ns)) ||
+      touched_since(look_at_file(job.source), record)) {
+    return cat(path, " is of another file, or of this one as it was before");
+  }
+  return {};
+}
+
 // Why the outputs do not stand for the source; empty: they do.
 std::string outputs_fault(const Job& job) {
   if (job.result.outputs.empty()) return "it has no outputs";
   for (const JobOutput& output : job.result.outputs) {
     std::error_code error;
     if (fs::file_size(output.path, error) != output.bytes || error) return cat(output.path, " is not there as it was");
-    std::ifstream file(sidecar_path(output.path));
-    const nlohmann::json sidecar = nlohmann::json::parse(file, nullptr, false);
-    if (!sidecar.is_object() || !sidecar.contains("source") || !sidecar["source"].is_object()) {
-      return cat(sidecar_path(output.path), " cannot be read");
-    }
-    if (sidecar["source"].contains("files_digest")) {
-      return "its values lie in several files, which other headers may name";
-    }
+    if (std::string fault = certificate_fault(job, sidecar_path(output.path)); !fault.empty()) return fault;
   }
   return {};
+}
+
+bool says_when_done(const WatchConfig& watch) {
+  return watch.complete == Completion::rename || watch.complete == Completion::marker;
 }
 
 }  // namespace
@@ -55,26 +82,11 @@ void SourceDeletion::configure(const DaemonConfig& config) {
   due_.clear();
   in_use_.clear();
   for (const WatchConfig& watch : config.watches) {
-    if (watch.source != AfterDone::delete_after_verify) continue;
-    watches_.push_back(watch);
-    take_up(watch);
+    if (watch.source == AfterDone::delete_after_verify) watches_.push_back(watch);
   }
+  taking_up_ = !watches_.empty();
+  taken_up_ = 0;
   arm();
-}
-
-void SourceDeletion::take_up(const WatchConfig& watch) {
-  constexpr std::size_t kPage = 1000;
-  const std::int64_t now = JobStore::wall_clock_ms();
-  const std::int64_t delay = delay_of(watch).count();
-  for (std::size_t offset = 0;; offset += kPage) {
-    const std::vector<Job> page = store_.jobs({JobState::done, watch.label, ""}, offset, kPage);
-    for (const Job& job : page) {
-      // A clock that was set back must not hold it for longer than was asked.
-      const std::int64_t left = std::clamp<std::int64_t>(job.finished_ms + delay - now, 0, delay);
-      due_[job.id] = Clock::now() + milliseconds(left);
-    }
-    if (page.size() < kPage) return;
-  }
 }
 
 void SourceDeletion::done(std::int64_t id) {
@@ -92,16 +104,45 @@ const WatchConfig* SourceDeletion::deleting_watch(const std::string& label) cons
 }
 
 void SourceDeletion::arm() {
-  if (due_.empty()) {
+  if (idle()) {
     timer_.cancel();
     return;
   }
-  const auto next =
-      std::min_element(due_.begin(), due_.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  timer_.expires_at(next->second);
+  auto next = Clock::now();
+  if (!taking_up_) {
+    next = std::min_element(due_.begin(), due_.end(), [](const auto& a, const auto& b) {
+             return a.second < b.second;
+           })->second;
+  }
+  timer_.expires_at(next);
   timer_.async_wait([this](boost::system::error_code error) {
-    if (!error) look();
+    if (!error) work();
   });
+}
+
+void SourceDeletion::work() {
+  try {
+    taking_up_ ? take_up() : look();
+    arm();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error& error) {  // of the state file: others say so, too
+    log_.warn("not-deleted", {{"reason", error.what()}});
+    timer_.expires_after(kAgain);
+    timer_.async_wait([this](boost::system::error_code stopped) {
+      if (!stopped) work();
+    });
+  }
+}
+
+void SourceDeletion::take_up() {
+  const std::vector<Job> jobs = store_.over_since(0, taken_up_, kTakenUp);
+  for (const Job& job : jobs) {
+    taken_up_ = job.id;
+    const WatchConfig* watch = job.state == JobState::done ? deleting_watch(job.watch) : nullptr;
+    if (watch != nullptr) due_.try_emplace(job.id, Clock::now() + delay_of(*watch));
+  }
+  taking_up_ = jobs.size() == kTakenUp;
 }
 
 void SourceDeletion::look() {
@@ -124,11 +165,15 @@ void SourceDeletion::look() {
     in_use_.erase(at->first);
     at = due_.erase(at);
   }
-  arm();
 }
 
 SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfig& watch) {
   if (is_gone(job.source)) return Outcome::over;
+  if (!lies_in(watch, job.source) || job.options != options_text(watch) ||
+      !PathFilter(watch).accepts_file(job.source.substr(watch.directory.size() + 1))) {
+    keep(job, "the watch does not take it any more, or converts it otherwise");
+    return Outcome::over;
+  }
   const auto identity = identify(job.source);
   if (!identity) return Outcome::later;                 // a server that does not answer
   if (*identity != job.identity) return Outcome::over;  // the watch sees that, too
@@ -141,14 +186,35 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
     if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
     return Outcome::later;
   }
-  if (identify(job.source) != job.identity) return Outcome::over;
+  if (!writers.known() && !says_when_done(watch)) {
+    keep(job,
+         "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the "
+         "service as its owner");
+    return Outcome::over;
+  }
+  return remove(job, watch, writers.known());
+}
+
+// Under a hidden name first, which is never a source: what took its place meanwhile gets its name back.
+SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, bool writers_known) {
+  const fs::path source(job.source);
+  const std::string doomed = (source.parent_path() / cat(".weir-delete-", job.id)).string();
+  if (::renameat2(AT_FDCWD, job.source.c_str(), AT_FDCWD, doomed.c_str(), RENAME_NOREPLACE) != 0) {
+    keep(job, std::generic_category().message(errno));
+    return Outcome::over;
+  }
+  if (identify(doomed) != job.identity) {
+    ::renameat2(AT_FDCWD, doomed.c_str(), AT_FDCWD, job.source.c_str(), RENAME_NOREPLACE);
+    return Outcome::over;
+  }
   std::error_code error;
-  fs::remove(job.source, error);
+  fs::remove(doomed, error);
   if (error) {
+    ::renameat2(AT_FDCWD, doomed.c_str(), AT_FDCWD, job.source.c_str(), RENAME_NOREPLACE);
     keep(job, error.message());
     return Outcome::over;
   }
-  log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers.known() ? "no" : "not known"}});
+  log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers_known ? "no" : "not known"}});
   // A marker left behind would call the next file of that name complete before it is.
   if (watch.complete == Completion::marker) fs::remove(job.source + watch.marker, error);
   return Outcome::over;

@@ -1,11 +1,17 @@
 // Deletes the sources of watches that say source = "delete-after-verify": the only copy of a result goes last. What
 // must hold before:
-//   1. the job is done: converted, and every output verified;
-//   2. `delete_after` seconds have passed since, and the source is the file that was converted (FileIdentity);
-//   3. every output is there with the size it had, and its sidecar says that the source is a single file: data that a
-//      header names may be another header's, too, so that such sources stay;
-//   4. no program has the source open for writing, or maps it so (file_writers.h). Else it is tried again later.
-// Jobs of an earlier process are taken up by configure(). One thread, that of the io_context.
+//   1. the job is done, converted and every output verified, by the options that the watch has now, and the watch still
+//      takes its source;
+//   2. `delete_after` seconds have passed since, in this process, and the source is the file that was converted: by
+//   size,
+//      time and inode (FileIdentity), and no status of it is younger than its certificate;
+//   3. every output is there with the size it had, and its certificate is of this source, and of this file alone: data
+//   that
+//      a header names may be another header's, too, so that such sources stay;
+//   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later. Where
+//   that
+//      cannot be known, the writer must say itself that it is done: complete = "rename" or "marker".
+// Jobs of an earlier process are taken up a few at a time. One thread, that of the io_context.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -29,21 +35,23 @@ class SourceDeletion {
   /// `store` and `log` must outlive the object.
   SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log);
 
-  /// From now on as `config` says; what is done already waits for the rest of its time.
+  /// From now on as `config` says; what is done already waits for the whole of its time again.
   void configure(const DaemonConfig& config);
   /// That job is done now.
   void done(std::int64_t id);
-  /// Sources that wait to be deleted.
-  std::size_t waiting() const { return due_.size(); }
+  /// Whether no source waits to be deleted, and all jobs have been looked through.
+  bool idle() const { return due_.empty() && !taking_up_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   enum class Outcome { over, later };
 
-  void take_up(const WatchConfig& watch);
+  void work();
+  void take_up();
   void look();
   void arm();
   Outcome look_at(const Job& job, const WatchConfig& watch);
+  Outcome remove(const Job& job, const WatchConfig& watch, bool writers_known);
   void keep(const Job& job, const std::string& reason) const;
   const WatchConfig* deleting_watch(const std::string& label) const;
 
@@ -52,6 +60,8 @@ class SourceDeletion {
   std::vector<WatchConfig> watches_;               ///< those that delete
   std::map<std::int64_t, Clock::time_point> due_;  ///< by job
   std::set<std::int64_t> in_use_;                  ///< of which it was said
+  bool taking_up_ = false;
+  std::int64_t taken_up_ = 0;  ///< id of the last job that was looked through
   boost::asio::steady_timer timer_;
 };
 

@@ -31,6 +31,9 @@ bool is_text(const std::string& path) {
   }
 }
 
+// Between two looks at whether a job is over whose source was written to meanwhile.
+constexpr std::chrono::seconds kAfterRun{1};
+
 // Whether a file that was rewritten after its conversion had begun may have the time that it had before: file systems
 // count in ticks of a few milliseconds, some in whole seconds, FAT in two. As git says of its index, the time is racy.
 bool may_hide_a_write(const Job& job) {
@@ -191,6 +194,10 @@ void WatchedTree::look(const std::string& path, Time now) {
     log_.info("discovered", {{"job", seen.job.id}, {"source", path}, {"bytes", sample.identity.bytes}});
   } else if (seen.change == JobStore::Change::changed && seen.before == JobState::running) {
     superseded_.push_back(seen.job.id);
+  }
+  if (seen.job.state == JobState::running && tracked_.at(path).written && may_hide_a_write(seen.job)) {
+    track_until(path, now + kAfterRun);
+    return;
   }
   const bool again = seen.job.state == JobState::done && tracked_.at(path).written && may_hide_a_write(seen.job) &&
                      store_.retry(seen.job.id);

@@ -46,8 +46,13 @@ FileState look_at_file(const std::string& path) {
   return missing;
 }
 
+bool touched_since(const FileState& file, const FileState& record) {
+  const std::int64_t tick = file.ctime_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0;
+  return file.ctime_ns + tick > record.mtime_ns;
+}
+
 Error changed_error(const std::string& path, const std::string& what) {
-  return input_error(path, cat(kChangedWhileRead, ": ", what, "; convert it again once nothing writes to it"));
+  return input_error(path, cat(kChangedWhileRead, ": ", what, kConvertAgain));
 }
 
 void check_unchanged(std::span<const FileState> files) {

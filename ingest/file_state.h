@@ -36,12 +36,19 @@ FileState look_at_file(const std::string& path);
 /// may succeed.
 inline constexpr std::string_view kChangedWhileRead = "changed while it was read";
 
+inline constexpr std::string_view kConvertAgain = "; convert it again once nothing writes to it";  ///< its end
+
 /// Error(input), "PATH: changed while it was read: WHAT; convert it again once nothing writes to it".
 Error changed_error(const std::string& path, const std::string& what);
 
 /// The first of `files` that does not lie in `directory`, which exists, or below, symbolic links resolved, or is no
 /// longer the file that was opened by that name; as the path that its name leads to. nullopt: all of them do.
 std::optional<std::string> file_outside(std::span<const FileState> files, const std::string& directory);
+
+/// Whether the status of `file` is not older than the content of `record`, which was written after it: then the file
+/// was replaced (cp -p, rsync -t), or rewritten and its time set back. As a file system that counts whole seconds tells
+/// (FAT counts two), rather once too often.
+bool touched_since(const FileState& file, const FileState& record);
 
 /// Looks at the files again. Throws changed_error of the first that is not as it was in `files`.
 void check_unchanged(std::span<const FileState> files);

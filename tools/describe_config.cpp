@@ -76,6 +76,11 @@ void describe(std::ostream& out, const WatchConfig& watch) {
     say(out, "warning",
         "a writer that pauses may look like one that is done; complete = \"rename\" or \"marker\" tells");
   }
+  for (const char* option : {"dataset", "index", "roi"}) {
+    if (deletes && watch.convert_option(option)) {
+      say(out, "warning", cat("what ", option, " leaves out of a source is deleted with it"));
+    }
+  }
   say(out, "follow", watch.follow == Follow::inside ? "what sources name, in the directory and below" : "anywhere");
   say(out, "convert", joined(watch.convert_options, " ", "as weir convert does by default"));
 }

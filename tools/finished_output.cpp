@@ -50,12 +50,10 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
 // A file that took the source's place, with its size and time (cp -p, rsync -t), or was rewritten and had its time set
 // back, got its status at that moment, which no program sets. The sidecar was written after the last look at the
 // source.
-std::string touched_since(const std::string& record_path, const SourceInfo& source) {
+std::string changed_since(const std::string& record_path, const SourceInfo& source) {
   const FileState record = look_at_file(record_path);
   for (const FileState& file : source.files) {
-    const std::int64_t tick =
-        file.ctime_ns % 1'000'000'000 == 0 ? 1'000'000'000 : 0;  // of file systems that count seconds
-    if (file.ctime_ns + tick > record.mtime_ns) {
+    if (touched_since(file, record)) {
       return cat(file.path, " was replaced or changed at ", utc_text(file.ctime_ns),
                  ", after the volume was made of it");
     }
@@ -97,7 +95,7 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
     return {FinishedOutput::State::foreign, {}, cat("was made of ", found.source.path)};
   }
   std::string reason = difference(found, expected, source);
-  if (reason.empty()) reason = touched_since(record_path, source);
+  if (reason.empty()) reason = changed_since(record_path, source);
   if (reason.empty()) reason = broken(output, found);
   const auto state = reason.empty() ? FinishedOutput::State::done : FinishedOutput::State::stale;
   return {state, std::move(found), std::move(reason)};

@@ -11,6 +11,7 @@
 #include <functional>
 #include <string>
 
+#include "daemon/conversion_task.h"
 #include "daemon/file_identity.h"
 #include "daemon/file_writers.h"
 #include "format/descriptor.h"
@@ -39,13 +40,14 @@ class SourceDeletionTest : public testing::Test {
     write_output("");
   }
 
-  void write_output(const std::string& source) const {
+  void write_output(const std::string& more) const {
     write_file(output_, "volume");
-    write_file(sidecar_path(output_), "{\"source\": {" + source + "}}");
+    write_file(sidecar_path(output_), "{\"source\": {\"path\": \"" + source_ + "\", \"bytes\": 6, \"mtime\": \"" +
+                                          utc_text(identify(source_)->mtime_ns) + "\"" + more + "}}");
   }
   /// The job of the source, done.
   std::int64_t convert() {
-    const std::int64_t id = store_.observe("w", source_, *identify(source_), "").job.id;
+    const std::int64_t id = store_.observe("w", source_, *identify(source_), options_text(config_.watches[0])).job.id;
     store_.enqueue(id);
     store_.start(id);
     JobResult result;
@@ -70,13 +72,13 @@ class SourceDeletionTest : public testing::Test {
     return true;
   }
   bool stays() {
-    EXPECT_TRUE(run_until([&] { return deletion_.waiting() == 0; }));
+    EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
     return fs::exists(source_);
   }
   bool logged(const std::string& text) const { return read_file(directory_ / "log").find(text) != std::string::npos; }
 
   TemporaryDirectory directory_;
-  std::string source_ = directory_ / "in/a.raw";
+  std::string source_ = directory_ / "in/a_1x2x3_uint8.raw";
   std::string output_ = directory_ / "out/a.nvdb";
   DaemonConfig config_;
   boost::asio::io_context io_;
@@ -148,6 +150,39 @@ TEST_F(SourceDeletionTest, ConvertedAnew_WaitsForThatJob) {
   EXPECT_TRUE(stays());
 }
 
+TEST_F(SourceDeletionTest, ReplacedByOneOfTheSameSizeTimeAndInode_Stays) {
+  config_.watches[0].delete_after_s = 0.2;
+  const auto time = fs::last_write_time(source_);
+  delete_done();
+  write_file(source_, "others");
+  fs::last_write_time(source_, time);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(logged(sidecar_path(output_) + " is of another file, or of this one as it was before"));
+}
+
+TEST_F(SourceDeletionTest, WithAnotherSourcesCertificate_Stays) {
+  write_file(sidecar_path(output_), R"({"source": {"path": "/other.raw", "bytes": 6}})");
+  delete_done();
+  EXPECT_TRUE(stays());
+}
+
+TEST_F(SourceDeletionTest, WhatTheWatchTakesNoMore_Stays) {
+  convert();
+  WatchConfig& watch = config_.watches[0];
+  const WatchConfig before = watch;
+  watch.exclude = {"a*"};
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays()) << "excluded";
+  watch = before;
+  watch.convert_options = {"--rate=2"};
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays()) << "another rate";
+  watch = before;
+  watch.directory = directory_ / "other";
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays()) << "another directory";
+}
+
 TEST_F(SourceDeletionTest, WithoutItsOutput_Stays) {
   delete_done();
   fs::remove(output_);
@@ -163,7 +198,7 @@ TEST_F(SourceDeletionTest, WithoutACertificate_Stays) {
 }
 
 TEST_F(SourceDeletionTest, InSeveralFiles_StaysWithAllOfThem) {
-  write_output("\"files_digest\": \"0123456789abcdef\"");
+  write_output(", \"files_digest\": \"0123456789abcdef\"");
   delete_done();
   EXPECT_TRUE(stays());
   EXPECT_TRUE(logged("its values lie in several files, which other headers may name"));
@@ -172,14 +207,14 @@ TEST_F(SourceDeletionTest, InSeveralFiles_StaysWithAllOfThem) {
 TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsTakenUp) {
   convert();
   deletion_.configure(config_);
-  EXPECT_EQ(deletion_.waiting(), 1U);
+  EXPECT_FALSE(deletion_.idle());
   EXPECT_FALSE(stays());
 }
 
 TEST_F(SourceDeletionTest, OfAWatchThatKeeps_IsNone) {
   config_.watches[0].source = AfterDone::keep;
   delete_done();
-  EXPECT_EQ(deletion_.waiting(), 0U);
+  EXPECT_TRUE(deletion_.idle());
 }
 
 // The other way to find them, where no lease is to be had.
