@@ -231,12 +231,13 @@ TEST(WatchFaults, AFileThatCannotBeLookedAtIsNotForgotten) {
 }
 
 TEST(WatchFaults, AFileThatCannotBeLookedAtIsSaidOnceAndTriedAgain) {
-  ServiceHarness service("", "recursive = true\nsettle = 1\n");
+  ServiceHarness service("", "recursive = true\nsettle = 3\n");
   service.run_unprivileged();
   fs::create_directory(service.in("sub"));
   const std::string late = service.add("sub/late");
   const std::string other = service.add("other");
   service.start();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.get("/api/jobs")["total"] == 2; })) << service.log();
   fs::permissions(service.in("sub"), fs::perms::none);
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(service.logged(
