@@ -74,8 +74,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
-  const std::size_t processors =
-      options.processors > 0 ? options.processors : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t processors = processors_or_all(options.processors);
   const std::uint64_t resident = held + source.working_bytes();
   std::size_t threads = choose_threads(options.threads, processors, options.memory, resident, domain);
   if (options.threads == 0 && threads < processors && control.notice) {
@@ -98,8 +97,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   ReadingPlan reading;
   team.run([&] {
     if (startable < 2) {  // one reads, and oneTBB may start one for itself
-      throw Error(ErrorKind::io,
-                  "no more threads can be started; raise the limit of processes (ulimit -u) or end some");
+      throw Error(ErrorKind::io, kNoMoreThreads);
     }
     memory = plan_memory(options.memory, resident, threads, domain);
     reading = plan_reading(source, memory);

@@ -1,6 +1,7 @@
 #include "compressor/memory_plan.h"
 
 #include <algorithm>
+#include <thread>
 
 #include "compressor/region_rows.h"
 #include "compressor/tree_regions.h"
@@ -36,6 +37,10 @@ std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
 }
 
 }  // namespace
+
+std::size_t processors_or_all(std::size_t given) {
+  return given > 0 ? given : std::max(1U, std::thread::hardware_concurrency());
+}
 
 std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
                            const Box& domain) {

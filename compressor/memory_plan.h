@@ -21,6 +21,9 @@ struct MemoryPlan {
 /// Throws Error(usage) naming a sufficient --memory where it is too small.
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
 
+/// `given`, or where that is 0 those of the machine; at least 1.
+std::size_t processors_or_all(std::size_t given);
+
 /// Workers of a conversion: `asked`, or where that is 0 one for each of the machine's `processors`, and fewer where
 /// `ceiling` does not hold them: then a quarter of what they share stays for the blocks. At least 1.
 std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,

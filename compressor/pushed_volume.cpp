@@ -94,10 +94,8 @@ class PushedVolume::State {
       : info_(as_pushed(std::move(info))),
         options_(options),
         control_(control),
-        threads_(choose_threads(
-            options.threads,
-            options.processors > 0 ? options.processors : std::max(1U, std::thread::hardware_concurrency()),
-            options.memory, 0, info_.domain())),
+        threads_(
+            choose_threads(options.threads, processors_or_all(options.processors), options.memory, 0, info_.domain())),
         memory_(memory_for(options, std::max(threads_, workers), info_.domain())),
         seen_(visibility_of(options, info_.domain())),
         files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_.segment_regions, files),

@@ -49,6 +49,11 @@ enum class WatchMethod { automatic, inotify, poll };
 enum class AfterDone { keep, delete_after_verify };
 enum class Follow { inside, anywhere };  ///< where the files may lie that a source names
 
+/// Whether the writer itself says that a file is done: by a rename, or by a marker.
+constexpr bool says_when_done(Completion completion) {
+  return completion == Completion::rename || completion == Completion::marker;
+}
+
 std::string_view completion_name(Completion completion);  ///< "auto", "close", ...
 std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
 std::string_view priority_name(Priority priority);        ///< "newest", "oldest"

@@ -1,8 +1,5 @@
 #include "daemon/job_runner.h"
 
-#include <sys/stat.h>
-#include <sys/statvfs.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <cmath>
@@ -10,6 +7,7 @@
 #include <utility>
 
 #include "daemon/available_memory.h"
+#include "daemon/disk_room.h"
 #include "daemon/file_identity.h"
 #include "daemon/output_cleaning.h"
 #include "format/error.h"
@@ -27,25 +25,6 @@ constexpr std::chrono::seconds kRecent{60};
 constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
-
-struct Room {
-  std::uint64_t device = 0;  ///< tells file systems apart
-  std::uint64_t free = 0;    ///< bytes
-  std::uint64_t total = 0;
-};
-
-// Of the file system of the nearest directory there is.
-Room room_in(const std::string& directory) {
-  for (fs::path at = directory;; at = at.parent_path()) {
-    struct statvfs status {};
-    struct stat place {};
-    if (::statvfs(at.c_str(), &status) == 0 && ::stat(at.c_str(), &place) == 0) {
-      return {static_cast<std::uint64_t>(place.st_dev), static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize,
-              static_cast<std::uint64_t>(status.f_blocks) * status.f_frsize};
-    }
-    if (at == at.parent_path()) return {};
-  }
-}
 
 std::string error_kind(int exit_code) {
   switch (exit_code) {
@@ -260,7 +239,7 @@ void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   const std::string directory = fs::path(run.work->task().output).parent_path().string();
-  const Room room = room_in(directory);
+  const DiskRoom room = room_in(directory);
   if (report.planned_bytes > room.total) {  // waiting makes no disk larger
     TaskReport never = report;
     never.result.reason =

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/glob.h"
+#include "format/real_path.h"
 #include "format/text.h"
 #include "ingest/raw_name.h"
 
@@ -50,25 +51,18 @@ bool is_at_or_below(std::string_view path, std::string_view directory) {
          (directory.empty() || path.size() == directory.size() || path[directory.size()] == '/');
 }
 
-// Without links, as far as it exists.
-fs::path without_links(const std::string& path) {
-  std::error_code error;
-  fs::path real = fs::weakly_canonical(path, error);
-  return error ? fs::path(path).lexically_normal() : real;
-}
-
 }  // namespace
 
 PathFilter::PathFilter(const WatchConfig& watch)
     : directory_(watch.directory),
-      real_directory_(without_links(watch.directory).string()),
+      real_directory_(real_path(watch.directory).string()),
       recursive_(watch.recursive),
       any_raw_(watch.convert_option("dims") && watch.convert_option("type")),
       include_(watch.include),
       exclude_(watch.exclude),
       marker_(watch.complete == Completion::marker ? watch.marker : std::string()) {
   for (const std::string& path : watch.excluded_paths) {
-    const fs::path relative = without_links(path).lexically_relative(real_directory_);
+    const fs::path relative = real_path(path).lexically_relative(real_directory_);
     if (!relative.empty() && *relative.begin() != "..") excluded_.push_back(relative.string());
   }
 }

@@ -1,8 +1,5 @@
 #include "daemon/source_deletion.h"
 
-#include <fcntl.h>
-#include <stdio.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -68,10 +65,6 @@ std::string outputs_fault(const Job& job) {
   return {};
 }
 
-bool says_when_done(const WatchConfig& watch) {
-  return watch.complete == Completion::rename || watch.complete == Completion::marker;
-}
-
 }  // namespace
 
 SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log)
@@ -114,7 +107,11 @@ void SourceDeletion::arm() {
              return a.second < b.second;
            })->second;
   }
-  timer_.expires_at(next);
+  wait_until(next);
+}
+
+void SourceDeletion::wait_until(Clock::time_point time) {
+  timer_.expires_at(time);
   timer_.async_wait([this](boost::system::error_code error) {
     if (!error) work();
   });
@@ -128,10 +125,7 @@ void SourceDeletion::work() {
     throw;
   } catch (const Error& error) {  // of the state file: others say so, too
     log_.warn("not-deleted", {{"reason", error.what()}});
-    timer_.expires_after(kAgain);
-    timer_.async_wait([this](boost::system::error_code stopped) {
-      if (!stopped) work();
-    });
+    wait_until(Clock::now() + kAgain);
   }
 }
 
@@ -186,7 +180,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
     if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
     return Outcome::later;
   }
-  if (!writers.known() && !says_when_done(watch)) {
+  if (!writers.known() && !says_when_done(watch.complete)) {
     keep(job,
          "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the "
          "service as its owner");
@@ -199,24 +193,21 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
 SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, bool writers_known) {
   const fs::path source(job.source);
   const std::string doomed = (source.parent_path() / cat(".weir-delete-", job.id)).string();
-  if (::renameat2(AT_FDCWD, job.source.c_str(), AT_FDCWD, doomed.c_str(), RENAME_NOREPLACE) != 0) {
-    keep(job, std::generic_category().message(errno));
-    return Outcome::over;
-  }
-  if (identify(doomed) != job.identity) {
-    ::renameat2(AT_FDCWD, doomed.c_str(), AT_FDCWD, job.source.c_str(), RENAME_NOREPLACE);
-    return Outcome::over;
-  }
-  std::error_code error;
-  fs::remove(doomed, error);
-  if (error) {
-    ::renameat2(AT_FDCWD, doomed.c_str(), AT_FDCWD, job.source.c_str(), RENAME_NOREPLACE);
-    keep(job, error.message());
+  try {
+    files_->rename_new(job.source, doomed);
+    if (identify(doomed) != job.identity) {
+      files_->rename_new(doomed, job.source);
+      return Outcome::over;
+    }
+    files_->remove(doomed);
+  } catch (const Error& error) {
+    if (files_->exists(doomed)) files_->rename_new(doomed, job.source);
+    keep(job, error.what());
     return Outcome::over;
   }
   log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers_known ? "no" : "not known"}});
   // A marker left behind would call the next file of that name complete before it is.
-  if (watch.complete == Completion::marker) fs::remove(job.source + watch.marker, error);
+  if (watch.complete == Completion::marker) files_->remove(job.source + watch.marker);
   return Outcome::over;
 }
 

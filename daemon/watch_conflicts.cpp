@@ -5,6 +5,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "format/real_path.h"
 #include "format/text.h"
 
 namespace weir {
@@ -12,14 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// With links resolved; as given where even that fails.
-fs::path real_place(const std::string& path) {
-  std::error_code error;
-  fs::path result = fs::weakly_canonical(path, error);
-  return error ? fs::path(path) : result;
-}
-
-bool same_place(const std::string& a, const std::string& b) { return real_place(a) == real_place(b); }
+bool same_place(const std::string& a, const std::string& b) { return real_path(a) == real_path(b); }
 
 std::string_view template_of(const WatchConfig& watch) {
   return watch.name.empty() ? std::string_view("{stem}.nvdb") : watch.name;
@@ -57,9 +51,7 @@ std::optional<WatchConflict> conflict_of_two(std::span<const WatchConfig> watche
 }  // namespace
 
 bool is_within(const std::string& path, const std::string& directory) {
-  const fs::path inner = real_place(path);
-  const fs::path outer = real_place(directory);
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+  return lies_below(real_path(path), real_path(directory));
 }
 
 std::optional<WatchConflict> find_conflict(std::span<const WatchConfig> watches) {

@@ -14,7 +14,7 @@ Error input_error(const std::string& path, const std::string& message) {
 Error io_error(const std::string& path, const std::string& action, int errno_value) {
   std::string remedy;
   if (errno_value == ENOSPC || errno_value == EDQUOT) {
-    remedy = "; free space on that file system or choose another with -o or --work-dir";
+    remedy = kDiskFullRemedy;
   } else if (errno_value == EACCES || errno_value == EPERM || errno_value == EROFS) {
     remedy = "; check the permissions or choose another place";
   } else if (errno_value == EFBIG) {

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace weir {
 
@@ -28,6 +29,10 @@ class Error : public std::runtime_error {
  private:
   ErrorKind kind_;
 };
+
+/// The end of every message of a full disk.
+inline constexpr std::string_view kDiskFullRemedy =
+    "; free space on that file system or choose another with -o or --work-dir";
 
 /// Of kind usage.
 Error usage_error(const std::string& message);

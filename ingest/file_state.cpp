@@ -1,10 +1,10 @@
 #include "ingest/file_state.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
 #include "format/file_time.h"
+#include "format/real_path.h"
 #include "format/sidecar.h"
 #include "format/text.h"
 
@@ -70,8 +70,7 @@ std::optional<std::string> file_outside(std::span<const FileState> files, const 
   for (const FileState& file : files) {
     const fs::path target = fs::weakly_canonical(file.path, error);
     if (error) return file.path;
-    const auto [in_directory, rest] = std::mismatch(inside.begin(), inside.end(), target.begin(), target.end());
-    if (in_directory != inside.end()) return target.string();
+    if (!lies_below(target, inside)) return target.string();
     const FileState now = look_at_file(target.string());
     if (now.device != file.device || now.inode != file.inode) return file.path;
   }

@@ -72,7 +72,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   const bool deletes = watch.source == AfterDone::delete_after_verify;
   say(out, "source",
       cat(after_done_name(watch.source), deletes ? cat(", ", watch.delete_after_s, " s after its job") : ""));
-  if (deletes && watch.complete != Completion::rename && watch.complete != Completion::marker) {
+  if (deletes && !says_when_done(watch.complete)) {
     say(out, "warning",
         "a writer that pauses may look like one that is done; complete = \"rename\" or \"marker\" tells");
   }

@@ -12,6 +12,7 @@
 #include <string>
 #include <system_error>
 
+#include "compressor/startable_threads.h"
 #include "format/error.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -97,8 +98,7 @@ int main(int argc, char** argv) {
     return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail_internally(error);
-    return fail("no more threads can be started; raise the limit of processes (ulimit -u) or end some",
-                static_cast<int>(weir::ErrorKind::io));
+    return fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io));
   } catch (const std::exception& error) {
     return fail_internally(error);
   }

@@ -35,8 +35,8 @@ std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void*
 void convert(VolumeSource& source, ConversionOptions options, const weir_convert_options& given, FileSystem& files) {
   // What the process has already is the caller's; that the rest is too little is said in the caller's figures.
   const Box domain = source.info().domain();
-  const std::size_t threads = choose_threads(options.threads, std::max(1U, std::thread::hardware_concurrency()),
-                                             options.memory, source.working_bytes(), domain);
+  const std::size_t threads = choose_threads(options.threads, processors_or_all(options.processors), options.memory,
+                                             source.working_bytes(), domain);
   plan_memory(options.memory, source.working_bytes(), threads, domain);
   options.memory += resident_bytes();
   options.resume = Resume::off;

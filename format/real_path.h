@@ -1,0 +1,15 @@
+// Where a path leads, and what lies below what.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace weir {
+
+/// Symbolic links resolved, as far as the path exists; lexically normal where even that cannot be looked at.
+std::filesystem::path real_path(const std::string& path);
+
+/// Whether `path` is `directory` or lies below it, by their components: both are absolute and normal.
+bool lies_below(const std::filesystem::path& path, const std::filesystem::path& directory);
+
+}  // namespace weir
