@@ -59,6 +59,7 @@ std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
 // What a file that changed makes go wrong first is any error of its format, and whoever reads that one looks for damage
 // in a file that is whole by then.
 Error with_its_cause(const Error& error, const SourceInfo& info) {
+  if (error.kind() == ErrorKind::interrupted) return interrupted_error();
   if (error.kind() != ErrorKind::input) return error;
   try {
     check_unchanged(info.files);
@@ -80,25 +81,12 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   if (options.threads == 0 && threads < processors && control.notice) {
     control.notice(fewer_threads_notice(threads, processors, options.memory));
   }
-  // Beside the workers, of which this thread is one, run those that read, write back and save.
-  constexpr std::size_t kOthers = 6;
-  const std::size_t wanted = threads - 1 + kOthers;
-  const std::size_t startable = startable_threads(wanted);
-  if (startable < wanted) {
-    threads = startable > kOthers ? startable - kOthers + 1 : 1;
-    if (control.notice) {
-      control.notice(cat("the system lets this process start ", startable, startable == 1 ? " thread" : " threads",
-                         " more; working on ", threads, "; raise the limit of processes (ulimit -u)"));
-    }
-  }
+  team.run([&] { threads = startable_workers(threads, control.notice); });
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
   ReadingPlan reading;
   team.run([&] {
-    if (startable < 2) {  // one reads, and oneTBB may start one for itself
-      throw Error(ErrorKind::io, kNoMoreThreads);
-    }
     memory = plan_memory(options.memory, resident, threads, domain);
     reading = plan_reading(source, memory);
   });

@@ -1,7 +1,5 @@
 #include "compressor/conversion_control.h"
 
-#include "format/error.h"
-
 namespace weir {
 
 StreamOptions stream_options(const ConversionControl& control) {
@@ -14,9 +12,10 @@ StreamOptions stream_options(const ConversionControl& control) {
   return options;
 }
 
+Error interrupted_error() { return {ErrorKind::interrupted, "interrupted; nothing was written"}; }
+
 void check_cancel(const ConversionControl& control) {
-  if (control.cancel != nullptr && *control.cancel)
-    throw Error(ErrorKind::interrupted, "interrupted; nothing was written");
+  if (control.cancel != nullptr && *control.cancel) throw interrupted_error();
 }
 
 void start_pass(const ConversionControl& control, const std::string& name, std::uint64_t voxels) {

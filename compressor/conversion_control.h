@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compressor/conversion.h"
+#include "format/error.h"
 #include "ingest/block_stream.h"
 
 namespace weir {
@@ -13,7 +14,10 @@ namespace weir {
 /// For passes that `control`, which must outlive them, watches and stops.
 StreamOptions stream_options(const ConversionControl& control);
 
-/// Throws Error(interrupted) where `control` says so.
+/// What a conversion that was asked to stop ends with, wherever it noticed.
+Error interrupted_error();
+
+/// Throws interrupted_error() where `control` says so.
 void check_cancel(const ConversionControl& control);
 
 /// Announces a pass over so many voxels; throws as check_cancel.

@@ -80,8 +80,7 @@ class LeafEncoder {
         const LeafPlaces::Place before = places.before(position);
         const LeafWidth width = places.width(position);
         gather(target, block, leaf,
-               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes, width,
-                width == LeafWidth::float32 ? 0 : surveyed.narrower_error(leaf, bits_log2_of(width))});
+               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes, width});
       }
     }
   }
@@ -116,7 +115,6 @@ class LeafEncoder {
     std::uint64_t ordinal;
     std::uint64_t offset;
     LeafWidth width;
-    double narrower_error;  // of a quantised one: see fit_quantiser
   };
 
   void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, const Leaf& place) {
@@ -142,8 +140,7 @@ class LeafEncoder {
       for (std::size_t i = 0; i < batch_; ++i) {
         const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
         const Leaf& leaf = leaves_[first + i];
-        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target.fit,
-                                      leaf.narrower_error);
+        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target.fit);
         values_[i] = quantised_[i].decoded;
       }
     }

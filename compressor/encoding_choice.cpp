@@ -75,7 +75,6 @@ class Candidate {
     file.fill = request_.rule.fill;
     file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
-    check_countable(file.plan.layout.counts, request_.path);
     file.size = size;
     if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
     file.plan.layout = padded_to(file.plan.layout, file.size.bytes);
@@ -102,6 +101,8 @@ class Candidate {
 bool can_quantise(const FileRequest& request) {
   return request.rule.metric == Metric::sse && !request.keeps_non_finite;
 }
+
+bool countable(const FilePlan& file) { return countable(file.plan.layout.counts); }
 
 // Why a quantised file cannot be lossless.
 std::string lossy_leaves_text(const Candidate& quantised) {
@@ -142,7 +143,8 @@ FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDir
   Candidate quantised(request, Encoding::fpn, rows, work);
   Candidate plain(request, Encoding::float32, rows, work);
   if (quantised.lossless() && quantised.bytes().full.file_bytes <= plain.bytes().full.file_bytes) {
-    return quantised.plan(quantised.size_for(request.budget));
+    FilePlan file = quantised.plan(quantised.size_for(request.budget));
+    if (countable(file)) return file;
   }
   FileSize size = plain.size_for(request.budget);
   if (!quantised.lossless()) {
@@ -155,11 +157,12 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   Candidate candidate(request, Encoding::fpn, rows, work);
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
-  if (quantised.plan.loses_nothing) return quantised;
+  if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
   if (size.kind == "minimum") return quantised;
   FilePlan plain = other.plan(other.size_for(request.budget));
+  if (countable(plain) != countable(quantised)) return std::move(countable(plain) ? plain : quantised);
   if (request.rule.visibility != nullptr) {  // what a scene weighs is not measured: expectations decide
     return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
   }
@@ -174,7 +177,8 @@ FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDir
   FilePlan small = quantised.plan_for_error();
   Candidate plain(request, Encoding::float32, rows, work);
   FilePlan file = plain.plan_for_error();
-  return meets(request, quantised, small) && small.size.bytes <= file.size.bytes ? std::move(small) : std::move(file);
+  const bool as_small = small.size.bytes <= file.size.bytes || !countable(file);
+  return std::move(meets(request, quantised, small) && countable(small) && as_small ? small : file);
 }
 
 }  // namespace
@@ -198,11 +202,15 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
 }
 
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
-  if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);
-  if (!can_quantise(request)) return plan_one(request, Encoding::float32, rows, work);
-  if (request.budget.by_error()) return plan_smallest(request, rows, work);
-  if (request.budget.kind == Budget::Kind::lossless) return plan_lossless(request, rows, work);
-  return plan_best(request, rows, work);
+  FilePlan file = [&] {
+    if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);
+    if (!can_quantise(request)) return plan_one(request, Encoding::float32, rows, work);
+    if (request.budget.by_error()) return plan_smallest(request, rows, work);
+    if (request.budget.kind == Budget::Kind::lossless) return plan_lossless(request, rows, work);
+    return plan_best(request, rows, work);
+  }();
+  check_countable(file.plan.layout.counts, request.path);
+  return file;
 }
 
 }  // namespace weir

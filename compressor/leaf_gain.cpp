@@ -67,12 +67,14 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
   }
 }
 
-}  // namespace
-
+// The least squared error that the survey estimated for a leaf of finite values at less than 1 << below_log2 bits,
+// where below_log2 >= 1: more bits do not do worse.
 double least_estimate(const LeafRow& row, unsigned below_log2) {
   const auto end = row.quantised.begin() + std::min<std::ptrdiff_t>(below_log2, std::ssize(row.quantised));
   return row.sse * static_cast<double>(*std::min_element(row.quantised.begin(), end));
 }
+
+}  // namespace
 
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
   if (width == LeafWidth::float32) return 0;

@@ -79,9 +79,6 @@ struct GainRule {
 /// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
 /// by `background`: exact for float32 and where `exact_bits` says so, else an estimate.
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
-/// The least squared error that the survey estimated for a leaf of finite values at less than 1 << below_log2 bits,
-/// where below_log2 >= 1: more bits do not do worse.
-double least_estimate(const LeafRow& row, unsigned below_log2);
 /// Bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half a
 /// quantum, and what the decoder rounds, fused or not. `background` takes the place of non-finite values.
 double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);

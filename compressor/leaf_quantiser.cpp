@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include "format/index.h"
 #include "format/simd.h"
@@ -233,6 +234,19 @@ class Fitter {
   Quantiser quantiser_;
 };
 
+// Whether levels of half the bits may do better than these, for `values` that are quantised to `bits`. Such values lie
+// so near to those levels that hardly any of them has more than three codes of this width on it. At 16 bits a leaf has
+// no codes enough to tell.
+bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
+  if (bits == 16) return true;
+  std::array<std::uint16_t, kLeafVoxels> codes;
+  quantise(values, quantiser, bits, std::span(codes).first(values.size()));
+  std::array<std::uint8_t, 256> taken{};
+  for (const std::uint16_t code : std::span(codes).first(values.size())) taken[code] = 1;
+  const auto levels = std::accumulate(taken.begin(), taken.end(), 0U);
+  return levels <= (bits == 8 ? 64U : bits == 4 ? 12U : 3U);
+}
+
 }  // namespace
 
 Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
@@ -243,10 +257,10 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
   return usable(q, top) ? q : Quantiser{range.mean, 0};
 }
 
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits, double narrower_error) {
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
   // Levels of fewer bits are levels of more.
   if (!divisible(range, bits)) {
-    return bits == 1 ? Quantiser{range.mean, 0} : fit_quantiser(values, range, bits / 2, narrower_error);
+    return bits == 1 ? Quantiser{range.mean, 0} : fit_quantiser(values, range, bits / 2);
   }
   Fitter fitter(values, range);
   const auto fit = [&](unsigned width) {
@@ -255,18 +269,16 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
     if (width <= 2) fitter.start(0.45, 3);
     return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
   };
-  const Quantiser own = fit(bits);
-  // Most values gain so much by twice the bits that estimates, which are of one round where fits are of three, leave no
-  // doubt.
-  const double doubt = bits == 2 ? 2 : bits == 4 ? 4 : 64;
-  if (bits == 1 || !(narrower_error < doubt * fitter.squared_error())) return own;
-  std::array<Quantiser, 4> narrower;
-  std::size_t count = 0;
-  for (unsigned width = 1; width < bits; width *= 2) narrower[count++] = fit(width);
+  std::array<Quantiser, 5> tried{fit(bits)};  // each at half the bits of the one before
+  std::size_t count = 1;
+  for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width); width /= 2) {
+    tried[count++] = fit(width / 2);
+  }
+  if (count == 1) return tried[0];
   fitter.set_bits(bits);
-  fitter.refine(own, 1);
-  for (const Quantiser& levels : std::span(narrower).first(count)) fitter.refine(levels, 2);
-  return fitter.found() ? fitter.quantiser() : own;
+  fitter.refine(tried[0], 1);
+  for (const Quantiser& levels : std::span(tried).subspan(1, count - 1)) fitter.refine(levels, 2);
+  return fitter.found() ? fitter.quantiser() : tried[0];
 }
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,

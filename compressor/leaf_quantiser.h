@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace weir {
@@ -29,11 +28,10 @@ struct ValueRange {
 /// gain less than 0.2 dB on the volumes of the tests.
 /// Levels are at most float's largest number apart, so that code * quantum is one: values of a wider range may lie
 /// beyond the outer levels. Where the range is so small that the quantum has no reciprocal there is one level, the
-/// mean. `narrower_error`: what the squared error is estimated to be at fewer bits. Where that is near what this comes
-/// to or below, the levels of fewer bits are tried as well, so that more bits never do worse: values near a lattice may
-/// lie on the levels of a few bits, and beside those of many. The same on every machine: fixed lanes, nothing fused.
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
-                        double narrower_error = std::numeric_limits<double>::infinity());
+/// mean. Where few levels are taken, those of fewer bits are tried as well, so that more bits never do worse: values
+/// near a lattice may lie on the levels of a few bits, and beside those of many. The same on every machine: fixed
+/// lanes, nothing fused.
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
 
 /// What the squared error of fit_quantiser will be at 1, 2 and 4 bits, from a third of the work: within 15 % on
 /// average, relative to `squares`, the squared error about the mean (above 0). 1 for what is not below `below_bits`.

@@ -20,6 +20,7 @@
 #include "compressor/resume.h"
 #include "compressor/slice_intake.h"
 #include "compressor/spool_source.h"
+#include "compressor/startable_threads.h"
 #include "compressor/surveyed_conversion.h"
 #include "compressor/work_directory.h"
 #include "format/error.h"
@@ -250,7 +251,8 @@ class PushedVolume::State {
 
   Sidecar convert(std::chrono::steady_clock::time_point started) {
     floats_.clear();
-    const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads_);
+    const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
+                                          startable_workers(threads_, control_.notice));
     const std::unique_ptr<VolumeSource> source = open_spool(*files_->spool, info_);
     const Survey survey = files_->survey->result(files_->survey->tally());
     return convert_surveyed({*source, options_, control_, files_->output, files_->work, nullptr, seen_},

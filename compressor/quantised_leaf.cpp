@@ -37,14 +37,14 @@ void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t
   });
 }
 
-Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit, double narrower_error) {
+Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit) {
   const ValueRange range = leaf_range(values);
   // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
   if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front())};
   if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
     return {range.min, lattice->step};
   }
-  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits, narrower_error);
+  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits);
 }
 
 WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, float* decoded) {
@@ -56,14 +56,13 @@ WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, fl
 }
 
 // Quantises the in-domain values of a leaf that reaches outside.
-void quantise_part(const LeafValues& values, const Box& node, const Box& inside, Fit fit, double narrower_error,
-                   QuantisedLeaf& leaf) {
+void quantise_part(const LeafValues& values, const Box& node, const Box& inside, Fit fit, QuantisedLeaf& leaf) {
   LeafValues compact;
   std::size_t count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { compact[count++] = values[i]; });
   const auto seen = std::span<const float>(compact).first(count);
   const unsigned bits = 1U << leaf.bits_log2;
-  leaf.quantiser = choose_quantiser(seen, bits, fit, narrower_error);
+  leaf.quantiser = choose_quantiser(seen, bits, fit);
   std::array<std::uint16_t, kLeafVoxels> codes;
   quantise(seen, leaf.quantiser, bits, std::span(codes).first(count));
   count = 0;
@@ -127,15 +126,15 @@ void measure(const LeafValues& source, QuantisedLeaf& leaf) {
 }  // namespace
 
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
-                            unsigned bits_log2, Fit fit, double narrower_error) {
+                            unsigned bits_log2, Fit fit) {
   QuantisedLeaf leaf;
   leaf.bits_log2 = bits_log2;
   const bool whole = inside == node;
   if (whole) {
-    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit, narrower_error);
+    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit);
     quantise(values, leaf.quantiser, 1U << bits_log2, leaf.codes);
   } else {
-    quantise_part(values, node, inside, fit, narrower_error, leaf);
+    quantise_part(values, node, inside, fit, leaf);
   }
   decode(leaf.codes.data(), leaf.quantiser, leaf.decoded.data());
 

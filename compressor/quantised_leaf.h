@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "compressor/leaf_quantiser.h"
 #include "format/index.h"
@@ -28,9 +27,8 @@ enum class Fit { squares, largest };
 /// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly where they lie on
 /// a lattice that fits, else with least error (leaf_quantiser.h). `values` are finite there; `source` is
 /// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the nearest
-/// one inside, so that they widen no range. `narrower_error`: see fit_quantiser.
+/// one inside, so that they widen no range.
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
-                            unsigned bits_log2, Fit fit = Fit::squares,
-                            double narrower_error = std::numeric_limits<double>::infinity());
+                            unsigned bits_log2, Fit fit = Fit::squares);
 
 }  // namespace weir

@@ -5,6 +5,9 @@
 #include <thread>
 #include <vector>
 
+#include "format/error.h"
+#include "format/text.h"
+
 namespace weir {
 
 std::size_t startable_threads(std::size_t wanted) {
@@ -22,6 +25,20 @@ std::size_t startable_threads(std::size_t wanted) {
   const std::size_t count = started.size();
   counted.count_down();
   return count;
+}
+
+std::size_t startable_workers(std::size_t threads, const std::function<void(const std::string&)>& notice) {
+  constexpr std::size_t kOthers = 6;
+  const std::size_t wanted = threads - 1 + kOthers;
+  const std::size_t startable = startable_threads(wanted);
+  if (startable < 2) throw Error(ErrorKind::io, kNoMoreThreads);  // one reads, and oneTBB may start one for itself
+  if (startable >= wanted) return threads;
+  const std::size_t workers = startable > kOthers ? startable - kOthers + 1 : 1;
+  if (notice) {
+    notice(cat("the system lets this process start ", startable, " threads more; working on ", workers,
+               "; raise the limit of processes (ulimit -u)"));
+  }
+  return workers;
 }
 
 }  // namespace weir

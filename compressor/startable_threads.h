@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <string>
 
 namespace weir {
 
@@ -13,5 +15,9 @@ inline constexpr const char* kNoMoreThreads =
 /// near. Starts them to find out: 30 to 46 us each for 7 to 133 of them on two cores. What starts threads later, as
 /// oneTBB does, may end the process where it cannot.
 std::size_t startable_threads(std::size_t wanted);
+
+/// Workers, of which the calling thread is one, that can run beside what reads, writes back and saves: at most
+/// `threads`, at least 1. Tells `notice`, where there is one, of fewer. Throws Error(io) where not one can read.
+std::size_t startable_workers(std::size_t threads, const std::function<void(const std::string&)>& notice);
 
 }  // namespace weir

@@ -2,7 +2,6 @@
 // source that changed in between, one would certify the other's values.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -13,7 +12,7 @@
 
 namespace weir {
 
-/// Of a box of leaves, 40 bytes each. Thread-safe.
+/// Of a box of leaves, 16 bytes each. Thread-safe.
 class SurveyedLeaves {
  public:
   /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object.
@@ -23,22 +22,12 @@ class SurveyedLeaves {
   /// surveyed. `values`, x fastest, are those over `voxels`, which hold the leaf's. Costs about 0.2 us.
   void check(const Index3& leaf, std::span<const float> values, const Box& voxels) const;
 
-  /// The least squared error estimated for `leaf` at less than 1 << bits_log2 bits; infinite where there is no
-  /// estimate.
-  double narrower_error(const Index3& leaf, unsigned bits_log2) const;
-
  private:
   [[noreturn]] void fail(const Box& inside) const;
 
   const NodeLattice& leaves_;
   Box leaf_box_;
-  struct Leaf {
-    Digest digest;
-    std::array<double, 3> narrower_errors;  // at less than 2, 4, and 8 or more bits
-  };
-  const Leaf& at(const Index3& leaf) const;
-
-  std::vector<Leaf> surveyed_;
+  std::vector<Digest> digests_;
   const SourceInfo& info_;
 };
 

@@ -10,11 +10,14 @@ constexpr std::uint64_t align(std::uint64_t offset) {
   return (offset + nvdb::kAlignment - 1) / nvdb::kAlignment * nvdb::kAlignment;
 }
 
+constexpr std::uint64_t kMost = 0xFFFFFFFFULL;
+
 }  // namespace
 
+bool countable(const NodeCounts& counts) { return counts.leaves <= kMost && counts.leaf_tiles <= kMost; }
+
 void check_countable(const NodeCounts& counts, const std::string& path) {
-  constexpr std::uint64_t kMost = 0xFFFFFFFFULL;
-  if (counts.leaves <= kMost && counts.leaf_tiles <= kMost) return;
+  if (countable(counts)) return;
   throw Error(ErrorKind::budget, cat(path, ": the grid would have ", counts.leaves, " leaves and ", counts.leaf_tiles,
                                      " tiles of 8^3 voxels, NanoVDB counts up to ", kMost,
                                      " of each; ask for a smaller size or a larger error"));

@@ -37,8 +37,10 @@ struct TreeLayout {
   std::uint64_t lower_offset(std::uint64_t i) const { return lowers + i * nvdb::kLowerBytes; }
 };
 
-/// Throws Error(budget) where NanoVDB, which counts the nodes and active tiles of a level in 32 bits, cannot count
-/// these; `path` is that of the output, for the message.
+/// Whether NanoVDB, which counts the nodes and active tiles of a level in 32 bits, can count these.
+bool countable(const NodeCounts& counts);
+
+/// Throws Error(budget) where it cannot; `path` is that of the output, for the message.
 void check_countable(const NodeCounts& counts, const std::string& path);
 
 /// Layout without padding: file_bytes == content_end. Pads to nothing but the nodes' own alignment. Any counts have

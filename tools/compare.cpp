@@ -98,7 +98,7 @@ void print_text(const Comparison& c) {
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t memory = parse_memory(arguments.run);
-  const auto threads = limit_threads(arguments.run);
+  const auto threads = limit_threads(arguments.run.threads);
   SourceOptions source_options = parse_input(arguments.source);
   source_options.memory = memory;
   const auto source = open_source(arguments.input, source_options);

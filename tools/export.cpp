@@ -118,7 +118,7 @@ void export_volume(const ExportArguments& arguments) {
     throw Error(ErrorKind::usage, cat("--output is \"", arguments.output, "\", it must end in .vdb"));
   }
   const std::uint64_t memory = parse_memory(arguments.run);
-  const auto threads = limit_threads(arguments.run);
+  const auto threads = limit_threads(arguments.run.threads);
   if (const auto id = file_id(arguments.volume)) require_not_input({&*id, 1}, arguments.output);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at

@@ -26,6 +26,7 @@
 #include "tools/printable.h"
 #include "tools/progress.h"
 #include "tools/read_sidecar.h"
+#include "tools/run_options.h"
 #include "tools/tree_census.h"
 
 namespace weir {
@@ -202,6 +203,7 @@ void run(const InspectArguments& arguments) {
   std::optional<ImageFile> picture;
   if (!arguments.plot.empty()) picture.emplace(*files, arguments.plot);
   const NvdbFile file(arguments.path);
+  const auto threads = limit_threads(0);
   const Inspection found = look_at(file, arguments);
   if (picture) {
     picture->commit(histogram_image(found.histogram, file.grid().background()), {1, false});

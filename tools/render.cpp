@@ -22,6 +22,7 @@
 #include "tools/input_options.h"
 #include "tools/picture_options.h"
 #include "tools/progress.h"
+#include "tools/run_options.h"
 
 namespace weir {
 
@@ -58,6 +59,7 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
 void render(const RenderArguments& arguments) {
   PictureRequest request = parse_picture(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
+  const auto threads = limit_threads(0);
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();

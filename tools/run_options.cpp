@@ -1,7 +1,11 @@
 #include "tools/run_options.h"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 
+#include "compressor/memory_plan.h"
+#include "compressor/startable_threads.h"
 #include "format/error.h"
 #include "format/text.h"
 
@@ -31,10 +35,11 @@ std::uint64_t parse_memory(const RunArguments& arguments) {
   return *bytes;
 }
 
-std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments) {
-  if (arguments.threads == 0) return nullptr;
-  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                               static_cast<std::size_t>(arguments.threads));
+std::unique_ptr<tbb::global_control> limit_threads(int asked) {
+  const std::size_t threads = processors_or_all(static_cast<std::size_t>(asked));
+  return std::make_unique<tbb::global_control>(
+      tbb::global_control::max_allowed_parallelism,
+      startable_workers(threads, [](const std::string& line) { spdlog::warn("{}", line); }));
 }
 
 }  // namespace weir

@@ -33,7 +33,8 @@ void add_run_options(CLI::App& command, RunArguments& arguments);
 /// Bytes. Throws Error(usage) where the text is no size or below kLeastMemory.
 std::uint64_t parse_memory(const RunArguments& arguments);
 
-/// Keeps TBB to the asked number of threads while it lives; null where that is all of them.
-std::unique_ptr<tbb::global_control> limit_threads(const RunArguments& arguments);
+/// Keeps TBB to `asked` threads while it lives, 0: to the machine's, and to fewer where no more can be started, with a
+/// warning. Throws Error(io) where none can.
+std::unique_ptr<tbb::global_control> limit_threads(int asked);
 
 }  // namespace weir

@@ -154,7 +154,7 @@ void sample(const SampleArguments& arguments) {
   const std::int64_t voxels = volume(shape.extent);
   const std::uint64_t value_bytes = scalar_bytes(shape.type);
   const std::uint64_t bytes = static_cast<std::uint64_t>(voxels) * value_bytes;
-  const auto threads = limit_threads(arguments.run);
+  const auto threads = limit_threads(arguments.run.threads);
 
   const auto files = make_posix_file_system();
   PartialFile output(*files, arguments.output, arguments.overwrite);

@@ -234,7 +234,7 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   SourceOptions source_options = parse_input(a.source);
   source_options.memory = parse_memory(a.run);
   source_options.spool_directory = a.output;
-  const auto threads = limit_threads(a.run);
+  const auto threads = limit_threads(a.run.threads);
   const auto files = make_posix_file_system();
   const ResultDirectory directory(*files, a.output);
   check_outputs(directory, methods, rates, a);

@@ -14,6 +14,7 @@
 #include "format/text.h"
 #include "tools/command.h"
 #include "tools/progress.h"
+#include "tools/run_options.h"
 #include "tools/trace_option.h"
 #include "tools/volume_verification.h"
 
@@ -28,6 +29,7 @@ struct VerifyArguments {
 };
 
 std::vector<VolumeCheck> verify(const VerifyArguments& arguments) {
+  const auto threads = limit_threads(0);
   Progress progress(arguments.progress);
   VerificationWatch watch;
   watch.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };

@@ -147,6 +147,34 @@ TEST(LeafQuantiser, RangeLevelsAreWithinHalfAQuantum) {
   }
 }
 
+// Levels near which most values lie, and a few values that no lattice holds.
+std::vector<float> near_a_lattice(std::mt19937& random) {
+  const auto uniform = [&] { return static_cast<float>(random() % 65536) / 65536.0F; };
+  const auto levels = 2 + random() % (1U << (1 + random() % 8));
+  const float scatter = random() % 2 == 0 ? 0.0F : std::pow(10.0F, -6 * uniform());
+  const float scale = std::pow(10.0F, 4 * uniform() - 2);
+  std::vector<float> values(512);
+  for (float& v : values) v = scale * (static_cast<float>(random() % levels) + scatter * (uniform() - 0.5F));
+  const float beside = scale * std::pow(10.0F, -6 * uniform());
+  const auto others = 1 + random() % 40;
+  for (auto i = others; i > 0; --i) values[random() % values.size()] += beside;
+  return values;
+}
+
+TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALattice) {
+  std::mt19937 random(11);
+  for (unsigned leaf = 0; leaf < 2000; ++leaf) {
+    const std::vector<float> values = near_a_lattice(random);
+    const ValueRange range = range_of(values);
+    double last = std::numeric_limits<double>::infinity();
+    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+      const double error = decoded_error(values, fit_quantiser(values, range, bits), bits);
+      EXPECT_LE(error, last * 1.0001) << "leaf " << leaf << " at " << bits << " bits";
+      last = error;
+    }
+  }
+}
+
 TEST(LeafQuantiser, EstimatesAreNearTheFit) {
   double ratio = 0;
   constexpr unsigned kLeaves = 50;

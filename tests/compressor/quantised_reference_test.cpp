@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -62,8 +64,12 @@ class Reference {
   void start(double share, int rounds) {
     const double half = (static_cast<double>(range_.max) - static_cast<double>(range_.min)) / 2 * share;
     const double middle = static_cast<double>(share == 1 ? range_.min : range_.mean) + (share == 1 ? half : 0);
-    Quantiser q{share == 1 ? range_.min : static_cast<float>(middle - half),
-                static_cast<float>(2 * half / static_cast<double>(top_))};
+    refine({share == 1 ? range_.min : static_cast<float>(middle - half),
+            static_cast<float>(2 * half / static_cast<double>(top_))},
+           rounds);
+  }
+
+  void refine(Quantiser q, int rounds) {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
       if (!(q.quantum >= 0x1p-120F) || !std::isfinite(q.minimum) || !std::isfinite(q.quantum * top_ + q.minimum))
@@ -124,6 +130,31 @@ class Reference {
   double best_ = std::numeric_limits<double>::infinity();
 };
 
+Quantiser reference_over_range(const std::vector<float>& values, const ValueRange& range, unsigned bits) {
+  Reference reference(values, range, bits);
+  reference.start(1, bits <= 4 ? 3 : 2);
+  if (bits <= 2) reference.start(0.45, 3);
+  return reference.fit;
+}
+
+// Where the values take few levels, those of half the bits are tried, too, and so on.
+Quantiser reference_fit(const std::vector<float>& values, const ValueRange& range, unsigned bits) {
+  std::vector<Quantiser> tried{reference_over_range(values, range, bits)};
+  for (unsigned width = bits; width > 1; width /= 2) {
+    std::set<float> levels;
+    for (const float v : values) {
+      levels.insert(nearest_code(v, tried.back(), static_cast<float>((1U << width) - 1U)));
+    }
+    const std::map<unsigned, std::size_t> few{{16, 512}, {8, 64}, {4, 12}, {2, 3}};
+    if (levels.size() > few.at(width)) break;
+    tried.push_back(reference_over_range(values, range, width / 2));
+  }
+  if (tried.size() == 1) return tried[0];
+  Reference best(values, range, bits);
+  for (std::size_t i = 0; i < tried.size(); ++i) best.refine(tried[i], i == 0 ? 1 : 2);
+  return best.fit;
+}
+
 std::vector<float> leaf(std::mt19937& random, int kind) {
   static constexpr std::array<std::size_t, 8> kCounts{512, 512, 512, 511, 64, 17, 16, 2};
   std::vector<float> values(kCounts[random() % kCounts.size()]);
@@ -168,16 +199,14 @@ TEST(QuantisedReference, FitsAndCodesHaveTheSameBits) {
     if (!(range.min < range.max)) continue;
     for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
       SCOPED_TRACE("leaf " + std::to_string(round) + ", bits " + std::to_string(bits));
-      Reference reference(values, range, bits);
-      reference.start(1, bits <= 4 ? 3 : 2);
-      if (bits <= 2) reference.start(0.45, 3);
+      const Quantiser reference = reference_fit(values, range, bits);
       const Quantiser fit = fit_quantiser(values, range, bits);
       if (!(range_quantiser(range, bits).quantum > 0)) {
         EXPECT_EQ(fit.quantum, 0.0F);
         continue;
       }
-      ASSERT_EQ(bits_of(fit.minimum), bits_of(reference.fit.minimum));
-      ASSERT_EQ(bits_of(fit.quantum), bits_of(reference.fit.quantum));
+      ASSERT_EQ(bits_of(fit.minimum), bits_of(reference.minimum));
+      ASSERT_EQ(bits_of(fit.quantum), bits_of(reference.quantum));
       std::vector<std::uint16_t> codes(values.size());
       quantise(values, fit, bits, codes);
       const auto top = static_cast<float>((1U << bits) - 1U);

@@ -28,7 +28,7 @@ struct Kind {
   double (*draw)(Engine& random, double shape, const Index3& i);
 };
 
-constexpr std::array<Kind, 9> kKinds{{
+constexpr std::array<Kind, 10> kKinds{{
     {"pareto", [](Engine& r, double s, const Index3&) { return std::pow(1 - uniform(r), -1 / (0.3 + 2 * s)); }},
     {"cauchy", [](Engine& r, double s, const Index3&) { return s * std::tan(M_PI * (uniform(r) - 0.5)); }},
     {"lognormal", [](Engine& r, double s, const Index3&) { return std::exp((1 + 5 * s) * normal(r)); }},
@@ -41,6 +41,10 @@ constexpr std::array<Kind, 9> kKinds{{
     {"sparse", [](Engine& r, double s, const Index3&) { return uniform(r) < 0.3 * s ? normal(r) : 0; }},
     {"near a lattice", [](Engine& r, double s,
                           const Index3&) { return std::floor(256 * uniform(r)) + std::pow(10, -6 * s) * normal(r); }},
+    {"few beside a lattice",
+     [](Engine& r, double s, const Index3&) {
+       return std::floor(std::exp2(8 * s) * uniform(r)) + (uniform(r) < 3e-3 ? std::pow(10, -6 * uniform(r)) : 0);
+     }},
     {"smooth",
      [](Engine& r, double s, const Index3& i) {
        const double at = 0.05 * static_cast<double>(i.x) + 0.08 * static_cast<double>(i.y * i.z) / 16;

@@ -15,7 +15,7 @@ struct RandomVolume {
 };
 
 /// The same for the same seed: heavy tails (Pareto, Cauchy, log-normal), spikes on small noise, sparse values, values
-/// near a lattice, smooth fields; 16 to `most` voxels along an axis.
+/// near or beside a lattice, smooth fields; 16 to `most` voxels along an axis.
 RandomVolume random_volume(std::uint64_t seed, std::int64_t most);
 
 /// How many volumes a property test looks at: what WEIR_PROPERTY_VOLUMES says, else `ordinary`.

@@ -51,10 +51,12 @@ TEST(TreeLayout, MoreLeavesThanNanoVdbCounts_HaveALayout) {
 
 TEST(TreeLayout, MoreLeavesOrTilesThanNanoVdbCounts_AreNoFile) {
   NodeCounts counts{1, 1, 1, 0xFFFFFFFFULL, 0, 0, 0xFFFFFFFFULL};
+  EXPECT_TRUE(countable(counts));
   check_countable(counts, "out.nvdb");
   for (std::uint64_t NodeCounts::*count : {&NodeCounts::leaves, &NodeCounts::leaf_tiles}) {
     NodeCounts more{1, 1, 1, 5, 0, 0, 5};
     more.*count = 0x100000000ULL;
+    EXPECT_FALSE(countable(more));
     try {
       check_countable(more, "out.nvdb");
       FAIL();

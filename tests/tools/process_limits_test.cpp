@@ -118,7 +118,7 @@ TEST_F(ProcessLimits, Hangup_EndsWith129AndNothingIsLeft) {
 TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const std::string path = volume(96);
-  const auto convert_with = [&](int threads) {
+  const auto run_with = [&](int threads, std::vector<std::string> arguments) {
     CommandOptions options;
     options.environment = preload(
         "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <errno.h>\n#include <pthread.h>\n#include <stdlib.h>\n"
@@ -136,7 +136,10 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
         "  int (*real)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*) = dlsym(RTLD_NEXT, "
         "\"pthread_create\");\n"
         "  return real(t, a, counted, c);\n}\n");
-    return run_weir({"convert", path, "-o", output_, "--overwrite", "--threads", "8"}, options);
+    return run_weir(std::move(arguments), options);
+  };
+  const auto convert_with = [&](int threads) {
+    return run_with(threads, {"convert", path, "-o", output_, "--overwrite", "--threads", "8"});
   };
   const CommandResult all = convert_with(1000);
   ASSERT_EQ(all.exit_code, 0) << all.err;
@@ -153,13 +156,22 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
         << fewer.err;
     EXPECT_TRUE(read_file(output_) == bytes) << threads;
   }
+  const std::string none_left =
+      "weir: no more threads can be started; raise the limit of processes (ulimit -u) or end some\n";
+  for (const std::string command : {"verify", "inspect"}) {
+    const CommandResult fewer = run_with(kFirst + 2, {command, output_});
+    EXPECT_EQ(fewer.exit_code, 0) << command << fewer.err;
+    EXPECT_NE(fewer.err.find("the system lets this process start 2 threads more; working on 1"), std::string::npos)
+        << command << fewer.err;
+    const CommandResult none = run_with(kFirst, {command, output_});
+    EXPECT_EQ(none.exit_code, 5) << command;
+    EXPECT_TRUE(none.err.ends_with(none_left)) << command << none.err;
+  }
   fs::remove(output_);
   fs::remove(output_ + ".json");
   const CommandResult none = convert_with(kFirst);
   EXPECT_EQ(none.exit_code, 5);
-  EXPECT_TRUE(none.err.ends_with(
-      "weir: no more threads can be started; raise the limit of processes (ulimit -u) or end some\n"))
-      << none.err;
+  EXPECT_TRUE(none.err.ends_with(none_left)) << none.err;
   EXPECT_EQ(left(), std::vector<std::string>{});
 }
 

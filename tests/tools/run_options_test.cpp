@@ -19,7 +19,7 @@ RunArguments parse(const std::string& command_line) {
 TEST(RunOptions, Defaults) {
   const RunArguments arguments = parse("");
   EXPECT_EQ(parse_memory(arguments), 536870912U);
-  EXPECT_EQ(limit_threads(arguments), nullptr);
+  EXPECT_EQ(arguments.threads, 0);
   EXPECT_EQ(arguments.progress.mode, ProgressMode::automatic);
 }
 
@@ -38,8 +38,10 @@ TEST(RunOptions, MemoryIsASize) {
 }
 
 TEST(RunOptions, ThreadsLimitTheWorkers) {
-  const auto limit = limit_threads(parse("--threads 1"));
-  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), 1U);
+  for (const int threads : {1, 2}) {
+    const auto limit = limit_threads(parse("--threads " + std::to_string(threads)).threads);
+    EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), threads);
+  }
   EXPECT_THROW(parse("--threads -1"), CLI::ValidationError);
 }
 
