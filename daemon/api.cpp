@@ -90,11 +90,35 @@ bool read_count(const RequestTarget& target, const std::string& name, std::size_
   return true;
 }
 
+HttpResponse bad_limit(const RequestTarget& target) {
+  return error_response(400, cat("limit=", target.query.at("limit"), ": give 0 to ", kMaxJobsPerPage));
+}
+
+// Sets `order` from the parameters sort and order, where there is one; whether they are fine.
+bool read_order(const RequestTarget& target, std::optional<JobOrder>& order) {
+  const auto sort = target.query.find("sort");
+  const auto way = target.query.find("order");
+  if (sort == target.query.end() && way == target.query.end()) return true;
+  order.emplace();
+  if (sort != target.query.end()) {
+    const auto key = std::find(kJobOrderKeys.begin(), kJobOrderKeys.end(), sort->second);
+    if (key == kJobOrderKeys.end()) return false;
+    order->key = static_cast<JobOrderKey>(key - kJobOrderKeys.begin());
+  }
+  if (way == target.query.end()) return true;
+  order->descending = way->second == "desc";
+  return order->descending || way->second == "asc";
+}
+
 HttpResponse jobs(const Call& call) {
   JobQuery query;
   for (const auto& [name, value] : call.target.query) {
     if (name == "watch") {
       query.watch = value;
+    } else if (name == "text") {
+      query.text = value;
+    } else if (name == "problem") {
+      query.problem = value;
     } else if (name == "state") {
       query.state = parse_job_state(value);
       if (!query.state) {
@@ -102,17 +126,27 @@ HttpResponse jobs(const Call& call) {
                                        ": jobs are discovered, waiting, running, done, failed, "
                                        "quarantined or cancelled"));
       }
-    } else if (name != "limit" && name != "offset") {
-      return error_response(400, cat("unknown parameter ", name, "; there are state, watch, limit and offset"));
+    } else if (name != "sort" && name != "order" && name != "limit" && name != "offset") {
+      return error_response(400, cat("unknown parameter ", name,
+                                     "; there are state, watch, text, problem, sort, order, limit and offset"));
     }
   }
-  if (!read_count(call.target, "limit", kMaxJobsPerPage, query.limit)) {
-    return error_response(400, cat("limit=", call.target.query.at("limit"), ": give 0 to ", kMaxJobsPerPage));
+  if (!read_order(call.target, query.order)) {
+    std::string keys;
+    for (const std::string_view key : kJobOrderKeys) keys += cat(keys.empty() ? "" : ", ", key);
+    return error_response(400, cat("sort is one of ", keys, "; order is asc or desc"));
   }
+  if (!read_count(call.target, "limit", kMaxJobsPerPage, query.limit)) return bad_limit(call.target);
   if (!read_count(call.target, "offset", std::size_t{1} << 53, query.offset)) {
     return error_response(400, cat("offset=", call.target.query.at("offset"), ": give 0 or more"));
   }
   return ok(to_json(call.control.jobs(query), query));
+}
+
+HttpResponse problems(const Call& call) {
+  std::size_t limit = JobQuery{}.limit;
+  if (!read_count(call.target, "limit", kMaxJobsPerPage, limit)) return bad_limit(call.target);
+  return ok(to_json(call.control.problems(limit)));
 }
 
 HttpResponse job(const Call& call) {
@@ -134,10 +168,11 @@ HttpResponse thumbnail(const Call& call) {
   return response;
 }
 
-HttpResponse change(const Call& call, JobChange (Control::*make)(std::int64_t)) {
+template <typename Make>
+HttpResponse change(const Call& call, const Make& make) {
   const std::string& action = call.target.path[3];
   const auto id = job_id(call);
-  const JobChange made = id ? (call.control.*make)(*id) : JobChange::no_such_job;
+  const JobChange made = id ? make(*id) : JobChange::no_such_job;
   const auto now = made == JobChange::no_such_job ? std::nullopt : call.control.job(*id);
   if (!now) return no_such_job(call.target.path[2]);
   if (made == JobChange::wrong_state) {
@@ -146,10 +181,23 @@ HttpResponse change(const Call& call, JobChange (Control::*make)(std::int64_t)) 
   return ok(to_json(*now));
 }
 
-HttpResponse retry(const Call& call) { return change(call, &Control::retry); }
-HttpResponse cancel(const Call& call) { return change(call, &Control::cancel); }
+HttpResponse retry(const Call& call) {
+  const auto force = call.target.query.find("force");
+  if (force != call.target.query.end() && force->second != "1") {
+    return error_response(400, cat("force=", force->second, ": give force=1, or leave it out"));
+  }
+  return change(call, [&](std::int64_t id) { return call.control.retry(id, force != call.target.query.end()); });
+}
 
-HttpResponse retry_failed(const Call& call) { return ok({{"retried", call.control.retry_all_failed()}}); }
+HttpResponse cancel(const Call& call) {
+  return change(call, [&](std::int64_t id) { return call.control.cancel(id); });
+}
+
+HttpResponse retry_failed(const Call& call) {
+  const auto problem = call.target.query.find("problem");
+  const std::string key = problem == call.target.query.end() ? "" : problem->second;
+  return ok({{"retried", call.control.retry_all_failed(key)}});
+}
 
 HttpResponse pause(const Call& call) {
   call.control.pause();
@@ -169,6 +217,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/metrics", false, metrics},
     Route{"GET", "/api/status", false, status},
     Route{"GET", "/api/jobs", false, jobs},
+    Route{"GET", "/api/problems", false, problems},
     Route{"GET", "/api/jobs/*", false, job},
     Route{"GET", "/api/jobs/*/thumbnails/*", false, thumbnail},
     Route{"POST", "/api/jobs/*/retry", false, retry},

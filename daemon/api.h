@@ -6,11 +6,16 @@
 //                                         with the reason, for those who may see it
 //   GET  /metrics                         metrics.h
 //   GET  /api/status                      StatusView
-//   GET  /api/jobs?state=S&watch=DIR&limit=N&offset=N      JobPage; limit 100 unless said, at most 1000
+//   GET  /api/jobs?state=S&watch=LABEL&text=T&problem=KEY&sort=K&order=O&limit=N&offset=N
+//                                         JobPage; JobQuery says what they mean. K: changed (the default), discovered,
+//                                         source, state, watch, bytes, seconds; O: desc (the default) or asc; limit 100
+//                                         unless said, at most 1000
+//   GET  /api/problems?limit=N            ProblemPage; the same limits
 //   GET  /api/jobs/ID                     JobView with its log tail
 //   GET  /api/jobs/ID/thumbnails/N        PNG of the job's output N
-//   POST /api/jobs/ID/retry, /api/jobs/ID/cancel           the JobView as it is then; 409 in the wrong state
-//   POST /api/retry-failed                {"retried": N}
+//   POST /api/jobs/ID/retry, /api/jobs/ID/cancel           the JobView as it is then; 409 in the wrong state;
+//                                         retry?force=1: converted even where its outputs are done
+//   POST /api/retry-failed?problem=KEY    {"retried": N}; without a key, of all problems
 //   POST /api/pause, /api/resume          StatusView as it is then
 //
 // HEAD goes wherever GET does. Errors are {"error": "..."}. No path of the file

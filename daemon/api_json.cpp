@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/problem_key.h"
+
 namespace weir {
 namespace {
 
@@ -11,9 +13,11 @@ OrderedJson or_null(const std::optional<T>& value) {
 }
 
 OrderedJson to_json(const OutputView& output) {
-  return {{"path", output.path},         {"bytes", output.bytes},
-          {"rate", output.rate},         {"psnr_db", or_null(output.psnr_db)},
-          {"lossless", output.lossless}, {"thumbnail", output.thumbnail}};
+  return {{"path", output.path},          {"bytes", output.bytes},
+          {"rate", output.rate},          {"psnr_db", or_null(output.psnr_db)},
+          {"lossless", output.lossless},  {"max_error", or_null(output.max_error)},
+          {"min", or_null(output.min)},   {"max", or_null(output.max)},
+          {"thumbnail", output.thumbnail}};
 }
 
 OrderedJson to_json(const RunningView& running) {
@@ -24,7 +28,8 @@ OrderedJson to_json(const RunningView& running) {
           {"fraction", or_null(running.fraction)},
           {"seconds", running.seconds},
           {"source_bytes", running.source_bytes},
-          {"rss_bytes", running.rss_bytes}};
+          {"rss_bytes", running.rss_bytes},
+          {"stall", running.stall}};
 }
 
 OrderedJson counts(const std::array<std::uint64_t, kJobStates>& jobs) {
@@ -41,8 +46,29 @@ OrderedJson to_json(const WatchView& watch) {
           {"up", watch.up},
           {"reason", watch.reason},
           {"jobs", counts(watch.jobs)},
+          {"waiting_bytes", watch.waiting_bytes},
+          {"done_per_min", watch.done_per_min},
           {"overflows", watch.overflows},
           {"last_done", watch.last_done ? to_json(*watch.last_done) : OrderedJson()}};
+}
+
+OrderedJson to_json(const DiskView& disk) {
+  return {{"path", disk.path},
+          {"directories", disk.directories},
+          {"free_bytes", disk.free_bytes},
+          {"total_bytes", disk.total_bytes},
+          {"written_bytes_per_s", disk.written_bytes_per_s},
+          {"fills_in_s", or_null(disk.fills_in_s)},
+          {"held", disk.held}};
+}
+
+OrderedJson to_json(const ProblemView& problem) {
+  return {{"key", problem.key},
+          {"reason", without_path(problem.newest.source, problem.newest.reason)},
+          {"state", job_state_name(problem.newest.state)},
+          {"count", problem.count},
+          {"changed_at", problem.newest.changed_at},
+          {"newest", problem.newest.id}};
 }
 
 template <typename View>
@@ -92,9 +118,18 @@ OrderedJson to_json(const StatusView& status) {
           {"done_total", status.done_total},
           {"bytes_in_total", status.bytes_in_total},
           {"bytes_out_total", status.bytes_out_total},
+          {"arrived_per_min", status.arrived.per_min},
+          {"arrived_bytes_per_s", status.arrived.bytes_per_s},
+          {"done_per_min", status.converted.per_min},
+          {"converted_bytes_per_s", status.converted.bytes_per_s},
+          {"waiting_bytes", status.waiting_bytes},
+          {"queue_ends_in_s", or_null(status.queue_ends_in_s)},
+          {"disks", array_of(status.disks)},
           {"running", array_of(status.running)},
           {"watches", array_of(status.watches)}};
 }
+
+OrderedJson to_json(const ProblemPage& page) { return {{"total", page.total}, {"groups", array_of(page.groups)}}; }
 
 std::string json_line(const OrderedJson& json) {
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + '\n';

@@ -12,6 +12,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 OrderedJson to_json(const JobView& job);  ///< log_tail only where there is one
 OrderedJson to_json(const JobPage& page, const JobQuery& query);
+OrderedJson to_json(const ProblemPage& page);  ///< a problem's reason without its source's path
 OrderedJson to_json(const StatusView& status);
 
 /// One line; bytes that are not UTF-8 (a path may hold any) become U+FFFD.

@@ -88,6 +88,7 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
     case FileEventKind::moved_in:
       writer_ = Writer::renamed;
       break;
+    case FileEventKind::permitted:
     case FileEventKind::marked:
     case FileEventKind::removed:
     case FileEventKind::overflow:

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/job_order.h"
 #include "daemon/job_state.h"
 #include "daemon/seconds_histogram.h"
 
@@ -27,7 +28,10 @@ struct OutputView {
   double rate = 0;                ///< float32 bytes of the volume / bytes of the file
   std::optional<double> psnr_db;  ///< none where lossless
   bool lossless = false;
-  bool thumbnail = false;  ///< Control::thumbnail_path has one
+  bool thumbnail = false;             ///< Control::thumbnail_path has one
+  std::optional<double> max_error{};  ///< the largest absolute one; none, as for the next, where an older weir wrote it
+  std::optional<double> min{};        ///< of the source's finite values
+  std::optional<double> max{};
 };
 
 struct JobView {
@@ -40,7 +44,7 @@ struct JobView {
   double discovered_at = 0;
   double changed_at = 0;                  ///< when it came into `state`
   std::optional<double> next_attempt_at;  ///< waiting after a failed attempt
-  std::string reason;                     ///< why it is where it is, one line; else empty
+  std::string reason;                     ///< why it is where it is, or is not taken yet, one line; else empty
   std::optional<int> exit_code;           ///< of the last attempt, where it ended with one
   std::optional<double> seconds;          ///< of the last attempt
   std::uint64_t bytes_read = 0;
@@ -56,11 +60,26 @@ struct JobQuery {
   std::optional<std::string> watch;  ///< JobView::watch, exactly
   std::size_t offset = 0;
   std::size_t limit = 100;
+  std::string text{};               ///< a part of the source's path or of the reason, letter case aside; empty: any
+  std::string problem{};            ///< ProblemView::key; empty: any
+  std::optional<JobOrder> order{};  ///< none: as JobPage says
 };
 
 struct JobPage {
   std::uint64_t total = 0;    ///< jobs that match, on all pages
   std::vector<JobView> jobs;  ///< the latest change first; waiting ones in the order they will be run
+};
+
+/// Failed and quarantined jobs whose reasons are the same but for numbers and their own paths.
+struct ProblemView {
+  std::string key;
+  std::uint64_t count = 0;
+  JobView newest;
+};
+
+struct ProblemPage {
+  std::uint64_t total = 0;          ///< failed and quarantined jobs
+  std::vector<ProblemView> groups;  ///< the newest first
 };
 
 struct RunningView {
@@ -72,6 +91,7 @@ struct RunningView {
   double seconds = 0;              ///< since the job was started
   std::uint64_t source_bytes = 0;
   std::uint64_t rss_bytes = 0;  ///< of the child process now
+  std::string stall{};          ///< why it stands still; empty: it does not
 };
 
 struct WatchView {
@@ -82,8 +102,27 @@ struct WatchView {
   bool up = false;     ///< the directory is there and being watched
   std::string reason;  ///< why it is not up; else empty
   std::array<std::uint64_t, kJobStates> jobs{};
-  std::uint64_t overflows = 0;       ///< of the inotify queue since start
-  std::optional<JobView> last_done;  ///< the newest result
+  std::uint64_t overflows = 0;         ///< of the inotify queue since start
+  std::optional<JobView> last_done{};  ///< the newest result
+  std::uint64_t waiting_bytes = 0;     ///< of the sources of its waiting jobs
+  double done_per_min = 0;             ///< conversions, over the last ten minutes
+};
+
+/// A file system that outputs are written to.
+struct DiskView {
+  std::string path;                      ///< where it is mounted
+  std::vector<std::string> directories;  ///< outputs' that lie on it
+  std::uint64_t free_bytes = 0;
+  std::uint64_t total_bytes = 0;
+  double written_bytes_per_s = 0;    ///< of outputs, over the last ten minutes
+  std::optional<double> fills_in_s;  ///< at that rate; none: not within a year
+  std::string held;                  ///< why jobs with outputs on it wait; else empty
+};
+
+/// Over the last ten minutes, or since the start where that is shorter.
+struct RateView {
+  double per_min = 0;      ///< files
+  double bytes_per_s = 0;  ///< of sources
 };
 
 struct StatusView {
@@ -99,6 +138,11 @@ struct StatusView {
   std::uint64_t done_total = 0;                  ///< conversions finished since start
   std::uint64_t bytes_in_total = 0;              ///< source bytes converted since start
   std::uint64_t bytes_out_total = 0;             ///< output bytes written since start
+  RateView arrived;                              ///< complete files, those left out that were there at the start
+  RateView converted;
+  std::uint64_t waiting_bytes = 0;        ///< of the sources of waiting jobs
+  std::optional<double> queue_ends_in_s;  ///< at those rates; 0: nothing waits; none: not in sight
+  std::vector<DiskView> disks;
   std::vector<RunningView> running;
   std::vector<WatchView> watches;  ///< in the order of the configuration
 };
@@ -128,13 +172,15 @@ class Control {
   virtual ~Control() = default;
 
   virtual JobPage jobs(const JobQuery& query) = 0;
+  virtual ProblemPage problems(std::size_t limit) = 0;
   /// With its log tail.
   virtual std::optional<JobView> job(std::int64_t id) = 0;
   /// A failed, quarantined, cancelled or done job waits again, as if it were new; one that waits out a delay
   /// after a failed attempt waits no longer.
-  virtual JobChange retry(std::int64_t id) = 0;
-  /// retry() of every failed and quarantined job; how many there were.
-  virtual std::uint64_t retry_all_failed() = 0;
+  /// `force`: it is converted even where its outputs are there and of this source.
+  virtual JobChange retry(std::int64_t id, bool force) = 0;
+  /// retry() of every failed and quarantined job, or of those of one problem (ProblemView::key); how many there were.
+  virtual std::uint64_t retry_all_failed(const std::string& problem) = 0;
   /// A discovered or waiting job becomes cancelled, a running one is stopped first.
   virtual JobChange cancel(std::int64_t id) = 0;
   /// Starts no more jobs until resume(); running ones go on. Both may be asked for twice.

@@ -52,6 +52,13 @@ bool says_changed(const std::string& reason) {
   return reason.ends_with(kConvertAgain) && reason.find(kChangedWhileRead) != std::string::npos;
 }
 
+// What stands at `place`; none where that is no number.
+std::optional<double> number_of(const nlohmann::json& json, const char* place) {
+  const nlohmann::json::json_pointer pointer(place);
+  if (!json.contains(pointer) || !json[pointer].is_number()) return std::nullopt;
+  return json[pointer].get<double>();
+}
+
 // Whether the picture was made after the volume got its name.
 bool newer(const std::string& thumbnail, const std::string& volume) {
   std::error_code error;
@@ -74,6 +81,18 @@ double ConversionJob::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
 }
 
+std::string ConversionJob::stall(std::chrono::seconds quiet) const {
+  const auto passed = std::chrono::steady_clock::now() - heard_;
+  if (worker_ == nullptr || passed < quiet) return {};
+  const char state = worker_->process_state();
+  if (state == 'R') return {};  // it computes
+  const char* const why = state == 'T'   ? "it was stopped by a signal; SIGCONT lets it go on"
+                          : state == 'D' ? "it waits for a device or a file server"
+                                         : "cancel the job to end it";
+  return cat("nothing heard of ", step_, " for ", std::chrono::duration_cast<std::chrono::seconds>(passed).count(),
+             " s: ", why);
+}
+
 void ConversionJob::stop(std::chrono::milliseconds grace) {
   stopping_ = true;
   if (worker_) worker_->stop(grace);
@@ -86,6 +105,7 @@ void ConversionJob::run(std::string_view step, std::vector<std::string> argument
     return;
   }
   step_ = step;
+  heard_ = std::chrono::steady_clock::now();
   fraction_.reset();
   WorkerCommand command{task_.program, {"weir", std::string(step)}, task_.nice, task_.io_class};
   for (std::string& argument : arguments) command.arguments.push_back(std::move(argument));
@@ -114,6 +134,7 @@ void ConversionJob::convert() {
   }
   std::vector<std::string> arguments{task_.source, cat("--output=", task_.output), "--skip-done",
                                      cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
+  if (task_.again) arguments.emplace_back("--again");
   if (task_.bandwidth != 0) arguments.push_back(cat("--bandwidth=", task_.bandwidth));
   if (!task_.within.empty()) arguments.push_back(cat("--within=", task_.within));
   if (!task_.work_dir.empty()) arguments.push_back(cat("--work-dir=", task_.work_dir));
@@ -122,6 +143,7 @@ void ConversionJob::convert() {
 }
 
 void ConversionJob::heard(std::string_view line) {
+  heard_ = std::chrono::steady_clock::now();
   const nlohmann::json told = nlohmann::json::parse(line, nullptr, false);
   if (!told.is_object()) return;
   if (told.contains("output")) {
@@ -129,7 +151,10 @@ void ConversionJob::heard(std::string_view line) {
     output.job.path = told.value("output", "");
     output.job.bytes = told.value("bytes", std::uint64_t{0});
     output.job.rate = told.value("rate", 0.0);
-    if (told.contains("psnr_db") && told["psnr_db"].is_number()) output.job.psnr_db = told["psnr_db"].get<double>();
+    output.job.psnr_db = number_of(told, "/psnr_db");
+    output.job.max_error = number_of(told, "/max_error");
+    output.job.min = number_of(told, "/value_range/0");
+    output.job.max = number_of(told, "/value_range/1");
     output.skipped = told.value("skipped", false);
     JobResult& result = report_.result;
     result.bytes_read += told.value("bytes_read", std::uint64_t{0});

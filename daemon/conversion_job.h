@@ -55,6 +55,8 @@ class ConversionJob {
   std::string_view step() const { return step_; }               ///< "convert", "verify" or "render"
   std::optional<double> fraction() const { return fraction_; }  ///< of the step, 0..1; none before the first report
   double seconds() const;                                       ///< since the start
+  /// Why nothing was heard of the step for `quiet`, in words; empty: something was.
+  std::string stall(std::chrono::seconds quiet) const;
   std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
 
  private:
@@ -79,6 +81,7 @@ class ConversionJob {
   ConversionTask task_;
   Ended ended_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or the step's begin
   std::unique_ptr<WorkerProcess> worker_;
   std::string_view step_ = "convert";
   std::optional<double> fraction_;

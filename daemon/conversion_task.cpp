@@ -43,6 +43,7 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.io_class = service.io_class;
   task.work_dir = service.work_dir;
   task.thumbnails = watch.thumbnails;
+  task.again = job.forced;
   return task;
 }
 

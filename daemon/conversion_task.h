@@ -24,6 +24,7 @@ struct ConversionTask {
   IoClass io_class = IoClass::none;
   std::string work_dir;  ///< spill files; empty: beside the output
   bool thumbnails = true;
+  bool again = false;  ///< also what is done
 };
 
 /// The task of `job`, which is of `watch`.

@@ -30,6 +30,10 @@ class ChoosingWatch final : public DirectoryWatch {
   WatchMethod method() const override { return watch_->method(); }
   bool up() const override { return watch_->up(); }
   WatchFigures figures() const override { return watch_->figures(); }
+  void choose_again() override {
+    gave_up_ = false;
+    use(choice());
+  }
 
  private:
   void pass_on(const FileEvent& event) {

@@ -29,6 +29,7 @@ struct WatchFigures {
   std::uint64_t overflows = 0;    ///< of the inotify queue
   std::uint64_t directories = 0;  ///< being watched
   std::uint64_t files = 0;        ///< sources there are, as far as known
+  bool looked = false;            ///< all that was there at first is known
 };
 
 class DirectoryWatch {
@@ -39,6 +40,8 @@ class DirectoryWatch {
   /// Whether the directory is there, as of the last look.
   virtual bool up() const = 0;
   virtual WatchFigures figures() const = 0;
+  /// What stood against inotify may be over (a limit was raised): the way to watch is chosen anew.
+  virtual void choose_again() {}
 };
 
 class Inotify;

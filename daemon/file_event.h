@@ -11,6 +11,7 @@ enum class FileEventKind {
   written,    ///< a program writes to it; its close will be seen
   closed,     ///< a program that had it open for writing closed it
   moved_in,   ///< it got this name by a rename
+  permitted,  ///< its mode, owner or times were set; says nothing of its content
   marked,     ///< its marker is there (WatchConfig::marker); says nothing of the file itself
   removed,    ///< it is gone, or has another name
   overflow,   ///< events were lost; whatever differs is reported as found or removed. `path` is the directory

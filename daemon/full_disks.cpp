@@ -23,6 +23,11 @@ bool FullDisks::admits(std::uint64_t device, std::int64_t job, std::uint64_t sou
   return estimate < static_cast<double>(full.refused) && estimate <= static_cast<double>(full.free);
 }
 
+std::string FullDisks::directory_on(std::uint64_t device) const {
+  const auto at = full_.find(device);
+  return at == full_.end() ? "" : at->second.directory;
+}
+
 std::vector<std::string> FullDisks::directories() const {
   std::vector<std::string> names;
   for (const auto& [device, full] : full_) names.push_back(full.directory);

@@ -30,6 +30,8 @@ class FullDisks {
   /// Whether that job, whose source has that size, may write to `device` now. One that found no room waits in any case.
   bool admits(std::uint64_t device, std::int64_t job, std::uint64_t source_bytes) const;
   bool empty() const { return full_.empty(); }
+  /// Where output found no room on `device`; empty: there is room.
+  std::string directory_on(std::uint64_t device) const;
   /// A directory of each.
   std::vector<std::string> directories() const;
   /// Forgets those that are to be tried again; `free_of` tells the room there now. Returns their directories.

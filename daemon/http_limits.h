@@ -15,6 +15,7 @@ struct HttpLimits {
   std::chrono::milliseconds response{30'000};  ///< for the client to take a response; then it is closed
   std::chrono::milliseconds linger{1'000};     ///< for the client to read a last response while it still sends
   std::size_t connections = 512;               ///< at once; for one more, the one waiting longest is closed
+  std::size_t local_share = 32;                ///< of those, kept for this machine: others close none of them
 };
 
 }  // namespace weir

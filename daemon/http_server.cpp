@@ -81,21 +81,29 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
 
  private:
   void add(tcp::socket socket) {
-    while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) close_longest_waiting();
-    close_on_exec(socket);
     error_code ignored;
+    const bool local = socket.remote_endpoint(ignored).address().is_loopback();
+    while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) make_room(local);
+    close_on_exec(socket);
     socket.set_option(tcp::no_delay(true), ignored);
-    sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), limits_, handler_,
+    sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), local, limits_, handler_,
                                                       [this](HttpSession& ended) { remove(ended); }));
     sessions_.back()->start();
   }
 
-  // The oldest idle connection; where none is idle, the one that has been sending its request for longest, and so on:
-  // whoever holds connections open without using them must not keep the others out.
-  void close_longest_waiting() {
-    const auto longest = std::min_element(sessions_.begin(), sessions_.end(), [](const auto& a, const auto& b) {
-      return std::tuple(a->phase(), a->since()) < std::tuple(b->phase(), b->since());
-    });
+  // Closes the connection that has waited longest for its next request, whether it sends one slowly or none: a fresh
+  // one has its turn before whoever holds connections without using them. Those that are being answered go last. Of
+  // this machine's own, from which health is asked, `local_share` are closed for nobody else's.
+  void make_room(bool for_local) {
+    const auto locals = static_cast<std::size_t>(
+        std::count_if(sessions_.begin(), sessions_.end(), [](const auto& session) { return session->local(); }));
+    const bool local_goes = for_local ? locals >= limits_.local_share : locals > limits_.local_share;
+    const auto rank = [&](const std::shared_ptr<HttpSession>& session) {
+      const bool answered = session->phase() == HttpSession::Phase::responding;
+      return std::tuple(session->local() && !local_goes, answered, session->waiting_since());
+    };
+    const auto longest = std::min_element(sessions_.begin(), sessions_.end(),
+                                          [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     (*longest)->close();
     sessions_.erase(longest);
   }
@@ -105,7 +113,7 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
   }
 
   void accept_later() {
-    if (!sessions_.empty()) close_longest_waiting();
+    if (!sessions_.empty()) make_room(false);
     retry_.expires_after(kAcceptAgain);
     retry_.async_wait([self = shared_from_this()](const error_code& error) {
       if (!error && !self->closed_) self->accept();

@@ -22,9 +22,10 @@ std::string text_of(boost::beast::string_view view) { return {view.data(), view.
 
 }  // namespace
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, const HttpLimits& limits, HttpHandler handler,
+HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, bool local, const HttpLimits& limits, HttpHandler handler,
                          std::function<void(HttpSession&)> ended)
-    : socket_(std::move(socket)),
+    : local_(local),
+      socket_(std::move(socket)),
       timer_(socket_.get_executor()),
       limits_(limits),
       handler_(std::move(handler)),
@@ -50,7 +51,6 @@ void HttpSession::end() {
 // A new phase: its clock starts.
 void HttpSession::enter(Phase phase, std::chrono::milliseconds limit) {
   phase_ = phase;
-  since_ = Clock::now();
   timer_.expires_after(limit);
   timer_.async_wait([self = shared_from_this()](const error_code& error) {
     // A wait that had expired when the next phase began comes here without an error, too.
@@ -66,6 +66,7 @@ void HttpSession::on_timeout() {
 }
 
 void HttpSession::await_request() {
+  waiting_since_ = Clock::now();
   if (buffer_.size() > 0) return begin_request();  // pipelined
   enter(Phase::idle, limits_.idle);
   receive(&HttpSession::begin_request);
@@ -132,6 +133,9 @@ void HttpSession::answer() {
   const auto hosts = message.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && message.version() >= 11)) {
     return refuse(400, "a request needs one Host header");
+  }
+  if (message.count(http::field::transfer_encoding) > 0 && message[http::field::transfer_encoding] != "chunked") {
+    return refuse(501, "this Transfer-Encoding is not known; send the body with a Content-Length, or chunked");
   }
   HttpRequest request;
   request.method = text_of(message.method_string());

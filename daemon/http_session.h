@@ -21,12 +21,12 @@ namespace weir {
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  /// What the connection waits for; the earlier it stands here, the sooner it is given up for a new one.
+  /// What the connection waits for.
   enum class Phase { idle, receiving, draining, responding };
   using Clock = std::chrono::steady_clock;
 
   /// `ended` is called once, when the connection is closed for whatever reason but close().
-  HttpSession(boost::asio::ip::tcp::socket socket, const HttpLimits& limits, HttpHandler handler,
+  HttpSession(boost::asio::ip::tcp::socket socket, bool local, const HttpLimits& limits, HttpHandler handler,
               std::function<void(HttpSession&)> ended);
 
   void start();
@@ -34,7 +34,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void close();
 
   Phase phase() const { return phase_; }
-  Clock::time_point since() const { return since_; }  ///< when it came into its phase
+  /// Since when it has got no further than to its next request: since it was accepted, or its last answer was taken.
+  Clock::time_point waiting_since() const { return waiting_since_; }
+  /// Whether the client is this machine.
+  bool local() const { return local_; }
 
  private:
   void enter(Phase phase, std::chrono::milliseconds limit);
@@ -51,6 +54,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void on_timeout();
   void end();
 
+  bool local_;
   boost::asio::ip::tcp::socket socket_;
   boost::asio::steady_timer timer_;
   const HttpLimits limits_;
@@ -60,7 +64,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   std::optional<boost::beast::http::response<boost::beast::http::string_body>> response_;
   Phase phase_ = Phase::idle;
-  Clock::time_point since_ = Clock::now();
+  Clock::time_point waiting_since_ = Clock::now();
   std::size_t header_bytes_ = 0;  ///< of the request so far, its first line included
   bool head_ = false;             ///< the request is HEAD: its response has no body
   bool timed_out_ = false;        ///< on_timeout gave the request up

@@ -254,6 +254,7 @@ void InotifyWatch::take_file(std::uint32_t mask, const std::string& path) {
   }
   if ((mask & IN_CREATE) != 0) changes_.emplace_back(FileEventKind::created, path);
   if ((mask & IN_MODIFY) != 0) changes_.emplace_back(FileEventKind::written, path);
+  if ((mask & IN_ATTRIB) != 0) changes_.emplace_back(FileEventKind::permitted, path);
   if ((mask & IN_CLOSE_WRITE) != 0) changes_.emplace_back(FileEventKind::closed, path);
   if ((mask & IN_MOVED_TO) != 0) changes_.emplace_back(FileEventKind::moved_in, path);
   if ((mask & (IN_MOVED_FROM | IN_DELETE)) != 0) changes_.emplace_back(FileEventKind::removed, path);

@@ -43,7 +43,9 @@ class InotifyWatch final : public DirectoryWatch {
 
   WatchMethod method() const override { return WatchMethod::inotify; }
   bool up() const override { return table_.up(); }
-  WatchFigures figures() const override { return {table_.overflows(), watches_.size(), table_.size()}; }
+  WatchFigures figures() const override {
+    return {table_.overflows(), watches_.size(), table_.size(), table_.looked()};
+  }
 
  private:
   using Change = std::pair<FileEventKind, std::string>;

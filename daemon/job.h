@@ -23,7 +23,11 @@ struct JobOutput {
   std::uint64_t bytes = 0;
   double rate = 0;                ///< dense float32 bytes / bytes
   std::optional<double> psnr_db;  ///< absent where lossless
-  std::string thumbnail;          ///< absolute; empty: none
+  std::optional<double>
+      max_error;              ///< the largest absolute one; this and the next are absent where an older weir wrote
+  std::optional<double> min;  ///< of the source's finite values
+  std::optional<double> max;
+  std::string thumbnail;  ///< absolute; empty: none
   bool operator==(const JobOutput&) const = default;
 };
 
@@ -49,6 +53,7 @@ struct Job {
   std::string options;  ///< what it is converted with, as given to JobStore::observe
   FileIdentity identity;
   JobState state = JobState::discovered;
+  bool forced = false;             ///< to be converted again even where its outputs are done
   int attempts = 0;                ///< failed ones since source, options or a user gave it a new start
   std::int64_t discovered_ms = 0;  ///< this identity first seen
   std::int64_t changed_ms = 0;     ///< state last changed

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::chrono::seconds kRecent{60};
+constexpr std::chrono::seconds kRates{600};
 /// How often a full disk, a state file that cannot be written and short memory are looked at again.
 constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
@@ -39,6 +39,10 @@ std::string error_kind(int exit_code) {
     default:
       return exit_code > 128 ? "killed" : "internal";
   }
+}
+
+std::string no_room_text(const std::string& directory, const DiskRoom& room) {
+  return cat("no room in ", directory, ", where ", format_bytes(room.free), " are free; what needs more waits for it");
 }
 
 std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
@@ -225,7 +229,12 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
   ++figures_.done;
   figures_.bytes_in += run.job.identity.bytes;
   figures_.bytes_out += result.bytes_written;
-  recent_.emplace_back(Clock::now(), run.job.identity.bytes);
+  const Clock::time_point now = Clock::now();
+  last_minute_.add(run.job.identity.bytes, now);
+  for (const std::string& watch : {std::string(), run.job.watch}) {
+    converted_.try_emplace(watch, kRates, started_).first->second.add(run.job.identity.bytes, now);
+  }
+  disks_.written(fs::path(run.work->task().output).parent_path().string(), result.bytes_written, now);
 }
 
 void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
@@ -287,6 +296,16 @@ void JobRunner::look_at_disks() {
   }
 }
 
+void JobRunner::look_for_stalls() {
+  for (auto& [id, run] : running_) {
+    const std::string stall = run.work->stall(kQuiet);
+    if (!stall.empty() && !run.stall_said) {
+      log_.warn("stalled", {{"job", id}, {"source", run.job.source}, {"reason", stall}});
+    }
+    run.stall_said = !stall.empty();
+  }
+}
+
 void JobRunner::arm_timer() {
   if (stopping_ && pending_.empty()) {
     timer_.cancel();
@@ -313,6 +332,7 @@ void JobRunner::arm_timer() {
   timer_.async_wait([this](boost::system::error_code error) {
     if (error) return;
     look_at_disks();
+    look_for_stalls();
     write_pending();
     wake();
   });
@@ -333,11 +353,15 @@ std::string JobRunner::hold() const {
   if (!store_fault_.empty()) return store_fault_;
   std::string full;
   for (const std::string& directory : full_disks_.directories()) {
-    full += cat(full.empty() ? "" : "; ", "no room in ", directory, ", where ", format_bytes(room_in(directory).free),
-                " are free; what needs more waits for it");
+    full += cat(full.empty() ? "" : "; ", no_room_text(directory, room_in(directory)));
   }
   if (!full.empty()) return full;
   return scheduler_.paused() ? "paused by request" : "";
+}
+
+std::string JobRunner::hold_of(const DiskRoom& disk) const {
+  const std::string directory = full_disks_.directory_on(disk.device);
+  return directory.empty() ? "" : no_room_text(directory, disk);
 }
 
 void JobRunner::abandon(std::int64_t id) {
@@ -379,12 +403,17 @@ void JobRunner::kill() {
   for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
 }
 
-double JobRunner::bytes_per_s() {
-  const Clock::time_point now = Clock::now();
-  while (!recent_.empty() && now - recent_.front().first > kRecent) recent_.pop_front();
-  double bytes = 0;
-  for (const auto& [when, size] : recent_) bytes += static_cast<double>(size);
-  return bytes / std::chrono::duration<double>(kRecent).count();
+double JobRunner::bytes_per_s() const { return last_minute_.at(Clock::now()).bytes_per_s; }
+
+RecentRate::Rates JobRunner::converted(const std::string& watch) const {
+  const auto at = converted_.find(watch);
+  return at == converted_.end() ? RecentRate::Rates{} : at->second.at(Clock::now());
+}
+
+std::vector<OutputDisk> JobRunner::disks() const {
+  std::vector<std::string> directories;
+  for (const WatchConfig& watch : config_.watches) directories.push_back(watch.output);
+  return disks_.look(directories, Clock::now());
 }
 
 }  // namespace weir

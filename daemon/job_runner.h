@@ -20,6 +20,8 @@
 #include "daemon/event_log.h"
 #include "daemon/full_disks.h"
 #include "daemon/job_store.h"
+#include "daemon/output_disks.h"
+#include "daemon/recent_rate.h"
 #include "daemon/scheduler.h"
 #include "daemon/seconds_histogram.h"
 #include "daemon/source_deletion.h"
@@ -38,10 +40,14 @@ struct RunnerFigures {
                                               {"internal", 0}, {"killed", 0}, {"disk-full", 0}, {"source-changed", 0}};
 };
 
+/// A conversion that says nothing for so long is said to stand still.
+inline constexpr std::chrono::seconds kQuiet{60};
+
 struct RunningJob {
   Job job;
   std::chrono::steady_clock::time_point begin;
   std::unique_ptr<ConversionJob> work;
+  bool stall_said = false;
 };
 
 class JobRunner {
@@ -80,7 +86,13 @@ class JobRunner {
   const std::map<std::int64_t, RunningJob>& running() const { return running_; }
   const RunnerFigures& figures() const { return figures_; }
   /// Source bytes a second, over the last minute.
-  double bytes_per_s();
+  double bytes_per_s() const;
+  /// Of what was converted, over the last ten minutes; empty: of all watches.
+  RecentRate::Rates converted(const std::string& watch = "") const;
+  /// The file systems that the watches' outputs lie on.
+  std::vector<OutputDisk> disks() const;
+  /// Why jobs with outputs on `disk` wait, in words; empty: they do not.
+  std::string hold_of(const DiskRoom& disk) const;
 
  private:
   bool start_next();
@@ -98,6 +110,7 @@ class JobRunner {
   void say_fault(const Error& error);
   void arm_timer();
   void look_at_disks();
+  void look_for_stalls();
   std::optional<Job> next_job(const WatchConfig& watch) const;
   const WatchConfig* watch_of(const std::string& label) const;
 
@@ -114,7 +127,10 @@ class JobRunner {
   std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
   std::string store_fault_;
   RunnerFigures figures_;
-  std::deque<std::pair<std::chrono::steady_clock::time_point, std::uint64_t>> recent_;  ///< end and source bytes
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  RecentRate last_minute_{std::chrono::seconds(60), started_};
+  std::map<std::string, RecentRate> converted_;  ///< by watch; "": of all
+  OutputDisks disks_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer grace_timer_;
   std::function<void()> stopped_;

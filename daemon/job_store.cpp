@@ -1,8 +1,10 @@
 #include "daemon/job_store.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
+#include "daemon/problem_key.h"
 #include "daemon/state_file.h"
 #include "format/error.h"
 #include "format/text.h"
@@ -12,17 +14,21 @@ namespace {
 
 constexpr std::int64_t kFirstDelay_ms = 5'000;
 constexpr std::int64_t kLongestDelay_ms = 600'000;
+constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are the clock's being kept right
 constexpr std::size_t kLogTailBytes = 4096;
+
+constexpr std::initializer_list<JobState> kProblemStates{JobState::failed, JobState::quarantined};
 
 constexpr const char* kColumns =
     "SELECT id, watch, source, options, bytes, mtime_ns, inode, state, attempts, discovered_ms, changed_ms, queued_ms, "
-    "due_ms, started_ms, finished_ms, seconds, bytes_read, bytes_written, peak_rss_bytes, exit_code, reason, log_tail "
+    "due_ms, started_ms, finished_ms, seconds, bytes_read, bytes_written, peak_rss_bytes, exit_code, reason, log_tail, "
+    "forced "
     "FROM jobs ";
 
 /// What a job starts anew with, besides its state.
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
-    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', log_tail = ''";
+    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', log_tail = '', forced = 0";
 
 /// What a retry changes, of the jobs that follow it; binds the time.
 constexpr const char* kRetried =
@@ -30,8 +36,8 @@ constexpr const char* kRetried =
     "reason = '', changed_ms = ? ";
 
 std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) {
-  Statement rows =
-      database.prepare("SELECT path, bytes, rate, psnr_db, thumbnail FROM outputs WHERE job = ? ORDER BY place");
+  Statement rows = database.prepare(
+      "SELECT path, bytes, rate, psnr_db, thumbnail, max_error, min, max FROM outputs WHERE job = ? ORDER BY place");
   rows.bind(job);
   std::vector<JobOutput> outputs;
   while (rows.step()) {
@@ -39,8 +45,11 @@ std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) 
     output.path = rows.text(0);
     output.bytes = rows.whole(1);
     output.rate = rows.real(2);
-    if (!rows.is_null(3)) output.psnr_db = rows.real(3);
+    output.psnr_db = rows.real_or_none(3);
     output.thumbnail = rows.text(4);
+    output.max_error = rows.real_or_none(5);
+    output.min = rows.real_or_none(6);
+    output.max = rows.real_or_none(7);
   }
   return outputs;
 }
@@ -70,6 +79,7 @@ Job read_job(const Database& database, const Statement& row) {
   job.result.exit_code = static_cast<int>(row.integer(column++));
   job.result.reason = row.text(column++);
   job.result.log_tail = row.text(column++);
+  job.forced = row.integer(column++) != 0;
   job.result.outputs = read_outputs(database, job.id);
   return job;
 }
@@ -92,17 +102,34 @@ std::string in_state(std::initializer_list<JobState> states) {
   return cat("state IN (", names, ")");
 }
 
+std::string sql_of(const JobOrder& order) {
+  constexpr std::array kColumnsOfKeys{"changed_ms", "discovered_ms", "source", "state", "watch", "bytes", "seconds"};
+  static_assert(kColumnsOfKeys.size() == kJobOrderKeys.size());
+  const char* const way = order.descending ? " DESC" : "";
+  return cat(kColumnsOfKeys[static_cast<std::size_t>(order.key)], way, ", id", way);
+}
+
 std::string where(const JobFilter& filter) {
   std::string condition = "WHERE 1";
   if (filter.state) condition += cat(" AND ", in_state({*filter.state}));
   if (!filter.watch.empty()) condition += " AND watch = ?";
-  if (!filter.source.empty()) condition += " AND instr(lower(source), lower(?))";
+  if (!filter.text.empty()) condition += " AND (instr(lower(source), lower(?)) OR instr(lower(reason), lower(?)))";
+  if (!filter.problem.empty())
+    condition += cat(" AND ", in_state(kProblemStates), " AND problem_key(source, reason) = ?");
   return condition;
 }
 
 void bind(Statement& statement, const JobFilter& filter) {
   if (!filter.watch.empty()) statement.bind(filter.watch);
-  if (!filter.source.empty()) statement.bind(filter.source);
+  if (!filter.text.empty()) statement.bind(filter.text).bind(filter.text);
+  if (!filter.problem.empty()) statement.bind(filter.problem);
+}
+
+// Times later than `now` become `now`.
+void end_the_future(const Database& database, std::int64_t now) {
+  for (const char* time : {"changed_ms", "discovered_ms", "queued_ms"}) {
+    database.prepare(cat("UPDATE jobs SET ", time, " = ? WHERE ", time, " > ?")).bind(now).bind(now).step();
+  }
 }
 
 std::string tail(const std::string& log) {
@@ -124,9 +151,19 @@ std::int64_t JobStore::wall_clock_ms() {
 
 JobStore::JobStore(const std::string& path, Clock clock)
     : clock_(std::move(clock)), database_(open_state_file(path, notice_)) {
+  database_.add_function("problem_key", problem_key);
+  end_the_future(database_, now());
   Statement interrupted = database_.prepare(
       cat("UPDATE jobs SET state = 'waiting', changed_ms = ?, due_ms = 0 WHERE ", in_state({JobState::running})));
-  interrupted.bind(clock_()).step();
+  interrupted.bind(latest_).step();
+}
+
+// Where the clock was set back, what is dated later than now would be the newest for as long as it was ahead.
+std::int64_t JobStore::now() {
+  const std::int64_t now = clock_();
+  if (now < latest_ - kClockStep_ms) end_the_future(database_, now);
+  latest_ = now;
+  return now;
 }
 
 void JobStore::together(const std::function<void()>& steps) {
@@ -139,7 +176,7 @@ JobStore::Observation JobStore::observe(const std::string& watch, const std::str
                                         const FileIdentity& identity, const std::string& options) {
   const std::optional<Job> known = find(watch, source);
   if (known && known->identity == identity && known->options == options) return {Change::none, known->state, *known};
-  const std::int64_t now = clock_();
+  const std::int64_t now = this->now();
   Transaction transaction(database_);
   if (known) {
     Statement update = database_.prepare(
@@ -162,7 +199,7 @@ JobStore::Observation JobStore::observe(const std::string& watch, const std::str
 }
 
 bool JobStore::enqueue(std::int64_t id) {
-  const std::int64_t now = clock_();
+  const std::int64_t now = this->now();
   database_
       .prepare(cat("UPDATE jobs SET state = 'waiting', changed_ms = ?, queued_ms = ?, due_ms = 0, reason = '' "
                    "WHERE id = ? AND ",
@@ -175,7 +212,7 @@ bool JobStore::enqueue(std::int64_t id) {
 }
 
 bool JobStore::start(std::int64_t id) {
-  const std::int64_t now = clock_();
+  const std::int64_t now = this->now();
   database_
       .prepare(cat("UPDATE jobs SET state = 'running', changed_ms = ?, started_ms = ? WHERE id = ? AND ",
                    in_state({JobState::waiting})))
@@ -187,23 +224,30 @@ bool JobStore::start(std::int64_t id) {
 }
 
 bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to, int attempts, std::int64_t delay_ms) {
-  const std::int64_t now = clock_();
+  const std::int64_t now = this->now();
   Transaction transaction(database_);
   Statement update = database_.prepare(
       cat("UPDATE jobs SET state = ?, changed_ms = ?, finished_ms = ?, attempts = ?, due_ms = ?, seconds = ?, "
-          "bytes_read = ?, bytes_written = ?, peak_rss_bytes = ?, exit_code = ?, reason = ?, log_tail = ? "
+          "bytes_read = ?, bytes_written = ?, peak_rss_bytes = ?, exit_code = ?, reason = ?, log_tail = ?, "
+          "forced = CASE ? WHEN 'done' THEN 0 ELSE forced END "
           "WHERE id = ? AND ",
           in_state({JobState::running})));
   update.bind(job_state_name(to)).bind(now).bind(now).bind(attempts).bind(delay_ms == 0 ? 0 : now + delay_ms);
   update.bind(result.seconds).bind(result.bytes_read).bind(result.bytes_written).bind(result.peak_rss_bytes);
-  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail)).bind(id).step();
+  update.bind(result.exit_code)
+      .bind(result.reason)
+      .bind(tail(result.log_tail))
+      .bind(job_state_name(to))
+      .bind(id)
+      .step();
   if (database_.changes() == 0) return false;
   database_.prepare("DELETE FROM outputs WHERE job = ?").bind(id).step();
   for (std::size_t i = 0; i < result.outputs.size(); ++i) {
     const JobOutput& output = result.outputs[i];
-    Statement insert = database_.prepare("INSERT INTO outputs VALUES (?, ?, ?, ?, ?, ?, ?)");
+    Statement insert = database_.prepare("INSERT INTO outputs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(id).bind(std::uint64_t{i}).bind(output.path).bind(output.bytes).bind(output.rate);
-    insert.bind(output.psnr_db).bind(output.thumbnail).step();
+    insert.bind(output.psnr_db).bind(output.thumbnail);
+    insert.bind(output.max_error).bind(output.min).bind(output.max).step();
   }
   transaction.commit();
   return true;
@@ -231,7 +275,7 @@ bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobSt
       .prepare(
           cat("UPDATE jobs SET state = ?, changed_ms = ?, due_ms = 0, reason = ? WHERE id = ? AND ", in_state(from)))
       .bind(job_state_name(to))
-      .bind(clock_())
+      .bind(now())
       .bind(reason)
       .bind(id)
       .step();
@@ -241,7 +285,7 @@ bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobSt
 bool JobStore::postpone(std::int64_t id, const std::string& reason, std::int64_t delay_ms) {
   if (!move(id, {JobState::running}, JobState::waiting, reason)) return false;
   if (delay_ms > 0) {
-    database_.prepare("UPDATE jobs SET due_ms = ? WHERE id = ?").bind(clock_() + delay_ms).bind(id).step();
+    database_.prepare("UPDATE jobs SET due_ms = ? WHERE id = ?").bind(now() + delay_ms).bind(id).step();
   }
   return true;
 }
@@ -254,33 +298,44 @@ bool JobStore::cancel(std::int64_t id) {
   return move(id, {JobState::discovered, JobState::waiting, JobState::running}, JobState::cancelled, "cancelled");
 }
 
-bool JobStore::retry(std::int64_t id) {
+bool JobStore::retry(std::int64_t id, bool force) {
+  Transaction transaction(database_);
   database_
       .prepare(cat(kRetried, "WHERE id = ? AND (",
                    in_state({JobState::done, JobState::failed, JobState::quarantined, JobState::cancelled}),
                    " OR (state = 'waiting' AND due_ms != 0))"))
-      .bind(clock_())
+      .bind(now())
       .bind(id)
       .step();
-  return database_.changes() == 1;
+  const bool retried = database_.changes() == 1;
+  if (retried && force) database_.prepare("UPDATE jobs SET forced = 1 WHERE id = ?").bind(id).step();
+  transaction.commit();
+  return retried;
 }
 
-std::vector<Job> JobStore::retry_all_failed() {
+std::vector<Job> JobStore::retry_all_failed(const std::string& problem) {
   Transaction transaction(database_);
   std::vector<Job> all;
-  for (const JobState state : {JobState::failed, JobState::quarantined}) {
-    const JobFilter filter{state, "", ""};
+  for (const JobState state : kProblemStates) {
+    JobFilter filter;
+    filter.state = state;
+    filter.problem = problem;
     const std::vector<Job> found = jobs(filter, 0, count(filter));
     all.insert(all.end(), found.begin(), found.end());
   }
-  database_.prepare(cat(kRetried, "WHERE ", in_state({JobState::failed, JobState::quarantined}))).bind(clock_()).step();
+  JobFilter filter;
+  filter.problem = problem;
+  Statement update = database_.prepare(cat(kRetried, where(filter), " AND ", in_state(kProblemStates)));
+  update.bind(now());
+  bind(update, filter);
+  update.step();
   transaction.commit();
   return all;
 }
 
 void JobStore::retry_failed_io() {
   database_.prepare(cat(kRetried, "WHERE ", in_state({JobState::failed}), " AND exit_code = ?"))
-      .bind(clock_())
+      .bind(now())
       .bind(static_cast<std::int64_t>(ErrorKind::io))
       .step();
 }
@@ -320,11 +375,12 @@ std::optional<Job> JobStore::find(const std::string& watch, const std::string& s
   return read_one(database_, std::move(row));
 }
 
-std::vector<Job> JobStore::jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const {
-  const bool queue = filter.state == JobState::waiting;
-  Statement rows = database_.prepare(cat(kColumns, where(filter),
-                                         queue ? " ORDER BY queued_ms, id" : " ORDER BY changed_ms DESC, id DESC",
-                                         " LIMIT ? OFFSET ?"));
+std::vector<Job> JobStore::jobs(const JobFilter& filter, std::size_t offset, std::size_t limit,
+                                const std::optional<JobOrder>& order) const {
+  const std::string sorted = order                               ? sql_of(*order)
+                             : filter.state == JobState::waiting ? "queued_ms, id"
+                                                                 : "changed_ms DESC, id DESC";
+  Statement rows = database_.prepare(cat(kColumns, where(filter), " ORDER BY ", sorted, " LIMIT ? OFFSET ?"));
   bind(rows, filter);
   rows.bind(std::uint64_t{limit}).bind(std::uint64_t{offset});
   return read_jobs(database_, std::move(rows));
@@ -342,6 +398,25 @@ std::uint64_t JobStore::count(const JobFilter& filter) const {
   bind(row, filter);
   row.step();
   return row.whole(0);
+}
+
+std::vector<JobProblem> JobStore::problems(std::size_t limit) const {
+  // Of a group, SQLite gives the columns of the row that has the largest changed_ms.
+  Statement rows =
+      database_.prepare(cat("SELECT problem_key(source, reason), count(*), id, max(changed_ms) FROM jobs WHERE ",
+                            in_state(kProblemStates), " GROUP BY 1 ORDER BY 4 DESC, 3 DESC LIMIT ?"));
+  rows.bind(std::uint64_t{limit});
+  std::vector<JobProblem> problems;
+  while (rows.step()) problems.push_back({rows.text(0), rows.whole(1), job(rows.integer(2)).value()});
+  return problems;
+}
+
+std::map<std::string, std::uint64_t> JobStore::waiting_bytes() const {
+  Statement rows = database_.prepare(
+      cat("SELECT watch, sum(bytes) FROM jobs WHERE ", in_state({JobState::waiting}), " GROUP BY watch"));
+  std::map<std::string, std::uint64_t> bytes;
+  while (rows.step()) bytes[rows.text(0)] = rows.whole(1);
+  return bytes;
 }
 
 std::map<std::string, JobCounts> JobStore::counts() const {

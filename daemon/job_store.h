@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "daemon/job.h"
+#include "daemon/job_order.h"
 #include "daemon/priority.h"
 #include "daemon/sqlite.h"
 
@@ -41,7 +42,15 @@ inline constexpr int kMaxAttempts = 5;
 struct JobFilter {
   std::optional<JobState> state;
   std::string watch;
-  std::string source;  ///< a part of the path, letter case aside where it is ASCII
+  std::string text{};     ///< a part of the source's path or of the reason, letter case aside where it is ASCII
+  std::string problem{};  ///< of failed and quarantined ones: JobProblem::key
+};
+
+/// Failed and quarantined jobs of equal reasons (problem_key).
+struct JobProblem {
+  std::string key;
+  std::uint64_t count = 0;
+  Job newest;
 };
 
 using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
@@ -90,9 +99,11 @@ class JobStore {
   bool cancel(std::int64_t id);  ///< discovered, waiting or running -> cancelled
   /// done, failed, quarantined or cancelled -> discovered, as if just seen; waiting after a failure -> due at once.
   /// Either way no attempt counts any more.
-  bool retry(std::int64_t id);
-  /// retry() of all failed and quarantined ones, in one write; the jobs as they were.
-  std::vector<Job> retry_all_failed();
+  /// `force`: and it is converted even where its outputs are done.
+  bool retry(std::int64_t id, bool force = false);
+  /// retry() of all failed and quarantined ones, or those of one problem (JobProblem::key), in one write; the jobs as
+  /// they were.
+  std::vector<Job> retry_all_failed(const std::string& problem = "");
   /// retry() of all that failed by exit code 5: at a start of the service the device or the rights may be other ones.
   void retry_failed_io();
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
@@ -107,14 +118,20 @@ class JobStore {
 
   std::optional<Job> job(std::int64_t id) const;
   std::optional<Job> find(const std::string& watch, const std::string& source) const;
-  /// Last changed first; where only waiting ones are asked for, the one longest in the queue first.
-  std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit) const;
+  /// In the order of `order`; where none is given, last changed first, and where only waiting ones are asked for, the
+  /// one longest in the queue first.
+  std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit,
+                        const std::optional<JobOrder>& order = {}) const;
   std::uint64_t count(const JobFilter& filter) const;
+  /// The first `limit` of them, the one with the newest job first.
+  std::vector<JobProblem> problems(std::size_t limit) const;
   /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
   /// milliseconds or longer.
   std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
   /// By watch; watches without jobs are absent.
   std::map<std::string, JobCounts> counts() const;
+  /// Source bytes of the jobs that wait, by watch; watches without such jobs are absent.
+  std::map<std::string, std::uint64_t> waiting_bytes() const;
   /// The first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
   std::vector<Job> candidates(const std::string& watch, Priority priority, std::size_t limit) const;
   /// Milliseconds until a waiting job that is not due yet becomes so; nullopt: there is none.
@@ -123,10 +140,12 @@ class JobStore {
   std::optional<std::int64_t> queue_age_ms() const;
 
  private:
+  std::int64_t now();
   bool move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason);
   bool end_attempt(std::int64_t id, const JobResult& result, JobState to, int attempts, std::int64_t delay_ms);
 
   Clock clock_;
+  std::int64_t latest_ = 0;  ///< what the clock said last
   std::string notice_;
   Database database_;
 };

@@ -155,6 +155,13 @@ void write_last_results(MetricsWriter& out, const StatusView& status) {
   });
 }
 
+void write_disks(MetricsWriter& out, const StatusView& status) {
+  out.family("output_disk_free_bytes", "gauge", "Room that is left for outputs, by file system.");
+  for (const DiskView& disk : status.disks) out.sample({{"disk", disk.path}}, disk.free_bytes);
+  out.family("output_disk_size_bytes", "gauge", "Size of the file systems of outputs.");
+  for (const DiskView& disk : status.disks) out.sample({{"disk", disk.path}}, disk.total_bytes);
+}
+
 void write_process(MetricsWriter& out, const StatusView& status, const ProcessUsage& usage) {
   out.single("resident_memory_bytes", "gauge", "Resident memory of the service, conversions not counted.",
              usage.resident_bytes);
@@ -173,6 +180,7 @@ std::string metrics_text(const StatusView& status, const MetricsView& metrics, c
   write_jobs(out, status, metrics);
   write_watches(out, status);
   write_last_results(out, status);
+  write_disks(out, status);
   write_process(out, status, usage);
   return std::move(out).text();
 }

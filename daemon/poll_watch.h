@@ -20,7 +20,7 @@ class PollWatch final : public DirectoryWatch {
 
   WatchMethod method() const override { return WatchMethod::poll; }
   bool up() const override { return table_.up(); }
-  WatchFigures figures() const override { return {table_.overflows(), directories_, table_.size()}; }
+  WatchFigures figures() const override { return {table_.overflows(), directories_, table_.size(), table_.looked()}; }
 
  private:
   void begin();

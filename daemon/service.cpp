@@ -94,6 +94,7 @@ void Service::watch_trees() {
                                    [&](const auto& tree) { return tree != nullptr && tree->config() == watch; });
     if (same != before.end()) {
       trees_.push_back(std::move(*same));
+      trees_.back()->reloaded();
       continue;
     }
     trees_.push_back(std::make_unique<WatchedTree>(

@@ -29,8 +29,8 @@ JobView view_of(const Job& job) {
   view.bytes_written = job.result.bytes_written;
   view.peak_rss_bytes = job.result.peak_rss_bytes;
   for (const JobOutput& output : job.result.outputs) {
-    view.outputs.push_back(
-        {output.path, output.bytes, output.rate, output.psnr_db, !output.psnr_db, !output.thumbnail.empty()});
+    view.outputs.push_back({output.path, output.bytes, output.rate, output.psnr_db, !output.psnr_db,
+                            !output.thumbnail.empty(), output.max_error, output.min, output.max});
   }
   return view;
 }
@@ -45,10 +45,31 @@ ServiceControl::ServiceControl(JobStore& store, JobRunner& runner, const Watched
       started_at_(seconds_of(JobStore::wall_clock_ms())) {}
 
 JobPage ServiceControl::jobs(const JobQuery& query) {
-  const JobFilter filter{query.state, query.watch.value_or(""), ""};
+  const JobFilter filter{query.state, query.watch.value_or(""), query.text, query.problem};
   JobPage page;
   page.total = store_.count(filter);
-  for (const Job& job : store_.jobs(filter, query.offset, query.limit)) page.jobs.push_back(view_of(job));
+  for (const Job& job : store_.jobs(filter, query.offset, query.limit, query.order)) {
+    page.jobs.push_back(view_of(job));
+    if (job.state == JobState::discovered) page.jobs.back().reason = waits_for(job);
+  }
+  return page;
+}
+
+std::string ServiceControl::waits_for(const Job& job) const {
+  for (const auto& tree : trees_) {
+    if (tree->config().label == job.watch) return tree->waits_for(job.source);
+  }
+  return {};
+}
+
+ProblemPage ServiceControl::problems(std::size_t limit) {
+  ProblemPage page;
+  for (const JobState state : {JobState::failed, JobState::quarantined}) {
+    page.total += store_.count({state, ""});
+  }
+  for (const JobProblem& problem : store_.problems(limit)) {
+    page.groups.push_back({problem.key, problem.count, view_of(problem.newest)});
+  }
   return page;
 }
 
@@ -57,12 +78,13 @@ std::optional<JobView> ServiceControl::job(std::int64_t id) {
   if (!job) return std::nullopt;
   JobView view = view_of(*job);
   view.log_tail = job->result.log_tail;
+  if (job->state == JobState::discovered) view.reason = waits_for(*job);
   return view;
 }
 
-JobChange ServiceControl::retry(std::int64_t id) {
+JobChange ServiceControl::retry(std::int64_t id, bool force) {
   if (!store_.job(id)) return JobChange::no_such_job;
-  if (!store_.retry(id)) return JobChange::wrong_state;
+  if (!store_.retry(id, force)) return JobChange::wrong_state;
   const std::optional<Job> job = store_.job(id);
   for (const auto& tree : trees_) {
     if (tree->config().label == job->watch && job->state == JobState::discovered) tree->look_again(job->source);
@@ -71,8 +93,8 @@ JobChange ServiceControl::retry(std::int64_t id) {
   return JobChange::made;
 }
 
-std::uint64_t ServiceControl::retry_all_failed() {
-  const std::vector<Job> retried = store_.retry_all_failed();
+std::uint64_t ServiceControl::retry_all_failed(const std::string& problem) {
+  const std::vector<Job> retried = store_.retry_all_failed(problem);
   for (const auto& tree : trees_) {
     for (const Job& job : retried) {
       if (tree->config().label == job.watch) tree->look_again(job.source);
@@ -102,6 +124,7 @@ std::vector<RunningView> ServiceControl::running() const {
     view.seconds = run.work->seconds();
     view.source_bytes = run.job.identity.bytes;
     view.rss_bytes = run.work->resident_bytes();
+    view.stall = run.work->stall(kQuiet);
     views.push_back(std::move(view));
   }
   return views;
@@ -119,7 +142,8 @@ WatchView ServiceControl::watch(const WatchedTree& tree, const std::map<std::str
   view.reason = status.reason;
   view.overflows = status.overflows;
   if (const auto found = counts.find(config.label); found != counts.end()) view.jobs = found->second;
-  const std::vector<Job> last = store_.jobs({JobState::done, config.label, ""}, 0, 1);
+  view.done_per_min = 60 * runner_.converted(config.label).per_s;
+  const std::vector<Job> last = store_.jobs({JobState::done, config.label}, 0, 1);
   if (!last.empty()) view.last_done = view_of(last.front());
   return view;
 }
@@ -143,7 +167,42 @@ StatusView ServiceControl::status() {
   view.bytes_out_total = runner_.figures().bytes_out;
   view.running = running();
   for (const auto& tree : trees_) view.watches.push_back(watch(*tree, counts));
+  add_rates(view);
+  view.disks = disks();
   return view;
+}
+
+// How fast files come and are converted, and when the queue ends at that.
+void ServiceControl::add_rates(StatusView& status) const {
+  const std::map<std::string, std::uint64_t> waiting = store_.waiting_bytes();
+  for (WatchView& watch : status.watches) {
+    if (const auto at = waiting.find(watch.label); at != waiting.end()) watch.waiting_bytes = at->second;
+  }
+  for (const auto& [label, bytes] : waiting) status.waiting_bytes += bytes;
+  RecentRate::Rates arrived;
+  for (const auto& tree : trees_) {
+    const RecentRate::Rates rates = tree->arrivals();
+    arrived.per_s += rates.per_s;
+    arrived.bytes_per_s += rates.bytes_per_s;
+  }
+  const RecentRate::Rates converted = runner_.converted();
+  status.arrived = {60 * arrived.per_s, arrived.bytes_per_s};
+  status.converted = {60 * converted.per_s, converted.bytes_per_s};
+  const double shrinks_by = converted.bytes_per_s - arrived.bytes_per_s;
+  if (status.waiting_bytes == 0) {
+    status.queue_ends_in_s = 0;
+  } else if (shrinks_by > 0) {
+    status.queue_ends_in_s = static_cast<double>(status.waiting_bytes) / shrinks_by;
+  }
+}
+
+std::vector<DiskView> ServiceControl::disks() const {
+  std::vector<DiskView> views;
+  for (const OutputDisk& disk : runner_.disks()) {
+    views.push_back({disk.path, disk.directories, disk.room.free, disk.room.total, disk.written_bytes_per_s,
+                     disk.fills_in_s, runner_.hold_of(disk.room)});
+  }
+  return views;
 }
 
 MetricsView ServiceControl::metrics() {

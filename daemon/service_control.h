@@ -32,9 +32,10 @@ class ServiceControl final : public Control {
   ServiceControl(JobStore& store, JobRunner& runner, const WatchedTrees& trees, const ServiceState& state);
 
   JobPage jobs(const JobQuery& query) override;
+  ProblemPage problems(std::size_t limit) override;
   std::optional<JobView> job(std::int64_t id) override;
-  JobChange retry(std::int64_t id) override;
-  std::uint64_t retry_all_failed() override;
+  JobChange retry(std::int64_t id, bool force) override;
+  std::uint64_t retry_all_failed(const std::string& problem) override;
   JobChange cancel(std::int64_t id) override;
   void pause() override { runner_.pause(); }
   void resume() override { runner_.resume(); }
@@ -44,6 +45,9 @@ class ServiceControl final : public Control {
   std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) override;
 
  private:
+  std::string waits_for(const Job& job) const;
+  void add_rates(StatusView& status) const;
+  std::vector<DiskView> disks() const;
   std::vector<RunningView> running() const;
   WatchView watch(const WatchedTree& tree, const std::map<std::string, JobCounts>& counts) const;
 

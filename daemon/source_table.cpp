@@ -48,6 +48,7 @@ void SourceTable::begin_look(bool events_tell) {
 
 void SourceTable::end_look() {
   events_tell_ = true;
+  looked_ = true;
   for (auto at = known_.begin(); at != known_.end();) {
     // Directories that could not be listed this time, and renames while they were, hide files that are there.
     struct stat status {};

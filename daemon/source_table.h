@@ -56,6 +56,7 @@ class SourceTable {
   void settled(const std::string& path) { complaints_.erase(path); }
 
   std::size_t size() const { return known_.size(); }
+  bool looked() const { return looked_; }  ///< whether a look at everything has ended
   std::uint64_t overflows() const { return overflows_; }
   std::string absolute(std::string_view path) const;
 
@@ -78,6 +79,7 @@ class SourceTable {
   std::set<std::string> complaints_;
   std::uint64_t look_ = 0;
   bool events_tell_ = false;
+  bool looked_ = false;
   std::uint64_t overflows_ = 0;
 };
 

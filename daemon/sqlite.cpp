@@ -96,6 +96,10 @@ std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(
 
 double Statement::real(int column) const { return sqlite3_column_double(statement_.get(), column); }
 
+std::optional<double> Statement::real_or_none(int column) const {
+  return is_null(column) ? std::nullopt : std::optional(real(column));
+}
+
 std::string Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   if (text == nullptr) return {};
@@ -121,6 +125,28 @@ Database::Database(const std::string& path) : connection_(std::make_unique<Conne
     throw Error(ErrorKind::io, cat(path, ": cannot use the state: it is read-only", remedy(SQLITE_READONLY)));
   }
   sqlite3_busy_timeout(database, kBusyTimeout_ms);
+}
+
+void Database::add_function(const char* name, std::string (*function)(std::string_view, std::string_view)) {
+  const auto call = [](sqlite3_context* context, int /*count*/, sqlite3_value** values) {
+    const auto text_of = [](sqlite3_value* value) {
+      const auto* text = reinterpret_cast<const char*>(sqlite3_value_text(value));
+      return text == nullptr ? std::string_view()
+                             : std::string_view(text, static_cast<std::size_t>(sqlite3_value_bytes(value)));
+    };
+    const auto called =
+        reinterpret_cast<std::string (*)(std::string_view, std::string_view)>(sqlite3_user_data(context));
+    try {
+      const std::string result = called(text_of(values[0]), text_of(values[1]));
+      sqlite3_result_text64(context, result.data(), result.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+    } catch (const std::bad_alloc&) {
+      sqlite3_result_error_nomem(context);
+    }
+  };
+  const int status =
+      sqlite3_create_function_v2(connection_->database.get(), name, 2, SQLITE_UTF8 | SQLITE_DETERMINISTIC,
+                                 reinterpret_cast<void*>(function), call, nullptr, nullptr, nullptr);
+  if (status != SQLITE_OK) fail(*connection_, status);
 }
 
 void Database::run(std::string_view sql) const {

@@ -61,6 +61,7 @@ class Statement {
   std::int64_t integer(int column) const;
   std::uint64_t whole(int column) const { return static_cast<std::uint64_t>(integer(column)); }
   double real(int column) const;
+  std::optional<double> real_or_none(int column) const;  ///< none: NULL
   std::string text(int column) const;
 
  private:
@@ -79,6 +80,9 @@ class Database {
   Statement prepare(std::string_view sql) const { return {*connection_, sql}; }
   /// Runs a statement without parameters to its end.
   void run(std::string_view sql) const;
+  /// From now on SQL may call NAME(a, b) of two texts: what `function`, which must not throw but for want of memory,
+  /// says of them.
+  void add_function(const char* name, std::string (*function)(std::string_view, std::string_view));
   /// Rows changed by the last statement.
   int changes() const { return sqlite3_changes(connection_->database.get()); }
   /// Whether a transaction is open.

@@ -33,6 +33,7 @@ constexpr const char* kTables[] = {
          exit_code INTEGER NOT NULL DEFAULT 0,
          reason TEXT NOT NULL DEFAULT '',
          log_tail TEXT NOT NULL DEFAULT '',
+         forced INTEGER NOT NULL DEFAULT 0,
          UNIQUE (watch, source)) STRICT)",
     // What the scheduler and /metrics ask for.
     "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
@@ -48,7 +49,15 @@ constexpr const char* kTables[] = {
          rate REAL NOT NULL,
          psnr_db REAL,
          thumbnail TEXT NOT NULL,
+         max_error REAL,
+         min REAL,
+         max REAL,
          PRIMARY KEY (job, place)) STRICT, WITHOUT ROWID)"};
+
+/// What makes a file of version 1 one of version 2, ...
+constexpr const char* kFromVersion1[] = {
+    "ALTER TABLE jobs ADD COLUMN forced INTEGER NOT NULL DEFAULT 0", "ALTER TABLE outputs ADD COLUMN max_error REAL",
+    "ALTER TABLE outputs ADD COLUMN min REAL", "ALTER TABLE outputs ADD COLUMN max REAL"};
 
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);
@@ -90,11 +99,14 @@ Database open_whole(const std::string& path) {
   check_ours(database, path);
   check_whole(database, path);
   Transaction made(database);
-  if (number(database, "PRAGMA user_version") == 0) {
+  const std::int64_t version = number(database, "PRAGMA user_version");
+  if (version == 0) {
     for (const char* table : kTables) database.run(table);
     database.run(cat("PRAGMA application_id=", kStateApplication));
-    database.run(cat("PRAGMA user_version=", kStateVersion));
+  } else if (version == 1) {
+    for (const char* change : kFromVersion1) database.run(change);
   }
+  if (version != kStateVersion) database.run(cat("PRAGMA user_version=", kStateVersion));
   made.commit();
   return database;
 }

@@ -66,8 +66,14 @@ WatchedTree::Status WatchedTree::status() const {
 
 void WatchedTree::look_again(const std::string& path) { take({FileEventKind::found, path}); }
 
+std::string WatchedTree::waits_for(const std::string& path) const {
+  const auto at = tracked_.find(path);
+  return at == tracked_.end() ? "" : at->second.waits_for;
+}
+
 void WatchedTree::take(const FileEvent& event) {
   events_.push_back(event);
+  if (!watch_->figures().looked) first_events_ = events_.size();
   schedule(milliseconds(0));
 }
 
@@ -85,11 +91,12 @@ void WatchedTree::schedule(milliseconds delay) {
 void WatchedTree::work() {
   scheduled_ = false;
   const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), kBatchEvents));
-  std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
+  const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
+  const std::size_t first = std::min(events.size(), first_events_);
   try {
     store_.together([&] {
       if (!known_looked_at_) look_at_known_jobs();
-      work_off(events);
+      work_off(events, first);
     });
     known_looked_at_ = true;
     store_fault_.clear();
@@ -112,6 +119,7 @@ void WatchedTree::work() {
     return;
   }
   events_.erase(events_.begin(), events_.begin() + count);
+  first_events_ -= first;
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
   if (!events_.empty()) {
@@ -125,7 +133,7 @@ void WatchedTree::work() {
 void WatchedTree::look_at_known_jobs() {
   const PathFilter filter(config_);
   for (const JobState state : {JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined}) {
-    const JobFilter jobs{state, config_.label, ""};
+    const JobFilter jobs{state, config_.label};
     for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
       const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
       if (!filter.accepts_file(relative) || is_gone(job.source)) store_.remove(job.id);
@@ -133,11 +141,12 @@ void WatchedTree::look_at_known_jobs() {
   }
 }
 
-void WatchedTree::work_off(const std::vector<FileEvent>& events) {
+void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t first) {
   const Time now = Clock::now();
   std::set<std::string>& changed = looked_at_;
   changed.clear();
-  for (const FileEvent& event : events) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const FileEvent& event = events[i];
     switch (event.kind) {
       case FileEventKind::overflow:
         // The close that a file waited for may be among what was lost.
@@ -159,9 +168,12 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events) {
         if (at == tracked_.end()) {
           at = tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path))}).first;
         }
-        at->second.completion.happened(event.kind, now);
-        at->second.written = at->second.written || event.kind == FileEventKind::written ||
-                             event.kind == FileEventKind::closed || event.kind == FileEventKind::moved_in;
+        Tracked& tracked = at->second;
+        tracked.completion.happened(event.kind, now);
+        tracked.arrived = tracked.arrived || i >= first;
+        tracked.permitted = tracked.permitted || event.kind == FileEventKind::permitted;
+        tracked.written = tracked.written || event.kind == FileEventKind::written ||
+                          event.kind == FileEventKind::closed || event.kind == FileEventKind::moved_in;
         changed.insert(event.path);
         break;
       }
@@ -182,6 +194,7 @@ void WatchedTree::look(const std::string& path, Time now) {
     if (!std::exchange(tracked_.at(path).unreachable, true)) {
       log_.warn("watch", {{"watch", config_.label}, {"notice", error.what()}});
     }
+    tracked_.at(path).waits_for = error.what();
     track_until(path, now + kUnreachable);
     return;
   }
@@ -199,9 +212,9 @@ void WatchedTree::look(const std::string& path, Time now) {
     track_until(path, now + kAfterRun);
     return;
   }
-  const bool again = seen.job.state == JobState::done && tracked_.at(path).written && may_hide_a_write(seen.job) &&
-                     store_.retry(seen.job.id);
-  if (seen.job.state != JobState::discovered && !again) {
+  const bool again = tries_again(path, seen.job) && store_.retry(seen.job.id);
+  if (again && seen.job.state == JobState::waiting) ready_ = true;
+  if (seen.job.state == JobState::waiting || (seen.job.state != JobState::discovered && !again)) {
     forget(path);  // known, and as it was
     return;
   }
@@ -210,22 +223,34 @@ void WatchedTree::look(const std::string& path, Time now) {
     forget(path);
     return;
   }
-  apply(path, tracked_.at(path).completion.look(sample, now), seen.job.id);
+  apply(path, tracked_.at(path).completion.look(sample, now), seen.job);
 }
 
-void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer, std::int64_t job) {
+// Whether a job that is known, and whose source looks as it did, has its turn once more.
+bool WatchedTree::tries_again(const std::string& path, const Job& job) {
+  Tracked& tracked = tracked_.at(path);
+  const bool permitted = std::exchange(tracked.permitted, false);
+  if (job.state == JobState::done) return tracked.written && may_hide_a_write(job);
+  const bool waits_after_failure = job.state == JobState::waiting && job.due_ms != 0;
+  return permitted && job.result.exit_code == static_cast<int>(ErrorKind::io) &&
+         (job.state == JobState::failed || waits_after_failure);
+}
+
+void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer, const Job& job) {
   switch (answer.state) {
     case CompletionAnswer::State::complete:
-      store_.enqueue(job);
+      store_.enqueue(job.id);
+      if (tracked_.at(path).arrived) arrivals_.add(job.identity.bytes, Clock::now());
       ready_ = true;
       forget(path);
       break;
     case CompletionAnswer::State::waiting:
+      tracked_.at(path).waits_for = answer.reason;
       track_until(path, answer.until);
       break;
     case CompletionAnswer::State::broken:
-      store_.quarantine(job, answer.reason);
-      log_.warn("quarantined", {{"job", job}, {"source", path}, {"reason", answer.reason}});
+      store_.quarantine(job.id, answer.reason);
+      log_.warn("quarantined", {{"job", job.id}, {"source", path}, {"reason", answer.reason}});
       forget(path);
       break;
     case CompletionAnswer::State::gone:

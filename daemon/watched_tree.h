@@ -23,6 +23,7 @@
 #include "daemon/directory_watch.h"
 #include "daemon/event_log.h"
 #include "daemon/job_store.h"
+#include "daemon/recent_rate.h"
 
 namespace weir {
 
@@ -45,25 +46,38 @@ class WatchedTree {
   };
   Status status() const;
 
+  /// What the file at `path` still waits for before it is taken, in words; empty: it is not waited for.
+  std::string waits_for(const std::string& path) const;
+  /// Of the sources that came since the first look at the directory, over the last ten minutes.
+  RecentRate::Rates arrivals() const { return arrivals_.at(std::chrono::steady_clock::now()); }
+
   /// As if the file had just been found: its job was asked to be tried again, or its content is not what it was.
   void look_again(const std::string& path);
+  /// The service was told to read its configuration again, and this watch stays as it is.
+  void reloaded() { watch_->choose_again(); }
 
  private:
   using Time = std::chrono::steady_clock::time_point;
+  static constexpr std::chrono::seconds kArrivalWindow{600};
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
+    std::string waits_for{};   ///< why it was not complete at the last look
+    bool arrived = false;      ///< it came, or was written to, since the first look at the directory
     bool written = false;      ///< a program was seen to write to it
+    bool permitted = false;    ///< its mode or owner was set
     bool unreachable = false;  ///< it could not be looked at, which was said
   };
 
   void take(const FileEvent& event);
   void schedule(std::chrono::milliseconds delay);
   void work();
-  void work_off(const std::vector<FileEvent>& events);
+  /// The first `first` of `events` are of the first look at the directory.
+  void work_off(const std::vector<FileEvent>& events, std::size_t first);
   void look_at_known_jobs();
   void look(const std::string& path, Time now);
-  void apply(const std::string& path, const CompletionAnswer& answer, std::int64_t job);
+  bool tries_again(const std::string& path, const Job& job);
+  void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);
   void track_until(const std::string& path, Time until);
   void forget(const std::string& path);
   void gone(const std::string& path);
@@ -76,6 +90,8 @@ class WatchedTree {
   std::map<std::string, Tracked> tracked_;         ///< files that are not known to be complete
   std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at which of them
   std::vector<FileEvent> events_;
+  std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
+  RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
   std::set<std::string> looked_at_;  ///< paths, in the last transaction
   bool known_looked_at_ = false;
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can

@@ -261,4 +261,12 @@ std::uint64_t WorkerProcess::resident_bytes() const {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
+char WorkerProcess::process_state() const {
+  std::ifstream file(cat("/proc/", running_->pid(), "/stat"));
+  std::string line;
+  std::getline(file, line);
+  const std::size_t name_end = line.rfind(')');  // the name may hold any character
+  return name_end == std::string::npos || name_end + 2 >= line.size() ? '\0' : line[name_end + 2];
+}
+
 }  // namespace weir

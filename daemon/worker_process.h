@@ -55,6 +55,9 @@ class WorkerProcess {
   void stop(std::chrono::milliseconds grace);
   /// Bytes resident now; 0 where it has just ended.
   std::uint64_t resident_bytes() const;
+  /// As ps says it: 'R' runs, 'S' sleeps, 'D' waits for a device, 'T' was stopped by a signal; 0 where it has just
+  /// ended.
+  char process_state() const;
 
  private:
   class Running;

@@ -51,6 +51,7 @@ struct ConvertArguments {
   std::string bandwidth;  ///< a size, per second
   bool overwrite = false;
   bool skip_done = false;
+  bool again = false;
   bool json = false;
 };
 
@@ -133,12 +134,16 @@ void tidy_up(const std::string& output) {
 }
 
 // The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
-std::optional<Sidecar> skip_or_replace(const SourceInfo& info, ConversionOptions& options) {
+std::optional<Sidecar> skip_or_replace(const SourceInfo& info, bool again, ConversionOptions& options) {
   FinishedOutput found = find_output(info, options);
   switch (found.state) {
     case FinishedOutput::State::absent:
       return std::nullopt;
     case FinishedOutput::State::done:
+      if (again) {
+        options.overwrite = true;
+        return std::nullopt;
+      }
       spdlog::info("{}: done already", options.output);
       tidy_up(options.output);
       return std::move(found.sidecar);
@@ -165,6 +170,8 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
                               {"bytes_read", skipped ? 0 : s.timing.bytes_read},
                               {"peak_rss_bytes", skipped ? 0 : s.timing.peak_rss_bytes}};
   if (s.error.psnr_db) line["psnr_db"] = *s.error.psnr_db;
+  line["max_error"] = s.error.max_abs;
+  line["value_range"] = s.value_range;
   announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -177,7 +184,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   check_files(source->info(), a.within);
   if (first != nullptr) check_alike(*first, source->info(), options.budget);
   if (a.skip_done) {
-    if (auto record = skip_or_replace(source->info(), options)) {
+    if (auto record = skip_or_replace(source->info(), a.again, options)) {
       announce_output(shown, options.output, true, *record);
       return *std::move(record);
     }
@@ -305,6 +312,8 @@ void add_convert(CLI::App& app) {
   command->add_flag("--skip-done", a->skip_done,
                     "leave an output that this very conversion made of the same source; convert it again where the "
                     "source, the scene or an option has changed or the output is not whole");
+  command->add_flag("--again", a->again, "with --skip-done: convert again what is done, too; others' files are left")
+      ->needs("--skip-done");
   command->add_flag("--json", a->json, "print the sidecar on stdout");
   add_log_level(*command);
   command->callback([command, a] { convert(*command, *a); });

@@ -9,8 +9,8 @@ namespace weir {
 namespace {
 
 // They say how a command reports, or whether it runs at all.
-constexpr std::array<std::string_view, 9> kSilent{"help",      "json",   "progress",      "progress-fd", "log-level",
-                                                  "skip-done", "resume", "save-interval", "trace"};
+constexpr std::array<std::string_view, 10> kSilent{"help",      "json",  "progress", "progress-fd",   "log-level",
+                                                   "skip-done", "again", "resume",   "save-interval", "trace"};
 
 }  // namespace
 

@@ -20,6 +20,7 @@ struct RetryArguments {
   ServiceOptions service;
   std::vector<std::int64_t> ids;
   bool all_failed = false;
+  bool force = false;
   bool json = false;
 };
 
@@ -35,11 +36,12 @@ void run(const RetryArguments& a) {
   if (a.ids.empty() != a.all_failed) {
     throw Error(ErrorKind::usage, "give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed");
   }
+  if (a.all_failed && a.force) throw Error(ErrorKind::usage, "--force is for jobs given by their IDs");
   if (a.all_failed) return retry_all(a);
   const ServiceClient client(a.service);
   Json jobs = Json::array();
   for (const std::int64_t id : a.ids) {
-    jobs.push_back(client.post(cat("/api/jobs/", id, "/retry")));
+    jobs.push_back(client.post(cat("/api/jobs/", id, a.force ? "/retry?force=1" : "/retry")));
     if (a.json) continue;
     std::cout << cat("job ", id, " is tried again: ",
                      client.read(jobs.back(), [](const Json& job) { return printable(job.at("source")); }), '\n');
@@ -54,6 +56,7 @@ void add_retry(CLI::App& app) {
   const auto a = std::make_shared<RetryArguments>();
   command->add_option("id", a->ids, "jobs, as weir jobs lists them");
   command->add_flag("--all-failed", a->all_failed, "every failed and quarantined one");
+  command->add_flag("--force", a->force, "of jobs given by ID: convert them even where their outputs are done");
   command->add_flag("--json", a->json, "one JSON object on stdout");
   add_service_options(*command, a->service);
   add_log_level(*command);

@@ -230,9 +230,9 @@ if [[ $size != test ]]; then
 fi
 targets=(weir weir_tests)
 [[ $size == test ]] || targets=() # all, with the benchmarks
-[[ $size != full ]] || export WEIR_MANY_FILES=2000
+[[ $size != full ]] || export WEIR_MANY_FILES=2000 WEIR_KILLS=200
 if build release "${targets[@]}"; then run_tests release; fi
-unset WEIR_MANY_FILES
+unset WEIR_MANY_FILES WEIR_KILLS
 if [[ $size != test ]]; then
   run_asan
   run_tsan

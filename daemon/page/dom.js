@@ -22,9 +22,41 @@ export function set_text(target, text) {
   if (target.textContent !== text) target.textContent = text;
 }
 
+/** The first child of `parent`, at any depth, that has the class. */
+export const part = (parent, name) => parent.querySelector(`.${name}`);
+
+/** Makes `select` offer [value, text] pairs; keeps the choice where it is still offered. Whether the choice changed. */
+export function offer(select, choices) {
+  const offered = [...select.options].map((option) => option.value);
+  if (choices.map(([value]) => value).join("\n") === offered.join("\n")) return false;
+  const chosen = select.value;
+  select.replaceChildren(...choices.map(([value, text]) => new Option(text, value)));
+  if (choices.some(([value]) => value === chosen)) select.value = chosen;
+  return select.value !== chosen;
+}
+
+/** What has the focus, in which child of the list, and as which of its buttons. */
+function focus_in(list) {
+  const focused = document.activeElement;
+  const place = [...list.children].findIndex((child) => child.contains(focused));
+  const buttons = place < 0 ? [] : [...list.children[place].querySelectorAll("button")];
+  return {focused, place, button_place: buttons.indexOf(focused)};
+}
+
+// Where what had the focus is gone, what took its place in the list gets it: a keyboard goes on from there.
+function keep_focus(list, {focused, place, button_place}) {
+  if (place < 0) return;
+  if (list.contains(focused)) {
+    focused.focus({preventScroll: true});
+    return;
+  }
+  const buttons = list.children[Math.min(place, list.children.length - 1)]?.querySelectorAll("button") ?? [];
+  (buttons[button_place] ?? buttons[0])?.focus({preventScroll: true});
+}
+
 /**
  * Makes `list` show `items`, one child each, keeping the child of an item that stays: focus and pictures survive.
- * `make(item)` returns a child, `update(child, item)` fills it; `empty` is shown where there are none.
+ * `make(item)` returns a child, `update(child, item)` fills it; `empty` is shown where there are none, unless it is "".
  */
 export function show_items(list, items, key, make, update, empty) {
   const kept = new Map([...list.children].map((child) => [child.dataset.key, child]));
@@ -38,7 +70,7 @@ export function show_items(list, items, key, make, update, empty) {
     update(child, item);
     return child;
   });
-  if (children.length === 0) {
+  if (children.length === 0 && empty) {
     const note = kept.get("empty") ?? element("li", "empty");
     note.dataset.key = "empty";
     set_text(note, empty);
@@ -46,7 +78,7 @@ export function show_items(list, items, key, make, update, empty) {
   }
   const same = children.length === list.children.length && children.every((child, i) => child === list.children[i]);
   if (same) return;
-  const focused = document.activeElement;
+  const focus = focus_in(list);
   list.replaceChildren(...children);
-  if (list.contains(focused)) focused.focus({preventScroll: true});
+  keep_focus(list, focus);
 }

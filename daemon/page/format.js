@@ -1,6 +1,9 @@
-// Values as text. Sizes are in powers of 1024, as the command prints them.
+// Values as text. Sizes are in powers of 1024, as the command prints them. What is unknown (null) is a dash.
+
+const kUnknown = "\u2013";
 
 export function bytes(value) {
+  if (value === null) return kUnknown;
   const units = ["B", "KiB", "MiB", "GiB", "TiB", "PiB"];
   let unit = 0;
   while (value >= 1024 && unit < units.length - 1) {
@@ -16,6 +19,23 @@ export function seconds(value) {
   if (value < 7200) return `${Math.round(value / 60)} min`;
   if (value < 172800) return `${Math.round(value / 3600)} h`;
   return `${Math.round(value / 86400)} days`;
+}
+
+/** "12.5", a number of files a minute. */
+export function per_minute(value) {
+  if (value === null) return kUnknown;
+  return value >= 100 ? count(Math.round(value)) : value.toFixed(1);
+}
+
+export function bytes_per_s(value) {
+  return value === null ? kUnknown : `${bytes(value)}/s`;
+}
+
+/** Three digits, as short as they can be written: "0.0125", "4.2e-7", "125000". */
+export function number(value) {
+  const short = Number(value.toPrecision(3));
+  const size = Math.abs(short);
+  return size !== 0 && (size < 1e-3 || size >= 1e6) ? short.toExponential().replace("e+", "e") : String(short);
 }
 
 export function count(value) {
@@ -36,6 +56,23 @@ export function base_name(path) {
   return path.slice(path.lastIndexOf("/") + 1);
 }
 
+/** The text with its middle left out where it is longer than `letters`: what tells names apart stands at both ends. */
+export function middle(text, letters) {
+  if (text.length <= letters) return text;
+  const end = Math.floor(letters * 0.45);
+  return `${text.slice(0, letters - end - 1)}\u2026${text.slice(-end)}`;
+}
+
+/** Why a job is where it is; without its path, which stands beside it. */
+export function reason(job) {
+  const start = `${job.source}: `;
+  return job.reason.startsWith(start) ? job.reason.slice(start.length) : job.reason;
+}
+
+export function state(job) {
+  return job.state === "discovered" ? "not taken yet" : job.state;
+}
+
 /** "51.2 dB" of an output, or "lossless". */
 export function quality(output) {
   if (output.lossless) return "lossless";
@@ -44,4 +81,19 @@ export function quality(output) {
 
 export function rate(output) {
   return `rate ${Number(output.rate.toPrecision(3))}`;
+}
+
+/** "largest error 0.0012", or nothing where that is unknown. */
+export function largest_error(output) {
+  return output.max_error === null ? "" : `largest error ${number(output.max_error)}`;
+}
+
+/** "values 0 to 4.2", or nothing where they are unknown. */
+export function range(output) {
+  return output.min === null || output.max === null ? "" : `values ${number(output.min)} to ${number(output.max)}`;
+}
+
+/** All that is known of an output, a text for each figure. */
+export function output_facts(output) {
+  return [bytes(output.bytes), rate(output), quality(output), largest_error(output), range(output)].filter(Boolean);
 }

@@ -1,6 +1,7 @@
 // One job in full, with what can be done about it.
 
 import {get, post} from "./api.js";
+import {path_with_copy} from "./copy.js";
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
 
@@ -9,7 +10,8 @@ let shown = 0;  // id
 let changed = () => {};
 
 function facts_of(job) {
-  const facts = [["Source", job.source], ["State", job.state], ["Size", format.bytes(job.source_bytes)]];
+  const facts = [["Source", path_with_copy(job.source, "source")], ["State", format.state(job)],
+                 ["Size", format.bytes(job.source_bytes)]];
   if (job.reason) facts.push(["Reason", job.reason]);
   facts.push(["Since", `${format.date(job.changed_at)} (${format.ago(job.changed_at)})`]);
   if (job.attempts > 0) facts.push(["Failed attempts", String(job.attempts)]);
@@ -17,7 +19,7 @@ function facts_of(job) {
   if (job.seconds !== null) facts.push(["Time taken", format.seconds(job.seconds)]);
   if (job.peak_rss_bytes > 0) facts.push(["Peak memory", format.bytes(job.peak_rss_bytes)]);
   for (const output of job.outputs) {
-    facts.push(["Output", `${output.path}: ${format.bytes(output.bytes)}, ${format.rate(output)}, ${format.quality(output)}`]);
+    facts.push(["Result", path_with_copy(output.path, "result")], ["Figures", format.output_facts(output).join(", ")]);
   }
   return facts;
 }

@@ -1,20 +1,23 @@
 // Asks the service how it is, every two seconds while the page is looked at, and
 // shows the answer.
 
+import {offer_watch_filter, prepare_all_jobs, refresh_all_jobs} from "./all_jobs.js";
 import {get, post, set_token} from "./api.js";
 import {by_id, set_text} from "./dom.js";
+import {show_figures} from "./figures.js";
 import * as format from "./format.js";
 import {open_job, prepare_dialog} from "./job_dialog.js";
-import {show_problems, show_queue, show_results, show_running, show_watches} from "./lists.js";
+import {show_not_taken, show_queue, show_running} from "./lists.js";
+import {refresh_problems} from "./problems.js";
+import {show_results} from "./results.js";
 import {offer_watches, refresh_series} from "./series.js";
+import {show_watches} from "./watches.js";
 
 const kRound_ms = 2000;
 const kQueueShown = 10;
-const kProblemsShown = 10;
+const kNotTakenShown = 10;
 const kResultsShown = 12;
-const kSamples = 60;
 
-const samples = [];       // throughput of the last rounds
 let answered_at = 0;      // when the last answer came, Unix ms
 let series_of = "";       // what the series was loaded for
 let timer = 0;
@@ -33,28 +36,13 @@ function show_banner(text, bad) {
   set_text(banner, text);
 }
 
-function show_sparkline(bytes_per_s) {
-  samples.push(bytes_per_s);
-  if (samples.length > kSamples) samples.shift();
-  const top = Math.max(...samples, 1);
-  const points = samples.map((sample, i) => `${120 - 2 * (samples.length - 1 - i)},${27 - 26 * sample / top}`);
-  by_id("sparkline").firstElementChild.setAttribute("points", points.join(" "));
-}
-
-function show_figures(status) {
-  set_text(by_id("throughput"), `${format.bytes(status.bytes_per_s)}/s`);
-  show_sparkline(status.bytes_per_s);
-  set_text(by_id("waiting"), format.count(status.jobs.waiting));
-  const queue = ["waiting"];
-  if (status.jobs.waiting > 0) queue.push(`the oldest for ${format.seconds(status.queue_age_s)}`);
-  if (status.jobs.discovered > 0) queue.push(`${format.count(status.jobs.discovered)} more not complete yet`);
-  set_text(by_id("queue-age"), queue.join(", "));
-  set_text(by_id("done"), format.count(status.jobs.done));
-  set_text(by_id("totals"),
-           `done; since start ${format.bytes(status.bytes_in_total)} in, ${format.bytes(status.bytes_out_total)} out`);
-  const broken = status.jobs.failed + status.jobs.quarantined;
-  set_text(by_id("broken"), format.count(broken));
-  by_id("broken").classList.toggle("bad", broken > 0);
+/** What keeps jobs from going on, and whether that is a fault. */
+function troubles(status) {
+  const paused = status.state === "paused" && status.reason ? [`Paused: ${status.reason}.`] : [];
+  const held = status.disks.filter((disk) => disk.held && !status.reason.includes(disk.held))
+                   .map((disk) => `Jobs wait for room on ${disk.path}: ${disk.held}.`);
+  const down = status.watches.filter((watch) => !watch.up).map((watch) => `${watch.directory} is not watched: ${watch.reason}.`);
+  return {text: [...paused, ...held, ...down].join(" "), bad: held.length + down.length > 0};
 }
 
 function show_status(status) {
@@ -63,15 +51,15 @@ function show_status(status) {
   by_id("config").title = status.config;
   by_id("pause").hidden = status.state !== "running" && status.state !== "paused";
   set_text(by_id("pause"), status.state === "paused" ? "Resume" : "Pause");
-  const down = status.watches.filter((watch) => !watch.up).map((watch) => `${watch.directory} is not watched: ${watch.reason}.`);
-  const paused = status.state === "paused" && status.reason ? [`Paused: ${status.reason}.`] : [];
-  show_banner([...paused, ...down].join(" "), down.length > 0);
+  const {text, bad} = troubles(status);
+  show_banner(text, bad);
   document.title = `weir: ${status.jobs.running} running, ${status.jobs.waiting} waiting`;
   set_text(by_id("footer"), `weir ${status.version}, up since ${format.date(status.started_at)}`);
   show_figures(status);
   show_running(status.running, open_job);
   show_watches(status.watches);
   offer_watches(status.watches);
+  offer_watch_filter(status.watches);
 }
 
 function show_failure(error) {
@@ -90,13 +78,19 @@ function show_failure(error) {
   show_banner(`${error.message}${last} Trying again.`, true);
 }
 
+const kProblemActions = {
+  open: open_job,
+  retry: (id) => act(`/api/jobs/${id}/retry`),
+  retry_group: (query) => act(`/api/retry-failed?${query}`),
+};
+
 async function refresh_lists() {
-  const jobs = (state, limit) => get(`/api/jobs?state=${state}&limit=${limit}`);
-  const [failed, quarantined, waiting, done] = await Promise.all([
-    jobs("failed", kProblemsShown), jobs("quarantined", kProblemsShown), jobs("waiting", kQueueShown),
-    jobs("done", kResultsShown)]);
-  show_problems(failed, quarantined, open_job, (id) => act(`/api/jobs/${id}/retry`));
+  const [waiting, discovered, done] = await Promise.all([
+    get(`/api/jobs?state=waiting&limit=${kQueueShown}`),
+    get(`/api/jobs?state=discovered&sort=discovered&order=asc&limit=${kNotTakenShown}`),
+    get(`/api/jobs?state=done&limit=${kResultsShown}`), refresh_problems(kProblemActions), refresh_all_jobs()]);
   show_queue(waiting, open_job);
+  show_not_taken(discovered, open_job);
   show_results(done, open_job, kResultsShown);
 }
 
@@ -150,4 +144,5 @@ document.addEventListener("visibilitychange", () => {
   if (!document.hidden) round();
 });
 prepare_dialog(round);
+prepare_all_jobs(open_job);
 round();

@@ -1,18 +1,23 @@
-// The time slider: every rendered output of one watch, in the order of the
-// sources' names, numbers by value.
+// The time slider: every output of one watch, in the order of the sources'
+// names, numbers by value; its picture, and plots of the figures of all.
 
 import {get, query, thumbnail} from "./api.js";
-import {by_id, element, set_text} from "./dom.js";
+import {by_id, element, offer, set_text} from "./dom.js";
 import * as format from "./format.js";
+import {open_pictures} from "./picture_dialog.js";
+import {mark_step, prepare_plots, show_plots} from "./plots.js";
 
 const kPageLength = 200;
 const kLongest = 5000;  // jobs; of more, the latest
 const kFrame_ms = 200;
+const kLetters = 90;  // of a name; what two lines of the caption hold
 
 const order = new Intl.Collator("en", {numeric: true});
 const slider = by_id("series-slider");
 const play_button = by_id("series-play");
 const watch_choice = by_id("series-watch");
+const field_choice = by_id("series-field");
+const picture = by_id("series-picture");
 
 let jobs = new Map();  // of the chosen watch, by id
 let frames = [];       // {job, output, index}
@@ -35,10 +40,38 @@ async function load_new(watch, into) {
   }
 }
 
+/** What all steps of a field have in common: the output's name but for its numbers. */
+const field_of = (output) => format.base_name(output.path).replaceAll(/\d+/g, "\u2026");
+
+/** The fields that the jobs' outputs are of, where a source has several; else none. */
+function fields_of(all) {
+  const mixed = [...jobs.values()].some(({outputs}) => new Set(outputs.map(field_of)).size > 1);
+  return mixed ? [...new Set(all.map(({output}) => field_of(output)))] : [];
+}
+
 function order_frames() {
   const sorted = [...jobs.values()].sort((a, b) => order.compare(a.source, b.source));
-  frames = sorted.flatMap((job) => job.outputs.map((output, index) => ({job, output, index})))
-               .filter((frame) => frame.output.thumbnail);
+  const all = sorted.flatMap((job) => job.outputs.map((output, index) => ({job, output, index})));
+  const fields = fields_of(all);
+  offer(field_choice, fields.map((field) => [field, field]));
+  field_choice.hidden = by_id("series-field-label").hidden = fields.length === 0;
+  frames = fields.length === 0 ? all : all.filter(({output}) => field_of(output) === field_choice.value);
+}
+
+function show_caption({job, output}) {
+  const name = element("strong", "", format.middle(format.base_name(output.path), kLetters));
+  name.title = output.path;
+  by_id("series-caption").replaceChildren(name, ...format.output_facts(output).map((fact) => element("span", "", fact)),
+                                          element("span", "quiet", format.date(job.changed_at)));
+}
+
+async function picture_of({job, output, index}) {
+  if (!output.thumbnail) return "no picture";
+  try {
+    return await thumbnail(job, index, `Rendering of ${format.base_name(output.path)}`);
+  } catch {
+    return "no picture";
+  }
 }
 
 async function show_frame() {
@@ -48,23 +81,31 @@ async function show_frame() {
   const name = format.base_name(frame.output.path);
   slider.setAttribute("aria-valuetext", `${place + 1} of ${frames.length}: ${name}`);
   set_text(by_id("series-place"), `${place + 1} of ${frames.length}`);
-  by_id("series-caption").replaceChildren(
-      element("strong", "path", name), element("span", "", format.bytes(frame.output.bytes)),
-      element("span", "", format.rate(frame.output)), element("span", "", format.quality(frame.output)),
-      element("span", "quiet", format.date(frame.job.changed_at)));
+  show_caption(frame);
+  mark_step(place);
   const key = key_of(frame);
   if (key === shown) return;
   shown = key;
-  let picture;
-  try {
-    picture = await thumbnail(frame.job, frame.index, `Rendering of ${name}`);
-  } catch {
-    picture = "no picture";
-  }
+  const image = await picture_of(frame);
   if (shown !== key) return;  // another one was asked for meanwhile
-  by_id("series-picture").replaceChildren(picture);
-  const next = frames[(place + 1) % frames.length];
-  thumbnail(next.job, next.index, "").catch(() => {});  // so that playing need not wait for it
+  picture.replaceChildren(image);
+  picture.disabled = !frame.output.thumbnail;
+  picture_of(frames[(place + 1) % frames.length]);  // so that playing need not wait for it
+}
+
+function go_to(place) {
+  stop();
+  slider.value = String(place);
+  show_frame();
+}
+
+function enlarge() {
+  stop();
+  const follow = (entry) => {
+    const place = frames.findIndex((frame) => key_of(frame) === key_of(entry));
+    if (place >= 0) go_to(place);
+  };
+  open_pictures(frames, Number(slider.value), follow);
 }
 
 function show_frames() {
@@ -78,6 +119,8 @@ function show_frames() {
   else if (current >= 0) slider.value = String(current);
   if (frames.length < 2) stop();
   play_button.disabled = frames.length < 2;
+  picture.hidden = !frames.some(({output}) => output.thumbnail);
+  show_plots(frames.map(({output}) => output));
   show_frame();
 }
 
@@ -115,18 +158,19 @@ export async function refresh_series() {
 
 /** Offers the watches; keeps the choice. */
 export function offer_watches(watches) {
-  const labels = watches.map((watch) => watch.label);
-  const offered = [...watch_choice.options].map((option) => option.value);
-  if (labels.join("\n") === offered.join("\n")) return;
-  watch_choice.hidden = by_id("series-label").hidden = labels.length < 2;
-  const chosen = watch_choice.value;
-  watch_choice.replaceChildren(...labels.map((label) => new Option(label, label)));
-  if (labels.includes(chosen)) watch_choice.value = chosen;
-  if (watch_choice.value !== chosen) jobs = new Map();
+  watch_choice.hidden = by_id("series-label").hidden = watches.length < 2;
+  if (offer(watch_choice, watches.map(({label}) => [label, label]))) jobs = new Map();
 }
 
+prepare_plots(go_to);
+picture.addEventListener("click", enlarge);
 slider.addEventListener("input", show_frame);
 play_button.addEventListener("click", () => (player ? stop() : play()));
+field_choice.addEventListener("change", () => {
+  stop();
+  order_frames();
+  show_frames();
+});
 watch_choice.addEventListener("change", () => {
   stop();
   jobs = new Map();

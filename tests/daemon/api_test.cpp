@@ -101,7 +101,8 @@ TEST_F(ApiTest, RefusesWrongParameters) {
   EXPECT_EQ(error("limit="), "limit=: give 0 to 1000");
   EXPECT_EQ(error("offset=1e3"), "offset=1e3: give 0 or more");
   EXPECT_EQ(error("offset=99999999999999999999"), "offset=99999999999999999999: give 0 or more");
-  EXPECT_EQ(error("page=2"), "unknown parameter page; there are state, watch, limit and offset");
+  EXPECT_EQ(error("page=2"),
+            "unknown parameter page; there are state, watch, text, problem, sort, order, limit and offset");
 }
 
 TEST_F(ApiTest, ShowsAJobWhole) {
@@ -116,17 +117,17 @@ TEST_F(ApiTest, ShowsAJobWhole) {
   job.bytes_read = 10;
   job.bytes_written = 11;
   job.peak_rss_bytes = 12;
-  job.outputs.push_back({"/out/\xff.nvdb", 1000, 8, 40.5, false, true});
-  job.outputs.push_back({"/out/b.nvdb", 2000, 4, std::nullopt, true, false});
+  job.outputs.push_back({"/out/\xff.nvdb", 1000, 8, 40.5, false, true, 0.25, -1, 3.5});
+  job.outputs.push_back({"/out/b.nvdb", 2000, 4, {}, true, false});
   EXPECT_EQ(ask("GET", "/api/jobs/1").body,
             "{\"id\":1,\"watch\":\"/scratch/run 1\",\"source\":\"/scratch/1.raw\",\"state\":\"done\","
             "\"source_bytes\":1048576,\"attempts\":2,\"discovered_at\":1795253270.125,\"changed_at\":1795253271.0,"
             "\"next_attempt_at\":null,\"reason\":\"said \\\"no\\\"\",\"exit_code\":3,\"seconds\":1.5,"
             "\"bytes_read\":10,\"bytes_written\":11,\"peak_rss_bytes\":12,\"outputs\":["
             "{\"path\":\"/out/\xef\xbf\xbd.nvdb\",\"bytes\":1000,\"rate\":8.0,\"psnr_db\":40.5,\"lossless\":false,"
-            "\"thumbnail\":true},"
+            "\"max_error\":0.25,\"min\":-1.0,\"max\":3.5,\"thumbnail\":true},"
             "{\"path\":\"/out/b.nvdb\",\"bytes\":2000,\"rate\":4.0,\"psnr_db\":null,\"lossless\":true,"
-            "\"thumbnail\":false}],\"log_tail\":\"line\\n\"}\n");
+            "\"max_error\":null,\"min\":null,\"max\":null,\"thumbnail\":false}],\"log_tail\":\"line\\n\"}\n");
 }
 
 TEST_F(ApiTest, ShowsTheStatusWhole) {
@@ -139,17 +140,64 @@ TEST_F(ApiTest, ShowsTheStatusWhole) {
   watch.output = "/out";
   watch.method = "inotify";
   watch.up = true;
+  watch.waiting_bytes = 300;
+  watch.done_per_min = 1.5;
   control_.now.watches.push_back(watch);
+  control_.now.arrived = {12, 100.5};
+  control_.now.converted = {11, 90};
+  control_.now.waiting_bytes = 300;
+  control_.now.disks.push_back({"/scratch", {"/out", "/scratch/b"}, 1000, 4000, 2.5, 400, "no room in /out"});
   EXPECT_EQ(ask("GET", "/api/status").body,
             "{\"version\":\"0.1.0\",\"config\":\"/etc/weir.toml\",\"state\":\"running\",\"reason\":\"\","
             "\"started_at\":0.0,\"queue_age_s\":0.0,\"bytes_per_s\":0.0,\"jobs_at_once\":1,"
             "\"jobs\":{\"discovered\":0,\"waiting\":1,\"running\":1,\"done\":2,\"failed\":1,\"quarantined\":0,"
-            "\"cancelled\":0},\"done_total\":0,\"bytes_in_total\":0,\"bytes_out_total\":0,\"running\":[{\"id\":5,"
+            "\"cancelled\":0},\"done_total\":0,\"bytes_in_total\":0,\"bytes_out_total\":0,\"arrived_per_min\":12.0,"
+            "\"arrived_bytes_per_s\":100.5,\"done_per_min\":11.0,\"converted_bytes_per_s\":90.0,"
+            "\"waiting_bytes\":300,\"queue_ends_in_s\":null,\"disks\":[{\"path\":\"/scratch\","
+            "\"directories\":[\"/out\",\"/scratch/b\"],\"free_bytes\":1000,\"total_bytes\":4000,"
+            "\"written_bytes_per_s\":2.5,\"fills_in_s\":400.0,\"held\":\"no room in /out\"}],\"running\":[{\"id\":5,"
             "\"watch\":\"/scratch/run 1\",\"source\":\"/scratch/5.raw\",\"step\":\"convert\",\"fraction\":null,"
-            "\"seconds\":2.0,\"source_bytes\":100,\"rss_bytes\":1000}],\"watches\":[{\"label\":\"run\","
+            "\"seconds\":2.0,\"source_bytes\":100,\"rss_bytes\":1000,\"stall\":\"\"}],\"watches\":[{\"label\":\"run\","
             "\"directory\":\"/scratch/run 1\",\"output\":\"/out\",\"method\":\"inotify\",\"up\":true,\"reason\":\"\","
             "\"jobs\":{\"discovered\":0,\"waiting\":0,\"running\":0,\"done\":0,\"failed\":0,\"quarantined\":0,"
-            "\"cancelled\":0},\"overflows\":0,\"last_done\":null}]}\n");
+            "\"cancelled\":0},\"waiting_bytes\":300,\"done_per_min\":1.5,\"overflows\":0,\"last_done\":null}]}\n");
+}
+
+TEST_F(ApiTest, GroupsProblems) {
+  for (JobView& job : control_.all) {
+    job.state = JobState::quarantined;
+    job.reason = cat(job.source, ": has ", 10 * job.id, " bytes");
+  }
+  control_.all[1].reason = "is strange";
+  EXPECT_EQ(ask("GET", "/api/problems").body,
+            "{\"total\":5,\"groups\":[{\"key\":\"has # bytes\",\"reason\":\"has 10 bytes\",\"state\":\"quarantined\","
+            "\"count\":4,\"changed_at\":0.0,\"newest\":1},{\"key\":\"is strange\",\"reason\":\"is strange\","
+            "\"state\":\"quarantined\",\"count\":1,\"changed_at\":0.0,\"newest\":2}]}\n");
+  EXPECT_EQ(Json::parse(ask("GET", "/api/problems?limit=1").body).at("groups").size(), 1U);
+  EXPECT_EQ(ask("GET", "/api/problems?limit=1001").status, 400U);
+  EXPECT_EQ(Json::parse(ask("GET", "/api/jobs?problem=has%20%23%20bytes").body).at("total"), 4);
+  EXPECT_EQ(ask("POST", "/api/retry-failed?problem=has+%23+bytes").body, "{\"retried\":4}\n");
+  EXPECT_EQ(control_.asked, std::vector<std::string>{"retry problem has # bytes"});
+}
+
+TEST_F(ApiTest, SearchesAndSortsJobs) {
+  EXPECT_EQ(Json::parse(ask("GET", "/api/jobs?text=/5.raw").body).at("total"), 1);
+  const auto order_of = [&](const std::string& query) {
+    EXPECT_EQ(ask("GET", cat("/api/jobs?", query)).status, 200U) << query;
+    return control_.asked_for.order;
+  };
+  EXPECT_FALSE(order_of("limit=1").has_value());
+  EXPECT_EQ(order_of("sort=bytes")->key, JobOrderKey::bytes);
+  EXPECT_TRUE(order_of("sort=bytes")->descending);
+  EXPECT_FALSE(order_of("sort=source&order=asc")->descending);
+  EXPECT_EQ(order_of("order=desc")->key, JobOrderKey::changed);
+  for (const char* query : {"sort=colour", "sort=", "order=up", "sort=bytes&order="}) {
+    const HttpResponse refused = ask("GET", cat("/api/jobs?", query));
+    EXPECT_EQ(refused.status, 400U) << query;
+    EXPECT_EQ(refused.body,
+              "{\"error\":\"sort is one of changed, discovered, source, state, watch, bytes, seconds; order is asc or "
+              "desc\"}\n");
+  }
 }
 
 TEST_F(ApiTest, KnowsNoOtherJobs) {
@@ -167,6 +215,8 @@ TEST_F(ApiTest, ChangesJobs) {
   EXPECT_EQ(Json::parse(ask("POST", "/api/jobs/3/retry").body).at("state"), "waiting");
   EXPECT_EQ(Json::parse(ask("POST", "/api/jobs/5/cancel").body).at("state"), "cancelled");
   EXPECT_EQ(control_.asked, (std::vector<std::string>{"retry 3", "cancel 5"}));
+  EXPECT_EQ(ask("POST", "/api/jobs/1/retry?force=yes").body,
+            "{\"error\":\"force=yes: give force=1, or leave it out\"}\n");
   const HttpResponse again = ask("POST", "/api/jobs/3/retry");
   EXPECT_EQ(again.status, 409U);
   EXPECT_EQ(again.body, "{\"error\":\"job 3 is waiting: nothing to retry\"}\n");

@@ -2,10 +2,12 @@
 #include "daemon/conversion_job.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "daemon/file_identity.h"
 #include "format/error.h"
@@ -64,6 +66,26 @@ TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
   EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
   const std::uint64_t moved = report.result.bytes_read + report.result.bytes_written;
   EXPECT_GT(report.result.seconds, 0.75 * static_cast<double>(moved) / static_cast<double>(limited.bandwidth));
+}
+
+TEST_F(ConversionJobTest, SaysWhyItStandsStill) {
+  ConversionTask slow = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
+  slow.thumbnails = false;
+  slow.bandwidth = 4 << 20U;
+  std::string stall;
+  const TaskReport report = run(slow, [&](ConversionJob& job) {
+    if (!stall.empty() || !job.fraction()) return;
+    EXPECT_EQ(job.stall(std::chrono::seconds(5)), "");
+    std::ifstream children(cat("/proc/self/task/", ::gettid(), "/children"));
+    pid_t child = 0;
+    ASSERT_TRUE(children >> child);
+    ::kill(child, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    stall = job.stall(std::chrono::seconds(1));
+    ::kill(child, SIGCONT);
+  });
+  EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  EXPECT_EQ(stall, "nothing heard of convert for 1 s: it was stopped by a signal; SIGCONT lets it go on");
 }
 
 TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <chrono>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -269,6 +271,50 @@ TEST(HttpServer, ServesBesideSendersThatNeverFinish) {
   }
   RawClient client(served.port());
   EXPECT_EQ(client.ask(kHealth).status, 200);
+}
+
+// More of them than connections, each back as soon as it is closed: whoever is closed for a new one must be one of
+// them.
+TEST(HttpServer, ServesFreshClientsBesideSlowSendersThatComeBack) {
+  FakeControl control;
+  HttpLimits limits;
+  limits.connections = 64;
+  Served served(control, "", limits);
+  std::atomic<bool> over = false;
+  std::atomic<int> connected = 0;
+  std::thread attack([&] {
+    std::vector<std::unique_ptr<RawClient>> slow(100);
+    while (!over) {
+      for (auto& client : slow) {
+        if (client != nullptr && !client->closed_within(milliseconds(0))) continue;
+        client = std::make_unique<RawClient>(served.port());
+        client->send("GET /healthz HT");
+        ++connected;
+      }
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  });
+  while (connected < 100) std::this_thread::sleep_for(milliseconds(1));
+  int answered = 0;
+  for (int i = 0; i < 200; ++i) answered += RawClient(served.port()).ask(kHealth).status == 200 ? 1 : 0;
+  over = true;
+  attack.join();
+  EXPECT_EQ(answered, 200);
+  EXPECT_GT(connected, 200);
+}
+
+TEST(HttpServer, RefusesCodingsOfTheBodyThatItDoesNotKnow) {
+  FakeControl control;
+  Served served(control);
+  for (const char* coding : {"gzip", "gzip, chunked", "identity"}) {
+    RawClient client(served.port());
+    const RawResponse response =
+        client.ask(cat("POST /api/pause HTTP/1.1\r\nHost: localhost\r\nX-Weir: t\r\nTransfer-Encoding: ", coding,
+                       "\r\n\r\n0\r\n\r\n"));
+    EXPECT_EQ(response.status, 501) << coding;
+    EXPECT_EQ(response.header("Connection"), "close") << coding;
+  }
+  EXPECT_TRUE(control.asked.empty());
 }
 
 TEST(HttpServer, OutlivesAShortageOfDescriptors) {

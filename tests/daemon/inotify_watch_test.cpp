@@ -173,6 +173,16 @@ TEST_F(InotifyWatchTest, AtTheLimitOfWatchesTheTreeIsPolledAndThatIsSaid) {
                              "inotify watches no further directory (the limit is fs.inotify.max_user_watches)")});
   write_file(dir / "b/y.raw", "1");
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "b/y.raw"));
+  dir.watch->choose_again();  // the limit is as low as before
+  dir.notices.clear();
+  ASSERT_TRUE(dir.run_until([&] { return dir.watch->method() == WatchMethod::poll && !dir.notices.empty(); }));
+  faults->watches_left = 1000;
+  dir.watch->choose_again();
+  dir.run_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(dir.watch->method(), WatchMethod::inotify);
+  dir.events.clear();
+  write_file(dir / "c/z.raw", "1");
+  EXPECT_TRUE(dir.run_until_told(Kind::closed, dir / "c/z.raw"));
 }
 
 TEST_F(InotifyWatchTest, TheLimitReachedLaterLosesNothingThatIsKnown) {

@@ -6,80 +6,23 @@
 
 #include <chrono>
 #include <csignal>
-#include <memory>
 #include <random>
 #include <thread>
 
 #include "format/error.h"
 #include "format/text.h"
+#include "tests/daemon/stored_jobs.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scoped_mount.h"
-#include "tests/support/temporary_directory.h"
 
 namespace weir::job_store_test {
 namespace {
 
-constexpr FileIdentity kIdentity{1000, 1'700'000'000'123'456'789, 77};
 using Change = JobStore::Change;
-
-class StoredJobs : public testing::Test {
- protected:
-  StoredJobs() { open(); }
-
-  void open() {
-    store_.reset();
-    store_ = std::make_unique<JobStore>(directory_ / "weir.db", [this] { return now_; });
-  }
-  std::int64_t observe(const std::string& source, const FileIdentity& identity = kIdentity,
-                       const std::string& watch = "w") {
-    return store_->observe(watch, source, identity, "--rate=8").job.id;
-  }
-  std::int64_t waiting(const std::string& source, const FileIdentity& identity = kIdentity,
-                       const std::string& watch = "w") {
-    const std::int64_t id = observe(source, identity, watch);
-    EXPECT_TRUE(store_->enqueue(id));
-    return id;
-  }
-  std::int64_t running(const std::string& source) {
-    const std::int64_t id = waiting(source);
-    EXPECT_TRUE(store_->start(id));
-    return id;
-  }
-  Job job(std::int64_t id) const { return store_->job(id).value(); }
-  std::vector<std::string> candidates(Priority priority, std::size_t limit = 100) const {
-    std::vector<std::string> sources;
-    for (const Job& job : store_->candidates("w", priority, limit)) sources.push_back(job.source);
-    return sources;
-  }
-  std::vector<std::string> sources(const JobFilter& filter, std::size_t offset = 0, std::size_t limit = 100) const {
-    std::vector<std::string> sources;
-    for (const Job& job : store_->jobs(filter, offset, limit)) sources.push_back(job.source);
-    return sources;
-  }
-  using Names = std::vector<std::string>;
-
-  TemporaryDirectory directory_;
-  std::int64_t now_ = 1'800'000'000'000;
-  std::unique_ptr<JobStore> store_;
-};
-
-JobResult failure(int exit_code, const std::string& reason = "it broke") {
-  JobResult result;
-  result.exit_code = exit_code;
-  result.reason = reason;
-  result.log_tail = "a line\nanother\n";
-  return result;
-}
-
-JobResult success() {
-  JobResult result;
-  result.outputs = {{"/out/a_0.nvdb", 512, 8.0, 51.25, "/out/a_0.nvdb.png"}, {"/out/a_1.nvdb", 1024, 4.0, {}, ""}};
-  result.seconds = 1.5;
-  result.bytes_read = 8000;
-  result.bytes_written = 1536;
-  result.peak_rss_bytes = std::uint64_t{1} << 33;
-  return result;
-}
+using test::failure;
+using test::kIdentity;
+using test::StoredJobs;
+using test::success;
 
 TEST_F(StoredJobs, AJobGoesItsWay) {
   const JobStore::Observation seen = store_->observe("w", "/in/a.raw", kIdentity, "--rate=8");
@@ -269,41 +212,20 @@ TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
   EXPECT_EQ(store_->queue_age_ms(), 0);
 }
 
-TEST_F(StoredJobs, CandidatesComeByTheTimeOfTheirSources) {
-  waiting("/in/b.raw", {1, 200, 1});
-  waiting("/in/a.raw", {1, 300, 1});
-  waiting("/in/c.raw", {1, 100, 1});
-  waiting("/in/d.raw", {1, 200, 1});
-  waiting("/in/other.raw", {1, 1, 1}, "another watch");
-  observe("/in/e.raw", {1, 400, 1});
-  EXPECT_EQ(candidates(Priority::oldest), (Names{"/in/c.raw", "/in/b.raw", "/in/d.raw", "/in/a.raw"}));
-  EXPECT_EQ(candidates(Priority::newest), (Names{"/in/a.raw", "/in/d.raw", "/in/b.raw", "/in/c.raw"}));
-  EXPECT_EQ(candidates(Priority::newest, 1), Names{"/in/a.raw"});
-}
-
-TEST_F(StoredJobs, AreListedFilteredAndCounted) {
-  waiting("/in/a.raw");
+TEST_F(StoredJobs, DatedInTheFuture_AreNotTheNewestForEver) {
+  now_ += 3'600'000;
+  waiting("/in/ahead.raw");
+  now_ -= 3'600'000;  // the clock is set back
+  waiting("/in/b.raw");
+  EXPECT_EQ(job(store_->find("w", "/in/ahead.raw")->id).changed_ms, now_);
   now_ += 1000;
-  waiting("/in/b.raw", kIdentity, "v");
-  now_ += 1000;
-  const std::int64_t done = running("/in/C_100%.h5");
-  store_->finish(done, success());
-  EXPECT_EQ(sources({}), (Names{"/in/C_100%.h5", "/in/b.raw", "/in/a.raw"}));
-  EXPECT_EQ(sources({}, 1, 1), Names{"/in/b.raw"});
-  EXPECT_EQ(sources({}, 3), Names{});
-  EXPECT_EQ(sources({JobState::waiting, "", ""}), (Names{"/in/a.raw", "/in/b.raw"}));
-  EXPECT_EQ(sources({JobState::waiting, "v", ""}), Names{"/in/b.raw"});
-  EXPECT_EQ(sources({{}, "", "c_100%"}), Names{"/in/C_100%.h5"});
-  EXPECT_EQ(sources({{}, "", "c_1000"}), Names{});
-  EXPECT_EQ(store_->count({}), 3U);
-  EXPECT_EQ(store_->count({JobState::waiting, "w", "RAW"}), 1U);
-  JobCounts w{};
-  w[static_cast<std::size_t>(JobState::waiting)] = 1;
-  w[static_cast<std::size_t>(JobState::done)] = 1;
-  JobCounts v{};
-  v[static_cast<std::size_t>(JobState::waiting)] = 1;
-  EXPECT_EQ(store_->counts(), (std::map<std::string, JobCounts>{{"v", v}, {"w", w}}));
-  EXPECT_EQ(store_->queue_age_ms(), 2000);
+  waiting("/in/c.raw");
+  EXPECT_EQ(sources({}).front(), "/in/c.raw");
+  now_ += 7'200'000;
+  waiting("/in/late.raw");
+  now_ -= 7'200'000;
+  open();  // while the service was down
+  EXPECT_EQ(job(store_->find("w", "/in/late.raw")->id).changed_ms, now_);
 }
 
 TEST_F(StoredJobs, OfOneSourceInTwoWatchesAreTwo) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <set>
 
 #include "format/text.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::metrics_test {
 namespace {
@@ -108,6 +111,25 @@ TEST(Metrics, CountConversionsCumulatively) {
 }
 
 // The format's rules: HELP, TYPE, then the samples of that name, each name once.
+TEST(Metrics, ShowTheRoomForOutputs) {
+  StatusView status = sample_status();
+  status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
+  EXPECT_EQ(
+      lines_with(metrics_text(status, {}, {}), "weir_output_disk"),
+      "weir_output_disk_free_bytes{disk=\"/scratch\"} 1000\nweir_output_disk_size_bytes{disk=\"/scratch\"} 4000\n");
+}
+
+TEST(Metrics, PrometheusFindsNoFault) {
+  if (std::system("command -v promtool >/dev/null") != 0) GTEST_SKIP() << "promtool is not installed";
+  const TemporaryDirectory directory;
+  StatusView status = sample_status();
+  status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
+  write_file(directory / "metrics", metrics_text(status, {}, {}));
+  const CommandResult result = run_command({"sh", "-c", "promtool check metrics <\"$1\"", "sh", directory / "metrics"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
 TEST(Metrics, NameEveryFamilyOnce) {
   const std::string text = metrics_text(sample_status(), {}, {});
   ASSERT_TRUE(text.ends_with('\n'));

@@ -117,5 +117,50 @@ TEST_F(PageTest, AsksForTheToken) {
   run("asks_for_the_token", "secret");
 }
 
+TEST_F(PageTest, ShowsFlowAndDisks) {
+  show_busy_sample(control_, directory_.path());
+  run("shows_flow_and_disks");
+}
+
+TEST_F(PageTest, GroupsProblems) {
+  show_busy_sample(control_, directory_.path());
+  run("groups_problems");
+}
+
+TEST_F(PageTest, ListsAllJobs) {
+  show_busy_sample(control_, directory_.path());
+  run("lists_all_jobs");
+}
+
+TEST_F(PageTest, ShowsWhyFilesWait) {
+  show_busy_sample(control_, directory_.path());
+  run("shows_why_files_wait");
+}
+
+TEST_F(PageTest, ShowsPlots) {
+  show_busy_sample(control_, directory_.path());
+  run("shows_plots");
+}
+
+TEST_F(PageTest, EnlargesPictures) {
+  show_busy_sample(control_, directory_.path());
+  run("enlarges_pictures");
+}
+
+TEST_F(PageTest, CopiesPaths) {
+  show_busy_sample(control_, directory_.path());
+  run("copies_paths");
+}
+
+TEST_F(PageTest, ClampsLongNames) {
+  show_busy_sample(control_, directory_.path());
+  run("clamps_long_names");
+}
+
+TEST_F(PageTest, HasLargeTargets) {
+  show_busy_sample(control_, directory_.path());
+  run("has_large_targets");
+}
+
 }  // namespace
 }  // namespace weir::page_test

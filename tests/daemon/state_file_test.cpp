@@ -24,7 +24,7 @@ class StateFile : public testing::Test {
   /// A state file with a row.
   void make() {
     const Database database = open_state_file(path_, notice_);
-    database.run("INSERT INTO outputs VALUES (42, 0, '', 0, 0, NULL, '')");
+    database.run("INSERT INTO outputs VALUES (42, 0, '', 0, 0, NULL, '', NULL, NULL, NULL)");
   }
   std::int64_t marked() {
     const Database database = open_state_file(path_, notice_);
@@ -58,11 +58,34 @@ TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
   make();
   Database(path_).run("PRAGMA user_version=7");
   EXPECT_EQ(refusal(), path_ +
-                           ": has version 7, this weir knows versions up to 1; run the newer weir or name another "
+                           ": has version 7, this weir knows versions up to 2; run the newer weir or name another "
                            "file as state in [service]");
   EXPECT_EQ(kind_, ErrorKind::input);
-  Database(path_).run("PRAGMA user_version=1");
+  Database(path_).run("PRAGMA user_version=2");
   EXPECT_EQ(marked(), 42);
+}
+
+TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
+  make();
+  {
+    const Database old(path_);
+    for (const char* column : {"max_error", "min", "max"}) {
+      old.run(std::string("ALTER TABLE outputs DROP COLUMN ") + column);
+    }
+    old.run("ALTER TABLE jobs DROP COLUMN forced");
+    old.run("PRAGMA user_version=1");
+  }
+  EXPECT_EQ(marked(), 42);
+  const Database database = open_state_file(path_, notice_);
+  EXPECT_EQ(notice_, "");
+  Statement row = database.prepare("SELECT user_version, max_error, min, max FROM outputs, pragma_user_version");
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.integer(0), 2);
+  for (const int column : {1, 2, 3}) EXPECT_EQ(row.real_or_none(column), std::nullopt);
+  database.run("UPDATE outputs SET max = 2.5");
+  Statement changed = database.prepare("SELECT max FROM outputs");
+  ASSERT_TRUE(changed.step());
+  EXPECT_EQ(changed.real_or_none(0), 2.5);
 }
 
 TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {

@@ -1,7 +1,9 @@
 // The running service: signals, reloads, and what is asked over HTTP.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <array>
 #include <csignal>
@@ -101,6 +103,62 @@ TEST(WatchControl, CancelPauseResumeAndRetry) {
   service.post(job + "/retry");
   ASSERT_TRUE(started(service)) << service.log();
   service.post(job + "/cancel");
+}
+
+TEST(WatchControl, ShowsRatesDisksAndWhatIsLost) {
+  ServiceHarness service;
+  service.add("before");
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.get("/api/status")["arrived_per_min"], 0) << "it was there at the start";
+  const std::string name = service.add("after");
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  const auto status = service.get("/api/status");
+  EXPECT_GT(status["arrived_per_min"], 0);
+  EXPECT_GT(status["arrived_bytes_per_s"], 0);
+  EXPECT_DOUBLE_EQ(status["done_per_min"].get<double>(), 2 * status["arrived_per_min"].get<double>());
+  EXPECT_EQ(status["watches"][0]["done_per_min"], status["done_per_min"]);
+  EXPECT_EQ(status["waiting_bytes"], 0);
+  EXPECT_EQ(status["queue_ends_in_s"], 0);
+  ASSERT_EQ(status["disks"].size(), 1U);
+  EXPECT_EQ(status["disks"][0]["directories"], Names{service.out().substr(0, service.out().size() - 1)});
+  EXPECT_GT(status["disks"][0]["free_bytes"], 0);
+  EXPECT_GT(status["disks"][0]["written_bytes_per_s"], 0);
+  EXPECT_EQ(status["disks"][0]["held"], "");
+  const auto output = service.job(name + ".raw")["outputs"][0];
+  const auto sidecar = nlohmann::json::parse(read_file(service.out(name + ".nvdb.json")));
+  EXPECT_EQ(output["max_error"], sidecar["error"]["max_abs"]);
+  EXPECT_EQ(output["min"], 0);
+  EXPECT_EQ(output["max"], 255);
+}
+
+TEST(WatchControl, SaysWhyAFileIsNotTakenYet) {
+  ServiceHarness service;
+  service.start();
+  const std::string whole = ServiceHarness::volume(1);
+  const Descriptor file(::open(service.in("open_24x20x16_uint8.raw").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+  ASSERT_EQ(::write(file.get(), whole.data(), 100), 100);
+  const auto reason = [&] { return service.job("open_24x20x16_uint8.raw").value("reason", ""); };
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return reason() == "a program has it open for writing"; })) << reason();
+}
+
+TEST(WatchControl, RetryConvertsAgainWhatIsDoneWhereItIsForced) {
+  ServiceHarness service;
+  const std::string name = service.add("a");
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  const auto made = fs::last_write_time(service.out(name + ".nvdb"));
+  const std::string retry = cat("/api/jobs/", service.job(name + ".raw")["id"].get<int>(), "/retry");
+  service.post(retry);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 2; })) << service.log();
+  EXPECT_EQ(fs::last_write_time(service.out(name + ".nvdb")), made);
+  service.post(retry + "?force=1");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 3; })) << service.log();
+  EXPECT_GT(fs::last_write_time(service.out(name + ".nvdb")), made);
+  service.post(retry);  // the force was for once
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 4; })) << service.log();
+  EXPECT_EQ(service.logged("converted=yes"), 2U);
+  EXPECT_EQ(service.logged("converted=\"no, done already\""), 2U) << service.log();
 }
 
 TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {

@@ -205,8 +205,11 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
   EXPECT_NE(job["reason"].get<std::string>().find("Permission denied; give this user the right to read it"),
             std::string::npos)
       << job;
+  EXPECT_GT(job["next_attempt_at"], job["changed_at"].get<double>() + 4);
   fs::permissions(service.in(name + ".raw"), fs::perms::all);  // the file itself is as it was
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  // Not when its next attempt was due, but at once.
+  EXPECT_LT(service.job(name + ".raw")["changed_at"], job["next_attempt_at"]);
 }
 
 // As behind a file server that does not answer: what cannot be looked at is not deleted.

@@ -203,6 +203,15 @@ TEST_F(Installation, TheUnitLeadsToThisPrefix) {
   EXPECT_EQ(unit.find("/usr/"), std::string::npos);
 }
 
+TEST_F(Installation, SystemdFindsNoFaultInTheUnit) {
+  if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "systemd-analyze is not installed";
+  // Without --man=no it would look for the manual in the system's own folders.
+  const CommandResult result =
+      run_command({"systemd-analyze", "verify", "--man=no", prefix() + "/lib/systemd/system/weir@.service"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
 TEST_F(Installation, LinksOfTheDocumentsLeadSomewhere) {
   const fs::path documents = prefix() + "/share/doc/weir";
   const std::regex link("\\]\\(([^)#:]+)(#[^)]*)?\\)");
