@@ -313,26 +313,6 @@ bool JobStore::retry(std::int64_t id, bool force) {
   return retried;
 }
 
-std::vector<Job> JobStore::retry_all_failed(const std::string& problem) {
-  Transaction transaction(database_);
-  std::vector<Job> all;
-  for (const JobState state : kProblemStates) {
-    JobFilter filter;
-    filter.state = state;
-    filter.problem = problem;
-    const std::vector<Job> found = jobs(filter, 0, count(filter));
-    all.insert(all.end(), found.begin(), found.end());
-  }
-  JobFilter filter;
-  filter.problem = problem;
-  Statement update = database_.prepare(cat(kRetried, where(filter), " AND ", in_state(kProblemStates)));
-  update.bind(now());
-  bind(update, filter);
-  update.step();
-  transaction.commit();
-  return all;
-}
-
 void JobStore::retry_failed_io() {
   database_.prepare(cat(kRetried, "WHERE ", in_state({JobState::failed}), " AND exit_code = ?"))
       .bind(now())
@@ -398,6 +378,17 @@ std::uint64_t JobStore::count(const JobFilter& filter) const {
   bind(row, filter);
   row.step();
   return row.whole(0);
+}
+
+std::vector<JobStore::Problem> JobStore::with_problems(const std::string& problem) const {
+  JobFilter filter;
+  filter.problem = problem;
+  Statement rows = database_.prepare(
+      cat("SELECT id, watch, source FROM jobs ", where(filter), " AND ", in_state(kProblemStates), " ORDER BY id"));
+  bind(rows, filter);
+  std::vector<Problem> found;
+  while (rows.step()) found.push_back({rows.integer(0), rows.text(1), rows.text(2)});
+  return found;
 }
 
 std::vector<JobProblem> JobStore::problems(std::size_t limit) const {

@@ -101,9 +101,6 @@ class JobStore {
   /// Either way no attempt counts any more.
   /// `force`: and it is converted even where its outputs are done.
   bool retry(std::int64_t id, bool force = false);
-  /// retry() of all failed and quarantined ones, or those of one problem (JobProblem::key), in one write; the jobs as
-  /// they were.
-  std::vector<Job> retry_all_failed(const std::string& problem = "");
   /// retry() of all that failed by exit code 5: at a start of the service the device or the rights may be other ones.
   void retry_failed_io();
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)
@@ -123,6 +120,14 @@ class JobStore {
   std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit,
                         const std::optional<JobOrder>& order = {}) const;
   std::uint64_t count(const JobFilter& filter) const;
+  struct Problem {
+    std::int64_t id = 0;
+    std::string watch;
+    std::string source;
+    bool operator==(const Problem&) const = default;
+  };
+  /// All failed and quarantined jobs, or those of one problem (JobProblem::key), by their IDs.
+  std::vector<Problem> with_problems(const std::string& problem) const;
   /// The first `limit` of them, the one with the newest job first.
   std::vector<JobProblem> problems(std::size_t limit) const;
   /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`

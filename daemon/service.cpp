@@ -54,7 +54,7 @@ Service::Service(Load load, std::string program, std::string version)
                   if (tree->config().label == job.watch) tree->look_again(job.source);
                 }
               }),
-      control_(store_, runner_, trees_, state_),
+      control_(io_, store_, runner_, trees_, state_),
       history_(io_, store_, log_),
       server_(io_, server_settings(config_.service), control_),
       signals_(io_, SIGTERM, SIGINT, SIGHUP),

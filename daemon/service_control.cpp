@@ -1,11 +1,15 @@
 #include "daemon/service_control.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "format/text.h"
 
 namespace weir {
 namespace {
+
+constexpr std::size_t kRetriesAtOnce = 250;
+constexpr std::chrono::seconds kRetryPause{1};  // where the state file cannot be written
 
 double seconds_of(std::int64_t ms) { return static_cast<double>(ms) / 1000; }
 
@@ -37,12 +41,14 @@ JobView view_of(const Job& job) {
 
 }  // namespace
 
-ServiceControl::ServiceControl(JobStore& store, JobRunner& runner, const WatchedTrees& trees, const ServiceState& state)
+ServiceControl::ServiceControl(boost::asio::io_context& io, JobStore& store, JobRunner& runner,
+                               const WatchedTrees& trees, const ServiceState& state)
     : store_(store),
       runner_(runner),
       trees_(trees),
       state_(state),
-      started_at_(seconds_of(JobStore::wall_clock_ms())) {}
+      started_at_(seconds_of(JobStore::wall_clock_ms())),
+      retry_timer_(io) {}
 
 JobPage ServiceControl::jobs(const JobQuery& query) {
   const JobFilter filter{query.state, query.watch.value_or(""), query.text, query.problem};
@@ -93,15 +99,38 @@ JobChange ServiceControl::retry(std::int64_t id, bool force) {
   return JobChange::made;
 }
 
+// A few at a time, each few in one write: thousands at once would keep all others waiting.
 std::uint64_t ServiceControl::retry_all_failed(const std::string& problem) {
-  const std::vector<Job> retried = store_.retry_all_failed(problem);
-  for (const auto& tree : trees_) {
-    for (const Job& job : retried) {
-      if (tree->config().label == job.watch) tree->look_again(job.source);
+  const std::vector<JobStore::Problem> found = store_.with_problems(problem);
+  const bool idle = to_retry_.empty();
+  to_retry_.insert(to_retry_.end(), found.begin(), found.end());
+  if (idle) retry_some();
+  return found.size();
+}
+
+void ServiceControl::retry_some() {
+  const auto some = static_cast<std::ptrdiff_t>(std::min(to_retry_.size(), kRetriesAtOnce));
+  const auto end = to_retry_.begin() + some;
+  std::chrono::milliseconds pause{0};
+  try {
+    store_.together([&] { std::for_each(to_retry_.begin(), end, [&](const auto& job) { store_.retry(job.id); }); });
+    for (const auto& tree : trees_) {
+      std::for_each(to_retry_.begin(), end, [&](const JobStore::Problem& job) {
+        if (tree->config().label == job.watch) tree->look_again(job.source);
+      });
     }
+    to_retry_.erase(to_retry_.begin(), end);
+    runner_.wake();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error&) {  // a full disk of the state file, which others say
+    pause = kRetryPause;
   }
-  runner_.wake();
-  return retried.size();
+  if (to_retry_.empty()) return;
+  retry_timer_.expires_after(pause);
+  retry_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) retry_some();
+  });
 }
 
 JobChange ServiceControl::cancel(std::int64_t id) {

@@ -2,7 +2,10 @@
 // what is watched. One thread, that of the io_context.
 #pragma once
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,7 +32,8 @@ using WatchedTrees = std::vector<std::unique_ptr<WatchedTree>>;  ///< in the ord
 class ServiceControl final : public Control {
  public:
   /// All must outlive the object.
-  ServiceControl(JobStore& store, JobRunner& runner, const WatchedTrees& trees, const ServiceState& state);
+  ServiceControl(boost::asio::io_context& io, JobStore& store, JobRunner& runner, const WatchedTrees& trees,
+                 const ServiceState& state);
 
   JobPage jobs(const JobQuery& query) override;
   ProblemPage problems(std::size_t limit) override;
@@ -45,6 +49,7 @@ class ServiceControl final : public Control {
   std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) override;
 
  private:
+  void retry_some();
   std::string waits_for(const Job& job) const;
   void add_rates(StatusView& status) const;
   std::vector<DiskView> disks() const;
@@ -56,6 +61,8 @@ class ServiceControl final : public Control {
   const WatchedTrees& trees_;
   const ServiceState& state_;
   double started_at_;
+  std::deque<JobStore::Problem> to_retry_;
+  boost::asio::steady_timer retry_timer_;
 };
 
 }  // namespace weir

@@ -18,8 +18,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kRetry{1000};
 /// Until a file is looked at again that could not be looked at.
 constexpr std::chrono::seconds kUnreachable{5};
-/// So many changes to the state file are one transaction: long enough to be quick, short enough to answer meanwhile.
-constexpr std::size_t kBatchEvents = 500;
+/// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
+constexpr milliseconds kBatchTime{15};
+constexpr std::size_t kLeastBatch = 20;
+constexpr std::size_t kMostBatch = 500;
 
 // API, page and convert's announcements are text.
 bool is_text(const std::string& path) {
@@ -90,7 +92,8 @@ void WatchedTree::schedule(milliseconds delay) {
 // is due again.
 void WatchedTree::work() {
   scheduled_ = false;
-  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), kBatchEvents));
+  const Time begin = Clock::now();
+  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_));
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   const std::size_t first = std::min(events.size(), first_events_);
   try {
@@ -120,6 +123,12 @@ void WatchedTree::work() {
   }
   events_.erase(events_.begin(), events_.begin() + count);
   first_events_ -= first;
+  const double part = std::chrono::duration<double>(kBatchTime) / std::max(Clock::now() - begin, Clock::duration(1));
+  if (looked_at_.size() >= batch_ / 2 || part < 1) {
+    batch_ =
+        static_cast<std::size_t>(std::clamp(part * static_cast<double>(std::max<std::size_t>(looked_at_.size(), 1)),
+                                            double{kLeastBatch}, double{kMostBatch}));
+  }
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
   if (!events_.empty()) {
@@ -152,7 +161,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
         // The close that a file waited for may be among what was lost.
         for (auto& [path, tracked] : tracked_) {
           tracked.completion.happened(FileEventKind::found, now);
-          changed.insert(path);
+          track_until(path, now);
         }
         break;
       case FileEventKind::root_lost:
@@ -179,7 +188,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       }
     }
   }
-  while (!agenda_.empty() && agenda_.begin()->first <= now) {
+  while (!agenda_.empty() && agenda_.begin()->first <= now && changed.size() < batch_) {
     changed.insert(agenda_.begin()->second);
     agenda_.erase(agenda_.begin());
   }

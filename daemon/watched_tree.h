@@ -93,6 +93,7 @@ class WatchedTree {
   std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
   RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
   std::set<std::string> looked_at_;  ///< paths, in the last transaction
+  std::size_t batch_ = 100;          ///< events and looks in the next one, at most
   bool known_looked_at_ = false;
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;

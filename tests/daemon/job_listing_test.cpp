@@ -96,7 +96,10 @@ TEST_F(JobListing, OfTheSameProblemAreOneGroup) {
   EXPECT_EQ(problems[1].newest.source, "/in/3.raw");
   EXPECT_EQ(store_->problems(1).size(), 1U);
   EXPECT_EQ(sources({{}, "", "", problems[1].key}), (Names{"/in/3.raw", "/in/2.raw", "/in/1.raw"}));
-  EXPECT_EQ(store_->retry_all_failed(problems[1].key).size(), 3U);
+  EXPECT_EQ(store_->with_problems("").size(), 4U);
+  const std::vector<JobStore::Problem> alike = store_->with_problems(problems[1].key);
+  ASSERT_EQ(alike.size(), 3U);
+  for (const JobStore::Problem& job : alike) EXPECT_TRUE(store_->retry(job.id));
   EXPECT_EQ(sources({JobState::failed, ""}), Names{"/in/4.raw"});
   EXPECT_EQ(sources({JobState::quarantined, ""}), Names{});
   EXPECT_EQ(store_->problems(10).size(), 1U);

@@ -275,7 +275,7 @@ TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
   EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{"/new/a.raw"});
 }
 
-TEST_F(StoredJobs, AllThatFailedAreRetriedTogether) {
+TEST_F(StoredJobs, ThatFailedAreRetried) {
   JobResult wrong_options;
   wrong_options.exit_code = 2;
   const std::int64_t failed = running("/in/failed.raw");
@@ -284,10 +284,9 @@ TEST_F(StoredJobs, AllThatFailedAreRetriedTogether) {
   store_->quarantine(bad, "bad");
   const std::int64_t done = running("/in/done.raw");
   store_->finish(done, success());
-  std::vector<Job> retried = store_->retry_all_failed();
-  ASSERT_EQ(retried.size(), 2U);
-  EXPECT_EQ(retried[0].source, "/in/failed.raw");
-  EXPECT_EQ(retried[1].source, "/in/bad.raw");
+  EXPECT_EQ(store_->with_problems(""),
+            (std::vector<JobStore::Problem>{{failed, "w", "/in/failed.raw"}, {bad, "w", "/in/bad.raw"}}));
+  for (const std::int64_t id : {failed, bad}) EXPECT_TRUE(store_->retry(id));
   for (const std::int64_t id : {failed, bad}) {
     EXPECT_EQ(job(id).state, JobState::discovered);
     EXPECT_EQ(job(id).attempts, 0);
