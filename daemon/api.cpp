@@ -194,8 +194,13 @@ HttpResponse cancel(const Call& call) {
 }
 
 HttpResponse retry_failed(const Call& call) {
-  const auto problem = call.target.query.find("problem");
-  const std::string key = problem == call.target.query.end() ? "" : problem->second;
+  std::string key;
+  for (const auto& [name, value] : call.target.query) {
+    if (name != "problem" || value.empty()) {
+      return error_response(400, cat(name, "=", value, ": give problem=KEY as /api/problems says it, or nothing"));
+    }
+    key = value;
+  }
   return ok({{"retried", call.control.retry_all_failed(key)}});
 }
 

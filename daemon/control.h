@@ -116,7 +116,7 @@ struct DiskView {
   std::uint64_t total_bytes = 0;
   double written_bytes_per_s = 0;    ///< of outputs, over the last ten minutes
   std::optional<double> fills_in_s;  ///< at that rate; none: not within a year
-  std::string held;                  ///< why jobs with outputs on it wait; else empty
+  std::string held;                  ///< why jobs with outputs on it wait, or that it does not answer; else empty
 };
 
 /// Over the last ten minutes, or since the start where that is shorter.
@@ -141,7 +141,7 @@ struct StatusView {
   RateView arrived;                              ///< complete files, those left out that were there at the start
   RateView converted;
   std::uint64_t waiting_bytes = 0;        ///< of the sources of waiting jobs
-  std::optional<double> queue_ends_in_s;  ///< at those rates; 0: nothing waits; none: not in sight
+  std::optional<double> queue_ends_in_s;  ///< at present rates; 0: nothing waits; none: not in sight
   std::vector<DiskView> disks;
   std::vector<RunningView> running;
   std::vector<WatchView> watches;  ///< in the order of the configuration
@@ -179,7 +179,8 @@ class Control {
   /// after a failed attempt waits no longer.
   /// `force`: it is converted even where its outputs are there and of this source.
   virtual JobChange retry(std::int64_t id, bool force) = 0;
-  /// retry() of every failed and quarantined job, or of those of one problem (ProblemView::key); how many there were.
+  /// retry() of every failed and quarantined job, or of those of one problem (ProblemView::key). Those there are, of
+  /// which the first few are retried when this returns and the others soon after; throws where the first cannot be.
   virtual std::uint64_t retry_all_failed(const std::string& problem) = 0;
   /// A discovered or waiting job becomes cancelled, a running one is stopped first.
   virtual JobChange cancel(std::int64_t id) = 0;

@@ -81,15 +81,20 @@ double ConversionJob::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
 }
 
+void ConversionJob::look() {
+  if (worker_ == nullptr) return;
+  const std::uint64_t activity = worker_->activity();
+  if (std::exchange(activity_, activity) != activity) heard_ = std::chrono::steady_clock::now();
+}
+
 std::string ConversionJob::stall(std::chrono::seconds quiet) const {
   const auto passed = std::chrono::steady_clock::now() - heard_;
   if (worker_ == nullptr || passed < quiet) return {};
   const char state = worker_->process_state();
-  if (state == 'R') return {};  // it computes
   const char* const why = state == 'T'   ? "it was stopped by a signal; SIGCONT lets it go on"
                           : state == 'D' ? "it waits for a device or a file server"
                                          : "cancel the job to end it";
-  return cat("nothing heard of ", step_, " for ", std::chrono::duration_cast<std::chrono::seconds>(passed).count(),
+  return cat("nothing done by ", step_, " for ", std::chrono::duration_cast<std::chrono::seconds>(passed).count(),
              " s: ", why);
 }
 

@@ -55,7 +55,9 @@ class ConversionJob {
   std::string_view step() const { return step_; }               ///< "convert", "verify" or "render"
   std::optional<double> fraction() const { return fraction_; }  ///< of the step, 0..1; none before the first report
   double seconds() const;                                       ///< since the start
-  /// Why nothing was heard of the step for `quiet`, in words; empty: something was.
+  /// Sees whether the step does anything; call it now and then.
+  void look();
+  /// Why the step has said and done nothing for `quiet`, as far as look() saw; empty: it has.
   std::string stall(std::chrono::seconds quiet) const;
   std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
 
@@ -81,7 +83,8 @@ class ConversionJob {
   ConversionTask task_;
   Ended ended_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-  std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or the step's begin
+  std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or seen to be at work
+  std::uint64_t activity_ = 0;                              ///< of the process, at the last look
   std::unique_ptr<WorkerProcess> worker_;
   std::string_view step_ = "convert";
   std::optional<double> fraction_;

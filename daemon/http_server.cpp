@@ -37,6 +37,14 @@ void close_on_exec(Socket& socket) {
   ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
+// A socket for both kinds of address gives 127.0.0.1 as ::ffff:127.0.0.1.
+bool is_this_machine(const boost::asio::ip::address& address) {
+  using namespace boost::asio::ip;
+  if (address.is_v6() && address.to_v6().is_v4_mapped())
+    return make_address_v4(v4_mapped, address.to_v6()).is_loopback();
+  return address.is_loopback();
+}
+
 }  // namespace
 
 class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
@@ -82,7 +90,7 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
  private:
   void add(tcp::socket socket) {
     error_code ignored;
-    const bool local = socket.remote_endpoint(ignored).address().is_loopback();
+    const bool local = is_this_machine(socket.remote_endpoint(ignored).address());
     while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) make_room(local);
     close_on_exec(socket);
     socket.set_option(tcp::no_delay(true), ignored);

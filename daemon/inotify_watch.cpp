@@ -245,7 +245,7 @@ void InotifyWatch::take_directory(std::uint32_t mask, const std::string& path) {
 
 void InotifyWatch::take_file(std::uint32_t mask, const std::string& path) {
   if (!table_.wants(path)) return;
-  if ((mask & (IN_CREATE | IN_MOVED_TO)) != 0) {
+  if ((mask & (IN_CREATE | IN_MOVED_TO | IN_ATTRIB)) != 0) {
     struct stat status {};
     if (::lstat(table_.absolute(path).c_str(), &status) == 0 && S_ISLNK(status.st_mode)) {
       deliver();

@@ -66,6 +66,9 @@ void JobRunner::configure(const DaemonConfig& config) {
   const ServiceConfig& service = config.service;
   scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
   forget_other_watches();
+  std::vector<std::string> outputs;
+  for (const WatchConfig& watch : config.watches) outputs.push_back(watch.output);
+  disks_.watch(outputs);
   record([this] { deletion_.configure(config_); });
 }
 
@@ -216,6 +219,7 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
     store_.finish(id, result);
     deletion_.done(id);
   });
+  left_.add(run.job.identity.bytes, Clock::now());
   std::uint64_t bytes_out = 0;
   for (const JobOutput& output : result.outputs) bytes_out += output.bytes;
   log_.info("done", {{"job", run.job.id},
@@ -243,7 +247,11 @@ void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
                         {"source", run.job.source},
                         {"exit_code", report.result.exit_code},
                         {"reason", report.result.reason}});
-  record([this, id = run.job.id, result = report.result] { store_.fail(id, result); });
+  record([this, id = run.job.id, bytes = run.job.identity.bytes, result = report.result] {
+    store_.fail(id, result);
+    const std::optional<Job> now = store_.job(id);
+    if (now && now->state != JobState::waiting) left_.add(bytes, Clock::now());
+  });
 }
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
@@ -298,6 +306,7 @@ void JobRunner::look_at_disks() {
 
 void JobRunner::look_for_stalls() {
   for (auto& [id, run] : running_) {
+    run.work->look();
     const std::string stall = run.work->stall(kQuiet);
     if (!stall.empty() && !run.stall_said) {
       log_.warn("stalled", {{"job", id}, {"source", run.job.source}, {"reason", stall}});
@@ -410,10 +419,6 @@ RecentRate::Rates JobRunner::converted(const std::string& watch) const {
   return at == converted_.end() ? RecentRate::Rates{} : at->second.at(Clock::now());
 }
 
-std::vector<OutputDisk> JobRunner::disks() const {
-  std::vector<std::string> directories;
-  for (const WatchConfig& watch : config_.watches) directories.push_back(watch.output);
-  return disks_.look(directories, Clock::now());
-}
+std::vector<OutputDisk> JobRunner::disks() const { return disks_.disks(Clock::now()); }
 
 }  // namespace weir

@@ -89,6 +89,8 @@ class JobRunner {
   double bytes_per_s() const;
   /// Of what was converted, over the last ten minutes; empty: of all watches.
   RecentRate::Rates converted(const std::string& watch = "") const;
+  /// Of jobs that left the queue for good, whatever became of them, over the last ten minutes.
+  RecentRate::Rates left() const { return left_.at(std::chrono::steady_clock::now()); }
   /// The file systems that the watches' outputs lie on.
   std::vector<OutputDisk> disks() const;
   /// Why jobs with outputs on `disk` wait, in words; empty: they do not.
@@ -128,6 +130,7 @@ class JobRunner {
   std::string store_fault_;
   RunnerFigures figures_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  RecentRate left_{std::chrono::seconds(600), started_};  ///< jobs that wait no more: done, failed or quarantined
   RecentRate last_minute_{std::chrono::seconds(60), started_};
   std::map<std::string, RecentRate> converted_;  ///< by watch; "": of all
   OutputDisks disks_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 
-#include "daemon/problem_key.h"
 #include "daemon/state_file.h"
 #include "format/error.h"
 #include "format/text.h"
@@ -28,12 +27,12 @@ constexpr const char* kColumns =
 /// What a job starts anew with, besides its state.
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
-    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', log_tail = '', forced = 0";
+    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0";
 
 /// What a retry changes, of the jobs that follow it; binds the time.
 constexpr const char* kRetried =
     "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, attempts = 0, due_ms = 0, "
-    "reason = '', changed_ms = ? ";
+    "reason = '', problem = '', changed_ms = ? ";
 
 std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) {
   Statement rows = database.prepare(
@@ -102,6 +101,10 @@ std::string in_state(std::initializer_list<JobState> states) {
   return cat("state IN (", names, ")");
 }
 
+bool is_problem(JobState state) {
+  return std::find(kProblemStates.begin(), kProblemStates.end(), state) != kProblemStates.end();
+}
+
 std::string sql_of(const JobOrder& order) {
   constexpr std::array kColumnsOfKeys{"changed_ms", "discovered_ms", "source", "state", "watch", "bytes", "seconds"};
   static_assert(kColumnsOfKeys.size() == kJobOrderKeys.size());
@@ -114,8 +117,7 @@ std::string where(const JobFilter& filter) {
   if (filter.state) condition += cat(" AND ", in_state({*filter.state}));
   if (!filter.watch.empty()) condition += " AND watch = ?";
   if (!filter.text.empty()) condition += " AND (instr(lower(source), lower(?)) OR instr(lower(reason), lower(?)))";
-  if (!filter.problem.empty())
-    condition += cat(" AND ", in_state(kProblemStates), " AND problem_key(source, reason) = ?");
+  if (!filter.problem.empty()) condition += " AND problem = ?";
   return condition;
 }
 
@@ -151,7 +153,6 @@ std::int64_t JobStore::wall_clock_ms() {
 
 JobStore::JobStore(const std::string& path, Clock clock)
     : clock_(std::move(clock)), database_(open_state_file(path, notice_)) {
-  database_.add_function("problem_key", problem_key);
   end_the_future(database_, now());
   Statement interrupted = database_.prepare(
       cat("UPDATE jobs SET state = 'waiting', changed_ms = ?, due_ms = 0 WHERE ", in_state({JobState::running})));
@@ -229,17 +230,14 @@ bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to
   Statement update = database_.prepare(
       cat("UPDATE jobs SET state = ?, changed_ms = ?, finished_ms = ?, attempts = ?, due_ms = ?, seconds = ?, "
           "bytes_read = ?, bytes_written = ?, peak_rss_bytes = ?, exit_code = ?, reason = ?, log_tail = ?, "
-          "forced = CASE ? WHEN 'done' THEN 0 ELSE forced END "
+          "forced = CASE ? WHEN 'done' THEN 0 ELSE forced END, problem = CASE WHEN ? THEN problem_key(source, ?) ELSE "
+          "'' END "
           "WHERE id = ? AND ",
           in_state({JobState::running})));
   update.bind(job_state_name(to)).bind(now).bind(now).bind(attempts).bind(delay_ms == 0 ? 0 : now + delay_ms);
   update.bind(result.seconds).bind(result.bytes_read).bind(result.bytes_written).bind(result.peak_rss_bytes);
-  update.bind(result.exit_code)
-      .bind(result.reason)
-      .bind(tail(result.log_tail))
-      .bind(job_state_name(to))
-      .bind(id)
-      .step();
+  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail)).bind(job_state_name(to));
+  update.bind(is_problem(to) ? 1 : 0).bind(result.reason).bind(id).step();
   if (database_.changes() == 0) return false;
   database_.prepare("DELETE FROM outputs WHERE job = ?").bind(id).step();
   for (std::size_t i = 0; i < result.outputs.size(); ++i) {
@@ -271,14 +269,12 @@ bool JobStore::fail(std::int64_t id, const JobResult& result) {
 }
 
 bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason) {
-  database_
-      .prepare(
-          cat("UPDATE jobs SET state = ?, changed_ms = ?, due_ms = 0, reason = ? WHERE id = ? AND ", in_state(from)))
-      .bind(job_state_name(to))
-      .bind(now())
-      .bind(reason)
-      .bind(id)
-      .step();
+  Statement update = database_.prepare(cat(
+      "UPDATE jobs SET state = ?, changed_ms = ?, due_ms = 0, forced = CASE ? WHEN 'cancelled' THEN 0 ELSE forced END, "
+      "reason = ?, problem = CASE WHEN ? THEN problem_key(source, ?) ELSE '' END WHERE id = ? AND ",
+      in_state(from)));
+  update.bind(job_state_name(to)).bind(now()).bind(job_state_name(to)).bind(reason);
+  update.bind(is_problem(to) ? 1 : 0).bind(reason).bind(id).step();
   return database_.changes() == 1;
 }
 
@@ -292,6 +288,24 @@ bool JobStore::postpone(std::int64_t id, const std::string& reason, std::int64_t
 
 bool JobStore::quarantine(std::int64_t id, const std::string& reason) {
   return move(id, {JobState::discovered, JobState::waiting, JobState::running}, JobState::quarantined, reason);
+}
+
+bool JobStore::retry_problem(std::int64_t id) {
+  database_.prepare(cat(kRetried, "WHERE id = ? AND ", in_state(kProblemStates))).bind(now()).bind(id).step();
+  return database_.changes() == 1;
+}
+
+bool JobStore::hasten(std::int64_t id) {
+  database_
+      .prepare(
+          cat("UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, due_ms = 0, "
+              "problem = '', changed_ms = ? WHERE id = ? AND exit_code = ? AND (",
+              in_state({JobState::failed}), " OR (state = 'waiting' AND due_ms != 0))"))
+      .bind(now())
+      .bind(id)
+      .bind(static_cast<std::int64_t>(ErrorKind::io))
+      .step();
+  return database_.changes() == 1;
 }
 
 bool JobStore::cancel(std::int64_t id) {
@@ -393,9 +407,9 @@ std::vector<JobStore::Problem> JobStore::with_problems(const std::string& proble
 
 std::vector<JobProblem> JobStore::problems(std::size_t limit) const {
   // Of a group, SQLite gives the columns of the row that has the largest changed_ms.
-  Statement rows =
-      database_.prepare(cat("SELECT problem_key(source, reason), count(*), id, max(changed_ms) FROM jobs WHERE ",
-                            in_state(kProblemStates), " GROUP BY 1 ORDER BY 4 DESC, 3 DESC LIMIT ?"));
+  Statement rows = database_.prepare(
+      "SELECT problem, count(*), id, max(changed_ms) FROM jobs WHERE problem != '' GROUP BY problem "
+      "ORDER BY 4 DESC, 3 DESC LIMIT ?");
   rows.bind(std::uint64_t{limit});
   std::vector<JobProblem> problems;
   while (rows.step()) problems.push_back({rows.text(0), rows.whole(1), job(rows.integer(2)).value()});

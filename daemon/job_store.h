@@ -46,7 +46,7 @@ struct JobFilter {
   std::string problem{};  ///< of failed and quarantined ones: JobProblem::key
 };
 
-/// Failed and quarantined jobs of equal reasons (problem_key).
+/// Failed and quarantined jobs of equal reasons (problem_key.h).
 struct JobProblem {
   std::string key;
   std::uint64_t count = 0;
@@ -101,6 +101,10 @@ class JobStore {
   /// Either way no attempt counts any more.
   /// `force`: and it is converted even where its outputs are done.
   bool retry(std::int64_t id, bool force = false);
+  /// retry() where the job is failed or quarantined.
+  bool retry_problem(std::int64_t id);
+  /// One attempt at once, which counts as any other, of a job that failed or waits after exit code 5.
+  bool hasten(std::int64_t id);
   /// retry() of all that failed by exit code 5: at a start of the service the device or the rights may be other ones.
   void retry_failed_io();
   bool remove(std::int64_t id);  ///< forgets a job, running ones excepted (its source is gone)

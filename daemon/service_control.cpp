@@ -1,6 +1,8 @@
 #include "daemon/service_control.h"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "format/text.h"
@@ -99,37 +101,54 @@ JobChange ServiceControl::retry(std::int64_t id, bool force) {
   return JobChange::made;
 }
 
-// A few at a time, each few in one write: thousands at once would keep all others waiting.
+// A few at a time: thousands at once would keep all others waiting.
 std::uint64_t ServiceControl::retry_all_failed(const std::string& problem) {
   const std::vector<JobStore::Problem> found = store_.with_problems(problem);
   const bool idle = to_retry_.empty();
-  to_retry_.insert(to_retry_.end(), found.begin(), found.end());
-  if (idle) retry_some();
+  std::set<std::int64_t> queued;
+  for (const JobStore::Problem& job : to_retry_) queued.insert(job.id);
+  std::copy_if(found.begin(), found.end(), std::back_inserter(to_retry_),
+               [&](const JobStore::Problem& job) { return !queued.contains(job.id); });
+  if (!idle) return found.size();
+  try {
+    retry_some();
+  } catch (...) {
+    to_retry_.clear();
+    throw;
+  }
+  retry_rest(std::chrono::milliseconds(0));
   return found.size();
 }
 
+// The first few, in one write.
 void ServiceControl::retry_some() {
   const auto some = static_cast<std::ptrdiff_t>(std::min(to_retry_.size(), kRetriesAtOnce));
   const auto end = to_retry_.begin() + some;
-  std::chrono::milliseconds pause{0};
-  try {
-    store_.together([&] { std::for_each(to_retry_.begin(), end, [&](const auto& job) { store_.retry(job.id); }); });
-    for (const auto& tree : trees_) {
-      std::for_each(to_retry_.begin(), end, [&](const JobStore::Problem& job) {
-        if (tree->config().label == job.watch) tree->look_again(job.source);
-      });
-    }
-    to_retry_.erase(to_retry_.begin(), end);
-    runner_.wake();
-  } catch (const CorruptDatabase&) {
-    throw;
-  } catch (const Error&) {  // a full disk of the state file, which others say
-    pause = kRetryPause;
+  store_.together(
+      [&] { std::for_each(to_retry_.begin(), end, [&](const auto& job) { store_.retry_problem(job.id); }); });
+  for (const auto& tree : trees_) {
+    std::for_each(to_retry_.begin(), end, [&](const JobStore::Problem& job) {
+      if (tree->config().label == job.watch) tree->look_again(job.source);
+    });
   }
+  to_retry_.erase(to_retry_.begin(), end);
+  runner_.wake();
+}
+
+void ServiceControl::retry_rest(std::chrono::milliseconds pause) {
   if (to_retry_.empty()) return;
   retry_timer_.expires_after(pause);
   retry_timer_.async_wait([this](boost::system::error_code error) {
-    if (!error) retry_some();
+    if (error) return;
+    std::chrono::milliseconds next{0};
+    try {
+      retry_some();
+    } catch (const CorruptDatabase&) {
+      throw;
+    } catch (const Error&) {  // a full disk of the state file, which others say
+      next = kRetryPause;
+    }
+    retry_rest(next);
   });
 }
 
@@ -217,10 +236,10 @@ void ServiceControl::add_rates(StatusView& status) const {
   const RecentRate::Rates converted = runner_.converted();
   status.arrived = {60 * arrived.per_s, arrived.bytes_per_s};
   status.converted = {60 * converted.per_s, converted.bytes_per_s};
-  const double shrinks_by = converted.bytes_per_s - arrived.bytes_per_s;
+  const double shrinks_by = runner_.left().bytes_per_s - arrived.bytes_per_s;
   if (status.waiting_bytes == 0) {
     status.queue_ends_in_s = 0;
-  } else if (shrinks_by > 0) {
+  } else if (shrinks_by > 0 && status.state == "running") {
     status.queue_ends_in_s = static_cast<double>(status.waiting_bytes) / shrinks_by;
   }
 }
@@ -228,8 +247,10 @@ void ServiceControl::add_rates(StatusView& status) const {
 std::vector<DiskView> ServiceControl::disks() const {
   std::vector<DiskView> views;
   for (const OutputDisk& disk : runner_.disks()) {
+    std::string held = runner_.hold_of(disk.room);
+    if (disk.silent.count() > 0) held = cat(disk.path, " has not answered for ", disk.silent.count(), " s");
     views.push_back({disk.path, disk.directories, disk.room.free, disk.room.total, disk.written_bytes_per_s,
-                     disk.fills_in_s, runner_.hold_of(disk.room)});
+                     disk.fills_in_s, std::move(held)});
   }
   return views;
 }

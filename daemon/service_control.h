@@ -50,6 +50,7 @@ class ServiceControl final : public Control {
 
  private:
   void retry_some();
+  void retry_rest(std::chrono::milliseconds pause);
   std::string waits_for(const Job& job) const;
   void add_rates(StatusView& status) const;
   std::vector<DiskView> disks() const;

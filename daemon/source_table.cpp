@@ -77,7 +77,7 @@ void SourceTable::overflowed() {
 }
 
 void SourceTable::happened(FileEventKind kind, const std::string& path) {
-  known_[path] = {std::nullopt, look_};
+  if (kind != FileEventKind::permitted) known_[path] = {std::nullopt, look_};
   report(kind, path);
 }
 

@@ -46,7 +46,7 @@ class SourceTable {
   void saw(const std::string& path, const FileIdentity& identity);
   void overflowed();
 
-  /// An event of the file: created, written, closed or moved_in.
+  /// An event of the file: created, written, closed, moved_in, or permitted, which says nothing of its content.
   void happened(FileEventKind kind, const std::string& path);
   void removed(const std::string& path);
   void removed_below(const std::string& directory);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "daemon/problem_key.h"
 #include "format/text.h"
 
 namespace weir {
@@ -34,12 +35,15 @@ constexpr const char* kTables[] = {
          reason TEXT NOT NULL DEFAULT '',
          log_tail TEXT NOT NULL DEFAULT '',
          forced INTEGER NOT NULL DEFAULT 0,
+         problem TEXT NOT NULL DEFAULT '',
          UNIQUE (watch, source)) STRICT)",
     // What the scheduler and /metrics ask for.
     "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
     "CREATE INDEX jobs_age ON jobs (queued_ms) WHERE state = 'waiting'",
     "CREATE INDEX jobs_due ON jobs (due_ms) WHERE state = 'waiting'",
     // What people list.
+    "CREATE INDEX jobs_waiting ON jobs (watch, bytes) WHERE state = 'waiting'",
+    "CREATE INDEX jobs_problem ON jobs (problem, changed_ms) WHERE problem != ''",
     "CREATE INDEX jobs_latest ON jobs (changed_ms)", "CREATE INDEX jobs_latest_of_state ON jobs (state, changed_ms)",
     R"(CREATE TABLE outputs (
          job INTEGER NOT NULL,
@@ -56,8 +60,14 @@ constexpr const char* kTables[] = {
 
 /// What makes a file of version 1 one of version 2, ...
 constexpr const char* kFromVersion1[] = {
-    "ALTER TABLE jobs ADD COLUMN forced INTEGER NOT NULL DEFAULT 0", "ALTER TABLE outputs ADD COLUMN max_error REAL",
-    "ALTER TABLE outputs ADD COLUMN min REAL", "ALTER TABLE outputs ADD COLUMN max REAL"};
+    "ALTER TABLE jobs ADD COLUMN forced INTEGER NOT NULL DEFAULT 0",
+    "ALTER TABLE jobs ADD COLUMN problem TEXT NOT NULL DEFAULT ''",
+    "UPDATE jobs SET problem = problem_key(source, reason) WHERE state IN ('failed', 'quarantined')",
+    "CREATE INDEX jobs_waiting ON jobs (watch, bytes) WHERE state = 'waiting'",
+    "CREATE INDEX jobs_problem ON jobs (problem, changed_ms) WHERE problem != ''",
+    "ALTER TABLE outputs ADD COLUMN max_error REAL",
+    "ALTER TABLE outputs ADD COLUMN min REAL",
+    "ALTER TABLE outputs ADD COLUMN max REAL"};
 
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);
@@ -98,6 +108,7 @@ Database open_whole(const std::string& path) {
   database.run("PRAGMA journal_size_limit=16777216");
   check_ours(database, path);
   check_whole(database, path);
+  database.add_function("problem_key", problem_key);
   Transaction made(database);
   const std::int64_t version = number(database, "PRAGMA user_version");
   if (version == 0) {

@@ -20,7 +20,7 @@ constexpr milliseconds kRetry{1000};
 constexpr std::chrono::seconds kUnreachable{5};
 /// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
 constexpr milliseconds kBatchTime{15};
-constexpr std::size_t kLeastBatch = 20;
+constexpr std::size_t kLeastBatch = 50;
 constexpr std::size_t kMostBatch = 500;
 
 // API, page and convert's announcements are text.
@@ -66,7 +66,10 @@ WatchedTree::Status WatchedTree::status() const {
   return {std::string(watch_method_name(watch_->method())), reason.empty(), reason, watch_->figures().overflows};
 }
 
-void WatchedTree::look_again(const std::string& path) { take({FileEventKind::found, path}); }
+void WatchedTree::look_again(const std::string& path) {
+  again_.insert(path);
+  take({FileEventKind::found, path});
+}
 
 std::string WatchedTree::waits_for(const std::string& path) const {
   const auto at = tracked_.find(path);
@@ -92,14 +95,16 @@ void WatchedTree::schedule(milliseconds delay) {
 // is due again.
 void WatchedTree::work() {
   scheduled_ = false;
-  const Time begin = Clock::now();
-  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_));
+  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_ / 2));  // the rest is the agenda's
+  Clock::duration looking{};  // without the flush, which takes as long for few as for many
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   const std::size_t first = std::min(events.size(), first_events_);
   try {
     store_.together([&] {
       if (!known_looked_at_) look_at_known_jobs();
+      const Time begin = Clock::now();
       work_off(events, first);
+      looking = Clock::now() - begin;
     });
     known_looked_at_ = true;
     store_fault_.clear();
@@ -123,12 +128,7 @@ void WatchedTree::work() {
   }
   events_.erase(events_.begin(), events_.begin() + count);
   first_events_ -= first;
-  const double part = std::chrono::duration<double>(kBatchTime) / std::max(Clock::now() - begin, Clock::duration(1));
-  if (looked_at_.size() >= batch_ / 2 || part < 1) {
-    batch_ =
-        static_cast<std::size_t>(std::clamp(part * static_cast<double>(std::max<std::size_t>(looked_at_.size(), 1)),
-                                            double{kLeastBatch}, double{kMostBatch}));
-  }
+  fit_batch(looking);
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
   if (!events_.empty()) {
@@ -136,6 +136,13 @@ void WatchedTree::work() {
   } else if (!agenda_.empty()) {
     schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
   }
+}
+
+void WatchedTree::fit_batch(Clock::duration looking) {
+  const std::size_t looked = looked_at_.size();
+  if (looked == 0 || (looking < kBatchTime && looked < batch_ / 2)) return;  // says little of how many there may be
+  const double fit = static_cast<double>(looked) * (std::chrono::duration<double>(kBatchTime) / looking);
+  batch_ = static_cast<std::size_t>(std::clamp(fit, double{kLeastBatch}, double{kMostBatch}));
 }
 
 // Jobs of files that are not there any more, or that the configuration no longer takes.
@@ -179,7 +186,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
         }
         Tracked& tracked = at->second;
         tracked.completion.happened(event.kind, now);
-        tracked.arrived = tracked.arrived || i >= first;
+        tracked.arrived = (tracked.arrived || i >= first) && again_.erase(event.path) == 0;
         tracked.permitted = tracked.permitted || event.kind == FileEventKind::permitted;
         tracked.written = tracked.written || event.kind == FileEventKind::written ||
                           event.kind == FileEventKind::closed || event.kind == FileEventKind::moved_in;
@@ -221,7 +228,7 @@ void WatchedTree::look(const std::string& path, Time now) {
     track_until(path, now + kAfterRun);
     return;
   }
-  const bool again = tries_again(path, seen.job) && store_.retry(seen.job.id);
+  const bool again = tries_again(path, seen.job);
   if (again && seen.job.state == JobState::waiting) ready_ = true;
   if (seen.job.state == JobState::waiting || (seen.job.state != JobState::discovered && !again)) {
     forget(path);  // known, and as it was
@@ -235,14 +242,13 @@ void WatchedTree::look(const std::string& path, Time now) {
   apply(path, tracked_.at(path).completion.look(sample, now), seen.job);
 }
 
-// Whether a job that is known, and whose source looks as it did, has its turn once more.
+// Gives a job that is known, and whose source looks as it did, its turn once more where there is reason to; whether it
+// did.
 bool WatchedTree::tries_again(const std::string& path, const Job& job) {
   Tracked& tracked = tracked_.at(path);
   const bool permitted = std::exchange(tracked.permitted, false);
-  if (job.state == JobState::done) return tracked.written && may_hide_a_write(job);
-  const bool waits_after_failure = job.state == JobState::waiting && job.due_ms != 0;
-  return permitted && job.result.exit_code == static_cast<int>(ErrorKind::io) &&
-         (job.state == JobState::failed || waits_after_failure);
+  if (job.state == JobState::done) return tracked.written && may_hide_a_write(job) && store_.retry(job.id);
+  return permitted && store_.hasten(job.id);
 }
 
 void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer, const Job& job) {

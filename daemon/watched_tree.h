@@ -76,6 +76,7 @@ class WatchedTree {
   void work_off(const std::vector<FileEvent>& events, std::size_t first);
   void look_at_known_jobs();
   void look(const std::string& path, Time now);
+  void fit_batch(std::chrono::steady_clock::duration looking);
   bool tries_again(const std::string& path, const Job& job);
   void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);
   void track_until(const std::string& path, Time until);
@@ -90,6 +91,7 @@ class WatchedTree {
   std::map<std::string, Tracked> tracked_;         ///< files that are not known to be complete
   std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at which of them
   std::vector<FileEvent> events_;
+  std::set<std::string> again_;   ///< of events_, those of look_again: nothing arrived
   std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
   RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
   std::set<std::string> looked_at_;  ///< paths, in the last transaction

@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "format/descriptor.h"
@@ -261,12 +262,36 @@ std::uint64_t WorkerProcess::resident_bytes() const {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-char WorkerProcess::process_state() const {
+// What stands in /proc/PID/stat behind the name, which may hold any character.
+std::string WorkerProcess::status_fields() const {
   std::ifstream file(cat("/proc/", running_->pid(), "/stat"));
   std::string line;
   std::getline(file, line);
-  const std::size_t name_end = line.rfind(')');  // the name may hold any character
-  return name_end == std::string::npos || name_end + 2 >= line.size() ? '\0' : line[name_end + 2];
+  const std::size_t name_end = line.rfind(')');
+  return name_end == std::string::npos || name_end + 2 >= line.size() ? "" : line.substr(name_end + 2);
+}
+
+char WorkerProcess::process_state() const {
+  const std::string fields = status_fields();
+  return fields.empty() ? '\0' : fields.front();
+}
+
+std::uint64_t WorkerProcess::activity() const {
+  constexpr int kTimesFrom = 11;  // user's and system's, proc(5)
+  std::istringstream fields(status_fields());
+  std::string skipped;
+  for (int i = 0; i < kTimesFrom; ++i) fields >> skipped;
+  std::uint64_t user = 0;
+  std::uint64_t system = 0;
+  fields >> user >> system;
+  std::uint64_t sum = user + system;
+  std::ifstream io(cat("/proc/", running_->pid(), "/io"));
+  for (std::string name; io >> name;) {
+    std::uint64_t bytes = 0;
+    io >> bytes;
+    if (name == "rchar:" || name == "wchar:") sum += bytes;
+  }
+  return sum;
 }
 
 }  // namespace weir

@@ -21,6 +21,7 @@ let offset = 0;
 let total = 0;
 let asked = 0;  // requests so far: an answer that comes after a later one is not shown
 let timer = 0;
+let searched = "";  // what the service said of itself when it was searched last
 let open = () => {};
 
 function cell(name, title, ...content) {
@@ -81,8 +82,10 @@ function show_place(length) {
   by_id("all-table").hidden = total === 0;
 }
 
-/** Asks for the page of jobs that is chosen and shows it. */
-export async function refresh_all_jobs() {
+/** Asks for the page of jobs that is chosen and shows it; a search only where `state`, a text, is another than before. */
+export async function refresh_all_jobs(state = "") {
+  if (state && state === searched && text_field.value.trim()) return;
+  searched = state;
   const mine = ++asked;
   const wanted = {text: text_field.value.trim() || null, state: state_choice.value || null,
                   watch: watch_choice.value || null, sort, order, limit: kPageLength, offset};

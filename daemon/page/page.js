@@ -84,11 +84,11 @@ const kProblemActions = {
   retry_group: (query) => act(`/api/retry-failed?${query}`),
 };
 
-async function refresh_lists() {
+async function refresh_lists(state) {
   const [waiting, discovered, done] = await Promise.all([
     get(`/api/jobs?state=waiting&limit=${kQueueShown}`),
     get(`/api/jobs?state=discovered&sort=discovered&order=asc&limit=${kNotTakenShown}`),
-    get(`/api/jobs?state=done&limit=${kResultsShown}`), refresh_problems(kProblemActions), refresh_all_jobs()]);
+    get(`/api/jobs?state=done&limit=${kResultsShown}`), refresh_problems(kProblemActions), refresh_all_jobs(state)]);
   show_queue(waiting, open_job);
   show_not_taken(discovered, open_job);
   show_results(done, open_job, kResultsShown);
@@ -97,7 +97,7 @@ async function refresh_lists() {
 async function refresh() {
   const status = await get("/api/status");
   show_status(status);
-  await refresh_lists();
+  await refresh_lists(JSON.stringify([status.started_at, status.done_total, status.jobs]));
   const wanted = `${by_id("series-watch").value}\n${status.started_at}\n${status.jobs.done}\n${status.done_total}`;
   if (wanted !== series_of) await refresh_series();
   series_of = wanted;

@@ -178,6 +178,11 @@ TEST_F(ApiTest, GroupsProblems) {
   EXPECT_EQ(Json::parse(ask("GET", "/api/jobs?problem=has%20%23%20bytes").body).at("total"), 4);
   EXPECT_EQ(ask("POST", "/api/retry-failed?problem=has+%23+bytes").body, "{\"retried\":4}\n");
   EXPECT_EQ(control_.asked, std::vector<std::string>{"retry problem has # bytes"});
+  for (const char* query : {"problem=", "problems=x"}) {
+    EXPECT_EQ(ask("POST", cat("/api/retry-failed?", query)).body,
+              cat("{\"error\":\"", query, ": give problem=KEY as /api/problems says it, or nothing\"}\n"));
+  }
+  EXPECT_EQ(control_.asked.size(), 1U);
 }
 
 TEST_F(ApiTest, SearchesAndSortsJobs) {

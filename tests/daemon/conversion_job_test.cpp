@@ -75,7 +75,8 @@ TEST_F(ConversionJobTest, SaysWhyItStandsStill) {
   std::string stall;
   const TaskReport report = run(slow, [&](ConversionJob& job) {
     if (!stall.empty() || !job.fraction()) return;
-    EXPECT_EQ(job.stall(std::chrono::seconds(5)), "");
+    EXPECT_EQ(job.stall(std::chrono::seconds(60)), "");
+    job.look();
     std::ifstream children(cat("/proc/self/task/", ::gettid(), "/children"));
     pid_t child = 0;
     ASSERT_TRUE(children >> child);
@@ -85,7 +86,8 @@ TEST_F(ConversionJobTest, SaysWhyItStandsStill) {
     ::kill(child, SIGCONT);
   });
   EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
-  EXPECT_EQ(stall, "nothing heard of convert for 1 s: it was stopped by a signal; SIGCONT lets it go on");
+  EXPECT_TRUE(stall.starts_with("nothing done by convert for ")) << stall;
+  EXPECT_TRUE(stall.ends_with(" s: it was stopped by a signal; SIGCONT lets it go on")) << stall;
 }
 
 TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {

@@ -493,6 +493,19 @@ TEST_P(DirectoryWatchTest, AnUnreadableDirectoryIsSaidOnceAndReadWhenItCanBe) {
   EXPECT_TRUE(dir.run_until_written(dir / "locked/c.raw"));
 }
 
+// rsync and tar set a link's own times right after they made it.
+TEST_P(DirectoryWatchTest, ALinkOutOfTheTree_StaysRefusedWhereItsOwnTimesAreSet) {
+  write_file(dir.outside("a.raw"), "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::create_symlink(dir.outside("a.raw"), dir / "link.raw");
+  const std::array<timespec, 2> times{timespec{1000, 0}, timespec{1000, 0}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, (dir / "link.raw").c_str(), times.data(), AT_SYMLINK_NOFOLLOW), 0);
+  ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
+  dir.run_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(dir.last(dir / "link.raw"), std::nullopt);
+}
+
 TEST_P(DirectoryWatchTest, AWatchThatEndsTellsNothingMore) {
   dir.start();
   ASSERT_TRUE(dir.settle());

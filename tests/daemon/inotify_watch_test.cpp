@@ -178,8 +178,8 @@ TEST_F(InotifyWatchTest, AtTheLimitOfWatchesTheTreeIsPolledAndThatIsSaid) {
   ASSERT_TRUE(dir.run_until([&] { return dir.watch->method() == WatchMethod::poll && !dir.notices.empty(); }));
   faults->watches_left = 1000;
   dir.watch->choose_again();
-  dir.run_for(std::chrono::milliseconds(100));
   EXPECT_EQ(dir.watch->method(), WatchMethod::inotify);
+  ASSERT_TRUE(dir.run_until([&] { return dir.watch->figures().directories == 4; }));
   dir.events.clear();
   write_file(dir / "c/z.raw", "1");
   EXPECT_TRUE(dir.run_until_told(Kind::closed, dir / "c/z.raw"));

@@ -99,7 +99,7 @@ TEST_F(JobListing, OfTheSameProblemAreOneGroup) {
   EXPECT_EQ(store_->with_problems("").size(), 4U);
   const std::vector<JobStore::Problem> alike = store_->with_problems(problems[1].key);
   ASSERT_EQ(alike.size(), 3U);
-  for (const JobStore::Problem& job : alike) EXPECT_TRUE(store_->retry(job.id));
+  for (const JobStore::Problem& job : alike) EXPECT_TRUE(store_->retry_problem(job.id));
   EXPECT_EQ(sources({JobState::failed, ""}), Names{"/in/4.raw"});
   EXPECT_EQ(sources({JobState::quarantined, ""}), Names{});
   EXPECT_EQ(store_->problems(10).size(), 1U);

@@ -295,6 +295,48 @@ TEST_F(StoredJobs, ThatFailedAreRetried) {
   EXPECT_EQ(job(done).state, JobState::done);
 }
 
+TEST_F(StoredJobs, HastenedOnesHaveOneAttemptMore) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->fail(id, failure(5));
+  EXPECT_TRUE(store_->hasten(id));
+  EXPECT_EQ(job(id).state, JobState::waiting);
+  EXPECT_EQ(job(id).due_ms, 0);
+  EXPECT_EQ(job(id).attempts, 1);
+  EXPECT_FALSE(store_->hasten(id)) << "it is due already";
+  for (int attempt = 2; attempt <= kMaxAttempts; ++attempt) {
+    EXPECT_TRUE(store_->start(id));
+    store_->fail(id, failure(5));
+    now_ += 3'600'000;
+  }
+  EXPECT_EQ(job(id).state, JobState::failed);
+  EXPECT_TRUE(store_->hasten(id));
+  EXPECT_EQ(job(id).state, JobState::discovered);
+  store_->enqueue(id);
+  store_->start(id);
+  store_->fail(id, failure(5));
+  EXPECT_EQ(job(id).state, JobState::failed) << "for good, until it is retried";
+  const std::int64_t bad = running("/in/b.raw");
+  store_->fail(bad, failure(3));
+  EXPECT_FALSE(store_->hasten(bad));
+}
+
+TEST_F(StoredJobs, AreForcedUntilTheyAreDoneOrCancelled) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->finish(id, success());
+  EXPECT_TRUE(store_->retry(id, true));
+  store_->enqueue(id);
+  store_->start(id);
+  store_->fail(id, failure(5));
+  EXPECT_TRUE(job(id).forced);
+  now_ += 3'600'000;
+  store_->start(id);
+  store_->finish(id, success());
+  EXPECT_FALSE(job(id).forced);
+  EXPECT_TRUE(store_->retry(id, true));
+  EXPECT_TRUE(store_->cancel(id));
+  EXPECT_FALSE(job(id).forced);
+}
+
 TEST_F(StoredJobs, FailuresOfADeviceAreRetriedAtAStart) {
   JobResult device;
   device.exit_code = 5;

@@ -17,10 +17,15 @@ TEST(ProblemKey, LeavesOutThePathInsideTheText) {
             "verify: /out/*.nvdb: damaged; made of *");
 }
 
+TEST(ProblemKey, LeavesWordsWhole) {
+  EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head");
+}
+
 TEST(ProblemKey, DifferentProblemsStayDifferent) {
   EXPECT_NE(problem_key("/a", "/a: is empty"), problem_key("/a", "/a: is no HDF5 file"));
   EXPECT_EQ(problem_key("", "12 of 3.5"), "# of #.#");
-  EXPECT_EQ(problem_key("/a", ""), "");
+  EXPECT_EQ(problem_key("/a", ""), "no reason");
+  EXPECT_EQ(problem_key("/a", "/a: names \xff\xc3\xa4"), "names ???");
 }
 
 TEST(WithoutPath, TakesAwayThePathInFrontAlone) {

@@ -246,7 +246,7 @@ void show_busy_sample(FakeControl& control, const std::filesystem::path& directo
   add_long_names(control, now);
   add_scans(control, directory, now);
   StatusView& status = control.now;
-  status.running[1].stall = "nothing heard of verify for 75 s: it waits for a device or a file server";
+  status.running[1].stall = "nothing done by verify for 75 s: it waits for a device or a file server";
   status.arrived = {30.0, 2.9e8};
   status.queue_ends_in_s.reset();
   status.disks[0].free_bytes = 1'288'490'189;  // 1.2 GiB

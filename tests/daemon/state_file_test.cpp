@@ -72,7 +72,11 @@ TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
     for (const char* column : {"max_error", "min", "max"}) {
       old.run(std::string("ALTER TABLE outputs DROP COLUMN ") + column);
     }
-    old.run("ALTER TABLE jobs DROP COLUMN forced");
+    old.run(
+        "INSERT INTO jobs (watch, source, options, bytes, mtime_ns, inode, state, discovered_ms, changed_ms, reason) "
+        "VALUES ('w', '/a', '', 0, 0, 0, 'failed', 0, 0, '/a: has 7 bytes')");
+    for (const char* index : {"jobs_waiting", "jobs_problem"}) old.run(std::string("DROP INDEX ") + index);
+    for (const char* column : {"forced", "problem"}) old.run(std::string("ALTER TABLE jobs DROP COLUMN ") + column);
     old.run("PRAGMA user_version=1");
   }
   EXPECT_EQ(marked(), 42);
@@ -82,6 +86,9 @@ TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
   ASSERT_TRUE(row.step());
   EXPECT_EQ(row.integer(0), 2);
   for (const int column : {1, 2, 3}) EXPECT_EQ(row.real_or_none(column), std::nullopt);
+  Statement problem = database.prepare("SELECT problem FROM jobs");
+  ASSERT_TRUE(problem.step());
+  EXPECT_EQ(problem.text(0), "has # bytes");
   database.run("UPDATE outputs SET max = 2.5");
   Statement changed = database.prepare("SELECT max FROM outputs");
   ASSERT_TRUE(changed.step());

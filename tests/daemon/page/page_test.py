@@ -290,7 +290,7 @@ def shows_flow_and_disks(browser):
     equal([text for text in browser.texts("#disks .reason") if text], [f"Jobs wait: {held}"])
     equal(browser.text("#banner"), f"Jobs wait for room on /scratch: {held}.")
     equal([text for text in browser.texts("#running .reason") if text],
-          ["nothing heard of verify for 75 s: it waits for a device or a file server"])
+          ["nothing done by verify for 75 s: it waits for a device or a file server"])
 
 
 def groups_problems(browser):
