@@ -17,9 +17,7 @@ TEST(ProblemKey, LeavesOutThePathInsideTheText) {
             "verify: /out/*.nvdb: damaged; made of *");
 }
 
-TEST(ProblemKey, LeavesWordsWhole) {
-  EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head");
-}
+TEST(ProblemKey, LeavesWordsWhole) { EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head"); }
 
 TEST(ProblemKey, DifferentProblemsStayDifferent) {
   EXPECT_NE(problem_key("/a", "/a: is empty"), problem_key("/a", "/a: is no HDF5 file"));
