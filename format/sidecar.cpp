@@ -349,9 +349,13 @@ Sidecar parse_sidecar(std::string_view text, const std::string& path) {
 
 std::string utc_text(std::int64_t nanoseconds) {
   using namespace std::chrono;
-  // By seconds: the midnight before the first time that 64 bits hold in nanoseconds is none of them.
-  const auto second = floor<seconds>(std::chrono::nanoseconds(nanoseconds));
-  const auto rest = static_cast<int>((std::chrono::nanoseconds(nanoseconds) - second).count());
+  // By seconds and what is left: the first second that begins before the first time that 64 bits hold in nanoseconds is
+  // none of those times, and neither is its midnight.
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  std::int64_t rest = nanoseconds % kSecond;
+  if (rest < 0) rest += kSecond;
+  const std::int64_t before = nanoseconds / kSecond - (nanoseconds % kSecond < 0 ? 1 : 0);
+  const seconds second(before);
   const auto day = floor<days>(second);
   const year_month_day date{sys_days(day)};
   const hh_mm_ss clock(second - day);
@@ -359,7 +363,7 @@ std::string utc_text(std::int64_t nanoseconds) {
   std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09dZ", static_cast<int>(date.year()),
                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
                 static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()), rest);
+                static_cast<int>(clock.seconds().count()), static_cast<int>(rest));
   return text.data();
 }
 

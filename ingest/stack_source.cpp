@@ -164,11 +164,11 @@ class StackSource final : public VolumeSource {
       }
     }
     // Whoever reads from a file last closes it, and then its bytes are counted.
-    const std::shared_ptr<VolumeSource> source(open_source(slabs_[i].path, options_).release(),
-                                               [this](VolumeSource* closing) {
-                                                 const std::unique_ptr<VolumeSource> owned(closing);
-                                                 closed_bytes_read_ += owned->bytes_read();
-                                               });
+    std::shared_ptr<VolumeSource> source(open_source(slabs_[i].path, options_).release(),
+                                         [this](VolumeSource* closing) {
+                                           const std::unique_ptr<VolumeSource> owned(closing);
+                                           closed_bytes_read_ += owned->bytes_read();
+                                         });
     if (source->info().extent != Index3{info_.extent.x, info_.extent.y, slabs_[i].planes}) {
       throw Error(ErrorKind::input, cat(slabs_[i].path, ": its extent changed while it was read; convert it again"));
     }

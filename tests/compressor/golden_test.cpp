@@ -80,7 +80,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
 
 TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
   const std::string expected = GetParam().digest;
-  for (const std::size_t threads : {1, 2, 3, 4, 7}) {
+  for (const std::size_t threads : {1U, 2U, 3U, 4U, 7U}) {
     EXPECT_EQ(convert(threads, 256 * kMiB, DirectIo::automatic), expected) << threads << " threads";
   }
   EXPECT_EQ(convert(2, 3072 * kMiB, DirectIo::automatic), expected);

@@ -138,7 +138,8 @@ TEST(Journal, SpillFilesGoWhereTheUserSays) {
   EXPECT_EQ(names[0], "./.o.nvdb.work/journal");
   EXPECT_TRUE(names[1].starts_with("/scratch/.o.nvdb.") && names[1].ends_with(".work/rows")) << names[1];
   std::string said;
-  Journal(files, "o.nvdb", kIdentity, {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
+  const Journal journal(files, "o.nvdb", kIdentity,
+                        {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
   EXPECT_TRUE(
       said.starts_with("o.nvdb: an interrupted conversion of it is not continued: its spill files were in "
                        "/scratch/.o.nvdb."))

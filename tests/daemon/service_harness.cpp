@@ -14,6 +14,7 @@
 
 #include "format/descriptor.h"
 #include "format/text.h"
+#include "tests/support/sanitized.h"
 
 namespace weir {
 
@@ -158,7 +159,7 @@ std::size_t ServiceHarness::logged(const std::string& text) const {
 }
 
 bool ServiceHarness::eventually(const std::function<bool()>& holds, milliseconds patience) {
-  const auto deadline = steady_clock::now() + patience;
+  const auto deadline = steady_clock::now() + patience * (kSanitized ? 10 : 1);
   while (!holds()) {
     if (steady_clock::now() > deadline) return false;
     std::this_thread::sleep_for(milliseconds(10));

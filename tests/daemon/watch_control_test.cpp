@@ -45,7 +45,7 @@ bool started(const ServiceHarness& service) {
 }
 
 TEST(WatchControl, SigtermLetsWhatRunsEnd) {
-  ServiceHarness service("grace = 60\n");
+  ServiceHarness service("grace = 600\n");
   service.start();
   const std::string name = add_long(service);
   ASSERT_TRUE(started(service)) << service.log();

@@ -221,7 +221,7 @@ TEST_F(OutputProtection, NameThatLeavesNoRoomForThoseBesideIt_IsRefusedAtOnce) {
   for (const std::size_t bytes : {242U, 255U}) {
     const std::string path = directory_ / std::string(bytes, 'n');
     try {
-      OutputFiles(*real_, path, false);
+      const OutputFiles refused(*real_, path, false);
       FAIL();
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);

@@ -32,7 +32,7 @@ class PngInput : public ::testing::Test {
     head.format = format;
     head.width = width;
     head.height = height;
-    const std::string path = directory_ / "a.png";
+    std::string path = directory_ / "a.png";
     EXPECT_NE(png_image_write_to_file(&head, path.c_str(), 0, samples.data(), 0, nullptr), 0) << head.message;
     return path;
   }

@@ -79,7 +79,7 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
      [](const Scratch& scratch) {
        std::vector<std::uint8_t> values(24);
        std::iota(values.begin(), values.end(), std::uint8_t{0});
-       const std::string path = scratch.path("sample");
+       std::string path = scratch.path("sample");
        ChunkedFile(path, {{2, 3, 4}, {2, 3, 4}, {}, false, H5T_STD_U8LE}).write(H5T_NATIVE_UINT8, values);
        return path;
      }},

@@ -120,7 +120,7 @@ OpenVdbGrid& OpenVdbGrid::place(const std::array<double, 3>& scale, const std::a
   using namespace openvdb::math;
   const Vec3d s(scale[0], scale[1], scale[2]);
   const Vec3d t(translate[0], translate[1], translate[2]);
-  implementation_->grid->setTransform(Transform::Ptr(new Transform(MapBase::Ptr(new ScaleTranslateMap(s, t)))));
+  implementation_->grid->setTransform(std::make_shared<Transform>(std::make_shared<ScaleTranslateMap>(s, t)));
   return *this;
 }
 

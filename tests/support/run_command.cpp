@@ -15,6 +15,8 @@
 #include <system_error>
 #include <thread>
 
+#include "tests/support/sanitized.h"
+
 namespace weir {
 namespace {
 
@@ -137,7 +139,7 @@ void ChildProcess::send_signal(int signal) {
 CommandResult ChildProcess::wait() {
   bool timed_out = false;
   while (running()) {
-    if (steady_clock::now() - start_ >= options_.timeout) {
+    if (steady_clock::now() - start_ >= options_.timeout * (kSanitized ? 5 : 1)) {
       timed_out = true;
       kill(-pid_, SIGKILL);
       reap(0);

@@ -29,7 +29,7 @@ inline constexpr bool kSanitized = false;
 using LeaksOfLibraries = __lsan::ScopedDisabler;
 #else
 struct LeaksOfLibraries {
-  LeaksOfLibraries() {}  // so that one is never an unused variable
+  LeaksOfLibraries() {}  // NOLINT(modernize-use-equals-default): so that one is never an unused variable
 };
 #endif
 

@@ -46,7 +46,7 @@ TEST(ChunkInflater, BytesAfterTheStreamAreIgnored) {
 
 std::string message_for(std::span<const std::byte> stream, std::size_t size) {
   std::vector<std::byte> bytes(size + 16, std::byte{0xEE});
-  const auto message =
+  auto message =
       message_of_error(ErrorKind::input, [&] { ChunkInflater().inflate(stream, std::span(bytes).first(size)); });
   for (std::size_t i = size; i < bytes.size(); ++i) EXPECT_EQ(bytes[i], std::byte{0xEE}) << "written beyond the end";
   return message;

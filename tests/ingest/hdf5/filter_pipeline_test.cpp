@@ -14,7 +14,7 @@ namespace {
 std::optional<FilterPipeline> pipeline_after(const std::function<void(hid_t)>& set_filters) {
   const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
   set_filters(creation);
-  const auto pipeline = own_pipeline(creation);
+  auto pipeline = own_pipeline(creation);
   H5Pclose(creation);
   return pipeline;
 }

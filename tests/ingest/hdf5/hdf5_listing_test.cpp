@@ -14,11 +14,11 @@ class Hdf5Listing : public ::testing::Test {
     if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   }
 
-  Scratch scratch;
+  Scratch scratch_;
 };
 
 TEST_F(Hdf5Listing, SaysShapeTypeLayoutAndObstacle) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     d = f.create_dataset("b/packed", data=values(">i2", (3,) + SHAPE), chunks=(1, 2, 3, 4), compression="gzip", shuffle=True)
     d.attrs.update({"long_name": "density of it", "units": "kg m-3", "scale_factor": 0.5, "_FillValue": np.int16(-1),
@@ -27,7 +27,7 @@ with h5py.File("a.h5", "w") as f:
     f["plain"] = values("f4")
     f.create_dataset("filtered", (4, 4, 4), "f8", chunks=(2, 2, 2), fletcher32=True, compression="szip")
 )");
-  const std::vector<DatasetInfo> listed = list_hdf5(scratch.path("a.h5"), {});
+  const std::vector<DatasetInfo> listed = list_hdf5(scratch_.path("a.h5"), {});
   ASSERT_EQ(listed.size(), 4U);
   EXPECT_EQ(listed[0].name, "/filtered");
   EXPECT_EQ(listed[0].layout, "chunked 2 x 2 x 2, szip, fletcher32");
@@ -61,7 +61,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Listing, CopesWithThousandsAndWithCircles) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w", libver="latest") as f:
     v = np.zeros((2, 2, 2), "u1")
     for i in range(3000): f["step%04d/field" % i] = v
@@ -71,7 +71,7 @@ with h5py.File("a.h5", "w", libver="latest") as f:
     g["deep"] = v
 )");
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<DatasetInfo> listed = list_hdf5(scratch.path("a.h5"), {});
+  const std::vector<DatasetInfo> listed = list_hdf5(scratch_.path("a.h5"), {});
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
   EXPECT_EQ(listed.size(), 3001U);
   EXPECT_EQ(

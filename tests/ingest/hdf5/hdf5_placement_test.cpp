@@ -17,10 +17,10 @@ class Hdf5Placement : public ::testing::Test {
     if (!python_has("h5py, numpy, netCDF4")) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
   }
   SourceInfo info_of(const std::string& file, const std::string& dataset, std::vector<std::int64_t> index = {}) {
-    return open_source(scratch.path(file), dataset_options(dataset, std::move(index)))->info();
+    return open_source(scratch_.path(file), dataset_options(dataset, std::move(index)))->info();
   }
   std::string attribute(const std::string& file, const std::string& dataset, const std::string& name) {
-    for (const DatasetInfo& listed : list_hdf5(scratch.path(file), {})) {
+    for (const DatasetInfo& listed : list_hdf5(scratch_.path(file), {})) {
       for (const auto& [key, value] : listed.attributes) {
         if (listed.name == dataset && key == name) return value;
       }
@@ -28,11 +28,11 @@ class Hdf5Placement : public ::testing::Test {
     return {};
   }
 
-  Scratch scratch;
+  Scratch scratch_;
 };
 
 TEST_F(Hdf5Placement, OpenPmdIsPermutedWithTheAxes) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     def mesh(name, order, labels, spacing, offset, unit=1.0):
         g = f.create_group("data/100/meshes/" + name)
@@ -65,7 +65,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(rho.unit_si, std::nullopt);
   EXPECT_EQ(info_of("a.h5", "/data/100/meshes/odd").spacing, (Triple{1, 1, 1}));
 
-  const auto constant = open_source(scratch.path("a.h5"), dataset_options("/data/100/meshes/C/y"));
+  const auto constant = open_source(scratch_.path("a.h5"), dataset_options("/data/100/meshes/C/y"));
   EXPECT_EQ(constant->info().extent, (Index3{9, 7, 5}));
   EXPECT_EQ(constant->info().type, ScalarType::float64);
   EXPECT_EQ(constant->info().spacing, (Triple{1, 2, 4}));
@@ -77,7 +77,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Placement, NetcdfCoordinatesGiveSpacingAndNames) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 import netCDF4
 n = netCDF4.Dataset("a.nc", "w")
 for name, size in [("time", None), ("level", 5), ("lat", 7), ("lon", 9), ("bare", 9)]: n.createDimension(name, size)
@@ -109,15 +109,15 @@ n.close()
   EXPECT_EQ(u.axis_labels, (Labels{"bare", "lat", "level"}));
   EXPECT_EQ(u.spacing[0], 1);
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { info_of("a.nc", "t"); }),
-            scratch.path("a.nc") +
+            scratch_.path("a.nc") +
                 ": /t: its axes are time=2 x level=5 x lat=7 x lon=9, and a volume has three; give "
                 "--index with 1 position: time in 0..1");
   // The dimension without coordinates is no dataset.
-  for (const DatasetInfo& listed : list_hdf5(scratch.path("a.nc"), {})) EXPECT_NE(listed.name, "/bare");
+  for (const DatasetInfo& listed : list_hdf5(scratch_.path("a.nc"), {})) EXPECT_NE(listed.name, "/bare");
 }
 
 TEST_F(Hdf5Placement, NetcdfPackingAndMissingValues) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 import netCDF4
 n = netCDF4.Dataset("a.nc", "w")
 for name, size in [("z", 5), ("y", 7), ("x", 9)]: n.createDimension(name, size)
@@ -141,9 +141,9 @@ make("zero", "f4", values("f4"), None, scale_factor=0.0)
 make("list", "f4", values("f4"), None, add_offset=[1.0, 2.0])
 n.close()
 )");
-  const auto packed = open_source(scratch.path("a.nc"), dataset_options("packed"));
+  const auto packed = open_source(scratch_.path("a.nc"), dataset_options("packed"));
   const std::vector<float> values = all_values(*packed);
-  const std::vector<float> plain = expected(scratch, "packed");
+  const std::vector<float> plain = expected(scratch_, "packed");
   int missing = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool marked = plain[i] == -99 * 0.5F + 10 || plain[i] == 98 * 0.5F + 10 || plain[i] == 97 * 0.5F + 10;
@@ -157,12 +157,12 @@ n.close()
   EXPECT_EQ(attribute("a.nc", "/packed", "values"), "stored * 0.5 + 10");
   EXPECT_EQ(attribute("a.nc", "/packed", "missing"), "-99, 98, 97");
 
-  const std::vector<float> marked = all_values(*open_source(scratch.path("a.nc"), dataset_options("marked")));
+  const std::vector<float> marked = all_values(*open_source(scratch_.path("a.nc"), dataset_options("marked")));
   EXPECT_TRUE(is_missing(marked[2 * 63 + 3 * 9 + 4]));
-  EXPECT_EQ(marked[0], expected(scratch, "marked")[0]);
+  EXPECT_EQ(marked[0], expected(scratch_, "marked")[0]);
 
   // NetCDF's own fill value is missing to its tools, and so it is here.
-  const std::vector<float> unwritten = all_values(*open_source(scratch.path("a.nc"), dataset_options("unwritten")));
+  const std::vector<float> unwritten = all_values(*open_source(scratch_.path("a.nc"), dataset_options("unwritten")));
   EXPECT_EQ(unwritten[62], 1.0F);
   EXPECT_TRUE(is_missing(unwritten[63]));
 
@@ -175,15 +175,15 @@ n.close()
   };
   const std::string unknown = ", so what its values mean is unknown; correct or remove it";
   EXPECT_EQ(refused("bad"),
-            scratch.path("a.nc") + ": /bad: its attribute scale_factor is not one number but 0" + unknown);
+            scratch_.path("a.nc") + ": /bad: its attribute scale_factor is not one number but 0" + unknown);
   EXPECT_EQ(refused("zero"),
-            scratch.path("a.nc") + ": /zero: its attribute scale_factor is not one number but 0" + unknown);
+            scratch_.path("a.nc") + ": /zero: its attribute scale_factor is not one number but 0" + unknown);
   EXPECT_EQ(refused("list"),
-            scratch.path("a.nc") + ": /list: its attribute add_offset is not one finite number" + unknown);
+            scratch_.path("a.nc") + ": /list: its attribute add_offset is not one finite number" + unknown);
 }
 
 TEST_F(Hdf5Placement, OptionsComeOnTopOfTheFile) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     d = f.create_dataset("v", data=np.arange(8, dtype="i4").reshape(2, 2, 2))
     d.attrs["_FillValue"] = np.int32(3)
@@ -192,7 +192,7 @@ with h5py.File("a.h5", "w") as f:
   SourceOptions options = dataset_options("v");
   options.missing = StoredValue{std::int64_t{5}};
   options.origin = {7.0, 8.0, 9.0};
-  const auto source = open_source(scratch.path("a.h5"), options);
+  const auto source = open_source(scratch_.path("a.h5"), options);
   EXPECT_EQ(source->info().spacing, (Triple{1, 2, 3}));
   EXPECT_EQ(source->info().origin, (Triple{7, 8, 9}));
   const std::vector<float> values = all_values(*source);
@@ -200,7 +200,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Placement, PlainAttributesOfTheDatasetOrAGroupAroundIt) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     f.attrs["spacing"] = [9.0, 9.0, 9.0]
     f["root"] = values("f4")
@@ -219,13 +219,13 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info_of("a.h5", "cremi").origin, (Triple{1, 2, 3}));
   EXPECT_EQ(info_of("a.h5", "cube").spacing, (Triple{0.25, 0.25, 0.25}));
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("a.h5", "negative"); }),
-            scratch.path("a.h5") + ": its spacing has -1, which is not finite and above 0; give --spacing x,y,z");
+            scratch_.path("a.h5") + ": its spacing has -1, which is not finite and above 0; give --spacing x,y,z");
 }
 
 // Every name weir looks for, in every shape and type there is: no crash, and the volume opens or is refused in one
 // line.
 TEST_F(Hdf5Placement, AttributesOfAnyTypeAreSurvived) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 names = ["_FillValue", "missing_value", "scale_factor", "add_offset", "units", "Units", "unitSI", "position", "value", "shape",
          "gridSpacing", "gridGlobalOffset", "gridUnitSI", "axisLabels", "dataOrder", "DIMENSION_LIST", "CLASS", "NAME",
          "spacing", "origin", "voxel_size", "resolution", "offset", "long_name", "_NCProperties"]
@@ -249,9 +249,9 @@ with h5py.File("a.h5", "w") as f:
                    dtype=h5py.vlen_dtype(h5py.ref_dtype))
 )");
   int opened = 0;
-  for (const DatasetInfo& listed : list_hdf5(scratch.path("a.h5"), {})) {
+  for (const DatasetInfo& listed : list_hdf5(scratch_.path("a.h5"), {})) {
     try {
-      all_values(*open_source(scratch.path("a.h5"), dataset_options(listed.name)));
+      all_values(*open_source(scratch_.path("a.h5"), dataset_options(listed.name)));
       ++opened;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();

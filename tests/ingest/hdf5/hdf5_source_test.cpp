@@ -21,16 +21,16 @@ class Hdf5Source : public ::testing::Test {
     if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   }
   std::string refused(const std::string& file, const SourceOptions& options, ErrorKind kind = ErrorKind::input) {
-    const std::string message = message_of_error(kind, [&] { open_source(scratch.path(file), options); });
+    std::string message = message_of_error(kind, [&] { open_source(scratch_.path(file), options); });
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;
   }
 
-  Scratch scratch;
+  Scratch scratch_;
 };
 
 TEST_F(Hdf5Source, ReadsEveryTypeInEveryLayout) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("types.h5", "w") as f:
     for code in ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"]:
         for order in "<>":
@@ -53,19 +53,19 @@ with h5py.File("types.h5", "w") as f:
     for (const char* order : {"le", "be"}) {
       const std::string name = std::string(code) + order;
       for (const char* layout : {"contiguous/", "chunked/", "packed/", "lzf/", "szip/", "compact/"}) {
-        expect_reads(scratch, "types.h5", dataset_options(layout + name), name);
+        expect_reads(scratch_, "types.h5", dataset_options(layout + name), name);
       }
     }
   }
 }
 
 TEST_F(Hdf5Source, SaysWhatItKnows) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     d = f.create_dataset("fields/rho: gas", data=values(">i2"), chunks=(2, 3, 4), compression="gzip")
     d.attrs["units"] = "kg m-3"
 )");
-  const auto source = open_source(scratch.path("a.h5"), {});
+  const auto source = open_source(scratch_.path("a.h5"), {});
   const SourceInfo& info = source->info();
   EXPECT_EQ(info.format, "hdf5");
   EXPECT_EQ(info.dataset, "/fields/rho: gas");
@@ -73,7 +73,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info.type, ScalarType::int16);
   EXPECT_EQ(info.extent, (Index3{9, 7, 5}));
   EXPECT_EQ(info.spacing, (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(info.file_bytes, std::filesystem::file_size(scratch.path("a.h5")));
+  EXPECT_EQ(info.file_bytes, std::filesystem::file_size(scratch_.path("a.h5")));
   EXPECT_GT(info.mtime_ns, 0);
   EXPECT_EQ(source->access().chunk, (Index3{4, 3, 2}));
   EXPECT_EQ(source->access().bytes_per_voxel, 2U);
@@ -82,22 +82,22 @@ with h5py.File("a.h5", "w") as f:
 
 // gzip and shuffle must not take the library's way: only that counts stored bytes as the unpacked ones.
 TEST_F(Hdf5Source, DecodesGzipItself) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     f.create_dataset("zeros", data=np.zeros((64, 64, 64), "f4"), chunks=(16, 16, 16), compression="gzip", shuffle=True)
     f.create_dataset("szip", data=np.zeros((64, 64, 64), "f4"), chunks=(16, 16, 16), compression="szip")
 )");
-  const auto own = open_source(scratch.path("a.h5"), dataset_options("zeros"));
+  const auto own = open_source(scratch_.path("a.h5"), dataset_options("zeros"));
   all_values(*own);
   EXPECT_LT(own->bytes_read(), std::uint64_t{64} * 64 * 64);
-  const auto library = open_source(scratch.path("a.h5"), dataset_options("szip"));
+  const auto library = open_source(scratch_.path("a.h5"), dataset_options("szip"));
   all_values(*library);
   EXPECT_EQ(library->bytes_read(), std::uint64_t{4} * 64 * 64 * 64);
   EXPECT_EQ(library->access().chunk, (Index3{16, 16, 16}));
 }
 
 TEST_F(Hdf5Source, ReadsBehindUserBlocksAndByAnyName) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4"); expect("v", v)
 for size in [512, 1024, 4096]:
     with h5py.File("block%d.volume" % size, "w", userblock_size=size) as f:
@@ -106,13 +106,13 @@ for size in [512, 1024, 4096]:
     with open("block%d.volume" % size, "r+b") as f: f.write(b"MATLAB 7.3 MAT-file")
 )");
   for (const char* file : {"block512.volume", "block1024.volume", "block4096.volume"}) {
-    expect_reads(scratch, file, dataset_options("plain"), "v");
-    expect_reads(scratch, file, dataset_options("packed"), "v");
+    expect_reads(scratch_, file, dataset_options("plain"), "v");
+    expect_reads(scratch_, file, dataset_options("packed"), "v");
   }
 }
 
 TEST_F(Hdf5Source, FollowsLinks) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4"); expect("v", v)
 os.mkdir("sub")
 with h5py.File("sub/other.h5", "w") as f:
@@ -132,9 +132,9 @@ with h5py.File("links.h5", "w") as f:
     f["circle"] = h5py.SoftLink("/circle")
 )");
   for (const char* name : {"soft", "hard", "a/loop/a/loop/a/real", "plain", "group/deep/packed", "group/deep/plain"}) {
-    expect_reads(scratch, "links.h5", dataset_options(name), "v");
+    expect_reads(scratch_, "links.h5", dataset_options(name), "v");
   }
-  const std::string path = scratch.path("links.h5");
+  const std::string path = scratch_.path("links.h5");
   EXPECT_EQ(refused("links.h5", dataset_options("nowhere")),
             path + ": /nowhere: a soft link to /none, which is not there");
   EXPECT_EQ(refused("links.h5", dataset_options("lost/y")),
@@ -147,7 +147,7 @@ with h5py.File("links.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, NotesTheStatesOfAllFilesItLiesIn) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("<f4")
 with h5py.File("b.h5", "w") as f: f["d"] = v
 with h5py.File("a.h5", "w") as f:
@@ -163,21 +163,21 @@ with h5py.File("a.h5", "w") as f:
     f.create_virtual_dataset("inner", layout)
 )");
   const auto digest = [&](const char* name) {
-    return open_source(scratch.path("a.h5"), dataset_options(name))->info().files_digest;
+    return open_source(scratch_.path("a.h5"), dataset_options(name))->info().files_digest;
   };
   for (const char* name : {"own", "chunked", "inner"}) EXPECT_EQ(digest(name), "") << name;
   for (const auto& [name, file] : {std::pair{"external", "e.raw"}, {"linked", "b.h5"}, {"virtual", "b.h5"}}) {
     const std::string before = digest(name);
     EXPECT_EQ(before.size(), 32U) << name;
     EXPECT_EQ(digest(name), before) << name;
-    const std::string path = scratch.path(file);
+    const std::string path = scratch_.path(file);
     std::filesystem::last_write_time(path, std::filesystem::last_write_time(path) - std::chrono::hours(1));
     EXPECT_NE(digest(name), before) << name;
   }
 }
 
 TEST_F(Hdf5Source, TakesLeadingAxesByIndex) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("i4", (3, 2) + SHAPE)
 for i in range(3):
     for j in range(2): expect("%d%d" % (i, j), v[i, j])
@@ -191,14 +191,14 @@ with h5py.File("a.h5", "w") as f:
   for (const char* name : {"plain", "packed", "szip"}) {
     for (const std::int64_t i : {0, 1, 2}) {
       for (const std::int64_t j : {0, 1}) {
-        expect_reads(scratch, "a.h5", dataset_options(name, {i, j}), std::to_string(i) + std::to_string(j));
+        expect_reads(scratch_, "a.h5", dataset_options(name, {i, j}), std::to_string(i) + std::to_string(j));
       }
     }
   }
-  expect_reads(scratch, "a.h5", dataset_options("ones"), "11");
-  expect_reads(scratch, "a.h5", dataset_options("ones", {0, 0}), "11");
-  expect_reads(scratch, "a.h5", dataset_options("later", {1}), "01");
-  const std::string where = scratch.path("a.h5") + ": /plain: its axes are 3 x 2 x 5 x 7 x 9";
+  expect_reads(scratch_, "a.h5", dataset_options("ones"), "11");
+  expect_reads(scratch_, "a.h5", dataset_options("ones", {0, 0}), "11");
+  expect_reads(scratch_, "a.h5", dataset_options("later", {1}), "01");
+  const std::string where = scratch_.path("a.h5") + ": /plain: its axes are 3 x 2 x 5 x 7 x 9";
   const std::string remedy = "; give --index with 2 positions: axis 0 in 0..2, axis 1 in 0..1";
   EXPECT_EQ(refused("a.h5", dataset_options("plain"), ErrorKind::usage), where + ", and a volume has three" + remedy);
   EXPECT_EQ(refused("a.h5", dataset_options("plain", {1}), ErrorKind::usage),
@@ -210,7 +210,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, TakesTheOnlyVolumeUnasked) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4"); expect("v", v)
 with h5py.File("one.h5", "w") as f:
     f["time"] = 1.0
@@ -228,26 +228,26 @@ with h5py.File("none.h5", "w") as f:
 with h5py.File("flat.h5", "w") as f: f["lat"] = np.zeros((3, 4))
 with h5py.File("empty.h5", "w") as f: f.create_group("g")
 )");
-  expect_reads(scratch, "one.h5", {}, "v");
-  expect_reads(scratch, "steps.h5", {}, "v");
-  expect_reads(scratch, "steps.h5", dataset_options("", {1}), "v");
+  expect_reads(scratch_, "one.h5", {}, "v");
+  expect_reads(scratch_, "steps.h5", {}, "v");
+  expect_reads(scratch_, "steps.h5", dataset_options("", {1}), "v");
   EXPECT_EQ(refused("two.h5", {}, ErrorKind::usage),
-            scratch.path("two.h5") + ": holds 2 volumes; choose one with --dataset: /a (5 x 7 x 9), /b (5 x 7 x 9)");
-  EXPECT_EQ(refused("none.h5", {}), scratch.path("none.h5") +
+            scratch_.path("two.h5") + ": holds 2 volumes; choose one with --dataset: /a (5 x 7 x 9), /b (5 x 7 x 9)");
+  EXPECT_EQ(refused("none.h5", {}), scratch_.path("none.h5") +
                                         ": none of its 2 datasets is a volume (/lat: 2 axes (3 x 4); a volume has "
                                         "three); weir inspect lists them");
-  EXPECT_EQ(refused("flat.h5", {}), scratch.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
-  EXPECT_EQ(refused("empty.h5", {}), scratch.path("empty.h5") + ": holds no dataset");
+  EXPECT_EQ(refused("flat.h5", {}), scratch_.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
+  EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset");
 }
 
 TEST_F(Hdf5Source, NamesWhatThereIsForWhatThereIsNot) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     for name in ["fields/density", "fields/Temperature", "v"]: f[name] = np.zeros((2, 2, 2))
     f.create_group("bare")
     f["type"] = np.dtype("f4")
 )");
-  const std::string path = scratch.path("a.h5");
+  const std::string path = scratch_.path("a.h5");
   EXPECT_EQ(refused("a.h5", dataset_options("fields/desnity")),
             path + ": no dataset /fields/desnity; alike are /fields/density; weir inspect lists all");
   EXPECT_EQ(refused("a.h5", dataset_options("/temperature")),
@@ -263,7 +263,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, RefusesWhatIsNoVolumeOfNumbers) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 S = (2, 2, 2)
 with h5py.File("a.h5", "w") as f:
     f["compound"] = np.zeros(S, [("a", "f4"), ("b", "i4")])
@@ -289,7 +289,7 @@ with h5py.File("a.h5", "w") as f:
     f.create_dataset("unwritten chunks", S, chunks=S)
 )");
   const auto said = [&](const std::string& name) {
-    const std::string start = scratch.path("a.h5") + ": /" + name + ": ";
+    const std::string start = scratch_.path("a.h5") + ": /" + name + ": ";
     const std::string message = refused("a.h5", dataset_options(name));
     EXPECT_TRUE(message.starts_with(start)) << message;
     return message.substr(std::min(start.size(), message.size()));
@@ -320,7 +320,7 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, UnwrittenChunksReadAsTheFillValue) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     for name, fill, how in [("default", None, {}), ("seven", 7, {}), ("marked", -99, {}), ("szip", 7, {"compression": "szip"})]:
         d = f.create_dataset(name, (4, 4, 8), "f4", chunks=(4, 4, 4), fillvalue=fill, **how)
@@ -328,8 +328,8 @@ with h5py.File("a.h5", "w") as f:
         expect(name, d[...])
     f["marked"].attrs["_FillValue"] = np.float32(-99)
 )");
-  for (const char* name : {"default", "seven", "szip"}) expect_reads(scratch, "a.h5", dataset_options(name), name);
-  const auto marked = open_source(scratch.path("a.h5"), dataset_options("marked"));
+  for (const char* name : {"default", "seven", "szip"}) expect_reads(scratch_, "a.h5", dataset_options(name), name);
+  const auto marked = open_source(scratch_.path("a.h5"), dataset_options("marked"));
   const std::vector<float> values = all_values(*marked);
   EXPECT_EQ(values[3], 1.0F);
   EXPECT_TRUE(is_missing(values[4]));
@@ -337,7 +337,7 @@ with h5py.File("a.h5", "w") as f:
 
 TEST_F(Hdf5Source, ReadsFiltersThatPluginsUndo) {
   const LeaksOfLibraries of_plugins;
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4"); expect("v", v)
 with h5py.File("a.h5", "w") as f:
     f.create_dataset("scaleoffset", data=(v * 100).astype("i4"), chunks=(2, 3, 4), scaleoffset=0)
@@ -351,16 +351,16 @@ with h5py.File("a.h5", "w") as f:
         made.append(name)
     open("made", "w").write("\n".join(made))
 )");
-  expect_reads(scratch, "a.h5", dataset_options("scaleoffset"), "scaleoffset");
-  std::ifstream made(scratch.path("made"));
+  expect_reads(scratch_, "a.h5", dataset_options("scaleoffset"), "scaleoffset");
+  std::ifstream made(scratch_.path("made"));
   int count = 0;
-  for (std::string name; std::getline(made, name); ++count) expect_reads(scratch, "a.h5", dataset_options(name), name);
+  for (std::string name; std::getline(made, name); ++count) expect_reads(scratch_, "a.h5", dataset_options(name), name);
   if (count < 4) std::cout << "skipped: the HDF5 filter plugins of " << 4 - count << " filters are missing\n";
 }
 
 TEST_F(Hdf5Source, NamesTheFilterThatIsMissing) {
   const LeaksOfLibraries of_plugins;
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     for name, id in [("sperr", 32028), ("own", 65000)]:
         made = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
@@ -371,27 +371,27 @@ with h5py.File("a.h5", "w") as f:
         d.write_direct_chunk((0, 0, 0), b"packed", 0)
 )");
   EXPECT_EQ(refused("a.h5", dataset_options("sperr")),
-            scratch.path("a.h5") +
+            scratch_.path("a.h5") +
                 ": /sperr: packed by the filter sperr (32028), and no plugin for it is found; set "
                 "HDF5_PLUGIN_PATH to the directory that has it");
   EXPECT_EQ(refused("a.h5", dataset_options("own")),
-            scratch.path("a.h5") +
+            scratch_.path("a.h5") +
                 ": /own: packed by the filter filter 65000 (65000), and no plugin for it is found; "
                 "set HDF5_PLUGIN_PATH to the directory that has it");
 }
 
 TEST_F(Hdf5Source, SourcesReadFromManyThreadsAtOnce) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4", (32, 32, 32)); expect("v", v)
 with h5py.File("a.h5", "w") as f:
     f["plain"] = v
     f.create_dataset("gzip", data=v, chunks=(8, 8, 8), compression="gzip")
     f.create_dataset("szip", data=v, chunks=(8, 8, 8), compression="szip")
 )");
-  const std::vector<float> whole = expected(scratch, "v");
+  const std::vector<float> whole = expected(scratch_, "v");
   std::vector<std::unique_ptr<VolumeSource>> sources;
   for (const char* name : {"plain", "gzip", "szip"}) {
-    sources.push_back(open_source(scratch.path("a.h5"), dataset_options(name)));
+    sources.push_back(open_source(scratch_.path("a.h5"), dataset_options(name)));
   }
   std::atomic<int> wrong{0};
   std::vector<std::thread> threads;
@@ -401,7 +401,7 @@ with h5py.File("a.h5", "w") as f:
         std::vector<float> part(4 * 32 * 32);
         sources[t % 3]->read({{0, 0, z}, {32, 32, z + 4}}, part);
         if (std::memcmp(part.data(), &whole[static_cast<std::size_t>(z * 1024)], part.size() * 4) != 0) ++wrong;
-        open_source(scratch.path("a.h5"), dataset_options("gzip"));  // others open and close meanwhile
+        open_source(scratch_.path("a.h5"), dataset_options("gzip"));  // others open and close meanwhile
       }
     });
   }
@@ -410,23 +410,23 @@ with h5py.File("a.h5", "w") as f:
 }
 
 TEST_F(Hdf5Source, SaysWhatMemoryHugeChunksTake) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     f.create_dataset("v", data=np.zeros((64, 256, 256), "f4"), chunks=(64, 256, 256), compression="szip")
 )");
   SourceOptions options = dataset_options("v");
   options.memory = std::uint64_t{32} << 20U;
   EXPECT_EQ(refused("a.h5", options, ErrorKind::usage),
-            scratch.path("a.h5") +
+            scratch_.path("a.h5") +
                 ": /v: reading one of its chunks takes 52.0 MiB, more than half of --memory 32.0 "
                 "MiB; give at least 105MiB");
 }
 
 TEST_F(Hdf5Source, PrintsNothingItself) {
-  write_by_h5py(scratch, "h5py.File(\"a.h5\", \"w\")[\"v\"] = np.zeros((2, 2, 2))");
+  write_by_h5py(scratch_, "h5py.File(\"a.h5\", \"w\")[\"v\"] = np.zeros((2, 2, 2))");
   testing::internal::CaptureStderr();
   refused("a.h5", dataset_options("none"));
-  { open_source(scratch.path("a.h5"), {}); }
+  { open_source(scratch_.path("a.h5"), {}); }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 

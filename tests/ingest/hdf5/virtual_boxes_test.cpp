@@ -17,14 +17,14 @@ class VirtualDataset : public ::testing::Test {
     if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   }
   std::string refused(const std::string& file, const SourceOptions& options = {}) {
-    return message_of_error(ErrorKind::input, [&] { open_source(scratch.path(file), options); });
+    return message_of_error(ErrorKind::input, [&] { open_source(scratch_.path(file), options); });
   }
 
-  Scratch scratch;
+  Scratch scratch_;
 };
 
 TEST_F(VirtualDataset, ReadsSlabsPlanesAndInterleavedSources) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4", (6, 7, 9)); expect("v", v)
 os.mkdir("parts")
 def part(name, data, **how):
@@ -60,13 +60,13 @@ with h5py.File("same.h5", "w") as f:
     f.create_virtual_dataset("v", layout)
 )");
   for (const char* file : {"slabs.h5", "planes.h5", "mosaic.h5", "interleaved.h5", "inner.h5", "same.h5"}) {
-    expect_reads(scratch, file, dataset_options("v"), "v");
+    expect_reads(scratch_, file, dataset_options("v"), "v");
   }
-  EXPECT_EQ(open_source(scratch.path("slabs.h5"), {})->access().chunk, (Index3{9, 7, 1}));
+  EXPECT_EQ(open_source(scratch_.path("slabs.h5"), {})->access().chunk, (Index3{9, 7, 1}));
 }
 
 TEST_F(VirtualDataset, ReadsStepsOfMoreSourcesThanMayBeOpen) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 import resource
 v = values("i2", (40, 3, 5, 7))
 layout = h5py.VirtualLayout(v.shape, "i2")
@@ -79,18 +79,18 @@ for i in range(40): layout[3*i:3*i+3] = h5py.VirtualSource("step%d.h5" % i, "d",
 with h5py.File("joined.h5", "w") as f: f.create_virtual_dataset("v", layout)
 expect("17", v[17]); expect("joined", v.reshape(120, 5, 7))
 )");
-  expect_reads(scratch, "all.h5", dataset_options("v", {17}), "17");
-  expect_reads(scratch, "joined.h5", {}, "joined");
+  expect_reads(scratch_, "all.h5", dataset_options("v", {17}), "17");
+  expect_reads(scratch_, "joined.h5", {}, "joined");
   // Only what the volume needs has to be there.
-  std::filesystem::remove(scratch.path("step3.h5"));
-  expect_reads(scratch, "all.h5", dataset_options("v", {17}), "17");
+  std::filesystem::remove(scratch_.path("step3.h5"));
+  expect_reads(scratch_, "all.h5", dataset_options("v", {17}), "17");
   EXPECT_EQ(refused("all.h5", dataset_options("v", {3})),
-            scratch.path("all.h5") + ": /v: its source file step3.h5 is not there; put it beside " +
-                scratch.path("all.h5") + " or set HDF5_VDS_PREFIX");
+            scratch_.path("all.h5") + ": /v: its source file step3.h5 is not there; put it beside " +
+                scratch_.path("all.h5") + " or set HDF5_VDS_PREFIX");
 }
 
 TEST_F(VirtualDataset, FollowsMappingsWithoutEnd) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 v = values("f4", (6, 7, 9)); expect("v", v); expect("four", v[:4])
 with h5py.File("grown.h5", "w", libver="latest") as f: f.create_dataset("d", data=v, maxshape=(None, 7, 9), chunks=(2, 7, 9))
 for i in range(3):
@@ -115,16 +115,16 @@ def numbered(space, made):
     made.set_virtual(space, b"block%b%%.h5", b"d%b", source)
 make("numbered.h5", numbered)
 )");
-  expect_reads(scratch, "endless.h5", {}, "v");
-  expect_reads(scratch, "numbered.h5", {}, "v");
+  expect_reads(scratch_, "endless.h5", {}, "v");
+  expect_reads(scratch_, "numbered.h5", {}, "v");
   // As the library does, a numbered series ends before the first block that is missing.
-  std::filesystem::remove(scratch.path("block2%.h5"));
-  expect_reads(scratch, "numbered.h5", {}, "four");
+  std::filesystem::remove(scratch_.path("block2%.h5"));
+  expect_reads(scratch_, "numbered.h5", {}, "four");
 }
 
 TEST_F(VirtualDataset, NamesTheSourceOrTheElementThatIsMissing) {
   const LeaksOfLibraries of_plugins;
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 def whole(name, pieces):
     layout = h5py.VirtualLayout((4, 4, 4), "f4")
     for where, source in pieces: layout[where] = source
@@ -154,17 +154,17 @@ open("bad.h5", "w").write("nothing of HDF5 in here")
 whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
 )");
   const auto said = [&](const std::string& file) {
-    const std::string start = scratch.path(file) + ": /v: ";
+    const std::string start = scratch_.path(file) + ": /v: ";
     const std::string message = refused(file);
     EXPECT_TRUE(message.starts_with(start)) << message;
     return message.substr(std::min(start.size(), message.size()));
   };
-  const std::string source = "its source " + scratch.path("source.h5") + ": ";
+  const std::string source = "its source " + scratch_.path("source.h5") + ": ";
   const std::string incomplete = "; the dataset is incomplete";
   EXPECT_EQ(said("gap.h5"), "no source is mapped to its element 2, 0, 0" + incomplete);
   EXPECT_EQ(said("hole.h5"), "no source is mapped to its element 2, 3, 0" + incomplete);
   EXPECT_EQ(said("cut.h5"), source + "half: has extents 2, 4, 4, fewer than the mapping needs");
-  EXPECT_EQ(said("no file.h5"), "its source file other.h5 is not there; put it beside " + scratch.path("no file.h5") +
+  EXPECT_EQ(said("no file.h5"), "its source file other.h5 is not there; put it beside " + scratch_.path("no file.h5") +
                                     " or set HDF5_VDS_PREFIX");
   EXPECT_EQ(said("no dataset.h5"), source + "none cannot be opened: object 'none' doesn't exist");
   EXPECT_EQ(said("small.h5"), source + "small: has 24 elements where 32 are mapped");
@@ -173,25 +173,25 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   EXPECT_EQ(said("packed.h5"), source +
                                    "packed: packed by the filter sperr (32028), and no plugin for it is found; "
                                    "set HDF5_PLUGIN_PATH to the directory that has it");
-  EXPECT_EQ(said("nested.h5"), "its source " + scratch.path("gap.h5") +
+  EXPECT_EQ(said("nested.h5"), "its source " + scratch_.path("gap.h5") +
                                    ": v: is spread over other files itself; write it as one with h5repack");
-  EXPECT_EQ(said("bad source.h5"), "its source " + scratch.path("bad.h5") +
+  EXPECT_EQ(said("bad source.h5"), "its source " + scratch_.path("bad.h5") +
                                        ": no HDF5 signature at 0, 512, 1024 ...: the file is of another format than "
                                        "its name says, or its beginning is lost");
 }
 
 TEST_F(VirtualDataset, SourcesLostAfterOpeningAreAnErrorToo) {
-  write_by_h5py(scratch, R"(
+  write_by_h5py(scratch_, R"(
 layout = h5py.VirtualLayout((16, 2, 2), "f4")
 for i in range(8):
     with h5py.File("s%d.h5" % i, "w") as f: f["d"] = np.ones((2, 2, 2), "f4")
     layout[2*i:2*i+2] = h5py.VirtualSource("s%d.h5" % i, "d", (2, 2, 2))
 with h5py.File("all.h5", "w") as f: f.create_virtual_dataset("v", layout)
 )");
-  const auto source = open_source(scratch.path("all.h5"), {});
-  std::filesystem::remove(scratch.path("s6.h5"));
+  const auto source = open_source(scratch_.path("all.h5"), {});
+  std::filesystem::remove(scratch_.path("s6.h5"));
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { all_values(*source); }),
-            scratch.path("all.h5") + ": /v: its source " + scratch.path("s6.h5") +
+            scratch_.path("all.h5") + ": /v: its source " + scratch_.path("s6.h5") +
                 ": cannot open for reading: No such file or directory");
 }
 

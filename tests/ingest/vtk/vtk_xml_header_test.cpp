@@ -35,7 +35,8 @@ TEST(VtkXmlSkeleton, KeepsTagsAndTellsWhereTextLies) {
 }
 
 TEST(VtkXmlSkeleton, EndsAtTheAppendedData) {
-  const std::string text = "<VTKFile><AppendedData encoding=\"raw\">\n \t_<\0>\"";
+  using namespace std::string_literals;
+  const std::string text = "<VTKFile><AppendedData encoding=\"raw\">\n \t_<\0>\""s;
   VtkXmlSkeleton skeleton("a.vti");
   EXPECT_FALSE(skeleton.push(text));
   EXPECT_EQ(skeleton.appended(), text.find('_') + 1);
