@@ -361,9 +361,11 @@ void JobRunner::resume() {
 std::string JobRunner::hold() const {
   if (!store_fault_.empty()) return store_fault_;
   std::string full;
-  for (const std::string& directory : full_disks_.directories()) {
-    full += cat(full.empty() ? "" : "; ", no_room_text(directory, room_in(directory)));
+  for (const OutputDisk& disk : disks()) {
+    const std::string held = hold_of(disk.room);
+    if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
   }
+  if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
   if (!full.empty()) return full;
   return scheduler_.paused() ? "paused by request" : "";
 }

@@ -38,13 +38,14 @@ std::string mount_of(const std::string& directory, std::uint64_t device) {
 
 }  // namespace
 
-// Shared with its thread, which may outlive the object where a file server hangs.
+// Shared with its thread, which may outlive the object where a file server hangs; meanwhile it looks at no other one,
+// and their figures stay as they were.
 struct OutputDisks::Looker {
   struct Place {
     std::string directory;
     std::string mount;  ///< empty: not looked at yet
     DiskRoom room;
-    Time looked;
+    std::optional<Time> begun;  ///< of the look that goes on
   };
 
   std::mutex mutex;
@@ -59,6 +60,7 @@ struct OutputDisks::Looker {
       again = false;
       for (std::size_t i = 0; i < places.size() && !over && !again; ++i) {
         const std::string directory = places[i].directory;
+        places[i].begun = std::chrono::steady_clock::now();
         lock.unlock();
         const DiskRoom room = room_in(directory);
         std::string mount = mount_of(directory, room.device);
@@ -66,7 +68,7 @@ struct OutputDisks::Looker {
         if (again || over) break;  // the places are others
         places[i].room = room;
         places[i].mount = std::move(mount);
-        places[i].looked = std::chrono::steady_clock::now();
+        places[i].begun.reset();
       }
       changed.wait_for(lock, kInterval, [&] { return over || again; });
     }
@@ -85,9 +87,12 @@ OutputDisks::~OutputDisks() {
 
 void OutputDisks::watch(const std::vector<std::string>& directories) {
   const std::lock_guard lock(looker_->mutex);
-  looker_->places.clear();
-  const Time now = std::chrono::steady_clock::now();
-  for (const std::string& directory : directories) looker_->places.push_back({directory, "", {}, now});
+  const std::vector<Looker::Place> before = std::exchange(looker_->places, {});
+  for (const std::string& directory : directories) {
+    const auto known = std::find_if(before.begin(), before.end(),
+                                    [&](const Looker::Place& place) { return place.directory == directory; });
+    looker_->places.push_back(known == before.end() ? Looker::Place{directory, "", {}, {}} : *known);
+  }
   looker_->again = true;
   looker_->changed.notify_all();
 }
@@ -121,8 +126,9 @@ std::vector<OutputDisk> OutputDisks::disks(Time now) const {
     }
     const double fills_in_s = static_cast<double>(place.room.free) / disk.written_bytes_per_s;
     if (fills_in_s < kYear_s) disk.fills_in_s = fills_in_s;
-    const auto silent = std::chrono::duration_cast<seconds>(now - place.looked);
-    if (silent > kInterval + kPatience) disk.silent = silent;
+    if (!place.begun) continue;
+    const auto silent = std::chrono::duration_cast<seconds>(now - *place.begun);
+    if (silent > kPatience) disk.silent = silent;
   }
   return disks;
 }

@@ -79,15 +79,15 @@ std::string WatchedTree::waits_for(const std::string& path) const {
 void WatchedTree::take(const FileEvent& event) {
   events_.push_back(event);
   if (!watch_->figures().looked) first_events_ = events_.size();
-  schedule(milliseconds(0));
+  if (store_fault_.empty()) schedule(milliseconds(0));  // else at the time of the next try
 }
 
 void WatchedTree::schedule(milliseconds delay) {
   if (scheduled_ && delay == milliseconds(0) && timer_.expiry() <= Clock::now()) return;
   scheduled_ = true;
   timer_.expires_after(delay);
-  timer_.async_wait([this](boost::system::error_code error) {
-    if (!error) work();
+  timer_.async_wait([this, alive = std::weak_ptr(alive_)](boost::system::error_code error) {
+    if (!error && !alive.expired()) work();
   });
 }
 
@@ -95,6 +95,7 @@ void WatchedTree::schedule(milliseconds delay) {
 // is due again.
 void WatchedTree::work() {
   scheduled_ = false;
+  looked_at_.clear();
   const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_ / 2));  // the rest is the agenda's
   Clock::duration looking{};  // without the flush, which takes as long for few as for many
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
@@ -115,7 +116,8 @@ void WatchedTree::work() {
     store_fault_ = error.what();
     ready_ = false;
     superseded_.clear();
-    // What was looked at is due again; what was thought to be known is new again.
+    // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
+    for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
       if (tracked_.contains(path)) {
         track_until(path, Clock::now());
@@ -186,7 +188,8 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
         }
         Tracked& tracked = at->second;
         tracked.completion.happened(event.kind, now);
-        tracked.arrived = (tracked.arrived || i >= first) && again_.erase(event.path) == 0;
+        const bool again = again_.erase(event.path) > 0;
+        tracked.arrived = tracked.arrived || (i >= first && !again);
         tracked.permitted = tracked.permitted || event.kind == FileEventKind::permitted;
         tracked.written = tracked.written || event.kind == FileEventKind::written ||
                           event.kind == FileEventKind::closed || event.kind == FileEventKind::moved_in;

@@ -10,6 +10,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -90,7 +91,7 @@ class WatchedTree {
   Reports reports_;
   std::map<std::string, Tracked> tracked_;         ///< files that are not known to be complete
   std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at which of them
-  std::vector<FileEvent> events_;
+  std::deque<FileEvent> events_;
   std::set<std::string> again_;   ///< of events_, those of look_again: nothing arrived
   std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
   RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
@@ -103,6 +104,7 @@ class WatchedTree {
   std::vector<std::int64_t> superseded_;  ///< the same
   boost::asio::steady_timer timer_;
   std::unique_ptr<DirectoryWatch> watch_;
+  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a wait that has ended may be called yet
 };
 
 }  // namespace weir

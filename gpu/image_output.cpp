@@ -119,13 +119,16 @@ ImageFile::ImageFile(FileSystem& files, const std::string& path)
     throw Error(ErrorKind::usage, cat(path, ": an image's name must end in .png or .exr"));
   }
   const std::filesystem::path target(path);
-  if (std::filesystem::is_directory(target)) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(target, ignored)) {
     throw Error(ErrorKind::usage, cat(path, ": is a directory; name a file in it"));
   }
   if (!files_.is_replaceable(path)) {
     throw Error(ErrorKind::usage, cat(path, ": is no regular file, and nothing else is replaced; choose another name"));
   }
-  temporary_ = (target.parent_path() / cat('.', target.filename().string(), '.', ::getpid(), ".partial")).string();
+  constexpr std::size_t kNameBytes = 200;  // a longer one leaves no room for what comes after it
+  const std::string name = target.filename().string().substr(0, kNameBytes);
+  temporary_ = (target.parent_path() / cat('.', name, '.', ::getpid(), ".partial")).string();
   file_ = files_.create(temporary_);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "format/error.h"
+#include "format/real_path.h"
 #include "format/text.h"
 #include "ingest/number_pattern.h"
 #include "ingest/source_registry.h"
@@ -28,7 +29,7 @@ std::string stem_of(const std::string& path) {
 
 std::vector<SeriesStep> files_of(const std::string& input, bool stack) {
   const auto pattern = NumberPattern::parse(std::filesystem::path(input).filename().string());
-  if (!pattern || std::filesystem::exists(input)) return {{input, {}, {}, stem_of(input), {}}};
+  if (!pattern || is_there(input)) return {{input, {}, {}, stem_of(input), {}}};
   if (stack) return {{input, {}, {}, pattern->stem().empty() ? "stack" : pattern->stem(), {}}};
   const std::vector<NumberedFile> files = numbered_files(input);
   std::vector<SeriesStep> steps;

@@ -17,6 +17,7 @@
 #include "format/nvdb_file.h"
 #include "format/partial_file.h"
 #include "format/process_memory.h"
+#include "format/real_path.h"
 #include "format/seconds_since.h"
 #include "format/text.h"
 #include "ingest/vdb/vdb_header.h"
@@ -59,7 +60,7 @@ void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
 // Of this very volume; none where there is no sidecar, or a damaged one, or that of another volume.
 std::optional<Sidecar> sidecar_of(const NvdbFile& file) {
   const std::string path = sidecar_path(file.path());
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   try {
     Sidecar sidecar = read_sidecar(path);
     if (sidecar.file.bytes == file.bytes().size() && sidecar.file.head_checksum == file.grid().head_checksum()) {

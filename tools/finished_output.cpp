@@ -6,6 +6,7 @@
 #include "format/error.h"
 #include "format/nvdb_checksum.h"
 #include "format/nvdb_file.h"
+#include "format/real_path.h"
 #include "format/text.h"
 #include "tools/read_sidecar.h"
 
@@ -80,8 +81,8 @@ std::string broken(const std::string& output, const Sidecar& sidecar) {
 FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& options) {
   const std::string& output = options.output;
   const std::string record_path = sidecar_path(output);
-  if (!std::filesystem::exists(record_path)) {
-    if (!std::filesystem::exists(output)) return {};
+  if (!is_there(record_path)) {
+    if (!is_there(output)) return {};
     return {FinishedOutput::State::foreign, {}, "has no sidecar, so that weir cannot say what it is"};
   }
   Sidecar found;

@@ -17,6 +17,7 @@
 #include "format/nvdb_checksum.h"
 #include "format/nvdb_file.h"
 #include "format/nvdb_header.h"
+#include "format/real_path.h"
 #include "format/text.h"
 #include "gpu/image_output.h"
 #include "tools/command.h"
@@ -78,7 +79,7 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
 Inspection look_at(const NvdbFile& file, const InspectArguments& arguments) {
   Inspection result{file.grid(), std::nullopt, false, {}};
   const std::string path = sidecar_path(arguments.path);
-  if (std::filesystem::exists(path)) {
+  if (is_there(path)) {
     result.sidecar = read_sidecar(path);
     result.sidecar_matches = result.sidecar->file.bytes == file.bytes().size() &&
                              result.sidecar->file.head_checksum == file.grid().head_checksum();

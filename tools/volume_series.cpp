@@ -8,6 +8,7 @@
 
 #include "format/error.h"
 #include "format/nvdb_file.h"
+#include "format/real_path.h"
 #include "format/text.h"
 
 namespace weir {
@@ -67,7 +68,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 std::vector<std::string> expand_volumes(std::span<const std::string> inputs) {
   std::vector<std::string> files;
   for (const std::string& input : inputs) {
-    if (input.find_first_of("*?[") == std::string::npos || std::filesystem::exists(input)) {
+    if (input.find_first_of("*?[") == std::string::npos || is_there(input)) {
       files.push_back(input);
     } else {
       const std::vector<std::string> found = matches(input);

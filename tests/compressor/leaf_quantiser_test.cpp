@@ -175,6 +175,15 @@ TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALattice) {
   }
 }
 
+// As of labels: four values, and a few voxels that two of them share.
+TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearFourLevels) {
+  std::vector<float> values{0.236F, 0.819F, 1.075F, 1.306F, 2.088F, 2.22F, 2.383F, 2.497F, 2.83F, 3.334F, 3.547F};
+  for (int i = 0; i < 501; ++i) values.push_back(static_cast<float>(i % 4));
+  const ValueRange range = range_of(values);
+  const double two = decoded_error(values, fit_quantiser(values, range, 2), 2);
+  EXPECT_LE(decoded_error(values, fit_quantiser(values, range, 4), 4), two * 1.0001);
+}
+
 TEST(LeafQuantiser, EstimatesAreNearTheFit) {
   double ratio = 0;
   constexpr unsigned kLeaves = 50;

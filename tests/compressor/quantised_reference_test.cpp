@@ -12,7 +12,6 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -141,12 +140,13 @@ Quantiser reference_over_range(const std::vector<float>& values, const ValueRang
 Quantiser reference_fit(const std::vector<float>& values, const ValueRange& range, unsigned bits) {
   std::vector<Quantiser> tried{reference_over_range(values, range, bits)};
   for (unsigned width = bits; width > 1; width /= 2) {
-    std::set<float> levels;
-    for (const float v : values) {
-      levels.insert(nearest_code(v, tried.back(), static_cast<float>((1U << width) - 1U)));
-    }
-    const std::map<unsigned, std::size_t> few{{16, 512}, {8, 64}, {4, 12}, {2, 3}};
-    if (levels.size() > few.at(width)) break;
+    std::map<float, std::size_t> taken;
+    for (const float v : values) ++taken[nearest_code(v, tried.back(), static_cast<float>((1U << width) - 1U))];
+    const std::size_t beside = values.size() / 8 / (std::size_t{1} << width);
+    const auto levels =
+        std::count_if(taken.begin(), taken.end(), [&](const auto& code) { return code.second > beside; });
+    const std::map<unsigned, std::ptrdiff_t> few{{16, 512}, {8, 64}, {4, 12}, {2, 3}};
+    if (levels > few.at(width)) break;
     tried.push_back(reference_over_range(values, range, width / 2));
   }
   if (tried.size() == 1) return tried[0];

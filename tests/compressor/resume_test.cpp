@@ -85,7 +85,7 @@ TEST_F(ResumeTest, SmallVolumesPayNothingAndLeaveNothing) {
   ConversionOptions options = base();
   options.resume = Resume::automatic;
   MemoryFileSystem files;
-  EXPECT_EQ(interrupted(options, files, "survey", 4 << 20), "interrupted");
+  EXPECT_EQ(interrupted(options, files, "survey", 4 << 20), "interrupted; nothing was written");
   EXPECT_EQ(files.names(), Names{});
 }
 

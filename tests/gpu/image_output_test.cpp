@@ -111,6 +111,16 @@ TEST_F(ImageOutput, CommitReplaces) {
   EXPECT_GT(fs::file_size(path("a.png")), 60U);
 }
 
+TEST_F(ImageOutput, LongNamesLeaveNothingElse) {
+  const std::string longest = std::string(251, 'n') + ".png";
+  {
+    ImageFile file(*files_, path(longest));
+    file.commit(gradient_image(), {});
+  }
+  EXPECT_TRUE(fs::exists(path(longest)));
+  EXPECT_EQ(entries(), 1U);
+}
+
 TEST_F(ImageOutput, WrongNamesAreUsage) {
   EXPECT_EQ(message("a.jpg", ErrorKind::usage), path("a.jpg") + ": an image's name must end in .png or .exr");
   EXPECT_EQ(message("a", ErrorKind::usage), path("a") + ": an image's name must end in .png or .exr");

@@ -93,6 +93,20 @@ TEST_F(ProcessLimits, TheLongestName_HasAWorkDirectoryOfItsOwn) {
   EXPECT_EQ(list_directory(directory_ / "work"), std::vector<std::string>{});
 }
 
+TEST_F(ProcessLimits, NamesTooLong_AreOneLineAndNoFault) {
+  const std::string name(250, 'n');
+  const CommandResult output = run_weir({"convert", volume(16), "-o", directory_ / ("out/" + name), "--skip-done"});
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_EQ(output.err, "weir: " + (directory_ / ("out/" + name)) +
+                            ": its name has 250 bytes, and with what weir writes beside it at most 241 can be used; "
+                            "choose a shorter one\n");
+  for (const char* command : {"convert", "inspect", "verify", "play"}) {
+    const CommandResult input = run_weir({command, directory_ / (name + "_%d_" + name), "-o", output_});
+    EXPECT_NE(input.exit_code, 1) << command << input.err;
+    EXPECT_EQ(input.err.find("internal fault"), std::string::npos) << command << input.err;
+  }
+}
+
 TEST_F(ProcessLimits, NewlineInAPath_KeepsANoticeOnOneLine) {
   const std::string path = directory_ / "a\nb_16x16x16_uint8.raw";
   fs::rename(volume(16), path);
