@@ -20,8 +20,8 @@ constexpr milliseconds kRetry{1000};
 constexpr std::chrono::seconds kUnreachable{5};
 /// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
 constexpr milliseconds kBatchTime{15};
-constexpr std::size_t kLeastBatch = 50;
-constexpr std::size_t kMostBatch = 500;
+constexpr std::size_t kLeastBatch = 20;
+constexpr std::size_t kMostBatch = 100;  // what is looked at next may take longer than what was before
 
 // API, page and convert's announcements are text.
 bool is_text(const std::string& path) {
