@@ -16,8 +16,8 @@
 //   POST /api/jobs/ID/retry, /api/jobs/ID/cancel           the JobView as it is then; 409 in the wrong state;
 //                                         retry?force=1: converted even where its outputs are done
 //   POST /api/retry-failed?problem=KEY    {"retried": N}; without a key, of all problems. The first few are retried
-//   when
-//                                         the answer comes, the rest within seconds: a stop in between leaves it failed
+//                                         when the answer comes, the rest within seconds: a stop in between leaves
+//                                         these failed
 //   POST /api/pause, /api/resume          StatusView as it is then
 //
 // HEAD goes wherever GET does. Errors are {"error": "..."}. No path of the file

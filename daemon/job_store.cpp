@@ -29,10 +29,15 @@ constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
     "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0";
 
-/// What a retry changes, of the jobs that follow it; binds the time.
-constexpr const char* kRetried =
-    "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, attempts = 0, due_ms = 0, "
-    "reason = '', problem = '', changed_ms = ? ";
+/// Has the jobs that follow it their turn at once; binds the time.
+constexpr const char* kAtOnce =
+    "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, due_ms = 0, problem = '', "
+    "changed_ms = ? ";
+/// The same, and what went before counts no more.
+const std::string kRetried = cat(kAtOnce, ", attempts = 0, reason = '' ");
+
+/// What the state that a job comes to makes of its problem; binds is_problem() of that state and the reason.
+constexpr const char* kProblem = "problem = CASE WHEN ? THEN problem_key(source, ?) ELSE '' END ";
 
 std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) {
   Statement rows = database.prepare(
@@ -230,14 +235,12 @@ bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to
   Statement update = database_.prepare(
       cat("UPDATE jobs SET state = ?, changed_ms = ?, finished_ms = ?, attempts = ?, due_ms = ?, seconds = ?, "
           "bytes_read = ?, bytes_written = ?, peak_rss_bytes = ?, exit_code = ?, reason = ?, log_tail = ?, "
-          "forced = CASE ? WHEN 'done' THEN 0 ELSE forced END, problem = CASE WHEN ? THEN problem_key(source, ?) ELSE "
-          "'' END "
-          "WHERE id = ? AND ",
-          in_state({JobState::running})));
+          "forced = forced AND ?, ",
+          kProblem, "WHERE id = ? AND ", in_state({JobState::running})));
   update.bind(job_state_name(to)).bind(now).bind(now).bind(attempts).bind(delay_ms == 0 ? 0 : now + delay_ms);
   update.bind(result.seconds).bind(result.bytes_read).bind(result.bytes_written).bind(result.peak_rss_bytes);
-  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail)).bind(job_state_name(to));
-  update.bind(is_problem(to) ? 1 : 0).bind(result.reason).bind(id).step();
+  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail)).bind(to != JobState::done);
+  update.bind(is_problem(to)).bind(result.reason).bind(id).step();
   if (database_.changes() == 0) return false;
   database_.prepare("DELETE FROM outputs WHERE job = ?").bind(id).step();
   for (std::size_t i = 0; i < result.outputs.size(); ++i) {
@@ -269,12 +272,11 @@ bool JobStore::fail(std::int64_t id, const JobResult& result) {
 }
 
 bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason) {
-  Statement update = database_.prepare(cat(
-      "UPDATE jobs SET state = ?, changed_ms = ?, due_ms = 0, forced = CASE ? WHEN 'cancelled' THEN 0 ELSE forced END, "
-      "reason = ?, problem = CASE WHEN ? THEN problem_key(source, ?) ELSE '' END WHERE id = ? AND ",
-      in_state(from)));
-  update.bind(job_state_name(to)).bind(now()).bind(job_state_name(to)).bind(reason);
-  update.bind(is_problem(to) ? 1 : 0).bind(reason).bind(id).step();
+  Statement update = database_.prepare(
+      cat("UPDATE jobs SET state = ?, changed_ms = ?, due_ms = 0, forced = forced AND ?, reason = ?, ", kProblem,
+          "WHERE id = ? AND ", in_state(from)));
+  update.bind(job_state_name(to)).bind(now()).bind(to != JobState::cancelled).bind(reason);
+  update.bind(is_problem(to)).bind(reason).bind(id).step();
   return database_.changes() == 1;
 }
 
@@ -297,10 +299,8 @@ bool JobStore::retry_problem(std::int64_t id) {
 
 bool JobStore::hasten(std::int64_t id) {
   database_
-      .prepare(
-          cat("UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, due_ms = 0, "
-              "problem = '', changed_ms = ? WHERE id = ? AND exit_code = ? AND (",
-              in_state({JobState::failed}), " OR (state = 'waiting' AND due_ms != 0))"))
+      .prepare(cat(kAtOnce, "WHERE id = ? AND exit_code = ? AND (", in_state({JobState::failed}),
+                   " OR (state = 'waiting' AND due_ms != 0))"))
       .bind(now())
       .bind(id)
       .bind(static_cast<std::int64_t>(ErrorKind::io))

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include "bindings/c/conversion_options.h"
 #include "bindings/c/status.h"
