@@ -59,6 +59,9 @@ std::optional<HttpResponse> refuse(const AccessRules& rules, const HttpRequest& 
     response.headers.emplace_back("WWW-Authenticate", "Bearer");
     return response;
   }
+  if (request.method == "POST" && !rules.control_at.empty()) {
+    return error_response(403, cat("this address only shows; ask at ", rules.control_at, " (--address, --config)"));
+  }
   if (request.method == "POST" && !request.marked && !is_json(request.content_type)) {
     return error_response(403, "a POST needs Content-Type: application/json or an X-Weir header");
   }

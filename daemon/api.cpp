@@ -25,7 +25,8 @@ constexpr std::string_view kContentPolicy =
 struct Call {
   Control& control;
   const RequestTarget& target;
-  bool trusted;  ///< may see data
+  bool trusted;                   ///< may see data
+  const std::string& control_at;  ///< AccessRules::control_at
 };
 
 struct Route {
@@ -78,7 +79,11 @@ HttpResponse metrics(const Call& call) {
               "text/plain; version=0.0.4; charset=utf-8");
 }
 
-HttpResponse status(const Call& call) { return ok(to_json(call.control.status())); }
+HttpResponse status(const Call& call) {
+  OrderedJson json = to_json(call.control.status());
+  json["control_at"] = call.control_at.empty() ? OrderedJson() : OrderedJson(call.control_at);
+  return ok(json);
+}
 
 // Sets `value` from the parameter `name`, where there is one; whether that is fine.
 bool read_count(const RequestTarget& target, const std::string& name, std::size_t max, std::size_t& value) {
@@ -253,7 +258,7 @@ HttpResponse answer_routed(Control& control, const AccessRules& rules, const Htt
   }
   if (auto refused = refuse(rules, request, chosen != nullptr && chosen->open)) return *std::move(refused);
   if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
-  if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false)});
+  if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false), rules.control_at});
   if (allowed.empty()) return error_response(404, cat("there is nothing at ", request.target));
   HttpResponse response = error_response(405, cat(request.method, " is not for ", request.target, "; use ", allowed));
   response.headers.emplace_back("Allow", allowed);

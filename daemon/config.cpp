@@ -140,6 +140,15 @@ void read_token(ConfigReader& reader, ServiceConfig& service) {
   }
 }
 
+void read_control_socket(ConfigReader& reader, ServiceConfig& service) {
+  if (!reader.read_path("control_socket", service.control_socket)) return;
+  const std::size_t bytes = service.control_socket.size();
+  if (bytes > kLongestSocketPath) {
+    reader.refuse("control_socket", cat("control_socket is a path of ", bytes, " bytes, ", service.control_socket,
+                                        "; the system takes ", kLongestSocketPath, " at most"));
+  }
+}
+
 void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& service) {
   std::string address;
   if (reader.toml.read("listen", address)) {
@@ -148,6 +157,7 @@ void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& 
     } catch (const Error& error) {
       reader.refuse("listen", error.what());
     }
+    if (service.listen.is_unix()) reader.refuse("listen", "listen is HOST:PORT; a Unix socket is control_socket");
   }
   read_token(reader, service);
   if (!is_loopback(service.listen.host) && service.token.empty()) {
@@ -163,6 +173,7 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
   reader.read_path("state", service.state);
   read_listen(reader, table, service);
   reader.read_path("port_file", service.port_file);
+  read_control_socket(reader, service);
   reader.read_bytes("memory", service.memory);
   reader.toml.read("jobs", service.jobs, {1, 1024});
   reader.toml.read("threads", service.threads, {0, 4096});
@@ -184,8 +195,10 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
                                                             ", too little for the daemon and jobs = ", service.jobs,
                                                             "; it must be at least ", format_bytes(least)));
   }
-  for (const std::string* file : {&service.log_file, &service.port_file}) {
-    if (*file == service.state) reader.toml.fail(table, cat("state, log and port_file are one file, ", *file));
+  for (const std::string* file : {&service.log_file, &service.port_file, &service.control_socket}) {
+    if (*file == service.state) {
+      reader.toml.fail(table, cat("two of state, log, port_file and control_socket are one file, ", *file));
+    }
   }
   if (service.state == path) reader.refuse("state", cat("state is this file, ", path));
   return service;
@@ -249,7 +262,8 @@ WatchConfig read_watch(const toml::table& table, const std::string& path, const 
 /// Fills WatchConfig::excluded_paths.
 void exclude_own_files(DaemonConfig& config) {
   const ServiceConfig& service = config.service;
-  std::vector<std::string> own{config.path, service.work_dir, service.log_file, service.port_file, service.state};
+  std::vector<std::string> own{config.path,       service.work_dir, service.log_file,
+                               service.port_file, service.state,    service.control_socket};
   for (const char* journal : {"-wal", "-shm", "-journal"}) own.push_back(service.state + journal);
   for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
   std::sort(own.begin(), own.end());

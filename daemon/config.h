@@ -21,6 +21,7 @@ enum class IoClass { none, best_effort, idle };  ///< none: as the daemon itself
 struct ServiceConfig {
   std::string state;                              ///< SQLite file; default: weir.db beside the configuration
   ListenAddress listen{"127.0.0.1", 8470};        ///< port 0: any free one, see port_file
+  std::string control_socket;                     ///< Unix socket; empty: none. With it, `listen` only shows
   std::string port_file;                          ///< the port that was bound is written there; empty: nowhere
   std::string token;                              ///< bearer token; never empty where others than loopback may connect
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon and all jobs together

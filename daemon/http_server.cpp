@@ -1,73 +1,30 @@
 #include "daemon/http_server.h"
 
-#include <fcntl.h>
-
 #include <algorithm>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "daemon/http_session.h"
-#include "format/error.h"
-#include "format/text.h"
+#include "daemon/listening_socket.h"
 
 namespace weir {
 namespace {
 
-using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kAcceptAgain{100};  // after a failure, as of no descriptor left
-
-tcp::endpoint endpoint_of(const ListenAddress& address) {
-  error_code error;
-  const auto ip = boost::asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
-  if (error) {
-    throw Error(ErrorKind::usage,
-                cat(address.text(), ": cannot listen on a name; write this machine's address, or 0.0.0.0 for all"));
-  }
-  return {ip, address.port};
-}
-
-// Conversions are child processes: they inherit none of the server's sockets.
-template <typename Socket>
-void close_on_exec(Socket& socket) {
-  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
-}
-
-// A socket for both kinds of address gives 127.0.0.1 as ::ffff:127.0.0.1.
-bool is_this_machine(const boost::asio::ip::address& address) {
-  using namespace boost::asio::ip;
-  if (address.is_v6() && address.to_v6().is_v4_mapped())
-    return make_address_v4(v4_mapped, address.to_v6()).is_loopback();
-  return address.is_loopback();
-}
 
 }  // namespace
 
 class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
  public:
   Listener(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler)
-      : acceptor_(io), retry_(io), limits_(limits), handler_(std::move(handler)) {
-    const tcp::endpoint endpoint = endpoint_of(address);
-    error_code error;
-    acceptor_.open(endpoint.protocol(), error);
-    if (!error) {
-      close_on_exec(acceptor_);
-      acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    }
-    if (!error) acceptor_.bind(endpoint, error);
-    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-    if (error) {
-      throw Error(ErrorKind::io, cat(address.text(), ": cannot listen: ", error.message(),
-                                     "; is another weir watch running? choose another service.listen"));
-    }
-  }
+      : listening_(io, address), retry_(io), limits_(limits), handler_(std::move(handler)) {}
 
   void accept() {
-    acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+    listening_.acceptor().async_accept([self = shared_from_this()](const error_code& error, StreamSocket socket) {
       if (self->closed_) return;
       if (error) return self->accept_later();
       self->add(std::move(socket));
@@ -78,22 +35,19 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
   void close() {
     closed_ = true;
     error_code ignored;
-    acceptor_.close(ignored);
+    listening_.close();
     retry_.cancel(ignored);
     for (const auto& session : sessions_) session->close();
     sessions_.clear();
   }
 
-  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  std::uint16_t port() const { return listening_.port(); }
   std::size_t connections() const { return sessions_.size(); }
 
  private:
-  void add(tcp::socket socket) {
-    error_code ignored;
-    const bool local = is_this_machine(socket.remote_endpoint(ignored).address());
+  void add(StreamSocket socket) {
+    const bool local = prepare(socket);
     while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) make_room(local);
-    close_on_exec(socket);
-    socket.set_option(tcp::no_delay(true), ignored);
     sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), local, limits_, handler_,
                                                       [this](HttpSession& ended) { remove(ended); }));
     sessions_.back()->start();
@@ -128,7 +82,7 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
     });
   }
 
-  tcp::acceptor acceptor_;
+  ListeningSocket listening_;
   boost::asio::steady_timer retry_;
   const HttpLimits limits_;
   HttpHandler handler_;

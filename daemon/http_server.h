@@ -16,15 +16,14 @@ namespace weir {
 
 class HttpServer {
  public:
-  /// Listens from here on; host is a literal address or "localhost", port 0 takes a free one. Throws Error(io)
-  /// where the address cannot be had.
+  /// Listens from here on, as ListeningSocket says.
   HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler);
   /// Closes everything; no call of `handler` comes afterwards.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// The port that was had.
+  /// The port that was had; 0 of a Unix socket.
   std::uint16_t port() const;
   std::size_t connections() const;
 

@@ -22,8 +22,8 @@ std::string text_of(boost::beast::string_view view) { return {view.data(), view.
 
 }  // namespace
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, bool local, const HttpLimits& limits, HttpHandler handler,
-                         std::function<void(HttpSession&)> ended)
+HttpSession::HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
+                         HttpHandler handler, std::function<void(HttpSession&)> ended)
     : local_(local),
       socket_(std::move(socket)),
       timer_(socket_.get_executor()),
@@ -178,7 +178,7 @@ void HttpSession::respond(HttpResponse response, bool keep_alive) {
 // half is closed, and what still comes is thrown away for a moment.
 void HttpSession::drain() {
   error_code ignored;
-  socket_.shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);
   buffer_.consume(buffer_.size());
   enter(Phase::draining, limits_.linger);
   discard_more();

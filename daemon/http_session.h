@@ -4,7 +4,7 @@
 // Keeps itself alive while it waits; one thread, the io_context's.
 #pragma once
 
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -26,8 +26,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Clock = std::chrono::steady_clock;
 
   /// `ended` is called once, when the connection is closed for whatever reason but close().
-  HttpSession(boost::asio::ip::tcp::socket socket, bool local, const HttpLimits& limits, HttpHandler handler,
-              std::function<void(HttpSession&)> ended);
+  HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
+              HttpHandler handler, std::function<void(HttpSession&)> ended);
 
   void start();
   /// At once; neither the handler nor `ended` is called from here on.
@@ -55,7 +55,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void end();
 
   bool local_;
-  boost::asio::ip::tcp::socket socket_;
+  boost::asio::generic::stream_protocol::socket socket_;
   boost::asio::steady_timer timer_;
   const HttpLimits limits_;
   HttpHandler handler_;

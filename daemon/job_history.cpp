@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-constexpr std::chrono::hours kInterval{24};
+constexpr std::chrono::hours kLookInterval{24};
 /// A piece is short, also where each look at a file takes a file server's time, and others have their turn after it.
 constexpr std::size_t kPiece = 100;
 constexpr std::chrono::milliseconds kBetweenPieces{10};
@@ -16,8 +16,8 @@ constexpr double kDay_ms = 86'400'000;
 
 }  // namespace
 
-JobHistory::JobHistory(boost::asio::io_context& io, JobStore& store, const EventLog& log)
-    : store_(store), log_(log), timer_(io) {}
+JobHistory::JobHistory(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, const EventLog& log)
+    : turns_(turns), store_(store), log_(log), timer_(io) {}
 
 void JobHistory::keep(double days) {
   age_ms_ = static_cast<std::int64_t>(days * kDay_ms);
@@ -27,7 +27,7 @@ void JobHistory::keep(double days) {
 void JobHistory::after(std::chrono::milliseconds delay, void (JobHistory::*next)()) {
   timer_.expires_after(delay);
   timer_.async_wait([this, next](boost::system::error_code error) {
-    if (!error) (this->*next)();
+    if (!error) turns_.take([this, next] { (this->*next)(); });
   });
 }
 
@@ -54,7 +54,7 @@ void JobHistory::step() {
     return after(kBetweenPieces, &JobHistory::step);
   }
   if (forgotten_ > 0) log_.info("history", {{"forgotten", forgotten_}});
-  after(kInterval, &JobHistory::look_through);
+  after(kLookInterval, &JobHistory::look_through);
 }
 
 }  // namespace weir

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "daemon/disk_turns.h"
 #include "daemon/event_log.h"
 #include "daemon/job_store.h"
 
@@ -17,7 +18,7 @@ namespace weir {
 class JobHistory {
  public:
   /// `store` and `log` must outlive the object.
-  JobHistory(boost::asio::io_context& io, JobStore& store, const EventLog& log);
+  JobHistory(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, const EventLog& log);
 
   /// From now on jobs are kept for `days` after their end. Looks through all of them now and once a day.
   void keep(double days);
@@ -27,6 +28,7 @@ class JobHistory {
   void step();
   void after(std::chrono::milliseconds delay, void (JobHistory::*next)());
 
+  DiskTurns& turns_;
   JobStore& store_;
   const EventLog& log_;
   std::int64_t age_ms_ = 0;

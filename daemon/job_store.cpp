@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t kFirstDelay_ms = 5'000;
 constexpr std::int64_t kLongestDelay_ms = 600'000;
 constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are the clock's being kept right
+constexpr int kJournalPages = 1000;            ///< 4 MiB
 constexpr std::size_t kLogTailBytes = 4096;
 
 constexpr std::initializer_list<JobState> kProblemStates{JobState::failed, JobState::quarantined};
@@ -177,6 +178,8 @@ void JobStore::together(const std::function<void()>& steps) {
   steps();
   transaction.commit();
 }
+
+bool JobStore::checkpoint_due() const { return database_.journal_pages() >= kJournalPages; }
 
 JobStore::Observation JobStore::observe(const std::string& watch, const std::string& source,
                                         const FileIdentity& identity, const std::string& options) {

@@ -73,6 +73,12 @@ class JobStore {
   /// grouped cost one fsync. May be nested.
   void together(const std::function<void()>& steps);
 
+  /// Whether so much was written since the last checkpoint() that one is due.
+  bool checkpoint_due() const;
+  /// Moves what was written from the journal into the file: two flushes of the disk, which else a write would have to
+  /// wait for.
+  void checkpoint() { database_.checkpoint(); }
+
   enum class Change { none, created, changed };
   struct Observation {
     Change change;

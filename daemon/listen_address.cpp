@@ -8,6 +8,8 @@
 namespace weir {
 namespace {
 
+constexpr std::string_view kUnix = "unix:";
+
 [[noreturn]] void refuse(std::string_view text) {
   throw Error(ErrorKind::usage,
               cat('"', text, "\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470"));
@@ -16,10 +18,15 @@ namespace {
 }  // namespace
 
 std::string ListenAddress::text() const {
+  if (is_unix()) return cat(kUnix, path);
   return host.find(':') == std::string::npos ? cat(host, ':', port) : cat('[', host, "]:", port);
 }
 
 ListenAddress parse_listen_address(std::string_view text) {
+  if (text.starts_with(kUnix)) {
+    if (text.size() == kUnix.size()) refuse(text);
+    return {"", 0, std::string(text.substr(kUnix.size()))};
+  }
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos || colon == 0) refuse(text);
   std::string_view host = text.substr(0, colon);

@@ -1,4 +1,5 @@
-// Where the control server listens, and where its clients find it: "HOST:PORT".
+// Where the control server listens, and where its clients find it: "HOST:PORT" of TCP, or "unix:PATH", a socket in the
+// file system.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +11,19 @@ namespace weir {
 struct ListenAddress {
   std::string host;  ///< an IPv4 or IPv6 address, or a name; no brackets
   std::uint16_t port = 0;
+  std::string path{};  ///< of a Unix socket; then host and port say nothing
 
-  /// "HOST:PORT", an IPv6 address in brackets.
+  bool is_unix() const { return !path.empty(); }
+  /// "HOST:PORT", an IPv6 address in brackets; or "unix:PATH".
   std::string text() const;
 };
 
-/// "127.0.0.1:8470", "[::1]:8470", "localhost:0". Throws Error(usage) naming `text` where it is no such pair.
+/// "127.0.0.1:8470", "[::1]:8470", "localhost:0", "unix:/run/weir.sock". Throws Error(usage) naming `text` where it is
+/// none of these.
 ListenAddress parse_listen_address(std::string_view text);
+
+/// Bytes of the path of a Unix socket, at most.
+inline constexpr std::size_t kLongestSocketPath = 107;
 
 /// Whether `host` can only be reached from this machine: "localhost", 127.0.0.0/8, ::1. Any other name counts as
 /// reachable from elsewhere, whatever it resolves to now.

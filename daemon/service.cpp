@@ -19,6 +19,8 @@ using std::chrono::milliseconds;
 
 /// The processes of a daemon that was killed die a moment after it.
 constexpr milliseconds kDyingWriters{10'000};
+/// Between two looks at whether the state file's journal is long.
+constexpr milliseconds kCheckpoint{1000};
 
 std::uint64_t monotonic_usec() {
   timespec now{};
@@ -29,13 +31,14 @@ std::uint64_t monotonic_usec() {
 // What a running service cannot change.
 bool needs_restart(const ServiceConfig& a, const ServiceConfig& b) {
   return a.state != b.state || a.listen.host != b.listen.host || a.listen.port != b.listen.port ||
-         a.port_file != b.port_file || a.token != b.token;
+         a.control_socket != b.control_socket || a.port_file != b.port_file || a.token != b.token;
 }
 
 ControlServerSettings server_settings(const ServiceConfig& service) {
   ControlServerSettings settings;
   settings.address = service.listen;
   settings.token = service.token;
+  settings.control_socket = service.control_socket;
   return settings;
 }
 
@@ -54,11 +57,12 @@ Service::Service(Load load, std::string program, std::string version)
                   if (tree->config().label == job.watch) tree->look_again(job.source);
                 }
               }),
-      control_(io_, store_, runner_, trees_, state_),
-      history_(io_, store_, log_),
+      control_(io_, turns_, store_, runner_, trees_, state_),
+      history_(io_, turns_, store_, log_),
       server_(io_, server_settings(config_.service), control_),
       signals_(io_, SIGTERM, SIGINT, SIGHUP),
-      watchdog_timer_(io_) {
+      watchdog_timer_(io_),
+      checkpoint_timer_(io_) {
   log_.info("begin", {{"version", state_.version}, {"config", config_.path}, {"state", config_.service.state}});
   if (!store_.notice().empty()) log_.warn("state-file", {{"notice", store_.notice()}});
   clean(config_, kDyingWriters);
@@ -98,7 +102,7 @@ void Service::watch_trees() {
       continue;
     }
     trees_.push_back(std::make_unique<WatchedTree>(
-        io_, watch, store_, log_,
+        io_, turns_, watch, store_, log_,
         WatchedTree::Reports{[this] { runner_.wake(); }, [this](std::int64_t id) { runner_.abandon(id); }}));
   }
 }
@@ -116,6 +120,7 @@ void Service::run() {
   history_.keep(config_.service.history_days);
   await_signal();
   feed_watchdog();
+  checkpoint_when_due();
   const ListenAddress& listen = config_.service.listen;
   log_.info("ready", {{"listen", listen.host}, {"port", server_.port()}, {"watches", trees_.size()}});
   notifier_.send(cat("READY=1\nSTATUS=", trees_.size(), " directories watched, port ", server_.port()));
@@ -147,10 +152,12 @@ void Service::reload() {
     DaemonConfig config = load_();
     log_.reopen(config.service);
     if (needs_restart(config_.service, config.service)) {
-      log_.warn("reload", {{"notice", "state, listen, port_file and token stay as they were until a restart"}});
+      log_.warn("reload",
+                {{"notice", "state, listen, control_socket, port_file and token stay as they were until a restart"}});
       const ServiceConfig& old = config_.service;
       config.service.state = old.state;
       config.service.listen = old.listen;
+      config.service.control_socket = old.control_socket;
       config.service.port_file = old.port_file;
       config.service.token = old.token;
     }
@@ -191,6 +198,23 @@ void Service::feed_watchdog() {
   watchdog_timer_.async_wait([this](boost::system::error_code error) {
     if (!error) feed_watchdog();
   });
+}
+
+void Service::checkpoint_when_due() {
+  if (store_.checkpoint_due()) turns_.take([this] { checkpoint(); });
+  checkpoint_timer_.expires_after(kCheckpoint);
+  checkpoint_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) checkpoint_when_due();
+  });
+}
+
+void Service::checkpoint() {
+  try {
+    store_.checkpoint();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error&) {  // a full disk, say, of which the next write tells
+  }
 }
 
 }  // namespace weir

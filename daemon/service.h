@@ -13,6 +13,7 @@
 
 #include "daemon/config.h"
 #include "daemon/control_server.h"
+#include "daemon/disk_turns.h"
 #include "daemon/event_log.h"
 #include "daemon/job_history.h"
 #include "daemon/job_runner.h"
@@ -42,8 +43,11 @@ class Service {
   void reload();
   void shut_down();
   void feed_watchdog();
+  void checkpoint_when_due();
+  void checkpoint();
 
   boost::asio::io_context io_;
+  DiskTurns turns_{io_};
   Load load_;
   DaemonConfig config_;
   EventLog log_;
@@ -57,6 +61,7 @@ class Service {
   ControlServer server_;
   boost::asio::signal_set signals_;
   boost::asio::steady_timer watchdog_timer_;
+  boost::asio::steady_timer checkpoint_timer_;
 };
 
 }  // namespace weir

@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kRetriesAtOnce = 250;
+constexpr std::size_t kRetriesAtOnce = 100;
 constexpr std::chrono::seconds kRetryPause{1};  // where the state file cannot be written
 
 double seconds_of(std::int64_t ms) { return static_cast<double>(ms) / 1000; }
@@ -43,9 +43,10 @@ JobView view_of(const Job& job) {
 
 }  // namespace
 
-ServiceControl::ServiceControl(boost::asio::io_context& io, JobStore& store, JobRunner& runner,
+ServiceControl::ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
                                const WatchedTrees& trees, const ServiceState& state)
-    : store_(store),
+    : turns_(turns),
+      store_(store),
       runner_(runner),
       trees_(trees),
       state_(state),
@@ -140,15 +141,17 @@ void ServiceControl::retry_rest(std::chrono::milliseconds pause) {
   retry_timer_.expires_after(pause);
   retry_timer_.async_wait([this](boost::system::error_code error) {
     if (error) return;
-    std::chrono::milliseconds next{0};
-    try {
-      retry_some();
-    } catch (const CorruptDatabase&) {
-      throw;
-    } catch (const Error&) {  // a full disk of the state file, which others say
-      next = kRetryPause;
-    }
-    retry_rest(next);
+    turns_.take([this] {
+      std::chrono::milliseconds next{0};
+      try {
+        retry_some();
+      } catch (const CorruptDatabase&) {
+        throw;
+      } catch (const Error&) {  // a full disk of the state file, which others say
+        next = kRetryPause;
+      }
+      retry_rest(next);
+    });
   });
 }
 

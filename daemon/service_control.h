@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/control.h"
+#include "daemon/disk_turns.h"
 #include "daemon/job_runner.h"
 #include "daemon/job_store.h"
 #include "daemon/watched_tree.h"
@@ -32,8 +33,8 @@ using WatchedTrees = std::vector<std::unique_ptr<WatchedTree>>;  ///< in the ord
 class ServiceControl final : public Control {
  public:
   /// All must outlive the object.
-  ServiceControl(boost::asio::io_context& io, JobStore& store, JobRunner& runner, const WatchedTrees& trees,
-                 const ServiceState& state);
+  ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
+                 const WatchedTrees& trees, const ServiceState& state);
 
   JobPage jobs(const JobQuery& query) override;
   ProblemPage problems(std::size_t limit) override;
@@ -57,6 +58,7 @@ class ServiceControl final : public Control {
   std::vector<RunningView> running() const;
   WatchView watch(const WatchedTree& tree, const std::map<std::string, JobCounts>& counts) const;
 
+  DiskTurns& turns_;
   JobStore& store_;
   JobRunner& runner_;
   const WatchedTrees& trees_;

@@ -10,7 +10,8 @@
 namespace weir {
 namespace {
 
-constexpr int kBusyTimeout_ms = 1000;  // a daemon that was just killed may not be gone yet
+constexpr int kMostJournalPages = 16'384;  // 64 MiB: checkpoint() was not called for long
+constexpr int kBusyTimeout_ms = 1000;      // a daemon that was just killed may not be gone yet
 
 const char* remedy(int status) {
   switch (status) {
@@ -23,6 +24,14 @@ const char* remedy(int status) {
     default:
       return "";
   }
+}
+
+int after_commit(void* pages_of_connection, sqlite3* database, const char* /*schema*/, int pages) {
+  *static_cast<int*>(pages_of_connection) = pages;
+  // The commit itself is done: what goes wrong here, the next checkpoint says.
+  if (pages >= kMostJournalPages)
+    sqlite3_wal_checkpoint_v2(database, nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+  return SQLITE_OK;
 }
 
 [[noreturn]] void fail(const Connection& connection, int status) {
@@ -125,6 +134,7 @@ Database::Database(const std::string& path) : connection_(std::make_unique<Conne
     throw Error(ErrorKind::io, cat(path, ": cannot use the state: it is read-only", remedy(SQLITE_READONLY)));
   }
   sqlite3_busy_timeout(database, kBusyTimeout_ms);
+  sqlite3_wal_hook(database, after_commit, &connection_->journal_pages);
 }
 
 void Database::add_function(const char* name, std::string (*function)(std::string_view, std::string_view)) {
@@ -153,6 +163,13 @@ void Database::run(std::string_view sql) const {
   Statement statement = prepare(sql);
   while (statement.step()) {
   }
+}
+
+void Database::checkpoint() {
+  const int status =
+      sqlite3_wal_checkpoint_v2(connection_->database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+  if (status != SQLITE_OK) fail(*connection_, status);
+  connection_->journal_pages = 0;
 }
 
 Transaction::Transaction(Database& database) : database_(database) { database_.run("SAVEPOINT weir"); }

@@ -35,6 +35,7 @@ struct Connection {
 
   std::string path;
   std::unique_ptr<sqlite3, Close> database;
+  int journal_pages = 0;                                   ///< of the write-ahead journal, after the last commit
   std::multimap<std::string, Prepared, std::less<>> idle;  ///< by their SQL
 };
 
@@ -85,6 +86,10 @@ class Database {
   void add_function(const char* name, std::string (*function)(std::string_view, std::string_view));
   /// Rows changed by the last statement.
   int changes() const { return sqlite3_changes(connection_->database.get()); }
+  /// Pages in the write-ahead journal after the last commit. Commits copy them to the database by themselves only where
+  /// they are many; until then it is checkpoint() that does, because that takes flushes of the disk of its own.
+  int journal_pages() const { return connection_->journal_pages; }
+  void checkpoint();
   /// Whether a transaction is open.
   bool in_transaction() const { return sqlite3_get_autocommit(connection_->database.get()) == 0; }
 

@@ -19,7 +19,7 @@ constexpr milliseconds kRetry{1000};
 /// Until a file is looked at again that could not be looked at.
 constexpr std::chrono::seconds kUnreachable{5};
 /// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
-constexpr milliseconds kBatchTime{15};
+constexpr milliseconds kBatchTime{8};
 constexpr std::size_t kLeastBatch = 20;
 constexpr std::size_t kMostBatch = 100;  // what is looked at next may take longer than what was before
 
@@ -45,10 +45,11 @@ bool may_hide_a_write(const Job& job) {
 
 }  // namespace
 
-WatchedTree::WatchedTree(boost::asio::io_context& io, WatchConfig config, JobStore& store, const EventLog& log,
-                         Reports reports)
+WatchedTree::WatchedTree(boost::asio::io_context& io, DiskTurns& turns, WatchConfig config, JobStore& store,
+                         const EventLog& log, Reports reports)
     : config_(std::move(config)),
       options_(options_text(config_)),
+      turns_(turns),
       store_(store),
       log_(log),
       reports_(std::move(reports)),
@@ -83,11 +84,14 @@ void WatchedTree::take(const FileEvent& event) {
 }
 
 void WatchedTree::schedule(milliseconds delay) {
-  if (scheduled_ && delay == milliseconds(0) && timer_.expiry() <= Clock::now()) return;
+  if (scheduled_ && timer_.expiry() <= Clock::now() + delay) return;
   scheduled_ = true;
   timer_.expires_after(delay);
   timer_.async_wait([this, alive = std::weak_ptr(alive_)](boost::system::error_code error) {
-    if (!error && !alive.expired()) work();
+    if (error || alive.expired()) return;
+    turns_.take([this, alive] {
+      if (!alive.expired()) work();
+    });
   });
 }
 

@@ -22,6 +22,7 @@
 #include "daemon/completion.h"
 #include "daemon/config.h"
 #include "daemon/directory_watch.h"
+#include "daemon/disk_turns.h"
 #include "daemon/event_log.h"
 #include "daemon/job_store.h"
 #include "daemon/recent_rate.h"
@@ -35,8 +36,9 @@ class WatchedTree {
     std::function<void(std::int64_t job)> superseded;  ///< the source of a running job was rewritten
   };
 
-  /// `store` and `log` must outlive the tree. Reports are called from handlers of `io` only.
-  WatchedTree(boost::asio::io_context& io, WatchConfig config, JobStore& store, const EventLog& log, Reports reports);
+  /// `turns`, `store` and `log` must outlive the tree. Reports are called from handlers of `io` only.
+  WatchedTree(boost::asio::io_context& io, DiskTurns& turns, WatchConfig config, JobStore& store, const EventLog& log,
+              Reports reports);
 
   const WatchConfig& config() const { return config_; }
   struct Status {
@@ -86,6 +88,7 @@ class WatchedTree {
 
   WatchConfig config_;
   std::string options_;
+  DiskTurns& turns_;
   JobStore& store_;
   const EventLog& log_;
   Reports reports_;

@@ -1,10 +1,12 @@
 #include "tools/service_client.h"
 
 #include <CLI/CLI.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/beast/core/basic_stream.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <cstdlib>
@@ -12,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "daemon/config.h"
 #include "format/error.h"
@@ -22,7 +25,9 @@ namespace weir {
 namespace {
 
 namespace http = boost::beast::http;
+using boost::asio::generic::stream_protocol;
 using boost::asio::ip::tcp;
+using UnixEndpoint = boost::asio::local::stream_protocol::endpoint;
 using boost::system::error_code;
 
 constexpr std::chrono::seconds kPatience{30};                  // for a whole answer
@@ -43,6 +48,7 @@ std::string reachable(const std::string& host) {
 }
 
 ListenAddress address_of(const ServiceConfig& service) {
+  if (!service.control_socket.empty()) return {"", 0, service.control_socket};
   ListenAddress address = service.listen;
   if (address.port == 0) {
     if (service.port_file.empty()) {
@@ -68,18 +74,28 @@ class Exchange {
 
   http::response<http::string_body> run() {
     stream_.expires_after(kPatience);
-    resolver_.async_resolve(reachable(address_.host), cat(address_.port),
-                            [this](const error_code& error, const tcp::resolver::results_type& found) {
-                              if (ok("find", error)) connect(found);
-                            });
+    if (address_.is_unix()) {
+      connect({UnixEndpoint(address_.path)});
+    } else {
+      resolve();
+    }
     io_.run();
     if (!failure_.empty()) throw Error(ErrorKind::io, cat(address_.text(), ": ", failure_));
     return parser_.release();
   }
 
  private:
-  void connect(const tcp::resolver::results_type& found) {
-    stream_.async_connect(found, [this](const error_code& error, const tcp::endpoint&) {
+  void resolve() {
+    resolver_.async_resolve(reachable(address_.host), cat(address_.port),
+                            [this](const error_code& error, const tcp::resolver::results_type& found) {
+                              if (!ok("find", error)) return;
+                              std::vector<stream_protocol::endpoint> endpoints;
+                              for (const auto& one : found) endpoints.emplace_back(one.endpoint());
+                              connect(endpoints);
+                            });
+  }
+  void connect(const std::vector<stream_protocol::endpoint>& endpoints) {
+    stream_.async_connect(endpoints, [this](const error_code& error, const stream_protocol::endpoint&) {
       if (ok("connect", error)) send();
     });
   }
@@ -105,7 +121,7 @@ class Exchange {
   const http::request<http::empty_body>& request_;
   boost::asio::io_context io_;
   tcp::resolver resolver_;
-  boost::beast::tcp_stream stream_;
+  boost::beast::basic_stream<stream_protocol> stream_;
   boost::beast::flat_buffer buffer_;
   http::response_parser<http::string_body> parser_;
   std::string failure_;
@@ -125,7 +141,7 @@ class Exchange {
 
 void add_service_options(CLI::App& command, ServiceOptions& options) {
   auto* address = command.add_option("--address", options.address, "of the service")
-                      ->type_name("HOST:PORT")
+                      ->type_name("HOST:PORT|unix:PATH")
                       ->default_str("127.0.0.1:8470");
   command.add_option("--config", options.config, "of the service, for its address and token")
       ->type_name("CONFIG.toml")
@@ -136,6 +152,9 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
 
 ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.1", 8470} {
   if (!options.address.empty()) address_ = parse_listen_address(options.address);
+  if (address_.path.size() > kLongestSocketPath) {
+    throw Error(ErrorKind::usage, cat(address_.text(), ": a socket's path has ", kLongestSocketPath, " bytes at most"));
+  }
   if (!options.config.empty()) {
     const ServiceConfig service = load_config(options.config, convert_syntax()).service;
     address_ = address_of(service);
@@ -150,7 +169,7 @@ ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.
 
 ServiceClient::Json ServiceClient::ask(const std::string& method, const std::string& target) const {
   http::request<http::empty_body> request(http::string_to_verb(method), target, 11);
-  request.set(http::field::host, address_.text());
+  request.set(http::field::host, address_.is_unix() ? "localhost" : address_.text());
   request.set(http::field::connection, "close");
   request.set("X-Weir", "command");
   if (!token_.empty()) request.set(http::field::authorization, "Bearer " + token_);

@@ -15,7 +15,7 @@ namespace weir {
 
 /// Where the service is and what it wants to be shown, as options.
 struct ServiceOptions {
-  std::string address;     ///< HOST:PORT
+  std::string address;     ///< HOST:PORT or unix:PATH
   std::string config;      ///< CONFIG.toml, which says both
   std::string token_file;  ///< else the environment's WEIR_TOKEN
 };

@@ -45,12 +45,20 @@ function troubles(status) {
   return {text: [...paused, ...held, ...down].join(" "), bad: held.length + down.length > 0};
 }
 
+/** Where requests that change something are taken elsewhere, this page has no buttons for them. */
+function show_who_controls(control_at) {
+  document.body.classList.toggle("view-only", control_at !== null);
+  by_id("view-only").hidden = control_at === null;
+  by_id("view-only").title = `Pause, retry and cancel at ${control_at}`;
+}
+
 function show_status(status) {
   show_state(status.state);
   set_text(by_id("config"), status.config);
   by_id("config").title = status.config;
   by_id("pause").hidden = status.state !== "running" && status.state !== "paused";
   set_text(by_id("pause"), status.state === "paused" ? "Resume" : "Pause");
+  show_who_controls(status.control_at);
   const {text, bad} = troubles(status);
   show_banner(text, bad);
   document.title = `weir: ${status.jobs.running} running, ${status.jobs.waiting} waiting`;

@@ -57,7 +57,7 @@ function reason_line() {
 
 function make_job(job) {
   return element("li", "", name_button(job.source, () => actions.open(job.id)), element("span", "fact quiet"),
-                 button("Retry", "", () => actions.retry(job.id)), reason_line());
+                 button("Retry", "control", () => actions.retry(job.id)), reason_line());
 }
 
 function update_job(child, job) {
@@ -76,7 +76,7 @@ function make_group(group) {
   line.setAttribute("aria-controls", jobs.id);
   line.append(clamped(""));
   return element("li", "", line, element("span", "fact quiet"),
-                 button("", "retry-group", () => actions.retry_group(group_query(group))), jobs);
+                 button("", "retry-group control", () => actions.retry_group(group_query(group))), jobs);
 }
 
 function update_group(child, group, job) {

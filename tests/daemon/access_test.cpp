@@ -83,5 +83,20 @@ TEST(Access, RefusesAPostThatAForeignPageCanSend) {
   EXPECT_EQ(status_of(refuse({}, request, false)), 0U);
 }
 
+TEST(Access, AnswersAPostAtTheControlAddressAlone) {
+  AccessRules rules;
+  rules.control_at = "unix:/run/weir.sock";
+  HttpRequest request;
+  request.marked = true;
+  EXPECT_EQ(status_of(refuse(rules, request, false)), 0U);
+  request.method = "POST";
+  const auto refusal = refuse(rules, request, false);
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->status, 403U);
+  EXPECT_NE(refusal->body.find("this address only shows; ask at unix:/run/weir.sock (--address, --config)"),
+            std::string::npos)
+      << refusal->body;
+}
+
 }  // namespace
 }  // namespace weir::access_test

@@ -43,9 +43,10 @@ class JobHistoryTest : public testing::Test {
     return service;
   }();
   boost::asio::io_context io_;
+  DiskTurns turns_{io_};
   JobStore store_{directory_ / "weir.db", [this] { return now_; }};
   EventLog log_{service_};
-  JobHistory history_{io_, store_, log_};
+  JobHistory history_{io_, turns_, store_, log_};
 };
 
 TEST_F(JobHistoryTest, ForgetsWhatIsLongOverAndGone) {

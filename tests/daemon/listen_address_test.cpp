@@ -16,6 +16,13 @@ TEST(ListenAddress, ReadsHostAndPort) {
   EXPECT_EQ(parse_listen_address("[fe80::1]:8470").port, 8470);
 }
 
+TEST(ListenAddress, ReadsTheSocketsPath) {
+  const ListenAddress address = parse_listen_address("unix:/run/weir:1.sock");
+  EXPECT_TRUE(address.is_unix());
+  EXPECT_EQ(address.path, "/run/weir:1.sock");
+  EXPECT_EQ(address.text(), "unix:/run/weir:1.sock");
+}
+
 TEST(ListenAddress, RefusesWhatIsNone) {
   for (const char* text :
        {"", ":", "8470", ":8470", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "127.0.0.1:http",

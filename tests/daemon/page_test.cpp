@@ -49,8 +49,8 @@ class PageTest : public testing::Test {
     control_.now.started_at = 1795253270;
   }
 
-  void run(const std::string& name, const std::string& token = "") {
-    Served served(control_, token);
+  void run(const std::string& name, const std::string& token = "", const std::string& control_socket = "") {
+    Served served(control_, token, {}, control_socket);
     if (name == "says_when_the_service_is_gone") control_.on_pause = [&] { served.close_soon(); };
     std::vector<std::string> command = {kPython, "-B", WEIR_SOURCE_DIR "/tests/daemon/page/page_test.py",
                                         "http://" + served.address(), name};
@@ -86,6 +86,11 @@ TEST_F(PageTest, WorksWithTheKeyboard) {
 TEST_F(PageTest, ChangesJobs) {
   show_sample_jobs(control_, directory_.path());
   run("changes_jobs");
+}
+
+TEST_F(PageTest, HasNoButtonsWhereControlIsElsewhere) {
+  show_busy_sample(control_, directory_.path());
+  run("only_views", "", directory_ / "weir.sock");
 }
 
 TEST_F(PageTest, ShowsAnEmptyService) {

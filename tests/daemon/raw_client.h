@@ -1,10 +1,11 @@
-// A TCP connection that sends any bytes and shows exactly what comes back.
+// A connection, of TCP or to a Unix socket, that sends any bytes and shows exactly what comes back.
 #pragma once
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -35,10 +36,18 @@ struct RawResponse {
 class RawClient {
  public:
   /// A socket that is not connected yet.
-  RawClient() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit RawClient(int family = AF_INET) : socket_(::socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     if (socket_ < 0) throw std::system_error(errno, std::generic_category(), "socket");
   }
-  explicit RawClient(std::uint16_t port) : RawClient() { connect(port); }
+  explicit RawClient(std::uint16_t port) : RawClient(AF_INET) { connect(port); }
+  explicit RawClient(const std::string& path) : RawClient(AF_UNIX) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      throw std::system_error(errno, std::generic_category(), "connect");
+    }
+  }
   ~RawClient() {
     if (socket_ >= 0) ::close(socket_);
   }

@@ -17,8 +17,9 @@ namespace weir {
 
 class Served {
  public:
-  explicit Served(Control& control, const std::string& token = "", const HttpLimits& limits = {})
-      : server_(std::make_unique<ControlServer>(io_, settings(token, limits), control)),
+  explicit Served(Control& control, const std::string& token = "", const HttpLimits& limits = {},
+                  const std::string& control_socket = "")
+      : server_(std::make_unique<ControlServer>(io_, settings(token, limits, control_socket), control)),
         port_(server_->port()),
         thread_([this] { io_.run(); }) {}
   ~Served() {
@@ -52,11 +53,13 @@ class Served {
   }
 
  private:
-  static ControlServerSettings settings(const std::string& token, const HttpLimits& limits) {
+  static ControlServerSettings settings(const std::string& token, const HttpLimits& limits,
+                                        const std::string& control_socket) {
     ControlServerSettings result;
     result.address = {"127.0.0.1", 0};
     result.token = token;
     result.limits = limits;
+    result.control_socket = control_socket;
     return result;
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "tests/support/temporary_directory.h"
@@ -91,6 +92,22 @@ TEST_F(Sqlite, AnInnerTransactionTakesBackItsOwnStatementsAlone) {
   Statement sum = database.prepare("SELECT sum(a) FROM t");
   sum.step();
   EXPECT_EQ(sum.integer(0), 4);
+}
+
+TEST_F(Sqlite, JournalIsCopiedByCheckpointAndNotByCommits) {
+  Database database(path_);
+  database.run("PRAGMA journal_mode=WAL");
+  database.run("CREATE TABLE t (a)");
+  const auto empty = std::filesystem::file_size(path_);
+  const std::string page(4000, 'x');
+  for (int i = 0; i < 1500; ++i) database.prepare("INSERT INTO t VALUES (?)").bind(page).step();
+  EXPECT_GE(database.journal_pages(), 1500);
+  EXPECT_EQ(std::filesystem::file_size(path_), empty);
+  database.checkpoint();
+  EXPECT_EQ(database.journal_pages(), 0);
+  EXPECT_GE(std::filesystem::file_size(path_), 1500 * page.size());
+  database.run("INSERT INTO t VALUES (1)");
+  EXPECT_LT(database.journal_pages(), 10);
 }
 
 TEST_F(Sqlite, ErrorsNameTheFileAndTheReason) {

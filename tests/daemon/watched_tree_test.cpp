@@ -23,7 +23,9 @@ TEST(WatchedTree, DoesNothingOnceItIsGone) {
   watch.output = directory / "out";
   std::filesystem::create_directory(watch.directory);
   const std::int64_t id = store.observe(watch.label, watch.directory + "/gone_2x2x2_uint8.raw", {8, 1, 1}, "").job.id;
-  auto tree = std::make_unique<WatchedTree>(io, watch, store, log, WatchedTree::Reports{[] {}, [](std::int64_t) {}});
+  DiskTurns turns(io);
+  auto tree =
+      std::make_unique<WatchedTree>(io, turns, watch, store, log, WatchedTree::Reports{[] {}, [](std::int64_t) {}});
   boost::asio::post(io, [&] { tree.reset(); });
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   io.poll();

@@ -6,6 +6,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,29 @@ TEST_F(ServiceCommands, RetryJobs) {
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_EQ(again.err, cat("weir: ", served.address(), ": job 2 is waiting: nothing to retry\n"));
   EXPECT_EQ(weir(served, {"retry", "77"}).err, cat("weir: ", served.address(), ": there is no job 77\n"));
+}
+
+TEST_F(ServiceCommands, AskAtTheUnixSocket) {
+  const std::string socket = directory_ / "weir.sock";
+  const std::string config = directory_ / "weir.toml";
+  std::ofstream(config)
+      << "[service]\ncontrol_socket = \"weir.sock\"\n[[watch]]\ndirectory = \"in\"\noutput = \"out\"\n";
+  Served served(control_, "", {}, socket);
+  EXPECT_EQ(run_weir({"retry", "2", "--address", "unix:" + socket}).out,
+            "job 2 is tried again: /scratch/run 1/2.raw\n");
+  EXPECT_EQ(run_weir({"retry", "1", "--config", config}).out, "job 1 is tried again: /scratch/run 1/1.raw\n");
+  EXPECT_EQ(run_weir({"jobs", "--config", config, "--state", "failed"}).exit_code, 0);
+  const CommandResult refused = weir(served, {"retry", "3"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err, cat("weir: ", served.address(), ": this address only shows; ask at unix:", socket,
+                             " (--address, --config)\n"));
+  served.close();
+  const CommandResult gone = run_weir({"status", "--address", "unix:" + socket});
+  EXPECT_EQ(gone.exit_code, 5);
+  EXPECT_EQ(gone.err, cat("weir: unix:", socket,
+                          ": cannot connect: No such file or directory; is weir watch running there? "
+                          "name its address with --address or --config\n"));
+  EXPECT_EQ(run_weir({"status", "--address", "unix:/" + std::string(107, 'x')}).exit_code, 2);
 }
 
 TEST_F(ServiceCommands, WantToKnowWhatToRetry) {

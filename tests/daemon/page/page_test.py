@@ -212,6 +212,23 @@ def changes_jobs(browser):
     equal(asked_of_service(), ["retry 102", "retry all", "cancel 226", "pause", "resume"])
 
 
+def only_views(browser):
+    """The service has a control socket, and the page came over TCP."""
+    browser.open(url)
+    loaded(browser)
+    browser.wait("it is said", lambda: browser.visible("#view-only"))
+    equal(browser.text("#view-only"), "View only")
+    said = browser.script("return document.querySelector('#view-only').title")
+    assert said.startswith("Pause, retry and cancel at unix:/"), said
+    equal(browser.script("return [...document.querySelectorAll('.control')].filter(b => b.offsetParent !== null).length"), 0)
+    browser.click("#running .name")
+    browser.wait("the job", lambda: browser.visible("#job"))
+    equal(browser.visible("#job-cancel"), False)
+    equal(browser.visible("#job-close"), True)
+    browser.click("#job-close")
+    picture(browser, "view_only")
+
+
 def shows_an_empty_service(browser):
     browser.open(url)
     loaded(browser)

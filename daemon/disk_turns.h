@@ -1,0 +1,30 @@
+// Work of the event loop that waits for the disk of the state file, one piece at
+// a time: whoever asks for something meanwhile is answered after one piece, not
+// after one of everybody's. Lives on the io_context's thread.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <deque>
+#include <functional>
+
+namespace weir {
+
+class DiskTurns {
+ public:
+  explicit DiskTurns(boost::asio::io_context& io) : timer_(io) {}
+
+  /// Calls `work` after those that are queued, each in a handler of its own and 1 ms after the one before, in which
+  /// what came meanwhile is answered.
+  void take(std::function<void()> work);
+
+ private:
+  void await_next();
+  void run_next();
+
+  boost::asio::steady_timer timer_;
+  std::deque<std::function<void()>> queue_;
+  boost::asio::steady_timer::time_point next_ = boost::asio::steady_timer::clock_type::now();  ///< not before this time
+};
+
+}  // namespace weir
