@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "compressor/conversion.h"
-#include "format/descriptor.h"
-#include "format/seconds_since.h"
-#include "format/text.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
+#include "format/io/descriptor.h"
 #include "ingest/source_registry.h"
 #include "ingest/synthetic/synthetic.h"
 

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "format/text.h"
-#include "ingest/block_plan.h"
-#include "ingest/block_stream.h"
+#include "format/base/text.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
 #include "ingest/source_registry.h"
 
 namespace weir {

@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "format/descriptor.h"
-#include "format/text.h"
-#include "ingest/block_plan.h"
-#include "ingest/block_stream.h"
-#include "ingest/page_buffer.h"
-#include "ingest/raw_source.h"
+#include "format/base/text.h"
+#include "format/io/descriptor.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
+#include "ingest/plan/page_buffer.h"
+#include "ingest/raw/raw_source.h"
 
 namespace weir {
 namespace {

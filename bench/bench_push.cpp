@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
-#include "compressor/pushed_volume.h"
-#include "format/seconds_since.h"
-#include "format/text.h"
+#include "compressor/push/pushed_volume.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
 #include "ingest/synthetic/synthetic.h"
 
 namespace weir {

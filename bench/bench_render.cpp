@@ -10,10 +10,10 @@
 #include <string>
 
 #include "compressor/conversion.h"
-#include "format/nvdb_file.h"
-#include "format/text.h"
-#include "gpu/cpu_renderer.h"
-#include "gpu/render_scene.h"
+#include "format/base/text.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/render/cpu_renderer.h"
+#include "gpu/render/render_scene.h"
 #include "ingest/synthetic/synthetic.h"
 
 namespace weir {

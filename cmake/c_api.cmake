@@ -68,13 +68,13 @@ function(weir_c_tests)
   endif()
   if(TARGET weir_tests_tools)  # those of the installed library
     add_dependencies(weir_tests_tools weir_c)
-    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install_test.cpp
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/install/c_api_test.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install/install_test.cpp
                  APPEND PROPERTY COMPILE_DEFINITIONS WEIR_ABI="${WEIR_ABI}")
     set(installs)
     if(TARGET weir_share)
       set(installs WEIR_INSTALLS="${CMAKE_BINARY_DIR}")
     endif()
-    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/c_api_test.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/install/c_api_test.cpp APPEND PROPERTY COMPILE_DEFINITIONS
                  WEIR_CC="${CMAKE_C_COMPILER}" WEIR_CXX="${CMAKE_CXX_COMPILER}" WEIR_CMAKE="${CMAKE_COMMAND}"
                  WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_NVCC="${CMAKE_CUDA_COMPILER}"
                  WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})

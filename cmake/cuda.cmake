@@ -37,11 +37,11 @@ if(CMAKE_CUDA_COMPILER)
   set(CMAKE_CUDA_STANDARD_REQUIRED ON)
   find_package(CUDAToolkit REQUIRED)
   file(GLOB loader CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/load/*.cpp)
-  list(APPEND loader ${PROJECT_SOURCE_DIR}/gpu/cuda/check.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/grid_loader.cpp)
+  list(APPEND loader ${PROJECT_SOURCE_DIR}/gpu/cuda/runtime/check.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/grid_loader.cpp)
   add_library(weir_cuda STATIC ${loader})
   add_library(weir::cuda ALIAS weir_cuda)
   set_target_properties(weir_cuda PROPERTIES EXPORT_NAME cuda)
-  set(WEIR_CUDA_HEADERS check device_array device_buffer grid_loader load/copy_task load/direct_storage load/load_report
+  set(WEIR_CUDA_HEADERS runtime/check runtime/device_array device_buffer grid_loader load/copy_task load/direct_storage load/load_report
                         load/pinned_memory load/pinned_ring load/registered_range load/zero_copy)
   list(TRANSFORM WEIR_CUDA_HEADERS REPLACE ".+" "${PROJECT_SOURCE_DIR}/gpu/cuda/\\0.h")
   target_sources(weir_cuda PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${WEIR_CUDA_HEADERS})
@@ -51,7 +51,8 @@ if(CMAKE_CUDA_COMPILER)
   # Each thread has a default stream of its own: one loads while another renders.
   target_compile_definitions(weir_cuda PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
   if(NOT WEIR_EMBED)
-    file(GLOB renderer CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
+    file(GLOB_RECURSE renderer CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp
+                                                ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
     list(REMOVE_ITEM renderer ${loader})
     add_library(weir_cuda_backend STATIC ${renderer})
     target_compile_definitions(weir_cuda_backend PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)

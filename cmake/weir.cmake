@@ -74,7 +74,7 @@ function(weir_library name)
   target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
 endfunction()
 
-# weir_embed_page(TARGET FOLDER): the files of FOLDER, compiled into TARGET as page_files() (daemon/page_files.h).
+# weir_embed_page(TARGET FOLDER): the files of FOLDER, compiled into TARGET as page_files() (daemon/http/page_files.h).
 function(weir_embed_page target folder)
   set(page ${PROJECT_SOURCE_DIR}/${folder})
   set(source ${CMAKE_BINARY_DIR}/page_files.cpp)
@@ -131,8 +131,8 @@ function(weir_tests name)
     endif()
     target_compile_definitions(weir_tests_${name} PRIVATE WEIR_COMMAND="$<TARGET_FILE:weir>")
     # Of those that build a program themselves, with the tools weir is built with, or install weir.
-    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/embedded_example.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install_test.cpp
-                        ${PROJECT_SOURCE_DIR}/tests/tools/embedding_test.cpp PROPERTY COMPILE_DEFINITIONS
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/support/embedded_example.cpp ${PROJECT_SOURCE_DIR}/tests/tools/install/install_test.cpp
+                        ${PROJECT_SOURCE_DIR}/tests/tools/install/embedding_test.cpp PROPERTY COMPILE_DEFINITIONS
                  WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_CXX="${CMAKE_CXX_COMPILER}"
                  WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}"
                  WEIR_VERSION="${PROJECT_VERSION}" ${installs})
@@ -181,7 +181,7 @@ function(weir_loader_tests)
   set(root ${PROJECT_SOURCE_DIR})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
                                       ${root}/tests/fake_cuda/*.cpp)
-  add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+  add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
                                    ${root}/tests/cuda/grid_loader_test.cpp)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
   target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})

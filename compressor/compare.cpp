@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "compressor/exact_sum.h"
-#include "compressor/leaf_difference.h"
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/block_plan.h"
-#include "ingest/block_stream.h"
-#include "ingest/extent.h"
+#include "compressor/leaf/exact_sum.h"
+#include "compressor/leaf/leaf_difference.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
+#include "ingest/source/extent.h"
 
 namespace weir {
 namespace {

@@ -8,11 +8,11 @@
 #include <functional>
 #include <optional>
 
-#include "compressor/certificate.h"
-#include "format/index.h"
-#include "format/nvdb_grid.h"
-#include "format/trace.h"
-#include "ingest/volume_source.h"
+#include "compressor/leaf/certificate.h"
+#include "format/base/index.h"
+#include "format/base/trace.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 

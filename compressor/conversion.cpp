@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "compressor/conversion_control.h"
-#include "compressor/memory_plan.h"
+#include "compressor/plan/memory_plan.h"
+#include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"
-#include "compressor/startable_threads.h"
 #include "compressor/surveyed_conversion.h"
-#include "format/error.h"
-#include "format/file_id.h"
-#include "format/process_memory.h"
-#include "format/text.h"
-#include "ingest/file_state.h"
+#include "format/base/error.h"
+#include "format/base/process_memory.h"
+#include "format/base/text.h"
+#include "format/io/file_id.h"
+#include "ingest/files/file_state.h"
 
 namespace weir {
 

@@ -9,16 +9,16 @@
 #include <optional>
 #include <string>
 
-#include "compressor/budget.h"
-#include "compressor/encoding.h"
-#include "compressor/fill.h"
-#include "compressor/leaf_gain.h"
-#include "compressor/team.h"
-#include "format/file_system.h"
-#include "format/scene.h"
-#include "format/sidecar.h"
-#include "format/trace.h"
-#include "ingest/volume_source.h"
+#include "compressor/leaf/encoding.h"
+#include "compressor/leaf/fill.h"
+#include "compressor/select/budget.h"
+#include "compressor/select/leaf_gain.h"
+#include "compressor/team/team.h"
+#include "format/base/trace.h"
+#include "format/io/file_system.h"
+#include "format/sidecar/scene.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 

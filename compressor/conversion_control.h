@@ -6,8 +6,8 @@
 #include <string>
 
 #include "compressor/conversion.h"
-#include "format/error.h"
-#include "ingest/block_stream.h"
+#include "format/base/error.h"
+#include "ingest/plan/block_stream.h"
 
 namespace weir {
 

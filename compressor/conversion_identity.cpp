@@ -7,8 +7,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "format/digest.h"
-#include "format/text.h"
+#include "format/base/text.h"
+#include "format/io/digest.h"
 
 namespace weir {
 namespace {

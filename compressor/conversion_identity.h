@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
-#include "compressor/checkpoint.h"
 #include "compressor/conversion.h"
-#include "ingest/volume_source.h"
+#include "compressor/survey/checkpoint.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 

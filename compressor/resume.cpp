@@ -1,10 +1,10 @@
 #include "compressor/resume.h"
 
 #include "compressor/conversion_identity.h"
-#include "compressor/work_directory.h"
-#include "format/commit_traces.h"
-#include "format/sidecar.h"
-#include "format/text.h"
+#include "compressor/resume/work_directory.h"
+#include "format/base/text.h"
+#include "format/output/commit_traces.h"
+#include "format/sidecar/sidecar.h"
 
 namespace weir {
 namespace {

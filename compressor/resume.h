@@ -6,10 +6,10 @@
 #include <string>
 
 #include "compressor/conversion.h"
-#include "compressor/journal.h"
-#include "format/error.h"
-#include "format/file_system.h"
-#include "format/output_files.h"
+#include "compressor/resume/journal.h"
+#include "format/base/error.h"
+#include "format/io/file_system.h"
+#include "format/output/output_files.h"
 
 namespace weir {
 

@@ -9,21 +9,21 @@
 #include <thread>
 #include <vector>
 
-#include "compressor/background.h"
-#include "compressor/certificate.h"
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_identity.h"
-#include "compressor/encode_attempts.h"
-#include "compressor/leaf_reach.h"
-#include "compressor/tree_writer.h"
-#include "format/digest.h"
-#include "format/error.h"
-#include "format/macrocells.h"
-#include "format/nvdb_type.h"
-#include "format/process_memory.h"
-#include "format/seconds_since.h"
-#include "format/text.h"
-#include "ingest/file_state.h"
+#include "compressor/encode/encode_attempts.h"
+#include "compressor/encode/tree_writer.h"
+#include "compressor/leaf/certificate.h"
+#include "compressor/select/leaf_reach.h"
+#include "compressor/survey/background.h"
+#include "format/base/error.h"
+#include "format/base/process_memory.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
+#include "format/io/digest.h"
+#include "format/layout/nvdb_type.h"
+#include "format/nanovdb/macrocells.h"
+#include "ingest/files/file_state.h"
 
 namespace weir {
 namespace {

@@ -6,17 +6,17 @@
 #include <optional>
 
 #include "compressor/conversion.h"
-#include "compressor/journal.h"
-#include "compressor/leaf_faces.h"
-#include "compressor/leaf_store.h"
-#include "compressor/reading_plan.h"
-#include "compressor/row_store.h"
-#include "compressor/survey.h"
-#include "compressor/visibility.h"
-#include "compressor/work_directory.h"
-#include "format/output_files.h"
-#include "format/sidecar.h"
-#include "ingest/volume_source.h"
+#include "compressor/plan/reading_plan.h"
+#include "compressor/resume/journal.h"
+#include "compressor/resume/work_directory.h"
+#include "compressor/survey/leaf_faces.h"
+#include "compressor/survey/leaf_store.h"
+#include "compressor/survey/row_store.h"
+#include "compressor/survey/survey.h"
+#include "compressor/survey/visibility.h"
+#include "format/output/output_files.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 
@@ -35,7 +35,8 @@ struct ConversionJob {
 /// Visibility does.
 std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain);
 
-/// Throws where a file that the source lies in is not as it was when it was opened (ingest/file_state.h), on all ranks.
+/// Throws where a file that the source lies in is not as it was when it was opened (ingest/files/file_state.h), on all
+/// ranks.
 void check_source(const VolumeSource& source, Team& team);
 
 /// Whether the survey is to look at the widths of quantised leaves (survey.h).

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <utility>
 
-#include "daemon/output_cleaning.h"
-#include "format/error.h"
-#include "format/text.h"
+#include "daemon/jobs/output_cleaning.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

@@ -11,15 +11,15 @@
 #include <memory>
 #include <string>
 
-#include "daemon/config.h"
-#include "daemon/control_server.h"
-#include "daemon/disk_turns.h"
-#include "daemon/event_log.h"
-#include "daemon/job_history.h"
-#include "daemon/job_runner.h"
-#include "daemon/job_store.h"
-#include "daemon/notify.h"
+#include "daemon/config/config.h"
+#include "daemon/http/control_server.h"
+#include "daemon/jobs/job_history.h"
+#include "daemon/jobs/job_runner.h"
+#include "daemon/log/event_log.h"
+#include "daemon/log/notify.h"
 #include "daemon/service_control.h"
+#include "daemon/store/disk_turns.h"
+#include "daemon/store/job_store.h"
 #include "daemon/watched_tree.h"
 
 namespace weir {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "format/text.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

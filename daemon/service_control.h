@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "daemon/control.h"
-#include "daemon/disk_turns.h"
-#include "daemon/job_runner.h"
-#include "daemon/job_store.h"
+#include "daemon/http/control.h"
+#include "daemon/jobs/job_runner.h"
+#include "daemon/store/disk_turns.h"
+#include "daemon/store/job_store.h"
 #include "daemon/watched_tree.h"
 
 namespace weir {

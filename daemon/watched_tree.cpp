@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "daemon/conversion_task.h"
-#include "daemon/file_identity.h"
-#include "daemon/path_filter.h"
-#include "format/error.h"
+#include "daemon/jobs/conversion_task.h"
+#include "daemon/store/file_identity.h"
+#include "daemon/watch/path_filter.h"
+#include "format/base/error.h"
 
 namespace weir {
 namespace {

@@ -19,13 +19,13 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/completion.h"
-#include "daemon/config.h"
-#include "daemon/directory_watch.h"
-#include "daemon/disk_turns.h"
-#include "daemon/event_log.h"
-#include "daemon/job_store.h"
-#include "daemon/recent_rate.h"
+#include "daemon/config/config.h"
+#include "daemon/disks/recent_rate.h"
+#include "daemon/log/event_log.h"
+#include "daemon/store/disk_turns.h"
+#include "daemon/store/job_store.h"
+#include "daemon/watch/completion.h"
+#include "daemon/watch/directory_watch.h"
 
 namespace weir {
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <optional>
 
-#include "format/error.h"
-#include "format/real_path.h"
-#include "format/text.h"
-#include "ingest/number_pattern.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/real_path.h"
+#include "ingest/headers/number_pattern.h"
 #include "ingest/source_registry.h"
 
 namespace weir {

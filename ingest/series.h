@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ingest/source_options.h"
+#include "ingest/source/source_options.h"
 
 namespace weir {
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/source_options.h"
-#include "ingest/volume_source.h"
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <csignal>
 
-#include "format/error.h"
+#include "format/base/error.h"
 #include "tools/command.h"
 
 namespace weir {

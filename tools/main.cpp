@@ -12,11 +12,11 @@
 #include <string>
 #include <system_error>
 
-#include "compressor/startable_threads.h"
-#include "format/error.h"
+#include "compressor/plan/startable_threads.h"
+#include "format/base/error.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
-#include "tools/printable.h"
+#include "tools/report/printable.h"
 
 namespace {
 

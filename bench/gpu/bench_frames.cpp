@@ -14,17 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "format/error.h"
-#include "format/file_mapping.h"
-#include "format/file_system.h"
-#include "format/nvdb_file.h"
-#include "format/text.h"
-#include "gpu/cuda/dense_texture.h"
-#include "gpu/cuda/device_samplers.h"
-#include "gpu/cuda/device_volume.h"
-#include "gpu/cuda/render_kernel.h"
-#include "gpu/image_output.h"
-#include "gpu/render_setup.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_mapping.h"
+#include "format/io/file_system.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/cuda/render/render_kernel.h"
+#include "gpu/cuda/volume/dense_texture.h"
+#include "gpu/cuda/volume/device_samplers.h"
+#include "gpu/cuda/volume/device_volume.h"
+#include "gpu/image/image_output.h"
+#include "gpu/render/render_setup.h"
 
 namespace weir {
 namespace {

@@ -14,14 +14,14 @@
 #include <utility>
 #include <vector>
 
-#include "format/descriptor.h"
-#include "format/error.h"
-#include "format/nvdb_file.h"
-#include "format/text.h"
-#include "gpu/cuda/check.h"
-#include "gpu/cuda/device_array.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/descriptor.h"
+#include "format/nanovdb/nvdb_file.h"
 #include "gpu/cuda/grid_loader.h"
 #include "gpu/cuda/load/pinned_memory.h"
+#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
 namespace {

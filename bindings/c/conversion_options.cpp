@@ -10,7 +10,7 @@
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
 #include "compressor/build_commit.h"
-#include "format/text.h"
+#include "format/base/text.h"
 
 namespace weir::c {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "bindings/c/weir.h"
 #include "compressor/conversion.h"
-#include "ingest/array_source.h"
-#include "ingest/source_options.h"
+#include "ingest/source/source_options.h"
+#include "ingest/values/array_source.h"
 
 namespace weir::c {
 

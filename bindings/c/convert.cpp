@@ -6,11 +6,11 @@
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
 #include "bindings/c/weir.h"
-#include "compressor/memory_plan.h"
-#include "format/memory_file_system.h"
-#include "format/output_files.h"
-#include "format/process_memory.h"
-#include "format/text.h"
+#include "compressor/plan/memory_plan.h"
+#include "format/base/process_memory.h"
+#include "format/base/text.h"
+#include "format/io/memory_file_system.h"
+#include "format/output/output_files.h"
 #include "ingest/source_registry.h"
 
 struct weir_buffer {

@@ -9,9 +9,9 @@
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
 #include "bindings/c/weir.h"
-#include "format/read_box.h"
-#include "gpu/volume_sampler.h"
-#include "ingest/extent.h"
+#include "format/nanovdb/read_box.h"
+#include "gpu/volume/volume_sampler.h"
+#include "ingest/source/extent.h"
 
 namespace weir::c {
 namespace {

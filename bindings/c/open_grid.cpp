@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "bindings/c/status.h"
-#include "format/error.h"
-#include "format/file_mapping.h"
+#include "format/base/error.h"
+#include "format/io/file_mapping.h"
 
 using namespace weir;
 

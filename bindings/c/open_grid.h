@@ -8,9 +8,9 @@
 #include <string>
 
 #include "bindings/c/weir.h"
-#include "format/nvdb_file.h"
-#include "format/sidecar.h"
-#include "gpu/leaf_table.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/sidecar.h"
+#include "gpu/volume/leaf_table.h"
 
 /// Everything but the table is set by the constructor and then only read.
 struct weir_grid {

@@ -4,7 +4,7 @@
 #include "bindings/c/conversion_options.h"
 #include "bindings/c/status.h"
 #include "bindings/c/weir.h"
-#include "compressor/pushed_volume.h"
+#include "compressor/push/pushed_volume.h"
 
 /// What outlives a PushedVolume comes before it.
 struct weir_push {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bindings/c/weir.h"
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::c {
 

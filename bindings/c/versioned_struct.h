@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "bindings/c/status.h"
-#include "format/text.h"
+#include "format/base/text.h"
 
 namespace weir::c {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "bindings/mpi/mpi_team.h"
-#include "format/file_system.h"
+#include "format/io/file_system.h"
 
 namespace weir {
 

@@ -7,8 +7,8 @@
 #include <exception>
 #include <thread>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "compressor/team.h"
+#include "compressor/team/team.h"
 
 namespace weir {
 

@@ -7,7 +7,7 @@
 #include "bindings/mpi/pushed_boxes.h"
 #include "bindings/mpi/weir_mpi.h"
 #include "compressor/conversion_identity.h"
-#include "format/text.h"
+#include "format/base/text.h"
 
 /// What outlives a PushedBoxes comes before it.
 struct weir_mpi_push {

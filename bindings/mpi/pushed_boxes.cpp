@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "bindings/mpi/mpi_file_system.h"
-#include "compressor/spool_source.h"
-#include "format/box_set.h"
-#include "format/text.h"
-#include "ingest/extent.h"
-#include "ingest/strided_copy.h"
+#include "compressor/push/spool_source.h"
+#include "format/base/box_set.h"
+#include "format/base/text.h"
+#include "ingest/plan/strided_copy.h"
+#include "ingest/source/extent.h"
 
 namespace weir {
 namespace {

@@ -2,7 +2,7 @@
 // boxes that are its own; in the end, one file, the same as a conversion of all
 // of it.
 //
-// Voxels go to one spool that all processes share (compressor/leaf_spool.h), where
+// Voxels go to one spool that all processes share (compressor/push/leaf_spool.h), where
 // the leaves that several of them have a part in come together; nobody ever holds
 // the volume.
 #pragma once
@@ -15,11 +15,11 @@
 
 #include "bindings/mpi/mpi_team.h"
 #include "compressor/conversion.h"
-#include "compressor/leaf_spool.h"
-#include "compressor/work_directory.h"
-#include "format/error.h"
-#include "format/file_system.h"
-#include "format/output_files.h"
+#include "compressor/push/leaf_spool.h"
+#include "compressor/resume/work_directory.h"
+#include "format/base/error.h"
+#include "format/io/file_system.h"
+#include "format/output/output_files.h"
 
 namespace weir {
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <regex>
 
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::python {
 

@@ -5,15 +5,15 @@
 
 #include "bindings/python/levels.h"
 #include "bindings/python/watch.h"
-#include "format/error.h"
-#include "format/macrocells.h"
-#include "format/nvdb_header.h"
-#include "format/sidecar.h"
-#include "format/text.h"
-#include "gpu/macrocell_grid.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/nanovdb/macrocells.h"
+#include "format/nanovdb/nvdb_header.h"
+#include "format/sidecar/sidecar.h"
+#include "gpu/volume/macrocell_grid.h"
 #include "ingest/source_registry.h"
-#include "tools/read_sidecar.h"
-#include "tools/volume_verification.h"
+#include "tools/report/read_sidecar.h"
+#include "tools/report/volume_verification.h"
 
 namespace weir::python {
 

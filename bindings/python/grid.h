@@ -13,10 +13,10 @@
 #include <tuple>
 #include <vector>
 
-#include "format/nvdb_file.h"
-#include "gpu/leaf_table.h"
-#include "gpu/volume_sampler.h"
-#include "ingest/volume_source.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/volume/leaf_table.h"
+#include "gpu/volume/volume_sampler.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir::python {
 

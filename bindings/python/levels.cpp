@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::python {
 

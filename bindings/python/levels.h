@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "format/index.h"
-#include "ingest/volume_source.h"
+#include "format/base/index.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir::python {
 

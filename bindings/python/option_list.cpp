@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::python {
 

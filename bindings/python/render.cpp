@@ -8,8 +8,8 @@
 #include "bindings/python/grid.h"
 #include "bindings/python/option_list.h"
 #include "bindings/python/watch.h"
-#include "gpu/image_output.h"
-#include "tools/picture_options.h"
+#include "gpu/image/image_output.h"
+#include "tools/options/picture_options.h"
 
 namespace weir::python {
 

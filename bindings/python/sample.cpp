@@ -3,7 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bindings/python/grid.h"
-#include "gpu/volume_sampler.h"
+#include "gpu/volume/volume_sampler.h"
 
 namespace weir::python {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bindings/python/errors.h"
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::python {
 

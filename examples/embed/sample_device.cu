@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "format/error.h"
-#include "gpu/cuda/device_array.h"
+#include "format/base/error.h"
 #include "gpu/cuda/grid_loader.h"
-#include "gpu/volume_sampler.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "gpu/volume/volume_sampler.h"
 
 __global__ void sample(weir::VolumeSampler volume, const weir::Float3* at, float* values) {
   values[threadIdx.x] = volume.smooth(at[threadIdx.x]);

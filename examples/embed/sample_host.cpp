@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "format/error.h"
-#include "format/nvdb_file.h"
-#include "gpu/volume_sampler.h"
+#include "format/base/error.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/volume/volume_sampler.h"
 
 int main(int argc, char** argv) {
   if (argc < 2) return 2;

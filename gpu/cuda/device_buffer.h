@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "gpu/cuda/device_array.h"
 #include "gpu/cuda/load/direct_storage.h"
 #include "gpu/cuda/load/pinned_ring.h"
+#include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
 

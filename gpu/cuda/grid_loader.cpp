@@ -6,13 +6,13 @@
 #include <thread>
 #include <vector>
 
-#include "format/error.h"
-#include "format/nanovdb_layout.h"
-#include "format/text.h"
-#include "gpu/cuda/check.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/layout/nanovdb_layout.h"
 #include "gpu/cuda/load/load_stream.h"
 #include "gpu/cuda/load/pageable_copy.h"
 #include "gpu/cuda/load/registered_copy.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "format/nvdb_file.h"
+#include "format/nanovdb/nvdb_file.h"
 #include "gpu/cuda/device_buffer.h"
 #include "gpu/cuda/load/copy_task.h"
 #include "gpu/cuda/load/load_report.h"

@@ -1,13 +1,13 @@
 #include <utility>
 
-#include "format/text.h"
-#include "ingest/hdf5/dataset_facts.h"
-#include "ingest/hdf5/dimension_scales.h"
-#include "ingest/hdf5/hdf5_attribute.h"
-#include "ingest/hdf5/hdf5_file.h"
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/file/hdf5_file.h"
+#include "ingest/hdf5/file/hdf5_walk.h"
 #include "ingest/hdf5/hdf5_source.h"
-#include "ingest/hdf5/hdf5_walk.h"
-#include "ingest/hdf5/volume_slice.h"
+#include "ingest/hdf5/meaning/dataset_facts.h"
+#include "ingest/hdf5/meaning/dimension_scales.h"
+#include "ingest/hdf5/meaning/volume_slice.h"
 
 namespace weir {
 namespace {

@@ -5,21 +5,21 @@
 #include <set>
 #include <utility>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/extent.h"
-#include "ingest/file_states.h"
-#include "ingest/hdf5/chunk_reader.h"
-#include "ingest/hdf5/constant_source.h"
-#include "ingest/hdf5/dataset_choice.h"
-#include "ingest/hdf5/dataset_facts.h"
-#include "ingest/hdf5/external_files.h"
-#include "ingest/hdf5/hdf5_file.h"
-#include "ingest/hdf5/hdf5_lookup.h"
-#include "ingest/hdf5/library_boxes.h"
-#include "ingest/hdf5/virtual_boxes.h"
-#include "ingest/hdf5/volume_slice.h"
-#include "ingest/raw_values.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/files/file_states.h"
+#include "ingest/hdf5/file/hdf5_file.h"
+#include "ingest/hdf5/meaning/dataset_choice.h"
+#include "ingest/hdf5/meaning/dataset_facts.h"
+#include "ingest/hdf5/meaning/hdf5_lookup.h"
+#include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/hdf5/storage/chunk_reader.h"
+#include "ingest/hdf5/storage/constant_source.h"
+#include "ingest/hdf5/storage/external_files.h"
+#include "ingest/hdf5/virtual/library_boxes.h"
+#include "ingest/hdf5/virtual/virtual_boxes.h"
+#include "ingest/source/extent.h"
+#include "ingest/values/raw_values.h"
 
 namespace weir {
 namespace {

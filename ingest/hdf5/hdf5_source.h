@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "ingest/source_options.h"
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
 #include "ingest/source_registry.h"
-#include "ingest/volume_source.h"
 
 namespace weir {
 
 /// Opens options.dataset of `path` (the only one that can be converted where it is empty), at options.index of
 /// its leading axes. x is the array's last axis. Contiguous values are read as raw ones, chunks decoded in
-/// parallel where weir has their filters (ingest/hdf5/chunk_reader.h), all else by the library.
+/// parallel where weir has their filters (ingest/hdf5/storage/chunk_reader.h), all else by the library.
 /// Chunks that were never written read as the dataset's fill value.
 /// Throws Error(input) where the file, the dataset or its values cannot be read, and Error(usage) where
 /// the choice among several is open or the index does not fit.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "format/simd.h"
+#include "format/base/simd.h"
 #include "ingest/synthetic/ellipsoids.h"
 #include "ingest/synthetic/spline_noise.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "format/simd.h"
+#include "format/base/simd.h"
 #include "ingest/synthetic/hash.h"
 
 namespace weir {

@@ -11,8 +11,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

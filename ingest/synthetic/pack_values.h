@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "format/scalar_type.h"
+#include "format/base/scalar_type.h"
 #include "ingest/synthetic/synthetic.h"
 
 namespace weir {

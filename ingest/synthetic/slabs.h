@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "format/index.h"
+#include "format/base/index.h"
 
 namespace weir {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "format/simd.h"
+#include "format/base/simd.h"
 #include "ingest/synthetic/hash.h"
 
 namespace weir {

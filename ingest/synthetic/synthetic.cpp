@@ -6,8 +6,8 @@
 #include <atomic>
 #include <limits>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 #include "ingest/synthetic/cloud.h"
 #include "ingest/synthetic/exceptions.h"
 #include "ingest/synthetic/random_values.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "ingest/source/volume_source.h"
 #include "ingest/synthetic/field.h"
-#include "ingest/volume_source.h"
 
 namespace weir {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format/text.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

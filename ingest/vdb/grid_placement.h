@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "format/index.h"
-#include "ingest/axis_placement.h"
+#include "format/base/index.h"
 #include "ingest/source_registry.h"
+#include "ingest/values/axis_placement.h"
 
 namespace weir {
 

@@ -5,12 +5,12 @@
 #include <mutex>
 #include <utility>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/decode_values.h"
-#include "ingest/extent.h"
-#include "ingest/for_pieces.h"
-#include "ingest/staging.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/plan/for_pieces.h"
+#include "ingest/plan/staging.h"
+#include "ingest/source/extent.h"
+#include "ingest/values/decode_values.h"
 
 namespace weir {
 namespace {

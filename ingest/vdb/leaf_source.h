@@ -7,8 +7,8 @@
 #include <memory>
 #include <span>
 
-#include "format/index.h"
-#include "ingest/volume_source.h"
+#include "format/base/index.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 

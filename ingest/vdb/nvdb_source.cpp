@@ -5,15 +5,15 @@
 #include <optional>
 #include <utility>
 
-#include "format/error.h"
-#include "format/file_mapping.h"
-#include "format/nvdb_grid.h"
-#include "format/text.h"
-#include "ingest/axis_placement.h"
-#include "ingest/extent.h"
-#include "ingest/header_text.h"
-#include "ingest/input_file.h"
-#include "ingest/named_choice.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_mapping.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "ingest/files/input_file.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/headers/named_choice.h"
+#include "ingest/source/extent.h"
+#include "ingest/values/axis_placement.h"
 #include "ingest/vdb/grid_placement.h"
 #include "ingest/vdb/nvdb_tree.h"
 

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstring>
 
-#include "format/error.h"
-#include "format/leaf_decode.h"
-#include "format/nanovdb_layout.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/layout/nanovdb_layout.h"
+#include "format/leaf/leaf_decode.h"
 
 namespace weir {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "format/nvdb_grid.h"
-#include "ingest/input_file.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "ingest/files/input_file.h"
 #include "ingest/vdb/leaf_source.h"
 
 namespace weir {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string_view>
 
-#include "ingest/header_text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {

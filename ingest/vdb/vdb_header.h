@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ingest/axis_placement.h"
+#include "ingest/values/axis_placement.h"
 #include "ingest/vdb/vdb_reader.h"
 
 namespace weir {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "format/index.h"
+#include "format/base/index.h"
 #include "ingest/vdb/vdb_header.h"
 #include "ingest/vdb/vdb_reader.h"
 #include "ingest/vdb/vdb_type.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "format/scalar_type.h"
+#include "format/base/scalar_type.h"
 
 namespace weir {
 

@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "ingest/staging.h"
+#include "ingest/plan/staging.h"
 
 namespace weir {
 

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <string_view>
 
-#include "ingest/input_file.h"
-#include "ingest/page_buffer.h"
+#include "ingest/files/input_file.h"
+#include "ingest/plan/page_buffer.h"
 
 namespace weir {
 
-/// Holds a buffer of kPieceBytes (ingest/staging.h). Not thread-safe.
+/// Holds a buffer of kPieceBytes (ingest/plan/staging.h). Not thread-safe.
 class FileText {
  public:
   /// Bytes [begin, end) of `file`, which outlives the object.

@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "format/scalar_type.h"
-#include "ingest/spool_file.h"
+#include "format/base/scalar_type.h"
+#include "ingest/streams/spool_file.h"
 #include "ingest/vtk/file_text.h"
 
 namespace weir {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include "format/index.h"
-#include "ingest/axis_placement.h"
+#include "format/base/index.h"
+#include "ingest/source/volume_source.h"
 #include "ingest/source_registry.h"
-#include "ingest/volume_source.h"
+#include "ingest/values/axis_placement.h"
 
 namespace weir {
 

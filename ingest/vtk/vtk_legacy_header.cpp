@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/extent.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/source/extent.h"
 #include "ingest/vtk/vtk_legacy_text.h"
 
 namespace weir {

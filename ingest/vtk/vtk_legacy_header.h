@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "format/scalar_type.h"
+#include "format/base/scalar_type.h"
 #include "ingest/vtk/vtk_image.h"
 
 namespace weir {

@@ -2,15 +2,15 @@
 
 #include <utility>
 
-#include "format/error.h"
-#include "format/file_system.h"
-#include "format/text.h"
-#include "ingest/extent.h"
-#include "ingest/file_stream.h"
-#include "ingest/header_text.h"
-#include "ingest/named_choice.h"
-#include "ingest/raw_values.h"
-#include "ingest/spool_file.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/headers/named_choice.h"
+#include "ingest/source/extent.h"
+#include "ingest/streams/file_stream.h"
+#include "ingest/streams/spool_file.h"
+#include "ingest/values/raw_values.h"
 #include "ingest/vtk/text_values.h"
 #include "ingest/vtk/vtk_legacy_header.h"
 

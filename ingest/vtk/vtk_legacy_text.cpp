@@ -1,8 +1,8 @@
 #include "ingest/vtk/vtk_legacy_text.h"
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {}  // namespace

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "format/error.h"
-#include "format/file_system.h"
-#include "format/text.h"
-#include "ingest/spool_file.h"
-#include "ingest/stream_inflater.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "ingest/streams/spool_file.h"
+#include "ingest/streams/stream_inflater.h"
 #include "ingest/vtk/encoded_bytes.h"
 #include "ingest/vtk/text_values.h"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "ingest/input_file.h"
-#include "ingest/source_options.h"
+#include "ingest/files/input_file.h"
+#include "ingest/source/source_options.h"
 #include "ingest/vtk/vtk_xml_header.h"
 
 namespace weir {

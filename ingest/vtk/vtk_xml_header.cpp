@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {

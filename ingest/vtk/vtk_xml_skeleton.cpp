@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/header_text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {}  // namespace

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "ingest/extent.h"
-#include "ingest/header_text.h"
-#include "ingest/named_choice.h"
-#include "ingest/raw_values.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/headers/named_choice.h"
+#include "ingest/source/extent.h"
+#include "ingest/values/raw_values.h"
 #include "ingest/vtk/file_text.h"
 #include "ingest/vtk/vtk_xml_data.h"
 #include "ingest/vtk/vtk_xml_header.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "tests/compressor/resumed.h"
+#include "tests/compressor/support/resumed.h"
 
 namespace weir::test {
 namespace {

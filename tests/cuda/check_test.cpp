@@ -1,12 +1,12 @@
-#include "gpu/cuda/check.h"
+#include "gpu/cuda/runtime/check.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "tests/cuda/refusal.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/cuda/support/refusal.h"
 
 namespace weir::check_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "gpu/cuda/cuda_backend.h"
+#include "gpu/cuda/render/cuda_backend.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <memory>
 #include <regex>
 
-#include "format/error.h"
-#include "gpu/cuda/check.h"
-#include "gpu/cuda/device_memory.h"
-#include "gpu/cuda/device_volume.h"
-#include "tests/cuda/device_reads.h"
+#include "format/base/error.h"
+#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/volume/device_memory.h"
+#include "gpu/cuda/volume/device_volume.h"
+#include "tests/cuda/support/device_reads.h"
 #include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"
 

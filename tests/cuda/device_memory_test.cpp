@@ -1,13 +1,13 @@
-#include "gpu/cuda/device_memory.h"
+#include "gpu/cuda/volume/device_memory.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <memory>
 
-#include "gpu/cuda/cuda_backend.h"
-#include "gpu/cuda/device_array.h"
-#include "tests/cuda/device_reads.h"
+#include "gpu/cuda/render/cuda_backend.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "tests/cuda/support/device_reads.h"
 
 namespace weir::device_memory_test {
 namespace {

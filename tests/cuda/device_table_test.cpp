@@ -1,13 +1,13 @@
-#include "gpu/cuda/device_table.h"
+#include "gpu/cuda/volume/device_table.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 
-#include "gpu/cuda/brick_atlas.h"
-#include "gpu/cuda/device_macrocells.h"
-#include "tests/cuda/device_reads.h"
+#include "gpu/cuda/volume/brick_atlas.h"
+#include "gpu/cuda/volume/device_macrocells.h"
+#include "tests/cuda/support/device_reads.h"
 #include "tests/stock/test_grid.h"
 
 namespace weir::device_table_test {

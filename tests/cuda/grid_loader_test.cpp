@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "format/error.h"
-#include "format/text.h"
-#include "gpu/cuda/check.h"
-#include "tests/cuda/grid_file.h"
-#include "tests/cuda/refusal.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "gpu/cuda/runtime/check.h"
+#include "tests/cuda/support/grid_file.h"
+#include "tests/cuda/support/refusal.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "gpu/cuda/check.h"
-#include "gpu/cuda/device_array.h"
 #include "gpu/cuda/grid_loader.h"
-#include "tests/cuda/grid_file.h"
+#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "tests/cuda/support/grid_file.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 #include "gpu/cuda/grid_loader.h"
-#include "tests/cuda/grid_file.h"
+#include "tests/cuda/support/grid_file.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/temporary_directory.h"
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "format/error.h"
-#include "ingest/meta_image_header.h"
+#include "format/base/error.h"
+#include "ingest/meta_image/meta_image_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view input(reinterpret_cast<const char*>(data), size);

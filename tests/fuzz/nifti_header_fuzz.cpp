@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
-#include "format/error.h"
-#include "ingest/nifti_header.h"
+#include "format/base/error.h"
+#include "ingest/nifti/nifti_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <vector>
 
-#include "format/error.h"
-#include "format/nvdb_checksum.h"
-#include "format/nvdb_grid.h"
+#include "format/base/error.h"
+#include "format/nanovdb/nvdb_checksum.h"
+#include "format/nanovdb/nvdb_grid.h"
 #include "tests/fuzz/tiny_grid.h"
 
 namespace weir {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "format/error.h"
-#include "format/sidecar.h"
+#include "format/base/error.h"
+#include "format/sidecar/sidecar.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view input(reinterpret_cast<const char*>(data), size);

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
-#include "format/leaf_decode.h"
-#include "format/nanovdb_layout.h"
+#include "format/layout/nanovdb_layout.h"
+#include "format/leaf/leaf_decode.h"
 
 namespace weir::test {
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "format/error.h"
+#include "format/base/error.h"
 #include "ingest/vdb/vdb_topology.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

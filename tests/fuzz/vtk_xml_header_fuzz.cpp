@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "format/error.h"
+#include "format/base/error.h"
 #include "ingest/vtk/vtk_xml_header.h"
 
 namespace {

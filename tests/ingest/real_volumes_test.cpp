@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <limits>
 
-#include "ingest/block_plan.h"
-#include "ingest/block_stream.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
 #include "ingest/source_registry.h"
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/support/scratch.h"
 
 namespace weir::real_volumes_test {
 namespace {

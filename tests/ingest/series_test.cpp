@@ -1,6 +1,6 @@
 #include "ingest/series.h"
 
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/support/scratch.h"
 
 namespace weir::series_test {
 namespace {

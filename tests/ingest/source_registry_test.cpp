@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "tests/ingest/hdf5/chunked_file.h"
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/hdf5/support/chunked_file.h"
+#include "tests/ingest/support/scratch.h"
 #include "tests/stock/openvdb_file.h"
 
 namespace weir::source_registry_test {

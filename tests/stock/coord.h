@@ -1,7 +1,7 @@
 // An index as OpenVDB and NanoVDB write it.
 #pragma once
 
-#include "format/index.h"
+#include "format/base/index.h"
 
 namespace weir::test {
 

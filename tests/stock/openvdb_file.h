@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "format/index.h"
+#include "format/base/index.h"
 
 namespace weir::test {
 

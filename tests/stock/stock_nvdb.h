@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "format/index.h"
-#include "format/nvdb_type.h"
+#include "format/base/index.h"
+#include "format/layout/nvdb_type.h"
 
 namespace weir::test {
 

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "format/nanovdb_layout.h"
+#include "format/layout/nanovdb_layout.h"
 #include "tests/stock/coord.h"
 
 namespace weir::test {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "format/index.h"
+#include "format/base/index.h"
 
 namespace weir::test {
 

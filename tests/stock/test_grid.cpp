@@ -10,7 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "format/text.h"
+#include "format/base/text.h"
 #include "tests/stock/coord.h"
 
 namespace weir::test {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "format/index.h"
-#include "format/nvdb_grid.h"
+#include "format/base/index.h"
+#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir::test {
 

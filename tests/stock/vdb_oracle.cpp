@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "format/text.h"
+#include "format/base/text.h"
 
 namespace weir::test {
 namespace {

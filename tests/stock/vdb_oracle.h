@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "format/nvdb_grid.h"
+#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir::test {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir {
 namespace {

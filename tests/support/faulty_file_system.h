@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "format/file_system.h"
+#include "format/io/file_system.h"
 
 namespace weir {
 

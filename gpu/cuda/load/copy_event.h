@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "gpu/cuda/check.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <string>
 
-#include "format/error.h"
-#include "format/file_mapping.h"
+#include "format/base/error.h"
+#include "format/io/file_mapping.h"
 #include "gpu/cuda/load/load_report.h"
 
 namespace weir {

@@ -10,11 +10,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "format/descriptor.h"
-#include "format/text.h"
-#include "gpu/cuda/check.h"
+#include "format/base/text.h"
+#include "format/io/descriptor.h"
 #include "gpu/cuda/load/cufile.h"
 #include "gpu/cuda/load/parallel_read.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 

@@ -1,7 +1,7 @@
 // The stream of one load, behind what another stream has to do.
 #pragma once
 
-#include "gpu/cuda/check.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 

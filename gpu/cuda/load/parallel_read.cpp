@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "gpu/cuda/check.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 namespace {

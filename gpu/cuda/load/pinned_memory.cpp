@@ -1,7 +1,7 @@
 #include "gpu/cuda/load/pinned_memory.h"
 
-#include "format/text.h"
-#include "gpu/cuda/check.h"
+#include "format/base/text.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 

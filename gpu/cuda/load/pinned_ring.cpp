@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "gpu/cuda/check.h"
 #include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/load/parallel_read.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 namespace {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/cuda/check.h"
 #include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/load/load_chunks.h"
 #include "gpu/cuda/load/registered_range.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "format/text.h"
-#include "gpu/cuda/check.h"
+#include "format/base/text.h"
+#include "gpu/cuda/runtime/check.h"
 
 namespace weir {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bindings/c/weir.h"
-#include "format/text.h"
+#include "format/base/text.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 

@@ -1,5 +1,5 @@
 """page_test.py URL CASE [DIRECTORY]: one test of the page at URL in headless Chromium, against the service of
-tests/daemon/page_test.cpp. Screenshots go into DIRECTORY, where one is given. Exits with 0 where all holds."""
+tests/daemon/http/page_test.cpp. Screenshots go into DIRECTORY, where one is given. Exits with 0 where all holds."""
 
 import json
 import os

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "ingest/hdf5/hdf5_source.h"
-#include "tests/ingest/hdf5/h5py_file.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
 
 namespace weir::hdf5_listing_test {
 namespace {

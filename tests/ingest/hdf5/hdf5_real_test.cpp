@@ -2,8 +2,8 @@
 // Skipped where the data is not there.
 #include <algorithm>
 
-#include "format/text.h"
-#include "tests/ingest/hdf5/h5py_file.h"
+#include "format/base/text.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
 
 namespace weir::hdf5_real_test {
 namespace {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "ingest/hdf5/hdf5_lock.h"
-#include "tests/ingest/hdf5/h5py_file.h"
+#include "ingest/hdf5/file/hdf5_lock.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
 #include "tests/support/sanitized.h"
 
 namespace weir::hdf5_source_test {

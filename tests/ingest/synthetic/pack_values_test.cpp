@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "format/error.h"
+#include "format/base/error.h"
 
 namespace weir::pack_values_test {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "format/error.h"
-#include "format/text.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
 
 namespace weir::synthetic_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "ingest/source_registry.h"
-#include "tests/ingest/header_file.h"
+#include "tests/ingest/support/header_file.h"
 #include "tests/stock/stock_nvdb.h"
 
 namespace weir::nvdb_source_test {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "format/error.h"
+#include "format/base/error.h"
 #include "ingest/source_registry.h"
-#include "tests/ingest/header_file.h"
+#include "tests/ingest/support/header_file.h"
 #include "tests/stock/stock_nvdb.h"
 
 namespace weir::nvdb_tree_test {

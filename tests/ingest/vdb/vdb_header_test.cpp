@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/support/scratch.h"
 #include "tests/stock/openvdb_file.h"
 
 namespace weir::vdb_header_test {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <thread>
 
-#include "format/text.h"
+#include "format/base/text.h"
 #include "ingest/source_registry.h"
-#include "tests/ingest/header_file.h"
+#include "tests/ingest/support/header_file.h"
 #include "tests/stock/openvdb_file.h"
 #include "tests/stock/stock_nvdb.h"
 #include "tests/support/sanitized.h"

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "ingest/vdb/vdb_tree.h"
-#include "tests/ingest/header_file.h"
+#include "tests/ingest/support/header_file.h"
 #include "tests/stock/openvdb_file.h"
 
 namespace weir::vdb_topology_test {

@@ -1,6 +1,6 @@
 #include "ingest/vtk/encoded_bytes.h"
 
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/support/scratch.h"
 
 namespace weir::encoded_bytes_test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "tests/ingest/scratch.h"
+#include "tests/ingest/support/scratch.h"
 
 namespace weir::vtk_legacy_header_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "ingest/source_registry.h"
-#include "tests/ingest/header_file.h"
+#include "tests/ingest/support/header_file.h"
 
 namespace weir::vtk_legacy_source_test {
 namespace {

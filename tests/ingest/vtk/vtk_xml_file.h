@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/ingest/header_file.h"
-#include "tests/ingest/packed.h"
+#include "tests/ingest/support/header_file.h"
+#include "tests/ingest/support/packed.h"
 
 namespace weir {
 

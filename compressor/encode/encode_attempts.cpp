@@ -1,0 +1,195 @@
+#include "compressor/encode/encode_attempts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "compressor/encode/encode.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/digest.h"
+
+namespace weir {
+namespace {
+
+// Of all that decides where which leaf lies and what it holds, once the survey and the options are given.
+Digest plan_digest(const FilePlan& file) {
+  DigestStream digest;
+  const auto regions = static_cast<std::int64_t>(file.tree->regions.size());
+  for (std::int64_t region = 0; region < regions; ++region) {
+    const LeafChoices choices = file.choices->read(region);
+    digest.update(piece_digest(std::as_bytes(std::span(&choices, 1))));
+  }
+  const TreeLayout& layout = file.plan.layout;
+  const std::array<std::uint64_t, 5> places{layout.leaves, layout.counts.leaves, layout.file_bytes,
+                                            std::bit_cast<std::uint32_t>(file.fill.background),
+                                            static_cast<std::uint64_t>(file.encoding)};
+  digest.update(piece_digest(std::as_bytes(std::span(places))));
+  return digest.digest();
+}
+
+// What an earlier process wrote counts if it was of this very plan. If not, that is saved before the first of its bytes
+// is overwritten.
+void adopt_plan(Journal& journal, const Digest& plan) {
+  Checkpoint& state = journal.state;
+  if (state.plan == plan) return;
+  state.plan = plan;
+  if (state.encoded.empty()) return;
+  state.encoded = {};
+  journal.save_now();
+}
+
+// The files that the leaves and their records go to, empty but for what counts.
+std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
+  if (job.journal == nullptr) {
+    job.rows.team().publish(job.output.volume());  // nothing of an earlier attempt comes after this one's
+    job.output.volume().clear();
+    return job.work.spill();
+  }
+  adopt_plan(*job.journal, plan_digest(file));
+  job.output.write_to(job.journal->open("volume"));
+  std::shared_ptr<File> records = job.journal->open("records");
+  if (job.journal->state.encoded.empty()) {
+    job.output.volume().clear();
+    records->clear();
+  }
+  return records;
+}
+
+EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
+  EncodedFile encoded;
+  {
+    const TraceSpan span(job.stream.trace, "select");
+    encoded.file = plan_file(request, job.rows, job.work);
+  }
+  const FilePlan& file = encoded.file;
+  std::shared_ptr<File> records = open_targets(job, file);
+  if (job.planned) job.planned(file.size.bytes);
+  if (!job.output.reserve(file.size.bytes) && job.notice) {
+    job.notice(
+        cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+  }
+  encoded.records = std::make_unique<RecordStore>(std::move(records), file.plan.layout.counts.leaves);
+  job.pass_started();
+  const TraceSpan span(job.stream.trace, "encode pass");
+  const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
+  Pauses pauses;
+  if (job.journal != nullptr) pauses = {[&] { return job.journal->due(); }, [&] { job.journal->save(); }};
+  Team& team = job.rows.team();
+  team.run([&] {
+    encode_leaves(job.source, job.plan,
+                  {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
+                   job.output.volume(), *encoded.records, job.rows, job.stream.trace},
+                  job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
+  });
+  encoded.records->publish(team);
+  encoded.errors = sum_leaf_errors(*file.tree, *encoded.records, nullptr, team);
+  encoded.seen_errors = request.rule.visibility == nullptr
+                            ? encoded.errors
+                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get(), team);
+  return encoded;
+}
+
+// Squared error over the finite voxels that can be seen, of what the file decodes to.
+double seen_error(const EncodedFile& encoded) {
+  return encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
+}
+
+// Whether the file keeps what the budget promises of its values.
+bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
+  const TileErrors& tiles = encoded.file.plan.seen_tiles;
+  const LeafErrors& leaves = encoded.seen_errors;
+  switch (request.budget.kind) {
+    case Budget::Kind::psnr:
+      return seen_error(encoded) <= request.squared_error;
+    case Budget::Kind::max_error:
+      return std::max(tiles.max_abs, leaves.max_abs) <= request.budget.target;
+    case Budget::Kind::lossless:
+      return tiles.exact && leaves.exact;
+    case Budget::Kind::automatic:
+    case Budget::Kind::size:
+    case Budget::Kind::rate:
+      break;
+  }
+  return true;
+}
+
+// The attempts at one file: what the last one was asked for decides the next.
+struct Attempts {
+  static constexpr int kMostEstimated = 6;  // then comes one that is sure
+
+  FileRequest request;
+  int number = 0;
+  std::optional<double> met = {};  // the planned error of an earlier file that met the target
+
+  // Whether there has to be another one after `encoded`, which then is set up. Expectations come from the survey's
+  // estimates; decoded values decide. Throws Error(budget) where the encoding asked for has nothing better left.
+  bool adjust(const EncodedFile& encoded) {
+    const bool kept = keeps_promise(encoded, request);
+    if (encoded.file.encoding == Encoding::float32) {
+      if (kept) return false;
+      throw Error(ErrorKind::internal, cat(request.path, ": float leaves miss what was asked; report this"));
+    }
+    if (request.budget.kind != Budget::Kind::psnr) {
+      if (kept && seen_error(encoded) <= encoded.file.float_error) return false;
+      take_float(encoded);
+      return true;
+    }
+    // Within 2 % of the error asked is small enough.
+    const double error = seen_error(encoded);
+    if (kept && (number >= 2 || error >= 0.98 * request.squared_error || !(error > 0))) return false;
+    const bool exhausted = !kept && keeps_everything(encoded);
+    if (kept) met = request.planned_error;
+    if (number + 1 < kMostEstimated && !exhausted) {
+      // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
+      request.planned_error *= request.squared_error / error * (kept ? 0.995 : 1 - std::ldexp(0.002, 2 * number));
+    } else if (met) {
+      request.planned_error = *met;
+      met.reset();
+    } else if (request.encoding != Encoding::automatic && !exhausted) {
+      request.planned_error = 0;
+    } else {
+      take_float(encoded);
+    }
+    return true;
+  }
+
+ private:
+  // Every leaf is kept as well as this encoding can.
+  bool keeps_everything(const EncodedFile& encoded) const {
+    return encoded.file.plan.expected_error > request.planned_error || request.planned_error == 0;
+  }
+
+  void take_float(const EncodedFile& encoded) {
+    if (request.encoding != Encoding::automatic) {
+      throw unmet_target(request, encoded.file.encoding, seen_error(encoded));
+    }
+    request.encoding = Encoding::float32;
+  }
+};
+
+}  // namespace
+
+EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
+  request.planned_error = request.squared_error;
+  Attempts attempts{std::move(request), 0, {}};
+  if (job.journal != nullptr && job.journal->state.attempt && job.journal->state.attempt->seen == job.seen) {
+    const Checkpoint::Attempt& interrupted = *job.journal->state.attempt;
+    attempts.number = interrupted.number;
+    attempts.request.planned_error = interrupted.planned_error;
+    attempts.request.encoding = interrupted.encoding;
+    attempts.met = interrupted.met;
+  }
+  for (;; ++attempts.number) {
+    if (job.journal != nullptr) {
+      job.journal->state.attempt = {attempts.number, attempts.request.planned_error, attempts.request.encoding,
+                                    job.seen, attempts.met};
+    }
+    EncodedFile encoded = encode_once(job, attempts.request);
+    if (!attempts.adjust(encoded)) return encoded;
+  }
+}
+
+}  // namespace weir

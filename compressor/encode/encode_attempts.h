@@ -1,0 +1,48 @@
+// From a surveyed volume to a file whose leaves are written: once for a size, as
+// often as an error target takes.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "compressor/encode/leaf_errors.h"
+#include "compressor/encode/leaf_record.h"
+#include "compressor/resume/journal.h"
+#include "compressor/resume/work_directory.h"
+#include "compressor/select/encoding_choice.h"
+#include "compressor/survey/row_store.h"
+#include "format/output/output_files.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// A file whose leaves are written, and what they lose.
+struct EncodedFile {
+  FilePlan file;
+  std::unique_ptr<RecordStore> records;
+  LeafErrors errors;
+  LeafErrors seen_errors;  ///< of those that can be seen
+};
+
+/// What the attempts work with; all of it outlives them.
+struct EncodeJob {
+  VolumeSource& source;
+  const BlockPlan& plan;
+  Reading reading;
+  const RowStore& rows;
+  WorkDirectory& work;
+  OutputFiles& output;
+  Journal* journal;  ///< null: what is interrupted is lost
+  std::string seen;  ///< visible_values of the scene; empty without one
+  const StreamOptions& stream;
+  std::function<void()> pass_started;                   ///< may throw Error(interrupted)
+  std::function<void(const std::string& line)> notice;  ///< may be empty
+  std::function<void(std::uint64_t bytes)> planned;     ///< may be empty
+};
+
+/// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.
+EncodedFile encode_file(const EncodeJob& job, FileRequest request);
+
+}  // namespace weir

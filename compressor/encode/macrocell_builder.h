@@ -1,0 +1,60 @@
+// Builds the macrocells of a file layer by layer of 128^3 regions: a window of
+// ten cell layers is held, however deep the volume.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "compressor/encode/leaf_record.h"
+#include "format/base/index.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+/// Bounds of the cells that one region can touch: its own 8^3 and one more on every side.
+class RegionCells {
+ public:
+  explicit RegionCells(const Index3& region_node);
+
+  /// A tile: all of `voxels`, which lie in the region and in the domain, read `value`.
+  void add_tile(const Box& voxels, float value);
+  /// A kept leaf whose box is `node`.
+  void add_leaf(const Box& node, const LeafRecord& record);
+
+ private:
+  friend class MacrocellBuilder;
+  static constexpr std::int64_t kSide = 10;
+
+  MinMax& at(const Index3& cell);
+
+  Index3 first_;  // cell coordinates of the lowest one
+  std::vector<MinMax> cells_;
+};
+
+class MacrocellBuilder {
+ public:
+  /// Cells over `domain`; voxels outside it read `background`.
+  MacrocellBuilder(const Box& domain, float background);
+
+  const NodeLattice& lattice() const { return lattice_; }
+
+  /// Moves the window to region layer `region_z` (node coordinate); layers must come in order.
+  void begin_layer(std::int64_t region_z);
+  /// Merges one region of the current layer. Thread-safe.
+  void merge(const RegionCells& cells);
+  /// Cell layers that no later region can touch, finished: consecutive layers of the lattice from
+  /// `first_layer` on. Call after all regions of a layer; `last` also finishes what is left.
+  std::vector<MinMax> take_finished(bool last, std::int64_t& first_layer);
+
+ private:
+  void finish(std::int64_t layer, std::vector<MinMax>& cells) const;
+
+  NodeLattice lattice_;
+  float background_;
+  std::mutex mutex_;
+  std::int64_t window_first_ = 0;  // lattice z of the window's lowest layer
+  std::vector<MinMax> window_;
+};
+
+}  // namespace weir

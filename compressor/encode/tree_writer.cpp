@@ -1,0 +1,213 @@
+#include "compressor/encode/tree_writer.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <atomic>
+#include <span>
+#include <vector>
+
+#include "compressor/encode/macrocell_builder.h"
+#include "compressor/select/region_rows.h"
+#include "format/base/little_endian.h"
+#include "format/nanovdb/node_image.h"
+
+namespace weir {
+namespace {
+
+// Statistics of what stands in a table: active tiles first, then children, both in table order.
+class TableStatistics {
+ public:
+  void add_tile(float value, std::int64_t dim, const Index3& origin) {
+    tiles_.add_tile(value, static_cast<std::uint64_t>(dim * dim * dim), {origin, origin + Index3{dim, dim, dim}});
+    ++active_tiles_;
+  }
+  void add_child(const NodeStatistics& child) { children_.push_back(child); }
+  NodeStatistics total() const {
+    NodeStatistics all = tiles_;
+    for (const NodeStatistics& child : children_) all.add(child);
+    return all;
+  }
+  std::uint64_t active_tiles() const { return active_tiles_; }
+
+ private:
+  NodeStatistics tiles_;
+  std::vector<NodeStatistics> children_;
+  std::uint64_t active_tiles_ = 0;
+};
+
+// Writes lower nodes and gathers macrocells, one layer of regions at a time.
+class LowerWriter {
+ public:
+  LowerWriter(const TreeParts& parts, File& out)
+      : parts_(parts),
+        out_(out),
+        statistics(parts.tree.regions.size()),
+        macrocells_(parts.tree.leaves.domain, parts.fill.background),
+        images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {}
+
+  void run() {
+    const NodeLattice& lattice = parts_.tree.region_lattice;
+    for (std::int64_t z = 0; z < lattice.count.z; ++z) {
+      macrocells_.begin_layer(lattice.first.z + z);
+      const Box layer{{0, 0, z}, {lattice.count.x, lattice.count.y, z + 1}};
+      for_each_region(parts_.tree, parts_.rows, layer,
+                      [&](std::int64_t region, const RegionRows& rows) { write_region(region, rows); });
+      std::int64_t first = 0;
+      const std::vector<MinMax> cells = macrocells_.take_finished(z + 1 == lattice.count.z, first);
+      const Index3 count = macrocells_.lattice().count;
+      out_.write_at(parts_.layout.blind_data + static_cast<std::uint64_t>(first * count.x * count.y) * sizeof(MinMax),
+                    std::as_bytes(std::span(cells)));
+    }
+  }
+
+  std::uint64_t active_tiles() const { return active_tiles_; }
+
+ private:
+  void write_region(std::int64_t index, const RegionRows& rows) {
+    const TreeRegions& tree = parts_.tree;
+    const Region& region = tree.regions[static_cast<std::size_t>(index)];
+    const Index3 at = tree.region_lattice.position(index);
+    RegionCells cells(tree.region_lattice.first + at);
+    if (region.open) {
+      write_lower(index, region, rows, cells);
+    } else {
+      const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
+      cells.add_tile(tree.region_lattice.voxels(at), tile_value(parts_.fill, upper.open ? region.sums : upper.sums));
+    }
+    macrocells_.merge(cells);
+  }
+
+  void write_lower(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
+    const TreeRegions& tree = parts_.tree;
+    const LeafChoices choices = parts_.choices.read(index);
+    const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
+    const std::uint64_t node = parts_.layout.lower_offset(region.node);
+    const Box box = rows.leaf_box();
+    NodeImage& image = images_.local();
+    image.reset();
+    TableStatistics table;
+    std::size_t next = 0;
+    std::uint64_t offset = parts_.layout.leaves + region.first_byte;
+    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+          const Index3 leaf{x, y, z};
+          const std::size_t position = tree.mask_position(leaf);
+          const auto bits = static_cast<std::int64_t>(position);
+          const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
+          const Box voxels = tree.leaves.voxels(leaf);
+          const Box leaf_node = tree.leaves.node_box(leaf);
+          const LeafWidth width = choices.width(position);
+          if (width == LeafWidth::tile) {
+            const float value = parts_.fill.leaf_value(rows.at(leaf));
+            const bool active = parts_.fill.active() && voxels == leaf_node;
+            image.set_tile(entry, value, active);
+            if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
+            cells.add_tile(voxels, value);
+            continue;
+          }
+          const LeafRecord& record = records[next++];
+          image.set_child(entry, offset - node);
+          offset += leaf_bytes(width);
+          table.add_child(record_statistics(record, voxels));
+          cells.add_leaf(leaf_node, record);
+        }
+      }
+    }
+    const NodeStatistics total = table.total();
+    image.set_statistics(total);
+    out_.write_at(node, image.bytes());
+    statistics[static_cast<std::size_t>(index)] = total;
+    active_tiles_ += table.active_tiles();
+  }
+
+  static NodeStatistics record_statistics(const LeafRecord& record, const Box& voxels) {
+    NodeStatistics statistics;
+    statistics.min = std::min(statistics.min, record.bounds.min);
+    statistics.max = std::max(statistics.max, record.bounds.max);
+    statistics.mean = record.mean;
+    statistics.m2 = record.m2;
+    statistics.count = static_cast<std::uint64_t>(voxels.voxels());
+    statistics.bbox = voxels;
+    return statistics;
+  }
+
+  const TreeParts& parts_;
+  File& out_;
+
+ public:
+  std::vector<NodeStatistics> statistics;  // of the lower nodes, by region
+
+ private:
+  MacrocellBuilder macrocells_;
+  tbb::enumerable_thread_specific<NodeImage> images_;
+  std::atomic<std::uint64_t> active_tiles_{0};
+};
+
+// One upper node; returns its statistics and adds its active tiles to `active_tiles`.
+NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std::vector<NodeStatistics>& lowers,
+                           NodeImage& image, File& out, std::uint64_t& active_tiles) {
+  const TreeRegions& tree = parts.tree;
+  const std::uint64_t node = parts.layout.upper_offset(tree.uppers[static_cast<std::size_t>(index)].node);
+  image.reset();
+  TableStatistics table;
+  tree.for_each_region_of(index, [&](std::int64_t r) {
+    const Region& region = tree.regions[static_cast<std::size_t>(r)];
+    const Index3 entry = tree.entry_of(r);
+    if (region.open) {
+      image.set_child(entry, parts.layout.lower_offset(region.node) - node);
+      table.add_child(lowers[static_cast<std::size_t>(r)]);
+      return;
+    }
+    const Index3 at = tree.region_lattice.position(r);
+    const float value = tile_value(parts.fill, region.sums);
+    const bool active = parts.fill.active() && !tree.region_lattice.overhangs(at);
+    image.set_tile(entry, value, active);
+    if (active) table.add_tile(value, kLowerDim, tree.region_lattice.node_box(at).lo);
+  });
+  const NodeStatistics total = table.total();
+  image.set_statistics(total);
+  out.write_at(node, image.bytes());
+  active_tiles += table.active_tiles();
+  return total;
+}
+
+}  // namespace
+
+std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
+  LowerWriter lowers(parts, out);
+  lowers.run();
+  head.active_tiles = {lowers.active_tiles(), 0, 0};
+
+  const TreeRegions& tree = parts.tree;
+  NodeImage image(NodeImage::Level::upper, parts.fill.background);
+  NodeStatistics total;
+  tree.for_each_upper([&](std::int64_t u) {
+    const Upper& upper = tree.uppers[static_cast<std::size_t>(u)];
+    const Index3 at = tree.upper_lattice.position(u);
+    RootTile tile;
+    tile.origin = tree.upper_lattice.node_box(at).lo;
+    if (upper.open) {
+      tile.child = parts.layout.upper_offset(upper.node);
+      total.add(write_upper(parts, u, lowers.statistics, image, out, head.active_tiles[1]));
+    } else {
+      tile.value = tile_value(parts.fill, upper.sums);
+      tile.active = parts.fill.active() && !tree.upper_lattice.overhangs(at);
+      if (tile.active) {
+        total.add_tile(tile.value, static_cast<std::uint64_t>(kUpperDim * kUpperDim * kUpperDim),
+                       tree.upper_lattice.node_box(at));
+        ++head.active_tiles[2];
+      }
+    }
+    head.tiles.push_back(tile);
+  });
+  head.background = parts.fill.background;
+  head.statistics = total;
+  out.write_at(parts.layout.blind_meta, encode_macrocell_record(parts.layout));
+  const std::vector<std::byte> bytes = encode_head(head, parts.layout);
+  out.write_at(0, bytes);
+  return load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
+}
+
+}  // namespace weir

@@ -1,0 +1,18 @@
+// Bounds of values that grow as values are met.
+#pragma once
+
+#include <limits>
+
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+/// Bounds of nothing: any value widens them.
+inline constexpr MinMax kNoBounds{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+
+inline void widen(MinMax& bounds, const MinMax& by) {
+  if (by.min < bounds.min) bounds.min = by.min;
+  if (by.max > bounds.max) bounds.max = by.max;
+}
+
+}  // namespace weir

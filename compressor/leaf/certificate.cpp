@@ -1,0 +1,31 @@
+#include "compressor/leaf/certificate.h"
+
+#include <cmath>
+#include <limits>
+
+namespace weir {
+
+Certificate make_certificate(double squared_error, double max_abs, bool lossless, std::uint64_t finite, float min,
+                             float max) {
+  Certificate c;
+  c.lossless = lossless;
+  c.max_abs = max_abs;
+  c.mse = finite == 0 ? 0 : squared_error / static_cast<double>(finite);
+  c.rmse = std::sqrt(c.mse);
+  const double range = static_cast<double>(max) - static_cast<double>(min);
+  if (range == 0 && c.mse > 0) c.nmse = std::numeric_limits<double>::infinity();
+  if (range > 0) {
+    // Divide before squaring: range^2 of 1e-40 fields would underflow.
+    c.nmse = c.rmse / range * (c.rmse / range);
+    if (c.mse > 0) c.psnr_db = 20.0 * std::log10(range / c.rmse);
+  }
+  return c;
+}
+
+void CompensatedSum::add(double term) {
+  const double next = sum_ + term;
+  compensation_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+  sum_ = next;
+}
+
+}  // namespace weir

@@ -1,0 +1,39 @@
+// What a dropped block reads as.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "compressor/leaf/leaf_row.h"
+
+namespace weir {
+
+enum class FillMode { mean, background };
+
+/// What becomes of NaN and infinite voxels: an error before anything is written, the background, or
+/// kept as they are (their leaves are then always kept). Missing voxels are NaN where those are kept,
+/// and the background otherwise.
+enum class NonFinitePolicy { error, background, keep };
+
+struct Fill {
+  FillMode mode = FillMode::mean;
+  float background = 0;
+  NonFinitePolicy non_finite = NonFinitePolicy::error;
+
+  /// Value of the tile that replaces a leaf.
+  float leaf_value(const LeafRow& row) const {
+    return mode == FillMode::background || row.finite == 0 ? background : row.mean;
+  }
+  /// True where a tile of `value` reads bit for bit what a kept leaf of `voxels` in-domain voxels would.
+  bool exact(const LeafRow& row, std::int64_t voxels, float value) const {
+    const auto same = [](float a, float b) {
+      return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+    };
+    if (row.finite > 0 && !(row.uniform() && same(row.mean, value))) return false;
+    return row.finite == voxels || (non_finite != NonFinitePolicy::keep && same(background, value));
+  }
+  /// Dropped blocks inside the domain are active tiles where they carry a mean; background is inactive.
+  bool active() const { return mode == FillMode::mean; }
+};
+
+}  // namespace weir

@@ -1,0 +1,71 @@
+#include "compressor/leaf/leaf_lattice.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "format/base/simd.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint32_t kLargestCode = 65535;
+/// Below this the unit of a value's last bit has no reciprocal in float.
+constexpr float kSmallest = 0x1p-100F;
+
+// Values in units of `1 / scale`, where all of them are whole numbers; false where one is not, is -0.0, or is so
+// small beside the unit that scaling makes it 0. The scaled values are below 2^24 in magnitude.
+WEIR_SIMD bool to_integers(const float* values, std::size_t count, float scale, std::int32_t* integers) {
+  bool whole = true;
+  for (std::size_t i = 0; i < count && whole; i += 16) {
+    const std::size_t end = i + 16 < count ? i + 16 : count;
+    std::uint32_t bad = 0;
+    for (std::size_t k = i; k < end; ++k) {
+      std::uint32_t bits;
+      std::memcpy(&bits, values + k, sizeof bits);
+      const float scaled = values[k] * scale;
+      const auto integer = static_cast<std::int32_t>(scaled);
+      integers[k] = integer;
+      bad |= static_cast<float>(integer) != scaled ? 1U : 0U;
+      bad |= integer == 0 && bits != 0 ? 1U : 0U;
+    }
+    whole = bad == 0;
+  }
+  return whole;
+}
+
+}  // namespace
+
+std::optional<LeafLattice> find_lattice(std::span<const float> values, float min, float max) {
+  const float magnitude = std::max(std::fabs(min), std::fabs(max));
+  if (!(magnitude >= kSmallest && magnitude <= 0x1p100F)) return std::nullopt;
+  // The unit of the largest magnitude's last bit: the largest value is below 2^24 of them.
+  const int exponent = std::ilogb(magnitude) - 23;
+  std::array<std::int32_t, 512> integers;
+  if (!to_integers(values.data(), values.size(), std::ldexp(1.0F, -exponent), integers.data())) return std::nullopt;
+
+  const auto used = std::span(integers).first(values.size());
+  const auto lowest = static_cast<std::int32_t>(std::ldexp(min, -exponent));
+  const auto highest = static_cast<std::int32_t>(std::ldexp(max, -exponent));
+  const std::int32_t range = highest - lowest;
+  std::int32_t step = range;
+  for (const std::int32_t value : used) {
+    const std::int32_t above = value - lowest;
+    if (above % step == 0) continue;
+    step = std::gcd(step, above);
+    if (step == 1) break;
+  }
+  if (range / step > static_cast<std::int32_t>(kLargestCode)) return std::nullopt;
+  // code * step is a multiple of the power of two in step: beyond 2^24 of those it would round.
+  if (range / (step & -step) >= 1 << 24) return std::nullopt;
+  return LeafLattice{std::ldexp(static_cast<float>(step), exponent), static_cast<std::uint32_t>(range / step)};
+}
+
+unsigned bits_for(std::uint32_t largest) {
+  return std::bit_ceil(static_cast<unsigned>(std::bit_width(std::max(largest, 1U))));
+}
+
+}  // namespace weir

@@ -1,0 +1,50 @@
+// What the survey pass keeps of each 8^3 leaf: one fixed-size row, spilled to
+// disk, from which everything up to the encode pass is decided.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "format/io/digest.h"
+
+namespace weir {
+
+struct LeafRow {
+  static constexpr std::uint16_t kUniform = 1;  ///< the finite values, one at least, all have the same bits
+
+  float min = 0;  ///< of the finite in-domain values; 0 where there is none
+  float max = 0;
+  float mean = 0;            ///< of the finite values, rounded to float; their value where uniform
+  float sample = 0;          ///< one in-domain value, chosen by a hash of the leaf index; NaN if that one is not finite
+  float residual = 0;        ///< sum of (value - mean) over the finite values
+  std::uint16_t finite = 0;  ///< finite in-domain values, 0..512
+  std::uint16_t flags = 0;
+  double sse = 0;  ///< sum of (value - mean)^2 over the finite values
+  Digest digest;   ///< of the in-domain float32 values, x fastest
+  /// Squared error at 1, 2 and 4 bits a voxel, estimated, in parts of `sse`; 1 where it was not looked at.
+  std::array<float, 3> quantised{1, 1, 1};
+  /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the values without loss; 0: more, or not looked at.
+  std::uint16_t exact_bits = 0;
+  /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at.
+  std::uint16_t at_ends = 0;
+
+  /// The finite values, one at least, all have the same bits: those of `mean`.
+  bool uniform() const { return (flags & kUniform) != 0; }
+  /// Sum over the finite values of (value - fill)^2; exact up to double rounding.
+  double sse_about(float fill) const {
+    const double shift = static_cast<double>(mean) - static_cast<double>(fill);
+    const double about =
+        sse + 2.0 * shift * static_cast<double>(residual) + static_cast<double>(finite) * shift * shift;
+    return about > 0 ? about : 0;
+  }
+  /// Largest |value - fill| over the finite values.
+  double max_abs_about(float fill) const {
+    if (finite == 0) return 0;
+    const double below = static_cast<double>(fill) - static_cast<double>(min);
+    const double above = static_cast<double>(max) - static_cast<double>(fill);
+    return below > above ? below : above;
+  }
+};
+static_assert(sizeof(LeafRow) == 64, "rows are spilled as they are");
+
+}  // namespace weir

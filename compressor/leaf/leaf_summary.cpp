@@ -1,0 +1,218 @@
+#include "compressor/leaf/leaf_summary.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "compressor/leaf/leaf_lattice.h"
+#include "compressor/leaf/leaf_quantiser.h"
+#include "format/base/simd.h"
+
+namespace weir {
+namespace {
+
+// Sums run in 16 lanes, two vectors of eight, whatever the machine: lane l takes values l, l + 16, ...
+constexpr std::size_t kSummaryLanes = 16;
+
+struct SummaryLanes {
+  Doubles8 low{};
+  Doubles8 high{};
+};
+
+using LaneArray = std::array<double, kSummaryLanes>;
+
+LaneArray to_array(const SummaryLanes& lanes) {
+  LaneArray all;
+  std::memcpy(all.data(), &lanes, sizeof lanes);
+  return all;
+}
+
+// Pairwise, so that the result does not depend on how the lanes were computed.
+double sum(LaneArray lanes) {
+  for (std::size_t width = kSummaryLanes / 2; width > 0; width /= 2) {
+    for (std::size_t i = 0; i < width; ++i) lanes[i] += lanes[i + width];
+  }
+  return lanes[0];
+}
+
+struct Scan {
+  std::uint32_t differ;      // bits in which any value differs from the first
+  std::uint32_t non_finite;  // of all values
+};
+
+WEIR_SIMD Scan scan_bits(const float* values, std::size_t count) {
+  std::uint32_t first;
+  std::memcpy(&first, values, sizeof first);
+  std::uint32_t differ = 0;
+  std::uint32_t non_finite = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, values + i, sizeof bits);
+    differ |= bits ^ first;
+    non_finite += (bits & 0x7F800000U) == 0x7F800000U ? 1U : 0U;
+  }
+  return {differ, non_finite};
+}
+
+struct Moments {
+  float min;
+  float max;
+  double sum;
+};
+
+WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
+  Floats8 low = values[0] - Floats8{};
+  Floats8 high = low;
+  SummaryLanes total;
+  const std::size_t whole = count / kSummaryLanes * kSummaryLanes;
+  for (std::size_t i = 0; i < whole; i += kSummaryLanes) {
+    Floats8 a;
+    Floats8 b;
+    std::memcpy(&a, values + i, sizeof a);
+    std::memcpy(&b, values + i + kSummaryLanes / 2, sizeof b);
+    low = a < low ? a : low;
+    low = b < low ? b : low;
+    high = a > high ? a : high;
+    high = b > high ? b : high;
+    total.low += __builtin_convertvector(a, Doubles8);
+    total.high += __builtin_convertvector(b, Doubles8);
+  }
+  float min = low[0];
+  float max = high[0];
+  for (int l = 1; l < 8; ++l) {
+    min = low[l] < min ? low[l] : min;
+    max = high[l] > max ? high[l] : max;
+  }
+  LaneArray lanes = to_array(total);
+  for (std::size_t i = whole; i < count; ++i) {
+    min = values[i] < min ? values[i] : min;
+    max = values[i] > max ? values[i] : max;
+    lanes[i - whole] += static_cast<double>(values[i]);
+  }
+  return {min, max, sum(lanes)};
+}
+
+struct Deviation {
+  double sum;
+  double squares;
+};
+
+WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mean) {
+  const auto centre = static_cast<double>(mean);
+  SummaryLanes total;
+  SummaryLanes squares;
+  const std::size_t whole = count / kSummaryLanes * kSummaryLanes;
+  for (std::size_t i = 0; i < whole; i += kSummaryLanes) {
+    Floats8 a;
+    Floats8 b;
+    std::memcpy(&a, values + i, sizeof a);
+    std::memcpy(&b, values + i + kSummaryLanes / 2, sizeof b);
+    const Doubles8 da = __builtin_convertvector(a, Doubles8) - centre;
+    const Doubles8 db = __builtin_convertvector(b, Doubles8) - centre;
+    total.low += da;
+    total.high += db;
+    squares.low += da * da;
+    squares.high += db * db;
+  }
+  LaneArray total_lanes = to_array(total);
+  LaneArray square_lanes = to_array(squares);
+  for (std::size_t i = whole; i < count; ++i) {
+    const double d = static_cast<double>(values[i]) - centre;
+    total_lanes[i - whole] += d;
+    square_lanes[i - whole] += d * d;
+  }
+  return {sum(total_lanes), sum(square_lanes)};
+}
+
+// Values that equal `min` or `max`.
+WEIR_SIMD std::uint32_t count_at_ends(const float* values, std::size_t count, float min, float max) {
+  std::uint32_t at_ends = 0;
+  for (std::size_t i = 0; i < count; ++i) at_ends += (values[i] == min ? 1U : 0U) | (values[i] == max ? 1U : 0U);
+  return at_ends;
+}
+
+Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
+  const auto bits = std::bit_cast<std::uint32_t>(values.front());
+  if (last.bits != bits || last.count != values.size()) last = {bits, values.size(), leaf_digest(values)};
+  return last.digest;
+}
+
+// Statistics of `count` >= 1 finite values that differ in the bits of `differ`.
+void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, LeafRow& row) {
+  if (differ == 0) {
+    row.min = row.max = row.mean = values[0];
+    row.flags = LeafRow::kUniform;
+    return;
+  }
+  const Moments moments = first_moments(values, count);
+  row.min = moments.min;
+  row.max = moments.max;
+  row.mean = static_cast<float>(moments.sum / static_cast<double>(count));
+  const Deviation deviation = deviations(values, count, row.mean);
+  row.residual = static_cast<float>(deviation.sum);
+  row.sse = deviation.squares;
+}
+
+}  // namespace
+
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, UniformDigest& last) {
+  const float* data = values.data();
+  const std::size_t count = values.size();
+  LeafRow row;
+  const Scan scan = scan_bits(data, count);
+  row.digest = scan.differ == 0 ? uniform_digest(values, last) : leaf_digest(values);
+  row.finite = static_cast<std::uint16_t>(count - scan.non_finite);
+  row.sample = std::isfinite(data[sample_at]) ? data[sample_at] : std::numeric_limits<float>::quiet_NaN();
+  if (scan.non_finite == 0) {
+    summarize_finite(data, count, scan.differ, row);
+  } else if (row.finite > 0) {
+    std::array<float, 512> finite;
+    std::size_t kept = 0;
+    for (const float v : values) {
+      if (std::isfinite(v)) finite[kept++] = v;
+    }
+    summarize_finite(finite.data(), kept, scan_bits(finite.data(), kept).differ, row);
+  }
+  return row;
+}
+
+ValueRange leaf_range(std::span<const float> values) {
+  const Moments moments = first_moments(values.data(), values.size());
+  const auto count = static_cast<double>(values.size());
+  const auto mean = static_cast<float>(moments.sum / count);
+  return {moments.min, moments.max, mean, moments.sum - count * static_cast<double>(mean)};
+}
+
+void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
+  // What takes the place of a value that is not finite need not lie on the others' lattice.
+  if (row.uniform()) row.exact_bits = all ? 1 : 0;
+  if (!(row.min < row.max)) return;
+  if (const auto lattice = all ? find_lattice(values, row.min, row.max) : std::nullopt) {
+    row.exact_bits = static_cast<std::uint16_t>(bits_for(lattice->largest));
+  }
+  if (row.exact_bits == 0 || row.exact_bits > 8) {
+    row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));
+  }
+  const ValueRange range{row.min, row.max, row.mean, static_cast<double>(row.residual)};
+  const unsigned exact_bits = row.exact_bits == 0 ? 32 : row.exact_bits;
+  if (row.sse > 0) {
+    const std::array<double, 3> errors = estimated_errors(values, range, exact_bits, row.sse);
+    for (std::size_t log2 = 0; log2 < errors.size(); ++log2) row.quantised[log2] = static_cast<float>(errors[log2]);
+  }
+  for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
+    if (1U << log2 >= exact_bits) row.quantised[log2] = 0;
+  }
+}
+
+std::size_t sample_position(std::int64_t index, std::size_t count) {
+  // SplitMix64 (Steele et al. 2014), its high bits scaled to the range.
+  std::uint64_t h = static_cast<std::uint64_t>(index) + 0x9E3779B97F4A7C15ULL;
+  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
+  h ^= h >> 31U;
+  return static_cast<std::size_t>((h >> 32U) * count >> 32U);
+}
+
+}  // namespace weir

@@ -1,0 +1,155 @@
+#include "compressor/leaf/quantised_leaf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "compressor/leaf/leaf_difference.h"
+#include "compressor/leaf/leaf_lattice.h"
+#include "compressor/leaf/leaf_summary.h"
+#include "format/base/simd.h"
+
+namespace weir {
+namespace {
+
+// Calls visit(i) for every in-domain voxel of a leaf, in leaf order.
+template <typename Visit>
+void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 hi = inside.hi - node.lo;
+  for (std::int64_t x = lo.x; x < hi.x; ++x) {
+    for (std::int64_t y = lo.y; y < hi.y; ++y) {
+      for (std::int64_t z = lo.z; z < hi.z; ++z) visit(static_cast<std::size_t>(x << 6 | y << 3 | z));
+    }
+  }
+}
+
+// Gives voxels outside the domain the code of the nearest one inside: every layer of the leaf then stays within the
+// bounds of its part inside, which the macrocells that reach into it know.
+void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t, kLeafVoxels>& codes) {
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 last = inside.hi - node.lo - Index3{1, 1, 1};
+  for_each_inside(node, node, [&](std::size_t i) {
+    const auto at = static_cast<std::int64_t>(i);
+    const Index3 nearest = max(lo, min(last, Index3{at >> 6, at >> 3 & 7, at & 7}));
+    codes[i] = codes[static_cast<std::size_t>(nearest.x << 6 | nearest.y << 3 | nearest.z)];
+  });
+}
+
+Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit) {
+  const ValueRange range = leaf_range(values);
+  // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
+  if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front())};
+  if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
+    return {range.min, lattice->step};
+  }
+  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits);
+}
+
+WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, float* decoded) {
+  const Quantiser q = quantiser;
+  for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+    const float product = static_cast<float>(codes[i]) * q.quantum;  // as dequantize(), which no clone could inline
+    decoded[i] = product + q.minimum;
+  }
+}
+
+// Quantises the in-domain values of a leaf that reaches outside.
+void quantise_part(const LeafValues& values, const Box& node, const Box& inside, Fit fit, QuantisedLeaf& leaf) {
+  LeafValues compact;
+  std::size_t count = 0;
+  for_each_inside(node, inside, [&](std::size_t i) { compact[count++] = values[i]; });
+  const auto seen = std::span<const float>(compact).first(count);
+  const unsigned bits = 1U << leaf.bits_log2;
+  leaf.quantiser = choose_quantiser(seen, bits, fit);
+  std::array<std::uint16_t, kLeafVoxels> codes;
+  quantise(seen, leaf.quantiser, bits, std::span(codes).first(count));
+  count = 0;
+  for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
+  extend_outside(node, inside, leaf.codes);
+}
+
+// `values` inside the domain, and outside it what is decoded there, which is no error.
+LeafValues inside_only(const LeafValues& values, const LeafValues& decoded, const Box& node, const Box& inside) {
+  LeafValues seen = decoded;
+  for_each_inside(node, inside, [&](std::size_t i) { seen[i] = values[i]; });
+  return seen;
+}
+
+// Error and exactness of a leaf of finite values; the squared error is no finite number where one is not. In the
+// lanes of difference_of().
+WEIR_SIMD void measure_lanes(const float* source, const float* decoded, std::array<Doubles8, 2>& squares,
+                             std::array<Doubles8, 2>& largest, std::uint32_t& differ) {
+  std::array<Doubles8, 2> sum{};
+  std::array<Doubles8, 2> most{};
+  Ints8 bits{};
+  for (std::size_t i = 0; i < kLeafVoxels; i += 16) {
+    for (std::size_t half = 0; half < 2; ++half) {
+      Floats8 s;
+      Floats8 d;
+      std::memcpy(&s, source + i + 8 * half, sizeof s);
+      std::memcpy(&d, decoded + i + 8 * half, sizeof d);
+      const Doubles8 error = __builtin_convertvector(s, Doubles8) - __builtin_convertvector(d, Doubles8);
+      const Doubles8 magnitude = error < 0.0 ? -error : error;
+      sum[half] += error * error;
+      most[half] = magnitude > most[half] ? magnitude : most[half];
+      Ints8 s_bits;
+      Ints8 d_bits;
+      std::memcpy(&s_bits, &s, sizeof s);
+      std::memcpy(&d_bits, &d, sizeof d);
+      bits |= s_bits ^ d_bits;
+    }
+  }
+  squares = sum;
+  largest = most;
+  differ = 0;
+  for (int l = 0; l < 8; ++l) differ |= static_cast<std::uint32_t>(bits[l]);
+}
+
+void measure(const LeafValues& source, QuantisedLeaf& leaf) {
+  std::array<Doubles8, 2> squares;
+  std::array<Doubles8, 2> largest;
+  std::uint32_t differ = 0;
+  measure_lanes(source.data(), leaf.decoded.data(), squares, largest, differ);
+  std::array<double, 16> lanes;
+  std::memcpy(lanes.data(), squares.data(), sizeof lanes);
+  for (std::size_t half = 8; half > 0; half /= 2) {
+    for (std::size_t l = 0; l < half; ++l) lanes[l] += lanes[l + half];
+  }
+  leaf.squared_error = lanes[0];
+  std::memcpy(lanes.data(), largest.data(), sizeof lanes);
+  leaf.max_abs = *std::max_element(lanes.begin(), lanes.end());
+  leaf.exact = differ == 0;
+}
+
+}  // namespace
+
+QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
+                            unsigned bits_log2, Fit fit) {
+  QuantisedLeaf leaf;
+  leaf.bits_log2 = bits_log2;
+  const bool whole = inside == node;
+  if (whole) {
+    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit);
+    quantise(values, leaf.quantiser, 1U << bits_log2, leaf.codes);
+  } else {
+    quantise_part(values, node, inside, fit, leaf);
+  }
+  decode(leaf.codes.data(), leaf.quantiser, leaf.decoded.data());
+
+  LeafValues part;
+  if (!whole) part = inside_only(source, leaf.decoded, node, inside);
+  const LeafValues& seen = whole ? source : part;
+  measure(seen, leaf);
+  if (std::isfinite(leaf.squared_error)) return leaf;
+  // Some voxels hold no number: they are in no error, and must read the value that took their place.
+  const LeafDifference lost = difference_of(seen, leaf.decoded);
+  leaf.squared_error = lost.squared_error;
+  leaf.max_abs = lost.max_abs;
+  leaf.exact =
+      difference_of(whole ? values : inside_only(values, leaf.decoded, node, inside), leaf.decoded).different == 0;
+  return leaf;
+}
+
+}  // namespace weir

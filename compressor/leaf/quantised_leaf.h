@@ -1,0 +1,34 @@
+// One leaf, quantised: its codes, what a reader decodes from them, and the error
+// of that.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "compressor/leaf/leaf_quantiser.h"
+#include "format/base/index.h"
+#include "format/leaf/leaf_codec.h"
+
+namespace weir {
+
+struct QuantisedLeaf {
+  Quantiser quantiser;
+  unsigned bits_log2 = 0;
+  std::array<std::uint16_t, kLeafVoxels> codes{};  ///< in leaf order
+  LeafValues decoded{};                            ///< fl(fl(code * quantum) + minimum)
+  double squared_error = 0;                        ///< over the finite in-domain values of the source
+  double max_abs = 0;                              ///< the same
+  bool exact = true;                               ///< every in-domain value decodes to its own bits
+};
+
+/// What a quantiser is to make least: the squared error, or the largest one.
+enum class Fit { squares, largest };
+
+/// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly where they lie on
+/// a lattice that fits, else with least error (leaf_quantiser.h). `values` are finite there; `source` is
+/// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the nearest
+/// one inside, so that they widen no range.
+QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
+                            unsigned bits_log2, Fit fit = Fit::squares);
+
+}  // namespace weir

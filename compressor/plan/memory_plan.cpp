@@ -1,0 +1,83 @@
+#include "compressor/plan/memory_plan.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "compressor/select/region_rows.h"
+#include "compressor/select/tree_regions.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/layout/node_statistics.h"
+#include "format/nanovdb/macrocells.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "ingest/plan/staging.h"
+
+namespace weir {
+namespace {
+
+// Per worker: stack, allocator arena, histogram or value table (512 KiB), radix buckets (512 KiB), a region's steps
+// (1.3 MiB), leaves being encoded (700 KiB).
+constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
+// Code pages touched later, libraries' heaps, the head, one upper node's image.
+constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
+constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
+// A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for
+// both passes' small buffers and the allocator's waste.
+constexpr std::uint64_t kBlockEighths = 3;
+
+// All but the workers.
+std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
+  const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
+  const NodeLattice cells = make_lattice(domain, kMacrocell);
+  // Macrocell layers: the window, its successor while it moves, and those being written.
+  const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
+  // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
+  const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + 28 * cell_layer;
+  return resident + kSlackBytes + kStagingBytes + tree;
+}
+
+}  // namespace
+
+std::size_t processors_or_all(std::size_t given) {
+  return given > 0 ? given : std::max(1U, std::thread::hardware_concurrency());
+}
+
+std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
+                           const Box& domain) {
+  if (asked > 0) return asked;
+  const std::size_t most = std::max<std::size_t>(1, processors);
+  const std::uint64_t others = shared_bytes(resident, domain) + 2 * kLeastBlockBytes;
+  const std::uint64_t each = kWorkerBytes + kRegionRowsBytes;
+  if (others + most * each <= ceiling) return most;
+  const std::uint64_t free = ceiling > others ? ceiling - others : 0;
+  return std::clamp<std::size_t>(free / 4 * 3 / each, 1, most);
+}
+
+std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling) {
+  return cat("--memory ", format_bytes(ceiling), " holds ", threads, " of ", processors,
+             " threads; give more to use them all");
+}
+
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
+  const std::uint64_t fixed = shared_bytes(resident, domain) + threads * kWorkerBytes;
+  const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
+  if (ceiling < least) {
+    throw Error(ErrorKind::usage,
+                cat("--memory ", format_bytes(ceiling), " is too small for this volume with ", threads,
+                    " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
+  }
+  const std::uint64_t free = ceiling - fixed;
+  MemoryPlan plan;
+  plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
+  plan.worker_bytes = 2 * plan.block_bytes / threads;
+  plan.segment_regions =
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
+  return plan;
+}
+
+std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes) {
+  const std::uint64_t more = block_bytes > plan.block_bytes ? block_bytes - plan.block_bytes : 0;
+  return ceiling + (more / kBlockEighths + 1) * 8;
+}
+
+}  // namespace weir

@@ -1,0 +1,38 @@
+// How the process's memory ceiling is divided. Every large buffer of a
+// conversion has its share here; the test of the ceiling is the kernel's figure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "format/base/index.h"
+
+namespace weir {
+
+struct MemoryPlan {
+  std::uint64_t block_bytes = 0;     ///< float32 bytes of one block; two are held at a time
+  std::uint64_t worker_bytes = 0;    ///< of one worker's block where each reads its own
+  std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
+  std::size_t digest_threads = 1;    ///< file pieces hashed at a time
+};
+
+/// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
+/// Throws Error(usage) naming a sufficient --memory where it is too small.
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
+
+/// `given`, or where that is 0 those of the machine; at least 1.
+std::size_t processors_or_all(std::size_t given);
+
+/// Workers of a conversion: `asked`, or where that is 0 one for each of the machine's `processors`, and fewer where
+/// `ceiling` does not hold them: then a quarter of what they share stays for the blocks. At least 1.
+std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
+                           const Box& domain);
+
+/// One line for the user where it chose fewer.
+std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling);
+
+/// The ceiling that leaves `block_bytes` for a block, all else as `plan`, made for `ceiling`, has it.
+std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes);
+
+}  // namespace weir

@@ -1,0 +1,28 @@
+// How the two passes of a conversion read their source: ahead or in place, and
+// in which blocks.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "compressor/plan/memory_plan.h"
+#include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+struct ReadingPlan {
+  Reading reading = Reading::ahead;
+  BlockPlan survey;
+  BlockPlan encode;
+};
+
+ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory);
+
+/// "each is decoded 4 times in a pass": what a ceiling that is too small for whole chunks costs, by the `plan` that was
+/// made for it.
+std::string amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
+                                 const BlockPlan& plan);
+
+}  // namespace weir

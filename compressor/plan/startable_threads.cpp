@@ -1,0 +1,44 @@
+#include "compressor/plan/startable_threads.h"
+
+#include <latch>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+std::size_t startable_threads(std::size_t wanted) {
+  std::latch counted(1);  // before the threads, which are joined first
+  std::vector<std::jthread> started;
+  started.reserve(wanted);
+  try {
+    while (started.size() < wanted) started.emplace_back([&counted] { counted.wait(); });
+  } catch (const std::system_error&) {
+    // as many as there are
+  } catch (...) {
+    counted.count_down();
+    throw;
+  }
+  const std::size_t count = started.size();
+  counted.count_down();
+  return count;
+}
+
+std::size_t startable_workers(std::size_t threads, const std::function<void(const std::string&)>& notice) {
+  constexpr std::size_t kOthers = 6;
+  const std::size_t wanted = threads - 1 + kOthers;
+  const std::size_t startable = startable_threads(wanted);
+  if (startable < 2) throw Error(ErrorKind::io, kNoMoreThreads);  // one reads, and oneTBB may start one for itself
+  if (startable >= wanted) return threads;
+  const std::size_t workers = startable > kOthers ? startable - kOthers + 1 : 1;
+  if (notice) {
+    notice(cat("the system lets this process start ", startable, " threads more; working on ", workers,
+               "; raise the limit of processes (ulimit -u)"));
+  }
+  return workers;
+}
+
+}  // namespace weir

@@ -1,0 +1,16 @@
+// A spooled volume as a source: it reads as the file would that the values were
+// never in.
+#pragma once
+
+#include <memory>
+
+#include "compressor/push/leaf_spool.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Reads what `spool`, which must outlive the source and have all voxels, holds of the volume that `info` describes.
+/// bytes_read counts what came from the spool's file. Reading a leaf that was never written is Error(internal).
+std::unique_ptr<VolumeSource> open_spool(const LeafSpool& spool, SourceInfo info);
+
+}  // namespace weir

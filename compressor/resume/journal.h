@@ -1,0 +1,98 @@
+// What makes a conversion outlive its process: the files it stands on have names,
+// and a journal says how far they can be trusted.
+//
+// In the hidden directory beside the output: `journal`, a Checkpoint, and
+// `volume`, the unfinished OUT.nvdb. In the spill directory, which is the same
+// unless the user names another: `rows`, `faces` and `records`. A save is
+//   1. all files flushed                what the checkpoint says of them is durable
+//   2. journal.new written and flushed
+//   3. journal.new renamed to journal   the checkpoint counts: the old or the new one, never half of one
+//   4. the directories flushed, at the first save their own names, too
+// and runs beside the work, so that a pass waits for no device. What is written
+// after a save and before the next is written again, the same bytes at the same
+// places.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compressor/survey/checkpoint.h"
+#include "format/base/trace.h"
+#include "format/io/file_system.h"
+
+namespace weir {
+
+struct JournalOptions {
+  std::string work_dir;   ///< where spill files go; empty: beside the output
+  double interval_s = 0;  ///< between two saves; 0: whenever there is something to save, and each is waited for
+  const std::atomic<bool>* cancel = nullptr;            ///< once set, everything is saved at the next pause
+  Trace* trace = nullptr;                               ///< gets a "save" of each
+  std::function<void(const std::string& line)> notice;  ///< may be empty
+};
+
+/// One thread uses it. The lock on the output (OutputFiles) must be held longer than it lives.
+class Journal {
+ public:
+  /// Takes up what an interrupted conversion of that identity left at `output`, in `state`. What another one left, or
+  /// what is not whole, is removed, with a notice.
+  Journal(FileSystem& files, const std::string& output, ConversionIdentity identity, JournalOptions options);
+  /// Removes everything that no saved checkpoint stands on.
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// How far the conversion is; to be changed by it, and saved.
+  Checkpoint state;
+
+  const std::string& directory() const { return directory_; }
+
+  /// "rows", "faces", "records" or "volume", with what is in it.
+  std::shared_ptr<File> open(const std::string& name);
+
+  /// Whether the time for a save has come. Throws what the last one failed with.
+  bool due();
+  /// Saves `state` as it is now, beside the work unless the interval is 0 or the work is to end.
+  void save();
+  void save_now();
+
+  /// Whether a process could go on from here if this one ended.
+  bool resumable() const { return !saved_.empty(); }
+
+  /// Removes everything, the journal first; what cannot be removed stays.
+  void discard() noexcept;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void adopt(const std::string& output, const ConversionIdentity& identity);
+  std::string place_of(const std::string& name) const;
+  void write(const std::vector<std::shared_ptr<File>>& open, const std::string& text);
+  void wait();
+
+  FileSystem& files_;
+  JournalOptions options_;
+  std::string directory_;
+  std::string spill_directory_;  // Checkpoint::spill_directory
+  std::map<std::string, std::shared_ptr<File>> open_;
+  Clock::time_point last_save_ = Clock::now();
+  std::future<void> saving_;
+  bool placed_ = false;  // whether the names of the directories are durable
+  std::map<std::string, std::uint64_t> saving_files_;
+  std::map<std::string, std::uint64_t> saved_;  // files of the checkpoint that counts; empty: none does
+};
+
+/// What the journal in the hidden directory of `output` says, if it is whole and the files it names are there.
+std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& output);
+
+/// Removes whatever a conversion of `output` may have left to be continued; false where there is nothing. The caller
+/// holds the lock on the output.
+bool remove_leftovers(FileSystem& files, const std::string& output);
+
+}  // namespace weir

@@ -1,0 +1,54 @@
+#include "compressor/resume/work_directory.h"
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/output/output_files.h"
+
+namespace weir {
+
+std::string hidden_directory_of(const std::string& output) {
+  const std::size_t slash = output.rfind('/');
+  return directory_of(output) + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
+}
+
+void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
+  try {
+    files.remove_directory(path);
+  } catch (const Error&) {
+    // Not empty.
+  }
+}
+
+WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
+  if (!chosen.empty()) {
+    if (!files_.exists(chosen))
+      throw Error(ErrorKind::usage, cat("--work-dir ", chosen, ": does not exist; make it or choose another"));
+    if (files_.is_memory(chosen)) {
+      throw Error(ErrorKind::usage,
+                  cat("--work-dir ", chosen, ": is a memory file system; choose a directory on a disk"));
+    }
+    path_ = chosen;
+    return;
+  }
+  const std::string directory = directory_of(output);
+  if (files_.is_memory(directory)) {
+    // Spill files beside the output would be memory that no ceiling counts.
+    path_ = "/var/tmp";
+    if (!files_.exists(path_) || files_.is_memory(path_)) {
+      throw Error(
+          ErrorKind::usage,
+          cat(output,
+              ": lies on a memory file system, and so does /var/tmp; name a directory on a disk with --work-dir"));
+    }
+    return;
+  }
+  path_ = hidden_directory_of(output);
+  files_.make_directory(path_);
+  made_ = true;
+}
+
+WorkDirectory::~WorkDirectory() {
+  if (made_) remove_if_empty(files_, path_);
+}
+
+}  // namespace weir

@@ -1,0 +1,37 @@
+// Where spill files go: a hidden directory beside the output, made for one
+// conversion, or the directory the user names. Spill files have no names, so
+// that nothing of them outlives the process; those that are to are the journal's.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "format/io/file_system.h"
+
+namespace weir {
+
+/// ".OUT.nvdb.work" beside OUT.nvdb.
+std::string hidden_directory_of(const std::string& output);
+
+/// Removes the directory at `path`, unless it holds somebody's files, which are not ours to remove.
+void remove_if_empty(FileSystem& files, const std::string& path) noexcept;
+
+class WorkDirectory {
+ public:
+  /// `chosen` is --work-dir or empty. Throws Error(usage) where `chosen` is missing or in memory, and
+  /// where the output lies in memory and so does /var/tmp.
+  WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen);
+  ~WorkDirectory();
+  WorkDirectory(const WorkDirectory&) = delete;
+  WorkDirectory& operator=(const WorkDirectory&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::unique_ptr<File> spill() { return files_.create_unnamed(path_); }
+
+ private:
+  FileSystem& files_;
+  std::string path_;
+  bool made_ = false;
+};
+
+}  // namespace weir

@@ -1,0 +1,216 @@
+#include "compressor/select/encoding_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+// One encoding's selection, before and after the size is known.
+class Candidate {
+ public:
+  Candidate(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work)
+      : request_(request),
+        rows_(rows),
+        work_(work),
+        encoding_(encoding),
+        tree_(std::make_unique<TreeRegions>(request.domain)),
+        selection_(rule_of(request, encoding), rows, *tree_) {}
+
+  const SelectionBytes& bytes() const { return bytes_; }
+  bool lossless() const { return bytes_.lossy_leaves == 0; }
+  FileSize size_for(const Budget& budget) const {
+    const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
+    return file_size_for(budget, dense, bytes_, request_.path);
+  }
+
+  FilePlan plan(const FileSize& size) {
+    selection_.choose(size.bytes);
+    return planned(size);
+  }
+
+  /// The smallest file whose error is expected to meet the budget's target.
+  FilePlan plan_for_error() {
+    if (request_.budget.kind == Budget::Kind::psnr) {
+      if (encoding_ == Encoding::float32) return plan_exact();
+      const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
+      return lowered_to_nothing ? plan_everything() : plan_expected(request_.planned_error);
+    }
+    selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
+    return planned({0, "max_error", ""});
+  }
+
+ private:
+  FilePlan plan_expected(double squared_error) {
+    selection_.choose_error(squared_error);
+    return planned({0, "psnr", ""});
+  }
+
+  // Float leaves lose nothing, so that the plan's error is the file's. Selection counts gains to a part in 2^53 of
+  // the error of nothing kept, which is not enough for a target far below that.
+  FilePlan plan_exact() {
+    const double target = std::min(request_.squared_error, request_.planned_error);
+    FilePlan file = plan_expected(target);
+    double goal = target;
+    for (double step = 2; file.plan.expected_error > target; step *= 2) {
+      goal -= step * (file.plan.expected_error - target);
+      tree_ = std::move(file.tree);
+      if (!(goal > 0)) return plan_everything();
+      file = plan_expected(goal);
+    }
+    return file;
+  }
+
+  FilePlan plan_everything() {
+    selection_.choose(bytes_.full.file_bytes);
+    return planned({0, "psnr", ""});
+  }
+
+  FilePlan planned(const FileSize& size) {
+    FilePlan file;
+    file.encoding = encoding_;
+    file.fill = request_.rule.fill;
+    file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
+    file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
+    file.size = size;
+    if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
+    file.plan.layout = padded_to(file.plan.layout, file.size.bytes);
+    file.tree = std::move(tree_);
+    return file;
+  }
+
+  static GainRule rule_of(const FileRequest& request, Encoding encoding) {
+    GainRule rule = request.rule;
+    rule.encoding = encoding;
+    if (request.budget.kind == Budget::Kind::max_error) rule.max_error = request.budget.target;
+    return rule;
+  }
+
+  const FileRequest& request_;
+  const RowStore& rows_;
+  WorkDirectory& work_;
+  Encoding encoding_;
+  std::unique_ptr<TreeRegions> tree_;
+  Selection selection_;
+  SelectionBytes bytes_ = selection_.bytes();
+};
+
+bool can_quantise(const FileRequest& request) {
+  return request.rule.metric == Metric::sse && !request.keeps_non_finite;
+}
+
+bool countable(const FilePlan& file) { return countable(file.plan.layout.counts); }
+
+// Why a quantised file cannot be lossless.
+std::string lossy_leaves_text(const Candidate& quantised) {
+  const std::uint64_t leaves = quantised.bytes().lossy_leaves;
+  return cat(leaves, leaves == 1 ? " leaf holds" : " leaves hold",
+             " values that no lattice of 16 bits gives back bit for bit");
+}
+
+// Whether the file is expected to do what its plan was asked for.
+bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
+  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.planned_error
+                                                   : candidate.lossless();
+}
+
+FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
+  if (encoding != Encoding::float32 && !can_quantise(request)) {
+    throw Error(ErrorKind::usage,
+                cat("--encoding ", encoding_name(encoding),
+                    request.keeps_non_finite ? " holds no NaN or infinite voxels, which --nonfinite keep asks for"
+                                             : " selects by --metric sse only",
+                    "; use --encoding float"));
+  }
+  Candidate candidate(request, encoding, rows, work);
+  if (request.budget.by_error()) {
+    FilePlan file = candidate.plan_for_error();
+    const bool first = request.planned_error >= request.squared_error;  // before any file was made
+    if (first && !meets(request, candidate, file)) throw unmet_target(request, encoding, file.plan.expected_error);
+    return file;
+  }
+  if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
+    throw Error(ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding), " cannot be lossless: ",
+                                       lossy_leaves_text(candidate), "; use --encoding auto or float"));
+  }
+  return candidate.plan(candidate.size_for(request.budget));
+}
+
+FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate quantised(request, Encoding::fpn, rows, work);
+  Candidate plain(request, Encoding::float32, rows, work);
+  if (quantised.lossless() && quantised.bytes().full.file_bytes <= plain.bytes().full.file_bytes) {
+    FilePlan file = quantised.plan(quantised.size_for(request.budget));
+    if (countable(file)) return file;
+  }
+  FileSize size = plain.size_for(request.budget);
+  if (!quantised.lossless()) {
+    size.notice = cat(request.path, ": lossless takes float32 leaves, ", lossy_leaves_text(quantised));
+  }
+  return plain.plan(size);
+}
+
+FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate candidate(request, Encoding::fpn, rows, work);
+  const FileSize size = candidate.size_for(request.budget);
+  FilePlan quantised = candidate.plan(size);
+  if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
+  Candidate other(request, Encoding::float32, rows, work);
+  if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
+  if (size.kind == "minimum") return quantised;
+  FilePlan plain = other.plan(other.size_for(request.budget));
+  if (countable(plain) != countable(quantised)) return std::move(countable(plain) ? plain : quantised);
+  if (request.rule.visibility != nullptr) {  // what a scene weighs is not measured: expectations decide
+    return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
+  }
+  if (plain.plan.expected_error == 0) return plain;
+  // The estimate may be wrong by a million, where values lie near a lattice that a width happens to hold.
+  quantised.float_error = plain.plan.expected_error;
+  return quantised;
+}
+
+FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate quantised(request, Encoding::fpn, rows, work);
+  FilePlan small = quantised.plan_for_error();
+  Candidate plain(request, Encoding::float32, rows, work);
+  FilePlan file = plain.plan_for_error();
+  const bool as_small = small.size.bytes <= file.size.bytes || !countable(file);
+  return std::move(meets(request, quantised, small) && countable(small) && as_small ? small : file);
+}
+
+}  // namespace
+
+Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error) {
+  const bool psnr = request.budget.kind == Budget::Kind::psnr;
+  std::string best;
+  if (request.budget.kind == Budget::Kind::lossless) {
+    return {ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding),
+                                   " cannot be lossless: a leaf of it reads other bits; use --encoding auto or float")};
+  }
+  if (psnr && squared_error > 0) {
+    const double short_by = 10 * std::log10(squared_error / request.squared_error);
+    best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
+  } else {
+    best = " has leaves whose range 16 bits do not divide that finely";
+  }
+  return {ErrorKind::budget,
+          cat(request.path, ": --", psnr ? "psnr " : "max-error ", request.budget.target, " cannot be met: --encoding ",
+              encoding_name(encoding), best, "; use --encoding auto or float")};
+}
+
+FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  FilePlan file = [&] {
+    if (request.encoding != Encoding::automatic) return plan_one(request, request.encoding, rows, work);
+    if (!can_quantise(request)) return plan_one(request, Encoding::float32, rows, work);
+    if (request.budget.by_error()) return plan_smallest(request, rows, work);
+    if (request.budget.kind == Budget::Kind::lossless) return plan_lossless(request, rows, work);
+    return plan_best(request, rows, work);
+  }();
+  check_countable(file.plan.layout.counts, request.path);
+  return file;
+}
+
+}  // namespace weir

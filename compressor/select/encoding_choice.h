@@ -1,0 +1,58 @@
+// From the survey to one planned file: selection under the budget for each
+// encoding that may be used, and the choice between them.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "compressor/resume/work_directory.h"
+#include "compressor/select/budget.h"
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/leaf_gain.h"
+#include "compressor/select/tree_plan.h"
+#include "compressor/select/tree_regions.h"
+#include "compressor/survey/row_store.h"
+#include "format/base/error.h"
+
+namespace weir {
+
+/// A file, planned to its last offset.
+struct FilePlan {
+  Encoding encoding = Encoding::float32;
+  Fill fill;
+  std::unique_ptr<TreeRegions> tree;
+  std::unique_ptr<ChoiceStore> choices;
+  FileSize size;
+  TreePlan plan;  ///< its layout is padded to the size
+  /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
+  /// which is exact. Infinite where there is none.
+  double float_error = std::numeric_limits<double>::infinity();
+};
+
+struct FileRequest {
+  Encoding encoding = Encoding::float32;  ///< automatic: whichever of float32 and fpn has less error
+  GainRule rule;                          ///< but for its encoding
+  Budget budget;
+  double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels that can be seen may come to
+  /// For a PSNR: what to plan quantised leaves for, whose errors are estimated. At first the same as squared_error;
+  /// what their files lose adjusts it. Float leaves are never planned for more than squared_error.
+  double planned_error = std::numeric_limits<double>::infinity();
+  Box domain;
+  bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
+  std::string path;               ///< of the output, for messages
+};
+
+/// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
+/// asked error. What a quantised file loses is estimated: Encoding::automatic means that where it turns out to lose
+/// more than `float_error`, the float file is to be taken. Throws Error(budget) where size, error or exactness cannot
+/// be met, naming what can, Error(usage) where the encoding cannot hold the volume. Where planned_error was lowered and
+/// this encoding is not expected to reach it, the plan is all that it has.
+FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
+
+/// Error(budget) for a target that `encoding` misses, where for a PSNR all it has loses `squared_error`.
+Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error);
+
+}  // namespace weir

@@ -1,0 +1,120 @@
+// What becomes of the leaves of a 128^3 region: each a tile, or kept at some width,
+// in the order of the lower node's masks (x<<8 | y<<4 | z), and a spill file of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "compressor/team/team.h"
+#include "format/io/file_system.h"
+#include "format/layout/nanovdb_layout.h"
+
+namespace weir {
+
+/// How a leaf is kept. The values are those in LeafChoices.
+enum class LeafWidth : std::uint8_t { tile = 0, bits1 = 1, bits2 = 2, bits4 = 3, bits8 = 4, bits16 = 5, float32 = 6 };
+
+/// log2(bits a voxel) of a kept leaf: 0 to 4, 5 for float32.
+constexpr unsigned bits_log2_of(LeafWidth width) { return static_cast<unsigned>(width) - 1; }
+constexpr LeafWidth width_of(unsigned bits_log2) { return static_cast<LeafWidth>(bits_log2 + 1); }
+
+/// Bytes of a leaf in the file: its head and its values or codes.
+constexpr std::uint32_t leaf_bytes(LeafWidth width) {
+  return width == LeafWidth::tile ? 0 : static_cast<std::uint32_t>(nvdb::kLeafHeadBytes) + (64U << bits_log2_of(width));
+}
+static_assert(leaf_bytes(LeafWidth::float32) == nvdb::kFloatLeafBytes);
+
+/// Besides a leaf's width, whether anything of it can be seen: by a scene, if one decides what matters.
+class LeafChoices {
+ public:
+  static constexpr std::size_t kLeaves = 4096;
+
+  void set(std::size_t position, LeafWidth width) {
+    const unsigned shift = shift_of(position);
+    std::uint8_t& pair = pairs_[position / 2];
+    pair = static_cast<std::uint8_t>((pair & ~(kWidthBits << shift)) | static_cast<unsigned>(width) << shift);
+  }
+  LeafWidth width(std::size_t position) const {
+    return static_cast<LeafWidth>(pairs_[position / 2] >> shift_of(position) & kWidthBits);
+  }
+  void set_seen(std::size_t position) {
+    std::uint8_t& pair = pairs_[position / 2];
+    pair = static_cast<std::uint8_t>(pair | kSeenBit << shift_of(position));
+  }
+  bool seen(std::size_t position) const { return (pairs_[position / 2] >> shift_of(position) & kSeenBit) != 0; }
+  bool kept(std::size_t position) const { return width(position) != LeafWidth::tile; }
+
+ private:
+  static constexpr unsigned kWidthBits = 7;
+  static constexpr unsigned kSeenBit = 8;
+  static constexpr unsigned shift_of(std::size_t position) { return 4 * (position & 1U); }
+
+  std::array<std::uint8_t, kLeaves / 2> pairs_{};
+};
+static_assert(sizeof(LeafChoices) == 2048, "choices are spilled as they are");
+
+/// Where the kept leaves of a region lie among each other.
+class LeafPlaces {
+ public:
+  explicit LeafPlaces(const LeafChoices& choices) : choices_(choices) {
+    for (std::size_t row = 0; row < kRows; ++row) {
+      rows_[row + 1] = rows_[row];
+      for (std::size_t i = 0; i < kRow; ++i) advance(rows_[row + 1], row * kRow + i);
+    }
+  }
+
+  struct Place {
+    std::uint32_t leaves = 0;  ///< kept before this position
+    std::uint32_t bytes = 0;   ///< of those
+  };
+
+  LeafWidth width(std::size_t position) const { return choices_.width(position); }
+  bool kept(std::size_t position) const { return choices_.kept(position); }
+  Place before(std::size_t position) const {
+    Place place = rows_[position / kRow];
+    for (std::size_t p = position / kRow * kRow; p < position; ++p) advance(place, p);
+    return place;
+  }
+  /// Of all leaves.
+  Place total() const { return rows_.back(); }
+
+ private:
+  static constexpr std::size_t kRow = 16;
+  static constexpr std::size_t kRows = LeafChoices::kLeaves / kRow;
+
+  void advance(Place& place, std::size_t position) const {
+    const LeafWidth width = choices_.width(position);
+    place.leaves += width == LeafWidth::tile ? 0 : 1;
+    place.bytes += leaf_bytes(width);
+  }
+
+  LeafChoices choices_;
+  std::array<Place, kRows + 1> rows_{};
+};
+
+/// Choices by region index. Thread-safe for different regions.
+class ChoiceStore {
+ public:
+  ChoiceStore(std::unique_ptr<File> file, std::int64_t regions) : file_(std::move(file)) {
+    file_->preallocate(static_cast<std::uint64_t>(regions) * sizeof(LeafChoices));
+  }
+  void write(std::int64_t region, const LeafChoices& choices) {
+    file_->write_at(at(region), std::as_bytes(std::span(&choices, 1)));
+  }
+  LeafChoices read(std::int64_t region) const {
+    LeafChoices choices;
+    file_->read_at(at(region), std::as_writable_bytes(std::span(&choices, 1)));
+    return choices;
+  }
+  /// After each rank has written those of its regions.
+  void publish(Team& team) { team.publish(*file_); }
+
+ private:
+  static std::uint64_t at(std::int64_t region) { return static_cast<std::uint64_t>(region) * sizeof(LeafChoices); }
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace weir

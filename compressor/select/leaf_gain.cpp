@@ -1,0 +1,259 @@
+#include "compressor/select/leaf_gain.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "compressor/leaf/bounds.h"
+#include "compressor/leaf/leaf_quantiser.h"
+
+namespace weir {
+namespace {
+
+struct BrickRange {
+  float low = 0;
+  float high = 0;
+  bool any = false;
+};
+
+double distance(Metric metric, const BrickRange& range, float background) {
+  if (!range.any) return 0;
+  const auto low = static_cast<double>(range.low);
+  const auto high = static_cast<double>(range.high);
+  const auto b = static_cast<double>(background);
+  switch (metric) {
+    case Metric::closest:
+      return std::min(std::abs(low - b), std::abs(high - b));
+    case Metric::farthest:
+      return std::max(std::abs(low - b), std::abs(high - b));
+    case Metric::median:
+      return std::abs((low + high) / 2 - b);
+    case Metric::sse:
+      break;
+  }
+  return 0;
+}
+
+LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
+  const std::uint32_t bytes = leaf_bytes(width) - leaf_bytes(from);
+  return {gain, gain / static_cast<double>(bytes), bytes, width};
+}
+
+// The widest width of FpN that can be of use to a leaf: what is exact needs no more bits.
+LeafWidth widest(const LeafRow& row) {
+  LeafWidth width = LeafWidth::bits1;
+  while (width != LeafWidth::bits16 && (row.exact_bits == 0 || 1U << bits_log2_of(width) < row.exact_bits)) {
+    width = width_of(bits_log2_of(width) + 1);
+  }
+  return width;
+}
+
+// Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`; error_at(width).
+template <typename ErrorAt>
+void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
+  std::array<double, 5> errors{};
+  for (unsigned log2 = 0; log2 <= bits_log2_of(last); ++log2) errors[log2] = error_at(width_of(log2));
+  while (from != last) {
+    LeafStep best;
+    for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
+      const LeafStep step = step_to(width_of(log2), from, error - errors[log2]);
+      if (step.gain > 0 && step.key > best.key) best = step;
+    }
+    if (best.width == LeafWidth::tile) return;
+    error -= best.gain;
+    from = best.width;
+    leaf.add(best);
+  }
+}
+
+// The least squared error that the survey estimated for a leaf of finite values at less than 1 << below_log2 bits,
+// where below_log2 >= 1: more bits do not do worse.
+double least_estimate(const LeafRow& row, unsigned below_log2) {
+  const auto end = row.quantised.begin() + std::min<std::ptrdiff_t>(below_log2, std::ssize(row.quantised));
+  return row.sse * static_cast<double>(*std::min_element(row.quantised.begin(), end));
+}
+
+}  // namespace
+
+double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
+  if (width == LeafWidth::float32) return 0;
+  const unsigned log2 = bits_log2_of(width);
+  const unsigned bits = 1U << log2;
+  const bool all_finite = row.finite == voxels;
+  if (all_finite) {
+    if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
+    if (log2 < row.quantised.size()) return least_estimate(row, log2 + 1);
+  }
+  // The survey did not know what would take the place of NaN: it may lie far from the other values.
+  const float low = all_finite ? row.min : std::min(row.min, background);
+  const float high = all_finite ? row.max : std::max(row.max, background);
+  const auto quantum = static_cast<double>(range_quantiser({low, high, row.mean}, bits).quantum);
+  const double least = all_finite ? least_estimate(row, log2) : row.sse;
+  if (!(quantum > 0)) return least;  // float holds one level only, or not all of the range
+  // Errors uniform over a quantum, q^2 / 12 a value; the ends of the range are levels. Sparse data has most of its
+  // values there: without them 8 bits would seem bad enough for 16 to be bought.
+  const int between = all_finite ? row.finite - row.at_ends : row.finite;
+  return std::min(least, between * quantum * quantum / 12);
+}
+
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {
+  if (width == LeafWidth::float32) return true;
+  return row.finite == voxels && row.exact_bits != 0 && (1U << bits_log2_of(width)) >= row.exact_bits;
+}
+
+double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
+  if (keeps_every_bit(row, voxels, width)) return 0;
+  ValueRange range{row.min, row.max, row.mean};
+  if (row.finite < voxels) {
+    range.min = row.finite == 0 ? background : std::min(range.min, background);
+    range.max = row.finite == 0 ? background : std::max(range.max, background);
+  }
+  if (range.min == range.max) return 0;
+  const unsigned bits = 1U << bits_log2_of(width);
+  const auto quantum = static_cast<double>(range_quantiser(range, bits).quantum);
+  if (quantum == 0) return std::numeric_limits<double>::infinity();
+  const auto magnitude = static_cast<double>(std::max(std::fabs(range.min), std::fabs(range.max)));
+  // A code is found in single precision: near the middle between two levels either may be taken. The product and
+  // the sum round, half an ulp each, and the levels' quantum did: half an ulp of it a level.
+  const double half = 0.5 + std::ldexp(1.0, static_cast<int>(bits) - 22);
+  return quantum * half + magnitude * std::ldexp(1.0, -21);
+}
+
+// The widths a rule's encoding may use for a leaf, narrowest first.
+std::vector<LeafWidth> widths_of(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::fpn:
+      return {LeafWidth::bits1, LeafWidth::bits2, LeafWidth::bits4, LeafWidth::bits8, LeafWidth::bits16};
+    case Encoding::fp4:
+      return {LeafWidth::bits4};
+    case Encoding::fp8:
+      return {LeafWidth::bits8};
+    case Encoding::fp16:
+      return {LeafWidth::bits16};
+    case Encoding::automatic:
+    case Encoding::float32:
+      break;
+  }
+  return {LeafWidth::float32};
+}
+
+double GainRule::tile_weight(const MinMax& reach, float tile) const {
+  MinMax with_tile = reach;
+  if (reach.min <= reach.max) widen(with_tile, {tile, tile});
+  return visibility->weight(with_tile);
+}
+
+void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                                LeafGain& leaf) const {
+  const bool seen = weights.tile > 0;
+  leaf.required = leaf.required || (seen && row.max_abs_about(tile) > *max_error);
+  leaf.lossless = !leaf.required;  // met by the tile
+  if (!leaf.required) return;
+  LeafWidth width = LeafWidth::tile;
+  for (const LeafWidth candidate : widths_of(encoding)) {
+    width = candidate;
+    leaf.lossless = candidate == LeafWidth::float32 || !seen ||
+                    bounded_error(row, voxels, fill.background, candidate) <= *max_error;
+    if (leaf.lossless) break;
+  }
+  leaf.add(step_to(width, LeafWidth::tile, row.sse_about(tile)));
+}
+
+void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                         LeafGain& leaf) const {
+  if (max_error) return add_bounded_step(row, voxels, tile, weights, leaf);
+  const bool tile_does = leaf.exact || !(weights.tile > 0);
+  leaf.lossless = tile_does;
+  if (tile_does && !leaf.required) return;
+  const double error = leaf.exact ? 0 : weights.tile * row.sse_about(tile);
+  const auto error_at = [&](LeafWidth width) {
+    return weights.kept * quantised_error(row, voxels, fill.background, width);
+  };
+  switch (encoding) {
+    case Encoding::automatic:
+    case Encoding::float32:
+      leaf.add(step_to(LeafWidth::float32, LeafWidth::tile, error));
+      break;
+    case Encoding::fp4:
+    case Encoding::fp8:
+    case Encoding::fp16: {
+      const LeafWidth width = encoding == Encoding::fp4   ? LeafWidth::bits4
+                              : encoding == Encoding::fp8 ? LeafWidth::bits8
+                                                          : LeafWidth::bits16;
+      const double gain = std::max(0.0, error - error_at(width));
+      if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, width)) {
+        leaf.add(step_to(width, LeafWidth::tile, gain));
+      }
+      break;
+    }
+    case Encoding::fpn: {
+      const LeafWidth last = widest(row);
+      LeafWidth from = LeafWidth::tile;
+      double left = error;
+      if (leaf.required) {
+        from = LeafWidth::bits1;
+        left = std::min(error, error_at(from));
+        leaf.add(step_to(from, LeafWidth::tile, error - left));
+      }
+      add_hull(error_at, from, left, last, leaf);
+      // Saves nothing that can be measured, but without it not every bit is kept.
+      const LeafWidth reached = leaf.step_count > 0 ? leaf.steps[leaf.step_count - 1].width : LeafWidth::tile;
+      if (!tile_does && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));
+      break;
+    }
+  }
+  if (leaf.step_count > 0) {
+    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, leaf.steps[leaf.step_count - 1].width);
+  }
+}
+
+void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const {
+  const NodeLattice& leaves = tree.leaves;
+  const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
+  const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
+  const std::int64_t bricks = kLowerLeaves / side;
+  out.clear();
+  const bool whole =
+      leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
+      leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
+  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+    const Index3 node = leaves.first + leaf;
+    const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
+    const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
+    LeafGain gain;
+    gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
+    gain.brick = static_cast<std::uint32_t>(
+        linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
+    gain.required = leaf == Index3{0, 0, 0} || leaf == last_leaf ||
+                    (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
+    const float tile = fill.leaf_value(row);
+    gain.exact = fill.exact(row, voxels, tile);
+    Weights weights;
+    if (visibility != nullptr) {
+      const MinMax& reach = rows.reach(leaf);
+      weights = {tile_weight(reach, tile), visibility->weight(reach)};
+    }
+    add_steps(row, voxels, tile, weights, gain);
+    out.push_back(gain);
+  });
+  if (metric != Metric::sse) rank_bricks(rows, out);
+}
+
+void GainRule::rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const {
+  std::vector<BrickRange> ranges(kLowerLeaves * kLowerLeaves * kLowerLeaves);
+  auto leaf = leaves.begin();
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    BrickRange& range = ranges[(leaf++)->brick];
+    if (row.finite == 0) return;
+    range.low = range.any ? std::min(range.low, row.min) : row.min;
+    range.high = range.any ? std::max(range.high, row.max) : row.max;
+    range.any = true;
+  });
+  for (LeafGain& gain : leaves) {
+    const double by_brick = gain.exact ? 0 : distance(metric, ranges[gain.brick], fill.background);
+    if (gain.step_count > 0) gain.steps[0].gain = gain.steps[0].key = by_brick;
+  }
+}
+
+}  // namespace weir

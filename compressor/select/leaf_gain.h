@@ -1,0 +1,88 @@
+// What keeping a leaf is worth: the steps by which its error is bought down, and
+// so the order in which leaves are bought.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compressor/leaf/encoding.h"
+#include "compressor/leaf/fill.h"
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/region_rows.h"
+#include "compressor/survey/visibility.h"
+
+namespace weir {
+
+/// sse: squared error saved (rate-distortion). The others are the paper's distances from a brick's
+/// value range [lo, hi] to the background B: closest min(|lo - B|, |hi - B|), farthest the max,
+/// median |(lo + hi) / 2 - B| (Zellmann et al., EGPGV 2025).
+enum class Metric { sse, farthest, closest, median };
+
+/// From one way to keep a leaf to the next better one.
+struct LeafStep {
+  double gain = 0;          ///< squared error saved, or the brick's distance
+  double key = 0;           ///< for sse gain / bytes, else gain: steps are bought by falling key
+  std::uint32_t bytes = 0;  ///< what the file grows by
+  LeafWidth width = LeafWidth::tile;
+};
+
+struct LeafGain {
+  /// In the order they are bought, keys falling: the convex hull of error over bytes. None where the tile
+  /// reads the same bits.
+  std::array<LeafStep, 5> steps{};
+  std::uint32_t step_count = 0;
+  std::uint32_t brick = 0;     ///< rank of its brick in the region; of itself for sse
+  std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
+  bool exact = false;          ///< its tile reads the same bits: never worth a leaf
+  bool required = false;       ///< always a leaf: its first step is taken whatever it saves
+  bool lossless = false;  ///< the last step, or the tile, reads the same bits (within max_error, or cannot be seen)
+
+  void add(const LeafStep& step) { steps[step_count++] = step; }
+};
+
+/// Decides gains; the same for every thread, plan and memory ceiling.
+struct GainRule {
+  Metric metric = Metric::sse;
+  std::int64_t brick_leaves = 1;  ///< leaves along a brick of the paper's metrics: 1, 2 or 4
+  Fill fill;
+  Encoding encoding = Encoding::float32;  ///< not automatic
+  /// Every voxel must read within this of its value: a leaf whose tile does not is required, at the first
+  /// width that does (quantised over its whole range), and nothing else is worth a byte. What no width can do
+  /// counts as lossy.
+  std::optional<double> max_error = std::nullopt;
+  /// Where a scene decides what matters: errors are weighted by what it shows of them, and what it cannot show is
+  /// never worth a byte. For Metric::sse, over rows with reaches.
+  const Visibility* visibility = nullptr;
+
+  /// Weight of the error where a block of that reach reads `tile`.
+  double tile_weight(const MinMax& reach, float tile) const;
+
+  /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
+  /// hold non-finite values to keep, are required.
+  void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
+
+ private:
+  // What a squared error counts where the leaf reads its tile, and where it is kept.
+  struct Weights {
+    double tile = 1;
+    double kept = 1;
+  };
+  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
+                        LeafGain& leaf) const;
+  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf) const;
+  // The paper's metrics: gain of each leaf from its brick's range.
+  void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
+};
+
+/// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
+/// by `background`: exact for float32 and where `exact_bits` says so, else an estimate.
+double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
+/// Bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half a
+/// quantum, and what the decoder rounds, fused or not. `background` takes the place of non-finite values.
+double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
+/// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit.
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width);
+
+}  // namespace weir

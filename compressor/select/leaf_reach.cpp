@@ -1,0 +1,98 @@
+#include "compressor/select/leaf_reach.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <utility>
+#include <vector>
+
+#include "compressor/leaf/bounds.h"
+#include "compressor/select/region_rows.h"
+
+namespace weir {
+namespace {
+
+// The leaves of a box, and those around it.
+struct Neighbourhood {
+  Box box;
+  std::vector<LeafRow> rows;
+  std::vector<LeafFaces> faces;
+
+  std::size_t at(const Index3& leaf) const {
+    return static_cast<std::size_t>(linear_index(leaf - box.lo, box.extent()));
+  }
+};
+
+class Reaches {
+ public:
+  Reaches(const NodeLattice& leaves, const Fill& fill) : leaves_(leaves), fill_(fill) {}
+
+  MinMax of(const Index3& leaf, const Neighbourhood& around) const {
+    MinMax reach = kNoBounds;
+    const LeafRow& row = around.rows[around.at(leaf)];
+    if (row.finite > 0) widen(reach, {row.min, row.max});
+    replaced(leaf, row, reach);
+    for_each_index(intersect(grown({leaf, leaf + Index3{1, 1, 1}}, 1), around.box), [&](const Index3& other) {
+      if (other == leaf) return;
+      const std::size_t i = around.at(other);
+      widen(reach, around.faces[i].touched_from(leaf - other));
+      replaced(other, around.rows[i], reach);
+    });
+    return reach;
+  }
+
+ private:
+  // Where in the leaf a value is not finite is not known: the background may be anywhere.
+  void replaced(const Index3& leaf, const LeafRow& row, MinMax& reach) const {
+    const bool keeps = fill_.non_finite == NonFinitePolicy::keep;
+    if (!keeps && row.finite < leaves_.voxels(leaf).voxels()) widen(reach, {fill_.background, fill_.background});
+  }
+
+  const NodeLattice& leaves_;
+  const Fill& fill_;
+};
+
+}  // namespace
+
+Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibility, const Fill& fill,
+                   WorkDirectory& work, RowStore& rows) {
+  const NodeLattice& leaves = rows.leaves();
+  auto store = std::make_unique<LeafStore<MinMax>>(work.spill(), leaves);
+  const Box all{{0, 0, 0}, leaves.count};
+  const Index3 regions = floor_div(leaves.count - Index3{1, 1, 1}, kLowerLeaves) + Index3{1, 1, 1};
+  const Reaches reaches(leaves, fill);
+  tbb::enumerable_thread_specific<Neighbourhood> neighbourhoods;
+  tbb::enumerable_thread_specific<Shown> shown;
+  const auto find = [&](std::int64_t task) {
+    const Index3 lo = index_at(task, regions) * kLowerLeaves;
+    const Box box = intersect({lo, lo + Index3{kLowerLeaves, kLowerLeaves, kLowerLeaves}}, all);
+    Neighbourhood& around = neighbourhoods.local();
+    around.box = intersect(grown(box, 1), all);
+    rows.read_box(around.box, around.rows);
+    faces.read_box(around.box, around.faces);
+    Shown& seen = shown.local();
+    std::vector<MinMax> found;
+    found.reserve(static_cast<std::size_t>(box.voxels()));
+    for_each_index(box, [&](const Index3& leaf) {
+      found.push_back(visibility.in_region(leaves.voxels(leaf)) ? reaches.of(leaf, around) : kNoBounds);
+      if (!visibility.shows(found.back())) return;
+      ++seen.blocks;
+      seen.finite += around.rows[around.at(leaf)].finite;
+    });
+    store->write_box(box, found);
+  };
+  Team& team = rows.team();
+  const Share own = team.share(volume(regions));
+  team.run([&] { tbb::parallel_for(own.begin, own.end, find); });
+  team.publish(store->file());
+  rows.set_reaches(std::move(store));
+  std::array<std::uint64_t, 2> total{};
+  for (const Shown& some : shown) {
+    total[0] += some.blocks;
+    total[1] += some.finite;
+  }
+  team.sum<std::uint64_t>(total);
+  return {total[0], total[1]};
+}
+
+}  // namespace weir

@@ -1,0 +1,28 @@
+// The reach of a leaf: the interval of values that a filtered lookup can give
+// which touches one of its voxels. Whether anything of the leaf can be seen is a
+// question to its reach.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "compressor/leaf/fill.h"
+#include "compressor/resume/work_directory.h"
+#include "compressor/survey/leaf_faces.h"
+#include "compressor/survey/row_store.h"
+#include "compressor/survey/visibility.h"
+
+namespace weir {
+
+/// How much of a volume a scene shows.
+struct Shown {
+  std::uint64_t blocks = 0;  ///< leaves of which something can be seen
+  std::uint64_t finite = 0;  ///< finite voxels in them
+};
+
+/// Gives `rows` the reach of every leaf: its values, those next to it, and the background where it takes the place of
+/// a value that is not finite; empty outside the scene's region. One pass over rows and faces.
+Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibility, const Fill& fill,
+                   WorkDirectory& work, RowStore& rows);
+
+}  // namespace weir

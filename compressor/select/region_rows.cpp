@@ -1,0 +1,59 @@
+#include "compressor/select/region_rows.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "compressor/team/region_share.h"
+
+namespace weir {
+
+namespace {
+
+void read_box(const RowStore& store, const Box& box, RowBuffers& buffers) {
+  store.read_box(box, buffers.rows);
+  if (store.reaches() != nullptr) store.reaches()->read_box(box, buffers.reaches);
+}
+
+}  // namespace
+
+RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers) {
+  read_box(store, leaf_box, buffers);
+  return {buffers.rows.data(), leaf_box.extent(), leaf_box,
+          store.reaches() == nullptr ? nullptr : buffers.reaches.data()};
+}
+
+void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
+                     const std::function<void(std::int64_t, const RegionRows&)>& visit) {
+  // One task: a segment of regions along x, whose rows are read in long runs.
+  const std::int64_t segment = store.segment_regions();
+  const Index3 extent = regions.extent();
+  const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
+  tbb::enumerable_thread_specific<RowBuffers> buffers;
+  tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
+    const Index3 at = index_at(task, tasks);
+    const Index3 first = regions.lo + Index3{at.x * segment, at.y, at.z};
+    const std::int64_t end_x = std::min(first.x + segment, regions.hi.x);
+    const std::int64_t begin = tree.region_lattice.linear(first);
+    const std::int64_t last = tree.region_lattice.linear({end_x - 1, first.y, first.z});
+    const Box box{tree.leaf_box(begin).lo, tree.leaf_box(last).hi};
+    RowBuffers& local = buffers.local();
+    read_box(store, box, local);
+    for (std::int64_t region = begin; region <= last; ++region) {
+      const Box leaf_box = tree.leaf_box(region);
+      const std::int64_t first_row = leaf_box.lo.x - box.lo.x;
+      visit(region, RegionRows(local.rows.data() + first_row, box.extent(), leaf_box,
+                               store.reaches() == nullptr ? nullptr : local.reaches.data() + first_row));
+    }
+  });
+}
+
+void for_each_own_region(const TreeRegions& tree, const RowStore& store,
+                         const std::function<void(std::int64_t, const RegionRows&)>& visit) {
+  store.team().run([&] {
+    for (const Box& box : own_regions(tree.region_lattice, store.team())) for_each_region(tree, store, box, visit);
+  });
+}
+
+}  // namespace weir

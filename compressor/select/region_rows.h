@@ -1,0 +1,66 @@
+// Walks the spilled rows region by region, in parallel, with bounded memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "compressor/select/tree_regions.h"
+#include "compressor/survey/row_store.h"
+
+namespace weir {
+
+/// The rows of one 128^3 region; valid during the visit only.
+class RegionRows {
+ public:
+  /// `rows` and, where given, `reaches` begin at the region's first leaf in arrays of `row_extent`.
+  RegionRows(const LeafRow* rows, const Index3& row_extent, const Box& leaf_box, const MinMax* reaches = nullptr)
+      : rows_(rows), reaches_(reaches), row_extent_(row_extent), leaf_box_(leaf_box) {}
+
+  /// Lattice positions of its leaves.
+  const Box& leaf_box() const { return leaf_box_; }
+  /// Row of the leaf at lattice position `leaf`.
+  const LeafRow& at(const Index3& leaf) const { return rows_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
+
+  /// Values that lookups in or next to that leaf can give; only where the store has reaches.
+  const MinMax& reach(const Index3& leaf) const { return reaches_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
+
+  /// Calls visit(position, row) with x fastest, then y, then z: the order of the leaf index.
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (std::int64_t z = leaf_box_.lo.z; z < leaf_box_.hi.z; ++z) {
+      for (std::int64_t y = leaf_box_.lo.y; y < leaf_box_.hi.y; ++y) {
+        for (std::int64_t x = leaf_box_.lo.x; x < leaf_box_.hi.x; ++x) visit(Index3{x, y, z}, at({x, y, z}));
+      }
+    }
+  }
+
+ private:
+  const LeafRow* rows_;
+  const MinMax* reaches_;
+  Index3 row_extent_;
+  Box leaf_box_;
+};
+
+/// Bytes of the rows of one region, with their reaches.
+inline constexpr std::uint64_t kRegionRowsBytes = 16ULL * 16 * 16 * (sizeof(LeafRow) + sizeof(MinMax));
+
+/// Memory for the rows of a box of leaves.
+struct RowBuffers {
+  std::vector<LeafRow> rows;
+  std::vector<MinMax> reaches;
+};
+
+/// The rows of one region, read into `buffers`.
+RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers);
+
+/// Calls visit(region index, rows) once for each region of a box of region-lattice positions; regions
+/// next to each other in x come one after the other on one thread, others in parallel and in any order.
+void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
+                     const std::function<void(std::int64_t, const RegionRows&)>& visit);
+
+/// The same for the regions of this rank of the store's team: all of them where there is no other.
+void for_each_own_region(const TreeRegions& tree, const RowStore& store,
+                         const std::function<void(std::int64_t, const RegionRows&)>& visit);
+
+}  // namespace weir

@@ -1,0 +1,103 @@
+// Selection under a byte budget: which leaves are kept, which 128^3 regions
+// become lower nodes, which 4096^3 blocks upper nodes.
+//
+// Everything that can be bought has a key, the error it saves per byte: a leaf's
+// step to its next better width (leaf_gain.h), a lower node (33,856 bytes) and an
+// upper node (270,400). A node's key is at least that of anything below it: a
+// region's is the best ratio over all k of what opening it and taking the k best
+// steps of its leaves saves to what they cost (its step on the convex hull), and no
+// step in it has a higher one. The budget then buys in
+// the order of keys, so that any larger budget buys a superset: error never grows
+// with size. An error to be met instead of a size ends the same way, with the error
+// saved counted in place of the bytes. The cut is found by radix selection over the keys' bits, in passes
+// over the spilled rows; ties go by region index, then by gain, then by leaf
+// index. Memory is that of TreeRegions, for any number of leaves.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/leaf_gain.h"
+#include "compressor/select/region_rows.h"
+#include "compressor/select/tree_regions.h"
+#include "format/layout/tree_layout.h"
+
+namespace weir {
+
+/// The decided cut. Keys above `threshold` are bought; of those equal to it, all in regions before
+/// `tie_region`, the first `tie_steps` steps in it, and none after it.
+struct Cut {
+  double threshold = 0;
+  std::int64_t tie_region = 0;
+  std::uint32_t tie_steps = 0;
+};
+
+/// What a selection comes to in the file.
+struct SelectionBytes {
+  TreeLayout minimum;              ///< the smallest file these rules allow
+  TreeLayout full;                 ///< every step of every leaf: more bytes buy nothing
+  std::uint64_t lossy_leaves = 0;  ///< leaves that lose something even then; 0 for float leaves
+  bool by_scene = false;           ///< what a scene cannot show is left out of all this
+};
+
+class Selection {
+ public:
+  /// Computes sums and keys of all regions and upper nodes: one pass over the rows.
+  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree);
+
+  SelectionBytes bytes() const { return bytes_; }
+
+  /// Buys for a file of at most `file_bytes`, which is at least bytes().minimum: sets `open` of regions
+  /// and upper nodes in the tree.
+  void choose(std::uint64_t file_bytes);
+
+  /// Buys as little as brings the squared error expected of the finite voxels, weighted where the rule weighs, down
+  /// to `squared_error`; all there is where that is not enough. For Metric::sse.
+  void choose_error(double squared_error);
+
+  /// What becomes of the leaves of a region, after choose().
+  LeafChoices choices(std::int64_t region, const RegionRows& rows) const;
+
+  const Cut& cut() const { return cut_; }
+  const GainRule& rule() const { return rule_; }
+
+ private:
+  void summarize_region(std::int64_t region, const RegionRows& rows, const std::vector<LeafGain>& gains);
+  double weigh_region(Region& region, const RegionRows& rows, float tile) const;
+  bool sees(const Region& region, float tile) const;
+  bool exceeds(double max_error, const Region& region, float tile) const;
+  void summarize_uppers();
+  /// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
+  struct Goal {
+    double unit = 0;  ///< squared error; 0: bytes count
+    // Whole numbers, so that sums do not depend on the order of the threads.
+    using Weight = unsigned __int128;
+    Weight limit = 0;
+
+    Weight weight(std::uint64_t bytes, double gain) const;
+    /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
+    /// brought down until the limit is reached.
+    bool admits(Weight bought, Weight weight) const { return unit == 0 ? bought + weight <= limit : bought < limit; }
+    /// Whether a whole class of keys can be bought without looking at its members.
+    bool admits_all(Weight bought, Weight weight) const {
+      return unit == 0 ? bought + weight <= limit : bought + weight < limit;
+    }
+  };
+
+  template <typename Visit>
+  void for_each_key(const Visit& visit) const;
+  void buy_for(const Goal& goal);
+  double find_threshold(const Goal& goal, Goal::Weight& above) const;
+  double sorted_threshold(const Goal& goal, Goal::Weight& above, const std::function<bool(double)>& matches) const;
+  void resolve_ties(const Goal& goal, Goal::Weight bought);
+
+  GainRule rule_;
+  const RowStore& rows_;
+  TreeRegions& tree_;
+  SelectionBytes bytes_;
+  Cut cut_;
+};
+
+}  // namespace weir

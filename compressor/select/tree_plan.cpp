@@ -1,0 +1,189 @@
+#include "compressor/select/tree_plan.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "format/nanovdb/macrocells.h"
+
+namespace weir {
+namespace {
+
+// What merges without regard to order.
+struct PlanTally {
+  double max_abs = 0;
+  double seen_max_abs = 0;
+  bool exact = true;         // the tiles
+  bool seen_exact = true;    // those that can be seen
+  bool leaves_exact = true;  // at their widths, where they can be seen
+  std::array<std::uint64_t, 6> leaves_by_width{};
+
+  void add(const PlanTally& other) {
+    max_abs = std::max(max_abs, other.max_abs);
+    seen_max_abs = std::max(seen_max_abs, other.seen_max_abs);
+    exact = exact && other.exact;
+    seen_exact = seen_exact && other.seen_exact;
+    leaves_exact = leaves_exact && other.leaves_exact;
+    for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
+  }
+};
+
+// Squared errors of a region.
+struct RegionErrors {
+  double seen = 0;      // of what reads a tile and can be seen
+  double expected = 0;  // of kept leaves and, where a scene weighs, tiles; weighted
+};
+
+// Plans one region after the other; different regions on different threads.
+class RegionPlanner {
+ public:
+  RegionPlanner(const GainRule& rule, const TreeRegions& tree) : rule_(rule), tree_(tree) {}
+
+  // Marks what can be seen.
+  void mark(const RegionRows& rows, LeafChoices& choices) const {
+    rows.for_each([&](const Index3& leaf, const LeafRow&) {
+      if (seen(rows, leaf)) choices.set_seen(tree_.mask_position(leaf));
+    });
+  }
+
+  // The leaves of an open region: `region.squared_error` is of those that became tiles.
+  RegionErrors add_leaves(const LeafChoices& choices, const RegionRows& rows, Region& region, PlanTally& tally) const {
+    CompensatedSum squares;
+    CompensatedSum seen_squares;
+    CompensatedSum expected;
+    rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+      const std::size_t position = tree_.mask_position(leaf);
+      const LeafWidth width = choices.width(position);
+      const std::int64_t voxels = tree_.leaves.voxels(leaf).voxels();
+      if (width != LeafWidth::tile) {
+        ++tally.leaves_by_width[bits_log2_of(width)];
+        const double weight = rule_.visibility == nullptr ? 1 : rule_.visibility->weight(rows.reach(leaf));
+        expected.add(weight * quantised_error(row, voxels, rule_.fill.background, width));
+        tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || keeps_every_bit(row, voxels, width));
+        return;
+      }
+      const float value = rule_.fill.leaf_value(row);
+      const bool exact = rule_.fill.exact(row, voxels, value);
+      squares.add(row.sse_about(value));
+      tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
+      tally.exact = tally.exact && exact;
+      if (rule_.visibility == nullptr) return;
+      add_seen_tile(rows, leaf, value, exact, seen_squares, expected, tally);
+    });
+    region.squared_error = squares.value();
+    return {seen_squares.value(), expected.value()};
+  }
+
+  // A region that reads `value` all over, as bits where `exact`.
+  RegionErrors add_tile(const RegionRows& rows, float value, bool exact, Region& region, PlanTally& tally) const {
+    region.squared_error = region.sums.sse_about(value);
+    tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
+    tally.exact = tally.exact && exact;
+    if (rule_.visibility == nullptr) return {};
+    CompensatedSum seen_squares;
+    CompensatedSum expected;
+    rows.for_each([&](const Index3& leaf, const LeafRow&) {
+      add_seen_tile(rows, leaf, value, exact, seen_squares, expected, tally);
+    });
+    return {seen_squares.value(), expected.value()};
+  }
+
+ private:
+  bool seen(const RegionRows& rows, const Index3& leaf) const {
+    return rule_.visibility == nullptr || rule_.visibility->shows(rows.reach(leaf));
+  }
+
+  void add_seen_tile(const RegionRows& rows, const Index3& leaf, float value, bool exact, CompensatedSum& squares,
+                     CompensatedSum& expected, PlanTally& tally) const {
+    const LeafRow& row = rows.at(leaf);
+    expected.add(rule_.tile_weight(rows.reach(leaf), value) * row.sse_about(value));
+    if (!seen(rows, leaf)) return;
+    squares.add(row.sse_about(value));
+    tally.seen_max_abs = std::max(tally.seen_max_abs, row.max_abs_about(value));
+    tally.seen_exact = tally.seen_exact && exact;
+  }
+
+  const GainRule& rule_;
+  const TreeRegions& tree_;
+};
+
+void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
+  tree.for_each_upper([&](std::int64_t u) {
+    Upper& upper = tree.uppers[static_cast<std::size_t>(u)];
+    if (!upper.open) return;
+    upper.node = counts.uppers++;
+    tree.for_each_region_of(u, [&](std::int64_t r) {
+      Region& region = tree.regions[static_cast<std::size_t>(r)];
+      if (!region.open) return;
+      region.node = counts.lowers++;
+      region.first_leaf = counts.leaves;
+      region.first_byte = counts.leaf_bytes;
+      counts.leaves += region.leaves;
+      counts.leaf_tiles += static_cast<std::uint64_t>(tree.leaf_box(r).voxels()) - region.leaves;
+      counts.leaf_bytes += region.leaf_bytes;
+    });
+  });
+}
+
+}  // namespace
+
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store) {
+  const GainRule& rule = selection.rule();
+  const RegionPlanner planner(rule, tree);
+  tbb::enumerable_thread_specific<PlanTally> tallies;
+  std::vector<RegionErrors> errors(tree.regions.size());
+  for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
+    Region& region = tree.regions[static_cast<std::size_t>(index)];
+    LeafChoices choices = selection.choices(index, region_rows);
+    planner.mark(region_rows, choices);
+    const LeafPlaces::Place total = LeafPlaces(choices).total();
+    region.leaves = total.leaves;
+    region.leaf_bytes = total.bytes;
+    store.write(index, choices);
+    RegionErrors& of_region = errors[static_cast<std::size_t>(index)];
+    if (region.open) {
+      of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
+    } else {
+      // One tile, of this region or of the whole upper node.
+      const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
+      const TileSums& sums = upper.open ? region.sums : upper.sums;
+      of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), sums.exact, region, tallies.local());
+    }
+  });
+
+  Team& team = rows.team();
+  team.gather(tree.regions);
+  team.gather(errors);
+  store.publish(team);
+  std::vector<PlanTally> parts(tallies.begin(), tallies.end());
+  team.concatenate(parts);
+  TreePlan plan;
+  PlanTally total;
+  for (const PlanTally& other : parts) total.add(other);
+  CompensatedSum squares;
+  for (const Region& region : tree.regions) squares.add(region.squared_error);
+  CompensatedSum seen;
+  CompensatedSum expected;
+  for (const RegionErrors& of_region : errors) {
+    seen.add(of_region.seen);
+    expected.add(of_region.expected);
+  }
+  plan.tiles = {squares.value(), total.max_abs, total.exact};
+  const bool weighed = rule.visibility != nullptr;
+  plan.seen_tiles = weighed ? TileErrors{seen.value(), total.seen_max_abs, total.seen_exact} : plan.tiles;
+  plan.expected_error = weighed ? expected.value() : plan.tiles.squared + expected.value();
+  plan.loses_nothing = plan.seen_tiles.exact && total.leaves_exact;
+  plan.leaves_by_width = total.leaves_by_width;
+
+  NodeCounts counts;
+  counts.root_tiles = tree.uppers.size();
+  counts.macrocells = static_cast<std::uint64_t>(make_lattice(tree.leaves.domain, kMacrocell).size());
+  number_in_file_order(tree, counts);
+  if (!rule.fill.active()) counts.leaf_tiles = 0;
+  plan.layout = make_layout(counts);
+  return plan;
+}
+
+}  // namespace weir

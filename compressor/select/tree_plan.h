@@ -1,0 +1,38 @@
+// From a selection to a plan of the file: the choices of every region, the node and
+// leaf ordinals in file order, every offset, and the error of the result, which
+// for float leaves is known before a single one is written.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "compressor/leaf/certificate.h"
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/selection.h"
+#include "compressor/select/tree_regions.h"
+#include "format/layout/tree_layout.h"
+
+namespace weir {
+
+struct TileErrors {
+  double squared = 0;
+  double max_abs = 0;
+  bool exact = true;  ///< every voxel reads the bits it should
+};
+
+struct TreePlan {
+  TreeLayout layout;  ///< without padding
+  // Exact. Leaves add theirs when they are encoded (leaf_record.h); float ones add none.
+  TileErrors tiles;            ///< of what reads a tile
+  TileErrors seen_tiles;       ///< of what of that can be seen: all, unless a scene says otherwise
+  double expected_error = 0;   ///< squared, of tiles and kept leaves, estimated; weighted where the rule weighs
+  bool loses_nothing = false;  ///< every bit that can be seen is read
+  /// Kept leaves by log2(bits a voxel), 5 for float32.
+  std::array<std::uint64_t, 6> leaves_by_width{};
+};
+
+/// One pass over the rows after Selection::choose: writes the choices, fills `leaves`, `leaf_bytes`, `node`,
+/// `first_leaf`, `first_byte` and `squared_error` of the regions and `node` of the upper nodes.
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& choices);
+
+}  // namespace weir

@@ -1,0 +1,123 @@
+// The inner levels of the tree over a domain, held in memory: one small record
+// per 128^3 region (a lower node or one upper-level tile) and per 4096^3 block
+// (an upper node or one root tile). 10^12 voxels are 477,000 regions, 46 MB.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "compressor/leaf/bounds.h"
+#include "compressor/leaf/certificate.h"
+#include "compressor/leaf/fill.h"
+#include "format/base/index.h"
+
+namespace weir {
+
+/// Sums over the finite values of an inner node's in-domain voxels.
+struct TileSums {
+  float mean = 0;  ///< rounded to float
+  float min = 0;   ///< valid where finite > 0
+  float max = 0;
+  bool exact = false;  ///< one tile of the fill value reads every voxel bit for bit
+  std::uint64_t finite = 0;
+  double residual = 0;  ///< sum of (value - mean)
+  double sse = 0;       ///< sum of (value - mean)^2
+
+  /// Sum of (value - fill)^2.
+  double sse_about(float fill) const;
+  double max_abs_about(float fill) const;
+};
+
+/// Value of the tile that replaces all voxels behind `sums`.
+inline float tile_value(const Fill& fill, const TileSums& sums) {
+  return fill.mode == FillMode::background || sums.finite == 0 ? fill.background : sums.mean;
+}
+
+struct Region {
+  TileSums sums;
+  double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
+  double tile_error = 0;         ///< squared error as one tile, weighted where a scene weighs
+  double opening_gain = 0;       ///< what of that its leaves' tiles save
+  MinMax reach = kNoBounds;      ///< over the reaches of its leaves; where a scene weighs
+  bool open = false;             ///< a lower node; otherwise one tile of the upper node
+  std::uint32_t leaves = 0;      ///< kept ones
+  std::uint64_t node = 0;        ///< ordinal of the lower node in the file
+  std::uint64_t first_leaf = 0;  ///< ordinal of its first kept leaf in the file
+  std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
+  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves
+  double squared_error = 0;      ///< of the finite voxels that read a tile
+};
+
+struct Upper {
+  TileSums sums;
+  double key = 0;
+  double tile_error = 0;    ///< squared error as one tile, weighted where a scene weighs
+  double opening_gain = 0;  ///< what of that its regions' tiles save
+  bool open = false;        ///< an upper node; otherwise one root tile
+  std::uint64_t node = 0;   ///< ordinal of the upper node in the file
+};
+
+struct TreeRegions {
+  NodeLattice leaves;
+  NodeLattice region_lattice;
+  NodeLattice upper_lattice;
+  std::vector<Region> regions;  ///< x fastest
+  std::vector<Upper> uppers;    ///< x fastest
+
+  explicit TreeRegions(const Box& domain);
+
+  /// Lattice positions of the leaves of region i.
+  Box leaf_box(std::int64_t region) const;
+  /// Position of a leaf in the masks of its lower node: x<<8 | y<<4 | z.
+  std::size_t mask_position(const Index3& leaf) const {
+    const Index3 node = leaves.first + leaf;
+    const Index3 entry = node - floor_div(node, kLowerLeaves) * kLowerLeaves;
+    return static_cast<std::size_t>(entry.x << 8 | entry.y << 4 | entry.z);
+  }
+  /// Linear index of the upper node above region i.
+  std::int64_t upper_of(std::int64_t region) const;
+  /// Position of a region in its upper node's table.
+  Index3 entry_of(std::int64_t region) const;
+
+  /// Calls visit(upper index) in file order: by x, then y, then z.
+  template <typename Visit>
+  void for_each_upper(Visit&& visit) const {
+    for_each_in_file_order({{0, 0, 0}, upper_lattice.count}, upper_lattice, visit);
+  }
+  /// Calls visit(region index) for the regions of one upper node in file order.
+  template <typename Visit>
+  void for_each_region_of(std::int64_t upper, Visit&& visit) const {
+    for_each_in_file_order(region_box(upper), region_lattice, visit);
+  }
+
+ private:
+  Box region_box(std::int64_t upper) const;
+
+  // NanoVDB sorts nodes and table entries by x first, z fastest.
+  template <typename Visit>
+  static void for_each_in_file_order(const Box& box, const NodeLattice& lattice, Visit&& visit) {
+    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(lattice.linear({x, y, z}));
+      }
+    }
+  }
+};
+
+/// Sums of several parts (leaves or regions), added in a fixed order. Two passes: all parts must be
+/// added to the mean before the first is added to the squares.
+class TileSumsBuilder {
+ public:
+  /// A part of `finite` values with this mean, sum of deviations from it, and extrema.
+  void add_mean(std::uint64_t finite, double mean, double residual, float min, float max);
+  void close_mean(float fallback);
+  void add_squares(std::uint64_t finite, double mean, double residual, double sse);
+
+  TileSums sums;
+
+ private:
+  CompensatedSum sum_;
+};
+
+}  // namespace weir

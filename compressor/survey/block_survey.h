@@ -1,0 +1,63 @@
+// The survey of blocks that come in any order, from several threads: where a
+// pass over the volume, a simulation, or several processes hand them over.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstddef>
+
+#include "compressor/leaf/leaf_summary.h"
+#include "compressor/survey/leaf_faces.h"
+#include "compressor/survey/leaf_store.h"
+#include "compressor/survey/row_store.h"
+#include "compressor/survey/survey.h"
+#include "compressor/survey/survey_tally.h"
+#include "format/base/trace.h"
+#include "ingest/plan/block_stream.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Thread-safe but for tally().
+class BlockSurvey {
+ public:
+  /// `rows` and, where not null, `faces` get what is kept of each leaf; all must outlive the object. `widths` as for
+  /// survey_volume.
+  BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace);
+
+  /// Who surveys the leaves of a block: the calling thread, or TBB's workers too.
+  enum class Sharing { alone, shared };
+  /// Surveys all leaves of `leaf_box` (lattice positions), whose in-domain voxels are those of `block`. Each leaf once.
+  void add(const Block& block, const Box& leaf_box, Sharing sharing);
+
+  /// Of all blocks so far; no add may be in progress.
+  SurveyTally tally() const;
+
+  /// The survey that `tally`, of the whole volume, sums up.
+  Survey result(const SurveyTally& tally) const;
+
+ private:
+  // Smallest value and number of values of an 8- or 16-bit integer type; zero values where they are scaled, and for
+  // wider types.
+  struct ValueTable {
+    int offset = 0;
+    std::size_t size = 0;
+  };
+  // What one thread has seen.
+  struct Tally : SurveyTally {
+    UniformDigest uniform;
+  };
+  class Leaves;
+  static ValueTable value_table(const SourceInfo& info);
+
+  RowStore& rows_;
+  LeafStore<LeafFaces>* faces_;
+  bool widths_;
+  bool has_missing_;  // some values of the source stand for "no data"
+  Trace* trace_;
+  ValueTable table_;
+  Tally fresh_;
+  tbb::enumerable_thread_specific<Tally> tallies_;
+};
+
+}  // namespace weir

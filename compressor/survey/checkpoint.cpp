@@ -1,0 +1,145 @@
+#include "compressor/survey/checkpoint.h"
+
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Raised whenever what a checkpoint or one of its files means changes.
+constexpr std::string_view kFormat = "weir checkpoint 3 ";
+
+// JSON has no infinity, and not every reader tells -0.0 from 0.0.
+Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
+Json bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+float float_of(const Json& json) { return std::bit_cast<float>(json.get<std::uint32_t>()); }
+double double_of(const Json& json) { return std::bit_cast<double>(json.get<std::uint64_t>()); }
+
+Json to_json(const BoxSet& set) {
+  Json boxes = Json::array();
+  for (const Box& b : set.boxes()) boxes.push_back({b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z});
+  return boxes;
+}
+
+BoxSet boxes_of(const Json& json) {
+  BoxSet set;
+  for (const Json& b : json) {
+    const auto at = [&](std::size_t i) { return b.at(i).get<std::int64_t>(); };
+    set.add({{at(0), at(1), at(2)}, {at(3), at(4), at(5)}});
+  }
+  return set;
+}
+
+Json to_json(const SurveyTally& t) {
+  return {
+      {"min", bits(t.min)},
+      {"max", bits(t.max)},
+      {"finite", t.finite},
+      {"missing", t.missing},
+      {"non_finite", t.non_finite},
+      {"first_non_finite", t.first_non_finite},
+      {"first_non_finite_value", bits(t.first_non_finite_value)},
+      {"histogram",
+       {{"exponent", t.histogram.exponent()}, {"base", bits(t.histogram.base())}, {"counts", t.histogram.counts()}}},
+      {"value_counts", t.value_counts},
+      {"loss",
+       {{"inexact", t.loss.inexact}, {"overflow", t.loss.overflow}, {"max_abs_error", bits(t.loss.max_abs_error)}}}};
+}
+
+SurveyTally tally_of(const Json& json) {
+  SurveyTally t;
+  t.min = float_of(json.at("min"));
+  t.max = float_of(json.at("max"));
+  json.at("finite").get_to(t.finite);
+  json.at("missing").get_to(t.missing);
+  json.at("non_finite").get_to(t.non_finite);
+  json.at("first_non_finite").get_to(t.first_non_finite);
+  t.first_non_finite_value = float_of(json.at("first_non_finite_value"));
+  const Json& histogram = json.at("histogram");
+  const auto counts = histogram.at("counts").get<std::vector<std::uint64_t>>();
+  if (counts.size() > RangeHistogram::kMaxBins) throw std::out_of_range("histogram");
+  t.histogram = RangeHistogram::restored(histogram.at("exponent").get<int>(), double_of(histogram.at("base")), counts);
+  json.at("value_counts").get_to(t.value_counts);
+  const Json& loss = json.at("loss");
+  loss.at("inexact").get_to(t.loss.inexact);
+  loss.at("overflow").get_to(t.loss.overflow);
+  t.loss.max_abs_error = double_of(loss.at("max_abs_error"));
+  return t;
+}
+
+Checkpoint checkpoint_of(const Json& json) {
+  Checkpoint c;
+  json.at("identity").get_to(c.identity);
+  json.at("spill_directory").get_to(c.spill_directory);
+  json.at("files").get_to(c.files);
+  c.survey = {tally_of(json.at("tally")), boxes_of(json.at("surveyed"))};
+  for (std::size_t i = 0; i < c.plan.bytes.size(); ++i) {
+    c.plan.bytes[i] = static_cast<std::byte>(json.at("plan").at(i).get<unsigned>());
+  }
+  c.encoded = boxes_of(json.at("encoded"));
+  if (json.contains("background")) {
+    const Json& found = json["background"];
+    c.background = {float_of(found.at("value")), found.at("method").get<std::string>(), double_of(found.at("share"))};
+  }
+  if (json.contains("attempt")) {
+    const Json& attempt = json["attempt"];
+    c.attempt = {attempt.at("number").get<int>(), double_of(attempt.at("planned_error")),
+                 static_cast<Encoding>(attempt.at("encoding").get<int>()), attempt.at("seen").get<std::string>()};
+    if (attempt.contains("met")) c.attempt->met = double_of(attempt["met"]);
+  }
+  return c;
+}
+
+Digest digest_of(std::string_view text) { return piece_digest(std::as_bytes(std::span(text))); }
+
+}  // namespace
+
+std::string to_text(const Checkpoint& c) {
+  Json json{{"identity", c.identity},
+            {"spill_directory", c.spill_directory},
+            {"files", c.files},
+            {"surveyed", to_json(c.survey.done)},
+            {"tally", to_json(c.survey.tally)},
+            {"plan", c.plan.bytes},
+            {"encoded", to_json(c.encoded)}};
+  if (c.background) {
+    json["background"] = {
+        {"value", bits(c.background->value)}, {"method", c.background->method}, {"share", bits(c.background->share)}};
+  }
+  if (c.attempt) {
+    json["attempt"] = {{"number", c.attempt->number},
+                       {"planned_error", bits(c.attempt->planned_error)},
+                       {"encoding", static_cast<int>(c.attempt->encoding)},
+                       {"seen", c.attempt->seen}};
+    if (c.attempt->met) json["attempt"]["met"] = bits(*c.attempt->met);
+  }
+  // A path may hold any byte.
+  const std::string body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return cat(kFormat, digest_of(body).hex(), '\n', body);
+}
+
+std::optional<Checkpoint> parse_checkpoint(std::string_view text) {
+  constexpr std::size_t kDigits = 32;
+  const std::size_t head = kFormat.size() + kDigits + 1;
+  if (!text.starts_with(kFormat) || text.size() < head || text[head - 1] != '\n') return std::nullopt;
+  const std::string_view body = text.substr(head);
+  if (text.substr(kFormat.size(), kDigits) != digest_of(body).hex()) return std::nullopt;
+  try {
+    return checkpoint_of(Json::parse(body));
+  } catch (const std::exception&) {
+    return std::nullopt;  // whole, and yet not what to_text writes
+  }
+}
+
+std::string tally_text(const SurveyTally& tally) { return to_json(tally).dump(); }
+
+SurveyTally parse_tally(std::string_view text) { return tally_of(Json::parse(text)); }
+
+}  // namespace weir

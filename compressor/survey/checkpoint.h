@@ -1,0 +1,52 @@
+// How far a conversion has come: what, together with the files it names, is
+// enough to go on from there and end with the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compressor/leaf/encoding.h"
+#include "compressor/survey/background.h"
+#include "compressor/survey/survey_tally.h"
+#include "format/base/box_set.h"
+#include "format/io/digest.h"
+
+namespace weir {
+
+/// What a conversion is, by name: two with the same entries give the same bytes.
+using ConversionIdentity = std::map<std::string, std::string>;
+
+struct Checkpoint {
+  /// An attempt at an error target: the request that the encode pass works on.
+  struct Attempt {
+    int number = 0;
+    double planned_error = 0;  ///< FileRequest::planned_error
+    Encoding encoding = Encoding::float32;
+    std::string seen;                ///< visible_values of the scene that it was made for
+    std::optional<double> met = {};  ///< the planned error of an earlier file that met the target
+  };
+
+  ConversionIdentity identity;
+  std::string spill_directory;                 ///< absolute; empty: beside the journal
+  std::map<std::string, std::uint64_t> files;  ///< name to bytes, of those that all below stands on
+  SurveyState survey;
+  std::optional<Background> background;  ///< once it is found
+  std::optional<Attempt> attempt;
+  Digest plan;     ///< of the file that is being encoded (encode_attempts.h)
+  BoxSet encoded;  ///< positions of the leaf lattice whose leaves and records are written
+};
+
+/// A line with version and digest, then JSON.
+std::string to_text(const Checkpoint& checkpoint);
+
+/// A tally alone, and back: nothing is lost.
+std::string tally_text(const SurveyTally& tally);
+SurveyTally parse_tally(std::string_view text);
+
+/// Nothing where `text` is not a whole one of this version.
+std::optional<Checkpoint> parse_checkpoint(std::string_view text);
+
+}  // namespace weir

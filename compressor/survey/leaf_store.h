@@ -1,0 +1,71 @@
+// One fixed-size record per leaf of a lattice, in a spill file in linear order (x
+// fastest), so that 10^12 voxels are a matter of disk.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "format/base/index.h"
+#include "format/io/file_system.h"
+
+namespace weir {
+
+/// Thread-safe: positioned reads and writes only.
+template <typename Record>
+class LeafStore {
+  static_assert(std::is_trivially_copyable_v<Record>, "records are spilled as they are");
+
+ public:
+  /// Reserves the records of `leaves` in `file`; a full disk is known here.
+  LeafStore(std::shared_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
+    file_->preallocate(static_cast<std::uint64_t>(leaves.size()) * sizeof(Record));
+  }
+
+  const NodeLattice& leaves() const { return leaves_; }
+  File& file() { return *file_; }
+
+  /// Consecutive leaves, from linear index `first` on.
+  void write(std::int64_t first, std::span<const Record> records) {
+    file_->write_at(static_cast<std::uint64_t>(first) * sizeof(Record), std::as_bytes(records));
+  }
+  void read(std::int64_t first, std::span<Record> records) const {
+    file_->read_at(static_cast<std::uint64_t>(first) * sizeof(Record), std::as_writable_bytes(records));
+  }
+
+  /// The leaves in `box` (lattice positions), x fastest.
+  void write_box(const Box& box, std::span<const Record> records) {
+    for_each_run(box,
+                 [&](std::int64_t first, std::size_t at, std::size_t run) { write(first, records.subspan(at, run)); });
+  }
+  void read_box(const Box& box, std::vector<Record>& records) const {
+    records.resize(static_cast<std::size_t>(box.voxels()));
+    for_each_run(box, [&](std::int64_t first, std::size_t at, std::size_t run) {
+      read(first, std::span(records).subspan(at, run));
+    });
+  }
+
+ private:
+  // Runs of whole x rows, or of whole planes, are consecutive in the file.
+  template <typename Visit>
+  void for_each_run(const Box& box, const Visit& visit) const {
+    const Index3 extent = box.extent();
+    const std::int64_t run_rows = extent.x == leaves_.count.x ? extent.y : 1;
+    const auto run = static_cast<std::size_t>(extent.x * run_rows);
+    std::size_t at = 0;
+    for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+      for (std::int64_t y = box.lo.y; y < box.hi.y; y += run_rows) {
+        visit(leaves_.linear({box.lo.x, y, z}), at, run);
+        at += run;
+      }
+    }
+  }
+
+  std::shared_ptr<File> file_;
+  NodeLattice leaves_;
+};
+
+}  // namespace weir

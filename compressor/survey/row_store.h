@@ -1,0 +1,37 @@
+// The survey's rows, 64 bytes a leaf, and, where a scene decides what matters,
+// which values can be seen around each.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "compressor/leaf/leaf_row.h"
+#include "compressor/survey/leaf_store.h"
+#include "compressor/team/team.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+/// Thread-safe but for set_reaches.
+class RowStore : public LeafStore<LeafRow> {
+ public:
+  /// A walk over regions holds the rows of up to `segment_regions` of them per thread. `team` are the processes that
+  /// fill the store together, each the rows of its own leaves (region_share.h), and decide what comes of them.
+  RowStore(std::shared_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions, Team& team = no_team())
+      : LeafStore(std::move(file), leaves), segment_regions_(segment_regions), team_(team) {}
+
+  std::int64_t segment_regions() const { return segment_regions_; }
+  Team& team() const { return team_; }
+
+  /// Of each leaf (leaf_reach.h); null where everything counts alike.
+  const LeafStore<MinMax>* reaches() const { return reaches_.get(); }
+  void set_reaches(std::unique_ptr<LeafStore<MinMax>> reaches) { reaches_ = std::move(reaches); }
+
+ private:
+  std::int64_t segment_regions_;
+  Team& team_;
+  std::unique_ptr<LeafStore<MinMax>> reaches_;
+};
+
+}  // namespace weir

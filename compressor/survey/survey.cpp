@@ -1,0 +1,93 @@
+#include "compressor/survey/survey.h"
+
+#include "compressor/survey/block_survey.h"
+#include "compressor/survey/checkpoint.h"
+#include "compressor/team/region_share.h"
+#include "format/io/digest.h"
+
+namespace weir {
+namespace {
+
+// What each rank has counted becomes what all have.
+void merge_tallies(SurveyTally& tally, Team& team) {
+  if (team.alone()) return;
+  const auto text_of = [](const Team::Bytes& bytes) {
+    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  const auto bytes_of = [](const SurveyTally& some) {
+    const std::string text = tally_text(some);
+    const auto bytes = std::as_bytes(std::span(text));
+    return Team::Bytes(bytes.begin(), bytes.end());
+  };
+  Team::Bytes part = bytes_of(tally);
+  team.merge(part, [&](Team::Bytes& lower, const Team::Bytes& higher) {
+    SurveyTally both = parse_tally(text_of(lower));
+    both.merge(parse_tally(text_of(higher)));
+    lower = bytes_of(both);
+  });
+  tally = parse_tally(text_of(part));
+}
+
+}  // namespace
+
+Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
+                     Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
+                     const Pauses& pauses) {
+  BlockSurvey survey(source.info(), rows, faces, widths, options.trace);
+  SurveyState from_nothing;
+  SurveyState& known = state == nullptr ? from_nothing : *state;
+  const SurveyTally before = known.tally;
+
+  Team& team = rows.team();
+  const OwnLeaves own(plan.lattice, team);
+  std::vector<Box> leaf_boxes;
+  for (std::int64_t i = 0; i < plan.size(); ++i) {
+    for (const Box& part : known.done.missing_from(plan.leaf_box(i))) {
+      for (const Box& own_part : own.of(part)) leaf_boxes.push_back(own_part);
+    }
+  }
+  std::vector<Box> boxes;
+  boxes.reserve(leaf_boxes.size());
+  for (const Box& box : leaf_boxes) boxes.push_back(plan.voxel_box(box));
+
+  StreamOptions stream = options;
+  std::size_t told = 0;
+  const auto tell = [&](std::size_t boxes_done) {
+    for (; told < boxes_done; ++told) known.done.add(leaf_boxes[told]);
+    known.tally = before;
+    known.tally.merge(survey.tally());
+  };
+  if (pauses.due) {
+    stream.at_rest = [&](std::size_t boxes_done) {
+      if (!pauses.due()) return;
+      tell(boxes_done);
+      pauses.save();
+    };
+  }
+  const bool in_place = reading == Reading::in_place;
+  const auto sharing = in_place ? BlockSurvey::Sharing::alone : BlockSurvey::Sharing::shared;
+  team.run([&] {
+    (in_place ? work_in_place : stream_blocks)(
+        source, boxes, stream, [&](const Block& block) { survey.add(block, leaf_boxes[block.index], sharing); });
+  });
+  tell(boxes.size());
+  merge_tallies(known.tally, team);
+  team.publish(rows.file());
+  if (faces != nullptr) team.publish(faces->file());
+  return survey.result(known.tally);
+}
+
+std::string source_digest(const RowStore& rows) {
+  constexpr std::int64_t kPiece = 4096;
+  DigestStream digest;
+  std::vector<LeafRow> piece;
+  const std::int64_t total = rows.leaves().size();
+  for (std::int64_t first = 0; first < total; first += kPiece) {
+    piece.resize(static_cast<std::size_t>(std::min(kPiece, total - first)));
+    rows.read(first, piece);
+    for (const LeafRow& row : piece) digest.update(row.digest);
+  }
+  return digest.digest().hex();
+}
+
+}  // namespace weir

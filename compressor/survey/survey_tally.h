@@ -1,0 +1,39 @@
+// What a survey has counted so far: all that is known of the volume beyond the
+// rows of its leaves. Merges without regard to order.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "compressor/survey/range_histogram.h"
+#include "format/base/box_set.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+struct SurveyTally {
+  static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
+
+  float min = std::numeric_limits<float>::infinity();  ///< of the finite values
+  float max = -std::numeric_limits<float>::infinity();
+  std::uint64_t finite = 0;                  ///< voxels
+  std::uint64_t missing = 0;                 ///< voxels the source declares to hold no data
+  std::uint64_t non_finite = 0;              ///< voxels, the missing ones aside
+  std::int64_t first_non_finite = kNowhere;  ///< linear voxel index in the domain
+  float first_non_finite_value = 0;
+  RangeHistogram histogram;                 ///< of the finite values that `value_counts` does not count
+  std::vector<std::uint64_t> value_counts;  ///< of every value of an 8- or 16-bit type
+  ConversionLoss loss;
+
+  /// `other` is of the same volume.
+  void merge(const SurveyTally& other);
+};
+
+/// A survey between two blocks: with the rows (and faces) of `done`, enough to go on from there.
+struct SurveyState {
+  SurveyTally tally;  ///< of the leaves in `done`
+  BoxSet done;        ///< positions of the leaf lattice
+};
+
+}  // namespace weir

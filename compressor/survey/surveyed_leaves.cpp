@@ -1,0 +1,50 @@
+#include "compressor/survey/surveyed_leaves.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "format/base/text.h"
+#include "ingest/files/file_state.h"
+#include "ingest/source/extent.h"
+
+namespace weir {
+
+SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info)
+    : leaves_(rows.leaves()), leaf_box_(leaf_box), info_(info) {
+  std::vector<LeafRow> layer;  // one at a time: a row has more bytes
+  digests_.reserve(static_cast<std::size_t>(leaf_box.voxels()));
+  for (std::int64_t z = leaf_box.lo.z; z < leaf_box.hi.z; ++z) {
+    const Box box{{leaf_box.lo.x, leaf_box.lo.y, z}, {leaf_box.hi.x, leaf_box.hi.y, z + 1}};
+    rows.read_box(box, layer);
+    for (const LeafRow& row : layer) digests_.push_back(row.digest);
+  }
+}
+
+void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, const Box& voxels) const {
+  const Box inside = leaves_.voxels(leaf);
+  const Index3 extent = inside.extent();
+  const Index3 rows = voxels.extent();
+  std::array<float, kLeafVoxels> own;
+  float* out = own.data();
+  const float* const corner = values.data() + linear_index(inside.lo - voxels.lo, rows);
+  for (std::int64_t z = 0; z < extent.z; ++z) {
+    for (std::int64_t y = 0; y < extent.y; ++y, out += extent.x) {
+      const float* const row = corner + rows.x * (y + rows.y * z);
+      if (extent.x == kLeafDim) {  // a length the compiler knows
+        std::memcpy(out, row, kLeafDim * sizeof(float));
+      } else {
+        std::copy_n(row, extent.x, out);
+      }
+    }
+  }
+  const Digest& surveyed = digests_[static_cast<std::size_t>(linear_index(leaf - leaf_box_.lo, leaf_box_.extent()))];
+  if (leaf_digest({own.data(), static_cast<std::size_t>(volume(extent))}) != surveyed) fail(inside);
+}
+
+void SurveyedLeaves::fail(const Box& inside) const {
+  check_unchanged(info_.files);
+  throw changed_error(info_.path, cat("voxels ", box_text(inside), " have other values than a moment ago"));
+}
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// What the survey says of the leaves that the encode pass comes to. Their digests are held against what it reads: of a
+// source that changed in between, one would certify the other's values.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compressor/survey/row_store.h"
+#include "format/base/index.h"
+#include "format/io/digest.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Of a box of leaves, 16 bytes each. Thread-safe.
+class SurveyedLeaves {
+ public:
+  /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object.
+  SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info);
+
+  /// Throws Error(input) where the in-domain values of `leaf` (a lattice position in the box) are not those that were
+  /// surveyed. `values`, x fastest, are those over `voxels`, which hold the leaf's. Costs about 0.2 us.
+  void check(const Index3& leaf, std::span<const float> values, const Box& voxels) const;
+
+ private:
+  [[noreturn]] void fail(const Box& inside) const;
+
+  const NodeLattice& leaves_;
+  Box leaf_box_;
+  std::vector<Digest> digests_;
+  const SourceInfo& info_;
+};
+
+}  // namespace weir

@@ -1,0 +1,105 @@
+// What `weir watch CONFIG.toml` is asked to do: one service, any number of
+// watched directories. Loading checks everything that can be known without
+// looking at volumes, so that a reload with a mistake in it changes nothing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config/convert_syntax.h"
+#include "daemon/config/listen_address.h"
+#include "daemon/config/priority.h"
+
+namespace weir {
+
+enum class IoClass { none, best_effort, idle };  ///< none: as the daemon itself
+
+/// [service]. Paths are absolute.
+struct ServiceConfig {
+  std::string state;                              ///< SQLite file; default: weir.db beside the configuration
+  ListenAddress listen{"127.0.0.1", 8470};        ///< port 0: any free one, see port_file
+  std::string control_socket;                     ///< Unix socket; empty: none. With it, `listen` only shows
+  std::string port_file;                          ///< the port that was bound is written there; empty: nowhere
+  std::string token;                              ///< bearer token; never empty where others than loopback may connect
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon and all jobs together
+  int jobs = 1;                                   ///< concurrent conversions
+  int threads = 0;                                ///< of each job; 0: all of the machine's
+  int nice = 0;                                   ///< of the jobs, 0 to 19
+  IoClass io_class = IoClass::none;               ///< of the jobs
+  std::uint64_t bandwidth = 0;     ///< bytes per second that all conversions together may read and write; 0: no limit
+  std::string work_dir;            ///< spill files; empty: a hidden directory beside each output
+  double grace_s = 30;             ///< what a running job is given after SIGTERM
+  double history_days = 90;        ///< that jobs of deleted sources are kept for after their end
+  std::string log_file;            ///< key `log`; empty: stderr
+  std::string log_level = "info";  ///< trace, debug, info, warn, error or off
+  std::uint64_t log_size = std::uint64_t{10} << 20;  ///< bytes at which the log file is rotated; 0: never
+  int log_files = 5;                                 ///< rotated files kept
+};
+
+/// Taken from `memory` for the daemon itself.
+inline constexpr std::uint64_t kDaemonMemory = std::uint64_t{64} << 20;
+
+/// The ceiling of one job in bytes: an equal share of what the daemon leaves.
+std::uint64_t job_memory(const ServiceConfig& service);
+
+enum class Completion { automatic, close, rename, marker, size, stable };
+enum class WatchMethod { automatic, inotify, poll };
+enum class AfterDone { keep, delete_after_verify };
+enum class Follow { inside, anywhere };  ///< where the files may lie that a source names
+
+/// Whether the writer itself says that a file is done: by a rename, or by a marker.
+constexpr bool says_when_done(Completion completion) {
+  return completion == Completion::rename || completion == Completion::marker;
+}
+
+std::string_view completion_name(Completion completion);  ///< "auto", "close", ...
+std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
+std::string_view priority_name(Priority priority);        ///< "newest", "oldest"
+std::string_view after_done_name(AfterDone source);       ///< "keep", "delete-after-verify"
+std::string_view follow_name(Follow follow);              ///< "inside", "anywhere"
+std::string_view io_class_name(IoClass io_class);         ///< "none", "best-effort", "idle"
+
+/// One [[watch]]. Directories are absolute and lexically normal, without a trailing slash.
+struct WatchConfig {
+  std::string label;      ///< unique; names the watch in state, logs and metrics; default: its directory
+  std::string directory;  ///< need not exist yet
+  bool recursive = false;
+  std::string output;                ///< sub-directories of a recursive watch are repeated below it
+  std::string name;                  ///< template of output names, "{stem}.nvdb"; empty: convert's default
+  std::vector<std::string> include;  ///< globs; empty: everything a source can open
+  std::vector<std::string> exclude;  ///< globs
+  /// Absolute; these and all below them are never sources: outputs of every watch, work directory, the
+  /// service's own files. Only what lies in `directory`.
+  std::vector<std::string> excluded_paths;
+  Completion complete = Completion::automatic;
+  std::string marker = ".done";  ///< appended to a source's name
+  double settle_s = 2;           ///< size and mtime unchanged for so long
+  WatchMethod watch = WatchMethod::automatic;
+  double poll_interval_s = 1;
+  Priority priority = Priority::oldest;
+  AfterDone source = AfterDone::keep;
+  double delete_after_s = 600;     ///< between the end of a job and the deletion of its source
+  Follow follow = Follow::inside;  ///< inside: in `directory` and below, symbolic links resolved
+  bool thumbnails = true;
+  std::vector<std::string> convert_options;  ///< arguments of `weir convert`, in the form of ConvertSyntax::check
+
+  /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
+  std::optional<std::string> convert_option(std::string_view option) const;
+  bool operator==(const WatchConfig&) const = default;
+};
+
+struct DaemonConfig {
+  std::string path;  ///< absolute
+  ServiceConfig service;
+  std::vector<WatchConfig> watches;
+};
+
+/// Reads and checks `path`. Relative paths in it are relative to its directory. Throws Error(input) with
+/// "PATH:LINE:COLUMN: ..." for an unknown key, a wrong value or a contradiction, Error(input) or Error(io)
+/// where a file cannot be read.
+DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert);
+
+}  // namespace weir

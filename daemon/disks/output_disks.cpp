@@ -1,0 +1,136 @@
+#include "daemon/disks/output_disks.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "format/io/real_path.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+
+constexpr seconds kWindow{600};
+constexpr seconds kInterval{3};
+constexpr seconds kPatience{10};  ///< longer than a look takes
+constexpr double kYear_s = 365.0 * 24 * 3600;
+
+// The highest directory above `directory` that is on the same file system.
+std::string mount_of(const std::string& directory, std::uint64_t device) {
+  fs::path at = real_path(directory);
+  std::string mount = at.string();
+  for (;; at = at.parent_path()) {
+    struct stat status {};
+    if (::stat(at.c_str(), &status) == 0) {
+      if (static_cast<std::uint64_t>(status.st_dev) != device) return mount;
+      mount = at.string();
+    }
+    if (at == at.parent_path()) return mount;
+  }
+}
+
+}  // namespace
+
+// Shared with its thread, which may outlive the object where a file server hangs; meanwhile it looks at no other one,
+// and their figures stay as they were.
+struct OutputDisks::Looker {
+  struct Place {
+    std::string directory;
+    std::string mount;  ///< empty: not looked at yet
+    DiskRoom room;
+    std::optional<Time> begun;  ///< of the look that goes on
+  };
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<Place> places;
+  bool again = true;
+  bool over = false;
+
+  void run() {
+    std::unique_lock lock(mutex);
+    while (!over) {
+      again = false;
+      for (std::size_t i = 0; i < places.size() && !over && !again; ++i) {
+        const std::string directory = places[i].directory;
+        places[i].begun = std::chrono::steady_clock::now();
+        lock.unlock();
+        const DiskRoom room = room_in(directory);
+        std::string mount = mount_of(directory, room.device);
+        lock.lock();
+        if (again || over) break;  // the places are others
+        places[i].room = room;
+        places[i].mount = std::move(mount);
+        places[i].begun.reset();
+      }
+      changed.wait_for(lock, kInterval, [&] { return over || again; });
+    }
+  }
+};
+
+OutputDisks::OutputDisks() : looker_(std::make_shared<Looker>()) {
+  std::thread([looker = looker_] { looker->run(); }).detach();
+}
+
+OutputDisks::~OutputDisks() {
+  const std::lock_guard lock(looker_->mutex);
+  looker_->over = true;
+  looker_->changed.notify_all();
+}
+
+void OutputDisks::watch(const std::vector<std::string>& directories) {
+  const std::lock_guard lock(looker_->mutex);
+  const std::vector<Looker::Place> before = std::exchange(looker_->places, {});
+  for (const std::string& directory : directories) {
+    const auto known = std::find_if(before.begin(), before.end(),
+                                    [&](const Looker::Place& place) { return place.directory == directory; });
+    looker_->places.push_back(known == before.end() ? Looker::Place{directory, "", {}, {}} : *known);
+  }
+  looker_->again = true;
+  looker_->changed.notify_all();
+}
+
+void OutputDisks::written(const std::string& directory, std::uint64_t bytes, Time now) {
+  const std::lock_guard lock(looker_->mutex);
+  const auto& places = looker_->places;
+  const auto at = std::find_if(places.begin(), places.end(),
+                               [&](const Looker::Place& place) { return lies_below(directory, place.directory); });
+  if (at == places.end() || at->mount.empty()) return;
+  rates_.try_emplace(at->room.device, kWindow, start_).first->second.add(bytes, now);
+}
+
+std::vector<OutputDisk> OutputDisks::disks(Time now) const {
+  std::vector<OutputDisk> disks;
+  const std::lock_guard lock(looker_->mutex);
+  for (const Looker::Place& place : looker_->places) {
+    if (place.mount.empty()) continue;
+    const auto known = std::find_if(disks.begin(), disks.end(),
+                                    [&](const OutputDisk& disk) { return disk.room.device == place.room.device; });
+    if (known != disks.end()) {
+      if (std::find(known->directories.begin(), known->directories.end(), place.directory) ==
+          known->directories.end()) {
+        known->directories.push_back(place.directory);
+      }
+      continue;
+    }
+    OutputDisk& disk = disks.emplace_back(OutputDisk{place.mount, {place.directory}, place.room, 0, {}, {}});
+    if (const auto rate = rates_.find(place.room.device); rate != rates_.end()) {
+      disk.written_bytes_per_s = rate->second.at(now).bytes_per_s;
+    }
+    const double fills_in_s = static_cast<double>(place.room.free) / disk.written_bytes_per_s;
+    if (fills_in_s < kYear_s) disk.fills_in_s = fills_in_s;
+    if (!place.begun) continue;
+    const auto silent = std::chrono::duration_cast<seconds>(now - *place.begun);
+    if (silent > kPatience) disk.silent = silent;
+  }
+  return disks;
+}
+
+}  // namespace weir

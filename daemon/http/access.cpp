@@ -1,0 +1,71 @@
+#include "daemon/http/access.h"
+
+#include <algorithm>
+
+#include "daemon/config/listen_address.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(text.begin(), text.end(), result.begin(), [](char c) { return lower(c); });
+  return result;
+}
+
+// "localhost:8470", "127.0.0.1", "[::1]:8470". The port may be another: that of a tunnel.
+bool names_loopback(std::string_view host) {
+  if (host.starts_with('[')) {
+    const std::size_t end = host.find(']');
+    return end != std::string_view::npos && is_loopback(host.substr(1, end - 1));
+  }
+  return is_loopback(lower(host.substr(0, host.find(':'))));
+}
+
+// The media type without its parameters.
+bool is_json(std::string_view content_type) {
+  std::string_view type = content_type.substr(0, content_type.find(';'));
+  while (type.ends_with(' ')) type.remove_suffix(1);
+  return lower(type) == "application/json";
+}
+
+bool has_token(const AccessRules& rules, std::string_view authorization) {
+  constexpr std::string_view kScheme = "bearer ";
+  return lower(authorization.substr(0, kScheme.size())) == kScheme &&
+         same_secret(rules.token, authorization.substr(kScheme.size()));
+}
+
+}  // namespace
+
+bool same_secret(std::string_view secret, std::string_view given) {
+  // Always as many steps as `given` has bytes, none of which depends on what was equal so far.
+  std::size_t difference = secret.size() ^ given.size();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const char expected = secret.empty() ? '\0' : secret[i % secret.size()];
+    difference |= static_cast<unsigned char>(expected ^ given[i]);
+  }
+  return difference == 0;
+}
+
+std::optional<HttpResponse> refuse(const AccessRules& rules, const HttpRequest& request, bool open) {
+  if (rules.loopback && !request.host.empty() && !names_loopback(request.host)) {
+    return error_response(421, cat("Host ", request.host, " is not this machine; ask for localhost or 127.0.0.1"));
+  }
+  if (!open && !rules.token.empty() && !has_token(rules, request.authorization)) {
+    HttpResponse response = error_response(401, "this needs the service's token: Authorization: Bearer TOKEN");
+    response.headers.emplace_back("WWW-Authenticate", "Bearer");
+    return response;
+  }
+  if (request.method == "POST" && !rules.control_at.empty()) {
+    return error_response(403, cat("this address only shows; ask at ", rules.control_at, " (--address, --config)"));
+  }
+  if (request.method == "POST" && !request.marked && !is_json(request.content_type)) {
+    return error_response(403, "a POST needs Content-Type: application/json or an X-Weir header");
+  }
+  return std::nullopt;
+}
+
+}  // namespace weir

@@ -1,0 +1,285 @@
+#include "daemon/http/api.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "daemon/http/api_json.h"
+#include "daemon/http/metrics.h"
+#include "daemon/http/page_files.h"
+#include "daemon/http/request_target.h"
+#include "daemon/jobs/thumbnail_file.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+// No script, style or picture from anywhere else, none inside the page's text, in no other page's frame.
+constexpr std::string_view kContentPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+// A request and where it goes, as a route's function sees it.
+struct Call {
+  Control& control;
+  const RequestTarget& target;
+  bool trusted;                   ///< may see data
+  const std::string& control_at;  ///< AccessRules::control_at
+};
+
+struct Route {
+  std::string_view method;
+  std::string_view path;  ///< "*" stands for any one segment
+  bool open;              ///< needs no token
+  HttpResponse (*answer)(const Call&);
+};
+
+HttpResponse ok(const OrderedJson& json) {
+  HttpResponse response;
+  response.body = json_line(json);
+  return response;
+}
+
+HttpResponse text(unsigned status, std::string body, std::string type = "text/plain; charset=utf-8") {
+  return {status, std::move(type), std::move(body), {}};
+}
+
+HttpResponse no_such_job(const std::string& id) { return error_response(404, cat("there is no job ", id)); }
+
+std::optional<std::int64_t> job_id(const Call& call) { return parse_int(call.target.path[2]); }
+
+std::string_view page_type(std::string_view name) {
+  if (name.ends_with(".html")) return "text/html; charset=utf-8";
+  if (name.ends_with(".css")) return "text/css; charset=utf-8";
+  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
+  if (name.ends_with(".svg")) return "image/svg+xml";
+  return "application/octet-stream";
+}
+
+HttpResponse page_file(const Call& call) {
+  const std::string name = call.target.path.empty() ? "index.html" : call.target.path[1];
+  for (const PageFile& file : page_files()) {
+    if (file.name == name) return text(200, std::string(file.content), std::string(page_type(name)));
+  }
+  return error_response(404, cat("the page has no file ", name));
+}
+
+HttpResponse health(const Call& /*call*/) { return text(200, "ok\n"); }
+
+HttpResponse ready(const Call& call) {
+  const Readiness readiness = call.control.readiness();
+  if (readiness.ready) return text(200, "ready\n");
+  return text(503, call.trusted ? cat("not ready: ", readiness.reason, '\n') : "not ready\n");
+}
+
+HttpResponse metrics(const Call& call) {
+  return text(200, metrics_text(call.control.status(), call.control.metrics(), process_usage()),
+              "text/plain; version=0.0.4; charset=utf-8");
+}
+
+HttpResponse status(const Call& call) {
+  OrderedJson json = to_json(call.control.status());
+  json["control_at"] = call.control_at.empty() ? OrderedJson() : OrderedJson(call.control_at);
+  return ok(json);
+}
+
+// Sets `value` from the parameter `name`, where there is one; whether that is fine.
+bool read_count(const RequestTarget& target, const std::string& name, std::size_t max, std::size_t& value) {
+  const auto found = target.query.find(name);
+  if (found == target.query.end()) return true;
+  const auto number = parse_int(found->second);
+  if (!number || *number < 0 || static_cast<std::uint64_t>(*number) > max) return false;
+  value = static_cast<std::size_t>(*number);
+  return true;
+}
+
+HttpResponse bad_limit(const RequestTarget& target) {
+  return error_response(400, cat("limit=", target.query.at("limit"), ": give 0 to ", kMaxJobsPerPage));
+}
+
+// Sets `order` from the parameters sort and order, where there is one; whether they are fine.
+bool read_order(const RequestTarget& target, std::optional<JobOrder>& order) {
+  const auto sort = target.query.find("sort");
+  const auto way = target.query.find("order");
+  if (sort == target.query.end() && way == target.query.end()) return true;
+  order.emplace();
+  if (sort != target.query.end()) {
+    const auto key = std::find(kJobOrderKeys.begin(), kJobOrderKeys.end(), sort->second);
+    if (key == kJobOrderKeys.end()) return false;
+    order->key = static_cast<JobOrderKey>(key - kJobOrderKeys.begin());
+  }
+  if (way == target.query.end()) return true;
+  order->descending = way->second == "desc";
+  return order->descending || way->second == "asc";
+}
+
+HttpResponse jobs(const Call& call) {
+  JobQuery query;
+  for (const auto& [name, value] : call.target.query) {
+    if (name == "watch") {
+      query.watch = value;
+    } else if (name == "text") {
+      query.text = value;
+    } else if (name == "problem") {
+      query.problem = value;
+    } else if (name == "state") {
+      query.state = parse_job_state(value);
+      if (!query.state) {
+        return error_response(400, cat("state=", value,
+                                       ": jobs are discovered, waiting, running, done, failed, "
+                                       "quarantined or cancelled"));
+      }
+    } else if (name != "sort" && name != "order" && name != "limit" && name != "offset") {
+      return error_response(400, cat("unknown parameter ", name,
+                                     "; there are state, watch, text, problem, sort, order, limit and offset"));
+    }
+  }
+  if (!read_order(call.target, query.order)) {
+    std::string keys;
+    for (const std::string_view key : kJobOrderKeys) keys += cat(keys.empty() ? "" : ", ", key);
+    return error_response(400, cat("sort is one of ", keys, "; order is asc or desc"));
+  }
+  if (!read_count(call.target, "limit", kMaxJobsPerPage, query.limit)) return bad_limit(call.target);
+  if (!read_count(call.target, "offset", std::size_t{1} << 53, query.offset)) {
+    return error_response(400, cat("offset=", call.target.query.at("offset"), ": give 0 or more"));
+  }
+  return ok(to_json(call.control.jobs(query), query));
+}
+
+HttpResponse problems(const Call& call) {
+  std::size_t limit = JobQuery{}.limit;
+  if (!read_count(call.target, "limit", kMaxJobsPerPage, limit)) return bad_limit(call.target);
+  return ok(to_json(call.control.problems(limit)));
+}
+
+HttpResponse job(const Call& call) {
+  const auto id = job_id(call);
+  const auto found = id ? call.control.job(*id) : std::nullopt;
+  return found ? ok(to_json(*found)) : no_such_job(call.target.path[2]);
+}
+
+HttpResponse thumbnail(const Call& call) {
+  const auto id = job_id(call);
+  const auto output = parse_int(call.target.path[4]);
+  if (!id || !output || *output < 0) return no_such_job(call.target.path[2]);
+  const auto path = call.control.thumbnail_path(*id, static_cast<std::size_t>(*output));
+  auto image = path ? read_thumbnail(*path) : std::nullopt;
+  if (!image) return error_response(404, cat("job ", *id, " has no thumbnail ", *output));
+  HttpResponse response = text(200, std::move(*image), "image/png");
+  // The page asks for each with the time of its job's last change.
+  response.headers.emplace_back("Cache-Control", "private, max-age=86400");
+  return response;
+}
+
+template <typename Make>
+HttpResponse change(const Call& call, const Make& make) {
+  const std::string& action = call.target.path[3];
+  const auto id = job_id(call);
+  const JobChange made = id ? make(*id) : JobChange::no_such_job;
+  const auto now = made == JobChange::no_such_job ? std::nullopt : call.control.job(*id);
+  if (!now) return no_such_job(call.target.path[2]);
+  if (made == JobChange::wrong_state) {
+    return error_response(409, cat("job ", *id, " is ", job_state_name(now->state), ": nothing to ", action));
+  }
+  return ok(to_json(*now));
+}
+
+HttpResponse retry(const Call& call) {
+  const auto force = call.target.query.find("force");
+  if (force != call.target.query.end() && force->second != "1") {
+    return error_response(400, cat("force=", force->second, ": give force=1, or leave it out"));
+  }
+  return change(call, [&](std::int64_t id) { return call.control.retry(id, force != call.target.query.end()); });
+}
+
+HttpResponse cancel(const Call& call) {
+  return change(call, [&](std::int64_t id) { return call.control.cancel(id); });
+}
+
+HttpResponse retry_failed(const Call& call) {
+  std::string key;
+  for (const auto& [name, value] : call.target.query) {
+    if (name != "problem" || value.empty()) {
+      return error_response(400, cat(name, "=", value, ": give problem=KEY as /api/problems says it, or nothing"));
+    }
+    key = value;
+  }
+  return ok({{"retried", call.control.retry_all_failed(key)}});
+}
+
+HttpResponse pause(const Call& call) {
+  call.control.pause();
+  return status(call);
+}
+
+HttpResponse resume(const Call& call) {
+  call.control.resume();
+  return status(call);
+}
+
+constexpr std::array kRoutes = {
+    Route{"GET", "/", true, page_file},
+    Route{"GET", "/page/*", true, page_file},
+    Route{"GET", "/healthz", true, health},
+    Route{"GET", "/readyz", true, ready},
+    Route{"GET", "/metrics", false, metrics},
+    Route{"GET", "/api/status", false, status},
+    Route{"GET", "/api/jobs", false, jobs},
+    Route{"GET", "/api/problems", false, problems},
+    Route{"GET", "/api/jobs/*", false, job},
+    Route{"GET", "/api/jobs/*/thumbnails/*", false, thumbnail},
+    Route{"POST", "/api/jobs/*/retry", false, retry},
+    Route{"POST", "/api/jobs/*/cancel", false, cancel},
+    Route{"POST", "/api/retry-failed", false, retry_failed},
+    Route{"POST", "/api/pause", false, pause},
+    Route{"POST", "/api/resume", false, resume},
+};
+
+bool matches(std::string_view pattern, const std::vector<std::string>& path) {
+  if (path.empty()) return pattern == "/";
+  const std::vector<std::string> wanted = split(pattern.substr(1), '/');
+  return std::equal(wanted.begin(), wanted.end(), path.begin(), path.end(),
+                    [](const std::string& w, const std::string& p) { return w == "*" ? !p.empty() : w == p; });
+}
+
+HttpResponse answer_routed(Control& control, const AccessRules& rules, const HttpRequest& request) {
+  const auto target = parse_target(request.target);
+  const std::string_view method = request.method == "HEAD" ? "GET" : std::string_view(request.method);
+  const Route* chosen = nullptr;
+  std::string allowed;
+  if (target) {
+    for (const Route& route : kRoutes) {
+      if (!matches(route.path, target->path)) continue;
+      if (route.method == method) chosen = &route;
+      allowed = route.method == "GET" ? "GET, HEAD" : std::string(route.method);
+    }
+  }
+  if (auto refused = refuse(rules, request, chosen != nullptr && chosen->open)) return *std::move(refused);
+  if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
+  if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false), rules.control_at});
+  if (allowed.empty()) return error_response(404, cat("there is nothing at ", request.target));
+  HttpResponse response = error_response(405, cat(request.method, " is not for ", request.target, "; use ", allowed));
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
+}  // namespace
+
+HttpResponse Api::answer(const HttpRequest& request) const {
+  HttpResponse response = answer_routed(control_, rules_, request);
+  const bool cached = std::any_of(response.headers.begin(), response.headers.end(),
+                                  [](const auto& header) { return header.first == "Cache-Control"; });
+  if (!cached) response.headers.emplace_back("Cache-Control", "no-store");
+  for (const auto& [name, value] : {std::pair("Content-Security-Policy", kContentPolicy),
+                                    std::pair("X-Content-Type-Options", std::string_view("nosniff")),
+                                    std::pair("X-Frame-Options", std::string_view("DENY")),
+                                    std::pair("Referrer-Policy", std::string_view("no-referrer")),
+                                    std::pair("Cross-Origin-Resource-Policy", std::string_view("same-origin"))}) {
+    response.headers.emplace_back(name, value);
+  }
+  return response;
+}
+
+}  // namespace weir

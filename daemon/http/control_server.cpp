@@ -1,0 +1,38 @@
+#include "daemon/http/control_server.h"
+
+#include "daemon/http/api.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+ListenAddress control_address(const ControlServerSettings& settings) { return {"", 0, settings.control_socket}; }
+
+AccessRules rules_of(const ControlServerSettings& settings) {
+  const bool loopback = is_loopback(settings.address.host);
+  if (!loopback && settings.token.empty()) {
+    throw Error(ErrorKind::usage, cat(settings.address.text(),
+                                      ": can be reached from other machines, so it needs a "
+                                      "token; set service.token_file, or listen on 127.0.0.1"));
+  }
+  return {settings.token, loopback, settings.control_socket.empty() ? "" : control_address(settings).text()};
+}
+
+// The rights to the socket's path say who may connect. A browser gets there through a tunnel whose end is a loopback
+// port, so that the rule of Host holds here, too.
+AccessRules rules_of_socket() { return {"", true}; }
+
+HttpHandler answer_with(Control& control, const AccessRules& rules) {
+  return [api = Api(control, rules)](const HttpRequest& request) { return api.answer(request); };
+}
+
+}  // namespace
+
+ControlServer::ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control)
+    : http_(io, settings.address, settings.limits, answer_with(control, rules_of(settings))) {
+  if (settings.control_socket.empty()) return;
+  control_socket_.emplace(io, control_address(settings), settings.limits, answer_with(control, rules_of_socket()));
+}
+
+}  // namespace weir

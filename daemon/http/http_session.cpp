@@ -1,0 +1,196 @@
+#include "daemon/http/http_session.h"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/write.hpp>
+#include <exception>
+#include <utility>
+
+namespace weir {
+namespace {
+
+namespace http = boost::beast::http;
+using boost::system::error_code;
+
+// At most what is not parsed yet is in the buffer: a part of a header, or of a chunk's; a body moves on.
+constexpr std::size_t kReadBytes = 4 << 10;
+constexpr std::size_t kSpareBytes = 8 << 10;
+
+std::string text_of(boost::beast::string_view view) { return {view.data(), view.size()}; }
+
+}  // namespace
+
+HttpSession::HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
+                         HttpHandler handler, std::function<void(HttpSession&)> ended)
+    : local_(local),
+      socket_(std::move(socket)),
+      timer_(socket_.get_executor()),
+      limits_(limits),
+      handler_(std::move(handler)),
+      ended_(std::move(ended)),
+      buffer_(limits.header_bytes + kSpareBytes) {}
+
+void HttpSession::start() { await_request(); }
+
+void HttpSession::close() {
+  if (closed_) return;
+  closed_ = true;
+  error_code ignored;
+  timer_.cancel(ignored);
+  socket_.close(ignored);
+}
+
+void HttpSession::end() {
+  if (closed_) return;
+  close();
+  ended_(*this);
+}
+
+// A new phase: its clock starts.
+void HttpSession::enter(Phase phase, std::chrono::milliseconds limit) {
+  phase_ = phase;
+  timer_.expires_after(limit);
+  timer_.async_wait([self = shared_from_this()](const error_code& error) {
+    // A wait that had expired when the next phase began comes here without an error, too.
+    if (!error && !self->closed_ && self->timer_.expiry() <= Clock::now()) self->on_timeout();
+  });
+}
+
+void HttpSession::on_timeout() {
+  if (phase_ != Phase::receiving) return end();
+  timed_out_ = true;  // receive() tells the client
+  error_code ignored;
+  socket_.cancel(ignored);
+}
+
+void HttpSession::await_request() {
+  waiting_since_ = Clock::now();
+  if (buffer_.size() > 0) return begin_request();  // pipelined
+  enter(Phase::idle, limits_.idle);
+  receive(&HttpSession::begin_request);
+}
+
+// Appends what comes to the buffer and goes on with `next`.
+void HttpSession::receive(void (HttpSession::*next)()) {
+  socket_.async_read_some(buffer_.prepare(kReadBytes),
+                          [self = shared_from_this(), next](const error_code& error, std::size_t bytes) {
+                            if (self->closed_) return;
+                            if (self->timed_out_) return self->refuse(408, "the request took too long to arrive");
+                            if (error) return self->end();
+                            self->buffer_.commit(bytes);
+                            ((*self).*next)();
+                          });
+}
+
+void HttpSession::begin_request() {
+  enter(Phase::receiving, limits_.request);
+  header_bytes_ = 0;
+  parser_.emplace();
+  parser_->header_limit(limits_.header_bytes);
+  parser_->body_limit(limits_.body_bytes);
+  parse();
+}
+
+// Not http::async_read: the parser's own limit is of each piece of a header that it is handed, so that many short
+// fields could fill the memory.
+void HttpSession::parse() {
+  while (!parser_->is_done()) {
+    const bool in_header = !parser_->is_header_done();
+    error_code error;
+    const std::size_t used = parser_->put(boost::asio::const_buffer(buffer_.data()), error);
+    buffer_.consume(used);
+    if (in_header) header_bytes_ += used;
+    if (header_bytes_ > limits_.header_bytes) error = http::error::header_limit;
+    if (error && error != http::error::need_more) return refuse(error);
+    if (error || (buffer_.size() == 0 && !parser_->is_done())) {
+      if (buffer_.size() + kReadBytes > buffer_.max_size()) return refuse(http::error::header_limit);
+      return receive(&HttpSession::parse);
+    }
+  }
+  answer();
+}
+
+void HttpSession::refuse(const error_code& error) {
+  if (error == http::error::header_limit) {
+    refuse(431, "the request's header is too large");
+  } else if (error == http::error::body_limit) {
+    refuse(413, "the request's body is too large");
+  } else {
+    refuse(400, "this is no HTTP/1.1 request");
+  }
+}
+
+void HttpSession::refuse(unsigned status, const char* message) {
+  head_ = false;
+  respond(error_response(status, message), false);
+}
+
+void HttpSession::answer() {
+  const http::request<http::string_body>& message = parser_->get();
+  head_ = message.method() == http::verb::head;
+  const auto hosts = message.count(http::field::host);
+  if (hosts > 1 || (hosts == 0 && message.version() >= 11)) {
+    return refuse(400, "a request needs one Host header");
+  }
+  if (message.count(http::field::transfer_encoding) > 0 && message[http::field::transfer_encoding] != "chunked") {
+    return refuse(501, "this Transfer-Encoding is not known; send the body with a Content-Length, or chunked");
+  }
+  HttpRequest request;
+  request.method = text_of(message.method_string());
+  request.target = text_of(message.target());
+  request.host = text_of(message[http::field::host]);
+  request.authorization = text_of(message[http::field::authorization]);
+  request.content_type = text_of(message[http::field::content_type]);
+  request.marked = message.count("X-Weir") > 0;
+  request.body = message.body();
+  const bool keep_alive = message.keep_alive();
+  HttpResponse response;
+  try {
+    response = handler_(request);
+  } catch (const std::exception& error) {
+    spdlog::error("http: {} {}: {}", request.method, request.target, error.what());
+    response = error_response(500, error.what());
+  }
+  respond(std::move(response), keep_alive);
+}
+
+void HttpSession::respond(HttpResponse response, bool keep_alive) {
+  response_.emplace(static_cast<http::status>(response.status), 11);
+  response_->set(http::field::content_type, response.content_type);
+  for (const auto& [name, value] : response.headers) response_->set(name, value);
+  response_->keep_alive(keep_alive);
+  response_->content_length(response.body.size());
+  if (!head_) response_->body() = std::move(response.body);
+  enter(Phase::responding, limits_.response);
+  http::async_write(socket_, *response_, [self = shared_from_this(), keep_alive](const error_code& error, std::size_t) {
+    if (self->closed_) return;
+    self->response_.reset();
+    self->parser_.reset();
+    if (error) return self->end();
+    if (keep_alive) return self->await_request();
+    self->drain();
+  });
+}
+
+// Closing a socket with unread bytes resets the connection, and the client may lose the response: so the sending
+// half is closed, and what still comes is thrown away for a moment.
+void HttpSession::drain() {
+  error_code ignored;
+  socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);
+  buffer_.consume(buffer_.size());
+  enter(Phase::draining, limits_.linger);
+  discard_more();
+}
+
+void HttpSession::discard_more() {
+  socket_.async_read_some(buffer_.prepare(kReadBytes),
+                          [self = shared_from_this()](const error_code& error, std::size_t) {
+                            if (self->closed_) return;
+                            if (error) return self->end();
+                            self->discard_more();
+                          });
+}
+
+}  // namespace weir

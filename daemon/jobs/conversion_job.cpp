@@ -1,0 +1,302 @@
+#include "daemon/jobs/conversion_job.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/files/file_state.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kInput = static_cast<int>(ErrorKind::input);
+constexpr int kIo = static_cast<int>(ErrorKind::io);
+constexpr int kSignal = 128;  ///< and the signal's number: WorkerEnd::exit_code
+
+// The line that `weir` ends with where it fails, without its name; a signal leaves none.
+std::string reason_of(std::string_view step, const WorkerEnd& end) {
+  constexpr std::string_view kBegin = "weir: ";
+  if (end.exit_code > kSignal && end.exit_code != static_cast<int>(ErrorKind::interrupted)) {
+    const int signal = end.exit_code - kSignal;
+    return cat(step, " was ended by signal ", signal, " (", ::strsignal(signal), ')',
+               signal == SIGKILL ? "; the system may have been out of memory" : "");
+  }
+  std::string reason;
+  for (const std::string& line : split(end.log, '\n')) {
+    if (line.starts_with(kBegin)) reason = line.substr(kBegin.size());
+  }
+  return reason.empty() ? cat(step, " ended with exit code ", end.exit_code, " and no message") : reason;
+}
+
+// Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
+bool says_disk_full(const std::string& reason) {
+  const auto says = [&](int error) { return reason.ends_with(cat(": ", std::strerror(error), kDiskFullRemedy)); };
+  return says(ENOSPC) || says(EDQUOT);
+}
+
+// The source's own identity says nothing of the planes of a stack and of the files that a header names.
+bool says_changed(const std::string& reason) {
+  return reason.ends_with(kConvertAgain) && reason.find(kChangedWhileRead) != std::string::npos;
+}
+
+// What stands at `place`; none where that is no number.
+std::optional<double> number_of(const nlohmann::json& json, const char* place) {
+  const nlohmann::json::json_pointer pointer(place);
+  if (!json.contains(pointer) || !json[pointer].is_number()) return std::nullopt;
+  return json[pointer].get<double>();
+}
+
+// Whether the picture was made after the volume got its name.
+bool newer(const std::string& thumbnail, const std::string& volume) {
+  std::error_code error;
+  const auto made = fs::last_write_time(thumbnail, error);
+  if (error) return false;
+  const auto from = fs::last_write_time(volume, error);
+  return !error && made >= from;
+}
+
+}  // namespace
+
+std::string thumbnail_path_of(const std::string& output) { return output + ".png"; }
+
+ConversionJob::ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended)
+    : io_(io), task_(std::move(task)), ended_(std::move(ended)) {
+  convert();
+}
+
+double ConversionJob::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+}
+
+void ConversionJob::look() {
+  if (worker_ == nullptr) return;
+  const std::uint64_t activity = worker_->activity();
+  if (std::exchange(activity_, activity) != activity) heard_ = std::chrono::steady_clock::now();
+}
+
+std::string ConversionJob::stall(std::chrono::seconds quiet) const {
+  const auto passed = std::chrono::steady_clock::now() - heard_;
+  if (worker_ == nullptr || passed < quiet) return {};
+  const char state = worker_->process_state();
+  const char* const why = state == 'T'   ? "it was stopped by a signal; SIGCONT lets it go on"
+                          : state == 'D' ? "it waits for a device or a file server"
+                                         : "cancel the job to end it";
+  return cat("nothing done by ", step_, " for ", std::chrono::duration_cast<std::chrono::seconds>(passed).count(),
+             " s: ", why);
+}
+
+void ConversionJob::stop(std::chrono::milliseconds grace) {
+  stopping_ = true;
+  if (worker_) worker_->stop(grace);
+}
+
+void ConversionJob::run(std::string_view step, std::vector<std::string> arguments,
+                        void (ConversionJob::*then)(const WorkerEnd&)) {
+  if (stopping_) {  // it came when the step before had just ended
+    end(TaskEnd::stopped);
+    return;
+  }
+  step_ = step;
+  heard_ = std::chrono::steady_clock::now();
+  fraction_.reset();
+  WorkerCommand command{task_.program, {"weir", std::string(step)}, task_.nice, task_.io_class};
+  for (std::string& argument : arguments) command.arguments.push_back(std::move(argument));
+  command.arguments.insert(command.arguments.end(), {"--progress=never", "--log-level=info"});
+  command.arguments.push_back(cat("--progress-fd=", kAnnounceDescriptor));
+  try {
+    worker_ = std::make_unique<WorkerProcess>(
+        io_, command, [this](std::string_view line) { heard(line); },
+        [this, then](const WorkerEnd& end) {
+          worker_.reset();
+          report_.result.log_tail += end.log;
+          (this->*then)(end);
+        });
+  } catch (const Error& error) {
+    fail(kIo, error.what());
+  }
+}
+
+void ConversionJob::convert() {
+  std::error_code error;
+  const fs::path directory = fs::path(task_.output).parent_path();
+  fs::create_directories(directory, error);
+  if (error) {
+    fail(kIo, cat(directory.string(), ": make the directory: ", error.message()));
+    return;
+  }
+  std::vector<std::string> arguments{task_.source, cat("--output=", task_.output), "--skip-done",
+                                     cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
+  if (task_.again) arguments.emplace_back("--again");
+  if (task_.bandwidth != 0) arguments.push_back(cat("--bandwidth=", task_.bandwidth));
+  if (!task_.within.empty()) arguments.push_back(cat("--within=", task_.within));
+  if (!task_.work_dir.empty()) arguments.push_back(cat("--work-dir=", task_.work_dir));
+  arguments.insert(arguments.end(), task_.convert_options.begin(), task_.convert_options.end());
+  run("convert", std::move(arguments), &ConversionJob::converted);
+}
+
+void ConversionJob::heard(std::string_view line) {
+  heard_ = std::chrono::steady_clock::now();
+  const nlohmann::json told = nlohmann::json::parse(line, nullptr, false);
+  if (!told.is_object()) return;
+  if (told.contains("output")) {
+    Output output;
+    output.job.path = told.value("output", "");
+    output.job.bytes = told.value("bytes", std::uint64_t{0});
+    output.job.rate = told.value("rate", 0.0);
+    output.job.psnr_db = number_of(told, "/psnr_db");
+    output.job.max_error = number_of(told, "/max_error");
+    output.job.min = number_of(told, "/value_range/0");
+    output.job.max = number_of(told, "/value_range/1");
+    output.skipped = told.value("skipped", false);
+    JobResult& result = report_.result;
+    result.bytes_read += told.value("bytes_read", std::uint64_t{0});
+    result.peak_rss_bytes = std::max(result.peak_rss_bytes, told.value("peak_rss_bytes", std::uint64_t{0}));
+    if (!output.skipped) result.bytes_written += output.job.bytes;
+    report_.converted = report_.converted || !output.skipped;
+    outputs_.push_back(std::move(output));
+    return;
+  }
+  if (told.contains("planned")) {
+    report_.planned_bytes = told.value("planned", std::uint64_t{0});
+    return;
+  }
+  const auto total = told.value("total", 0.0);
+  if (total <= 0) return;
+  const double part = told.value("done", 0.0) / total;
+  // Two passes of about the same length.
+  fraction_ = step_ != "convert" ? part : told.value("pass", "") == "encode" ? 0.5 + part / 2 : part / 2;
+}
+
+void ConversionJob::converted(const WorkerEnd& end) {
+  if (end.exit_code == 0 && outputs_.empty()) {
+    fail(static_cast<int>(ErrorKind::internal), "convert ended well and announced no output");
+  } else if (end.exit_code != 0) {
+    fail(end.exit_code, reason_of(step_, end));
+  } else if (const auto now = identify(task_.source); now && *now != task_.identity) {
+    this->end(TaskEnd::source_changed);
+  } else {
+    next_ = 0;
+    verify_next();
+  }
+}
+
+void ConversionJob::verify_next() {
+  if (next_ == outputs_.size()) {
+    next_ = 0;
+    render_next();
+    return;
+  }
+  run("verify", {outputs_[next_].job.path}, &ConversionJob::verified);
+}
+
+void ConversionJob::verified(const WorkerEnd& end) {
+  if (end.exit_code == 0) {
+    ++next_;
+    verify_next();
+    return;
+  }
+  const std::string reason = reason_of(step_, end);
+  const std::string& output = outputs_[next_].job.path;
+  if (end.exit_code != kInput || stopping_) {
+    fail(end.exit_code, reason);
+    return;
+  }
+  // Not what was written: nobody may take it for a result, and the next attempt makes it anew. The fault is
+  // the device's, not the source's.
+  std::error_code ignored;
+  fs::remove(output, ignored);
+  fs::remove(sidecar_path(output), ignored);
+  fail(kIo, cat("verify: ", reason, "; removed"));
+}
+
+void ConversionJob::render_next() {
+  for (; next_ < outputs_.size(); ++next_) {
+    Output& output = outputs_[next_];
+    const std::string thumbnail = thumbnail_path_of(output.job.path);
+    if (!task_.thumbnails) continue;
+    if (output.skipped && newer(thumbnail, output.job.path)) {
+      output.job.thumbnail = thumbnail;
+      continue;
+    }
+    run("render",
+        {output.job.path, "--output=" + thumbnail, "--size=320x240", "--mode=dvr", "--spp=1", "--backend=cpu",
+         cat("--threads=", task_.threads)},
+        &ConversionJob::rendered);
+    return;
+  }
+  finish();
+}
+
+void ConversionJob::rendered(const WorkerEnd& end) {
+  if (stopping_) {
+    fail(end.exit_code, reason_of(step_, end));
+    return;
+  }
+  JobOutput& output = outputs_[next_].job;
+  if (end.exit_code > kSignal &&
+      !std::exchange(render_killed_, true)) {  // by somebody, or for want of memory: once more
+    render_next();
+    return;
+  }
+  render_killed_ = false;
+  if (end.exit_code == 0) {
+    output.thumbnail = thumbnail_path_of(output.path);
+  } else {
+    report_.notices.push_back(cat("no thumbnail: ", reason_of(step_, end)));
+  }
+  ++next_;
+  render_next();
+}
+
+void ConversionJob::finish() {
+  const auto now = identify(task_.source);
+  if (now && *now != task_.identity) {
+    end(TaskEnd::source_changed);
+    return;
+  }
+  end(TaskEnd::done);
+}
+
+void ConversionJob::fail(int exit_code, const std::string& reason) {
+  report_.result.exit_code = exit_code;
+  report_.result.reason = reason;
+  const auto now = identify(task_.source);
+  if (stopping_) {
+    end(TaskEnd::stopped);
+  } else if (is_gone(task_.source)) {
+    end(TaskEnd::source_gone);
+  } else if ((now && *now != task_.identity) || (exit_code == kInput && says_changed(reason))) {
+    end(TaskEnd::source_changed);
+  } else if (exit_code == kIo && says_disk_full(reason)) {
+    end(TaskEnd::disk_full);
+  } else {
+    end(TaskEnd::failed);
+  }
+}
+
+void ConversionJob::end(TaskEnd how) {
+  report_.end = how;
+  report_.result.seconds = seconds();
+  for (Output& output : outputs_) report_.result.outputs.push_back(std::move(output.job));
+  boost::asio::post(io_, [this, alive = std::weak_ptr<bool>(alive_)] {
+    if (!alive.lock()) return;
+    const Ended ended = std::exchange(ended_, nullptr);
+    const TaskReport report = std::move(report_);
+    ended(report);
+  });
+}
+
+}  // namespace weir

@@ -1,0 +1,102 @@
+// One job while it runs: convert, verify each output, a thumbnail of each. Every step is a process of its own
+// (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken
+// file, a fault of a library or a lack of memory ends that process and not the
+// daemon; which bytes come out is decided there, as on the command line.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/jobs/conversion_task.h"
+#include "daemon/jobs/worker_process.h"
+#include "daemon/store/job.h"
+
+namespace weir {
+
+/// How a run ended.
+enum class TaskEnd {
+  done,
+  failed,          ///< by itself: JobResult::exit_code and reason say why
+  disk_full,       ///< nothing wrong with source or options
+  source_changed,  ///< it or a file that it names was rewritten meanwhile: what was made of it is worth nothing
+  source_gone,     ///< deleted before it was converted
+  stopped          ///< as asked
+};
+
+struct TaskReport {
+  TaskEnd end = TaskEnd::done;
+  JobResult result;
+  std::uint64_t planned_bytes = 0;   ///< of the output that was to be written last; 0: not known
+  bool converted = false;            ///< false where all outputs had been made before
+  std::vector<std::string> notices;  ///< what went wrong and does not matter to the result; one line each
+};
+
+class ConversionJob {
+ public:
+  using Ended = std::function<void(const TaskReport& report)>;  ///< once; may destroy the job
+
+  /// Runs `task` on `io`. `ended` is never called from within the constructor.
+  ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended);
+  ConversionJob(const ConversionJob&) = delete;
+  ConversionJob& operator=(const ConversionJob&) = delete;
+  /// Kills what runs; `ended` is not called.
+  ~ConversionJob() = default;
+
+  /// Ends the work within `grace`, by force if need be.
+  void stop(std::chrono::milliseconds grace);
+
+  const ConversionTask& task() const { return task_; }
+  std::string_view step() const { return step_; }               ///< "convert", "verify" or "render"
+  std::optional<double> fraction() const { return fraction_; }  ///< of the step, 0..1; none before the first report
+  double seconds() const;                                       ///< since the start
+  /// Sees whether the step does anything; call it now and then.
+  void look();
+  /// Why the step has said and done nothing for `quiet`, as far as look() saw; empty: it has.
+  std::string stall(std::chrono::seconds quiet) const;
+  std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
+
+ private:
+  struct Output {
+    JobOutput job;
+    bool skipped = false;
+  };
+
+  void run(std::string_view step, std::vector<std::string> arguments, void (ConversionJob::*then)(const WorkerEnd&));
+  void convert();
+  void converted(const WorkerEnd& end);
+  void verify_next();
+  void verified(const WorkerEnd& end);
+  void render_next();
+  void rendered(const WorkerEnd& end);
+  void finish();
+  void fail(int exit_code, const std::string& reason);
+  void end(TaskEnd how);
+  void heard(std::string_view line);
+
+  boost::asio::io_context& io_;
+  ConversionTask task_;
+  Ended ended_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or seen to be at work
+  std::uint64_t activity_ = 0;                              ///< of the process, at the last look
+  std::unique_ptr<WorkerProcess> worker_;
+  std::string_view step_ = "convert";
+  std::optional<double> fraction_;
+  bool stopping_ = false;
+  bool render_killed_ = false;  ///< the one before of the present output
+  std::vector<Output> outputs_;
+  std::size_t next_ = 0;  ///< of outputs_, in the present step
+  TaskReport report_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< for what was posted and comes too late
+};
+
+/// "OUT.nvdb.png" for "OUT.nvdb".
+std::string thumbnail_path_of(const std::string& output);
+
+}  // namespace weir

@@ -1,0 +1,50 @@
+#include "daemon/jobs/conversion_task.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "format/base/text.h"
+
+namespace weir {
+
+namespace fs = std::filesystem;
+
+bool lies_in(const WatchConfig& watch, const std::string& source) {
+  return source.starts_with(watch.directory.ends_with('/') ? watch.directory : watch.directory + '/');
+}
+
+std::string output_directory(const WatchConfig& watch, const std::string& source) {
+  const fs::path place = fs::path(source).parent_path().lexically_relative(watch.directory);
+  if (place.empty() || place == ".") return watch.output;
+  return (fs::path(watch.output) / place).string();
+}
+
+std::string options_text(const WatchConfig& watch) {
+  std::string text = cat("output=", watch.output, "/", watch.name);
+  for (const std::string& option : watch.convert_options) text += cat(' ', option);
+  return text;
+}
+
+ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
+                         const Job& job) {
+  const auto jobs = static_cast<std::uint64_t>(service.jobs);
+  ConversionTask task;
+  task.program = program;
+  task.source = job.source;
+  task.identity = job.identity;
+  task.output = cat(output_directory(watch, job.source), '/', watch.name);
+  task.convert_options = watch.convert_options;
+  if (watch.follow == Follow::inside) task.within = watch.directory;
+  task.memory = job_memory(service);
+  // Limited it stays, also where a share is less than a byte.
+  if (service.bandwidth != 0) task.bandwidth = std::max<std::uint64_t>(1, service.bandwidth / jobs);
+  task.threads = service.threads;
+  task.nice = service.nice;
+  task.io_class = service.io_class;
+  task.work_dir = service.work_dir;
+  task.thumbnails = watch.thumbnails;
+  task.again = job.forced;
+  return task;
+}
+
+}  // namespace weir

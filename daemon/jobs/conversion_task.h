@@ -1,0 +1,44 @@
+// What one job asks of the commands that do it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/store/job.h"
+
+namespace weir {
+
+struct ConversionTask {
+  std::string program;                       ///< path of `weir`
+  std::string source;                        ///< absolute path
+  FileIdentity identity;                     ///< of the source as it was found complete
+  std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
+  std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
+  std::string within;                        ///< the directory that the source's files must lie in; empty: anywhere
+  std::uint64_t memory = 0;                  ///< bytes, of each process
+  std::uint64_t bandwidth = 0;               ///< bytes per second that the conversion may read and write; 0: no limit
+  int threads = 0;
+  int nice = 0;
+  IoClass io_class = IoClass::none;
+  std::string work_dir;  ///< spill files; empty: beside the output
+  bool thumbnails = true;
+  bool again = false;  ///< also what is done
+};
+
+/// The task of `job`, which is of `watch`.
+ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
+                         const Job& job);
+
+/// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
+bool lies_in(const WatchConfig& watch, const std::string& source);
+
+/// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's
+/// own place in the tree. Ends without a slash.
+std::string output_directory(const WatchConfig& watch, const std::string& source);
+
+/// All of `watch` that decides what an output holds and where it lies, as text: JobStore::observe's `options`.
+std::string options_text(const WatchConfig& watch);
+
+}  // namespace weir

@@ -1,0 +1,60 @@
+#include "daemon/jobs/job_history.h"
+
+#include <vector>
+
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+
+namespace weir {
+namespace {
+
+constexpr std::chrono::hours kLookInterval{24};
+/// A piece is short, also where each look at a file takes a file server's time, and others have their turn after it.
+constexpr std::size_t kPiece = 100;
+constexpr std::chrono::milliseconds kBetweenPieces{10};
+constexpr double kDay_ms = 86'400'000;
+
+}  // namespace
+
+JobHistory::JobHistory(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, const EventLog& log)
+    : turns_(turns), store_(store), log_(log), timer_(io) {}
+
+void JobHistory::keep(double days) {
+  age_ms_ = static_cast<std::int64_t>(days * kDay_ms);
+  after(std::chrono::milliseconds(0), &JobHistory::look_through);
+}
+
+void JobHistory::after(std::chrono::milliseconds delay, void (JobHistory::*next)()) {
+  timer_.expires_after(delay);
+  timer_.async_wait([this, next](boost::system::error_code error) {
+    if (!error) turns_.take([this, next] { (this->*next)(); });
+  });
+}
+
+void JobHistory::look_through() {
+  at_ = 0;
+  forgotten_ = 0;
+  step();
+}
+
+void JobHistory::step() {
+  std::vector<Job> jobs;
+  try {
+    jobs = store_.over_since(age_ms_, at_, kPiece);
+    store_.together([&] {
+      for (const Job& job : jobs) forgotten_ += is_gone(job.source) && store_.remove(job.id) ? 1 : 0;
+    });
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error&) {  // said by those who cannot go on without; here tomorrow is early enough
+    jobs.clear();
+  }
+  if (!jobs.empty()) {
+    at_ = jobs.back().id;
+    return after(kBetweenPieces, &JobHistory::step);
+  }
+  if (forgotten_ > 0) log_.info("history", {{"forgotten", forgotten_}});
+  after(kLookInterval, &JobHistory::look_through);
+}
+
+}  // namespace weir

@@ -1,0 +1,426 @@
+#include "daemon/jobs/job_runner.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "daemon/disks/disk_room.h"
+#include "daemon/jobs/available_memory.h"
+#include "daemon/jobs/output_cleaning.h"
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::chrono::seconds kRates{600};
+/// How often a full disk, a state file that cannot be written and short memory are looked at again.
+constexpr milliseconds kLook{1000};
+/// A process that was asked to end and does not.
+constexpr milliseconds kAbandon{5000};
+
+std::string error_kind(int exit_code) {
+  switch (exit_code) {
+    case static_cast<int>(ErrorKind::usage):
+      return "usage";
+    case static_cast<int>(ErrorKind::input):
+      return "input";
+    case static_cast<int>(ErrorKind::budget):
+      return "budget";
+    case static_cast<int>(ErrorKind::io):
+      return "io";
+    default:
+      return exit_code > 128 ? "killed" : "internal";
+  }
+}
+
+std::string no_room_text(const std::string& directory, const DiskRoom& room) {
+  return cat("no room in ", directory, ", where ", format_bytes(room.free), " are free; what needs more waits for it");
+}
+
+std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
+
+}  // namespace
+
+JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
+                     LookAgain look_again)
+    : io_(io),
+      store_(store),
+      log_(log),
+      program_(std::move(program)),
+      look_again_(std::move(look_again)),
+      scheduler_(SchedulerLimits{}),
+      deletion_(io, store, log),
+      timer_(io),
+      grace_timer_(io) {}
+
+void JobRunner::configure(const DaemonConfig& config) {
+  config_ = config;
+  const ServiceConfig& service = config.service;
+  scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
+  forget_other_watches();
+  std::vector<std::string> outputs;
+  for (const WatchConfig& watch : config.watches) outputs.push_back(watch.output);
+  disks_.watch(outputs);
+  record([this] { deletion_.configure(config_); });
+}
+
+void JobRunner::forget_other_watches() {
+  std::vector<JobStore::Watched> watches;
+  for (const WatchConfig& watch : config_.watches) watches.push_back({watch.label, watch.directory});
+  record([this, watches] { store_.forget_other_watches(watches); });
+}
+
+const WatchConfig* JobRunner::watch_of(const std::string& label) const {
+  const auto at = std::find_if(config_.watches.begin(), config_.watches.end(),
+                               [&](const WatchConfig& watch) { return watch.label == label; });
+  return at == config_.watches.end() ? nullptr : &*at;
+}
+
+void JobRunner::wake() {
+  try {
+    while (start_next()) {
+    }
+    if (pending_.empty()) store_fault_.clear();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error& error) {  // the state file: nothing was changed
+    say_fault(error);
+  }
+  arm_timer();
+}
+
+bool JobRunner::start_next() {
+  if (stopping_ || !pending_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
+  std::vector<WatchLoad> loads;
+  std::map<std::string, Job> first;
+  for (const WatchConfig& watch : config_.watches) {
+    WatchLoad load{watch.label, false, 0};
+    for (const auto& [id, run] : running_) load.running += run.job.watch == watch.label ? 1 : 0;
+    if (const std::optional<Job> job = next_job(watch)) {
+      first.emplace(watch.label, *job);
+      load.waiting = true;
+    }
+    loads.push_back(std::move(load));
+  }
+  const auto label = scheduler_.next(loads, available_memory(), Clock::now());
+  if (!label) return false;
+  start(*watch_of(*label), first.at(*label));
+  return true;
+}
+
+// The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
+std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
+  constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
+  const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
+  for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
+    if (running_.contains(job.id)) continue;
+    if (full_disks_.empty()) return job;
+    const std::uint64_t device = room_in(output_directory(watch, job.source)).device;
+    if (full_disks_.admits(device, job.id, job.identity.bytes)) return job;
+  }
+  return std::nullopt;
+}
+
+void JobRunner::start(const WatchConfig& watch, const Job& job) {
+  if (!lies_in(watch, job.source)) {  // retried after the watch was given another directory: its output has no place
+    log_.warn("not-watched", {{"job", job.id}, {"source", job.source}, {"directory", watch.directory}});
+    store_.cancel(job.id);
+    return;
+  }
+  scheduler_.started(watch.label);
+  const auto now = identify(job.source);
+  if (now ? *now != job.identity : is_gone(job.source)) {
+    source_changed(job);
+    return;
+  }
+  if (!store_.start(job.id)) return;
+  log_.info("start", {{"job", job.id}, {"source", job.source}, {"bytes", job.identity.bytes}});
+  const std::int64_t id = job.id;
+  RunningJob& run = running_[id];
+  run.job = job;
+  run.begin = Clock::now();
+  run.work = std::make_unique<ConversionJob>(io_, make_task(program_, config_.service, watch, job),
+                                             [this, id](const TaskReport& report) { ended(id, report); });
+}
+
+void JobRunner::ended(std::int64_t id, const TaskReport& report) {
+  const RunningJob run = std::move(running_.extract(id).mapped());
+  for (const std::string& notice : report.notices) log_.warn("notice", {{"job", id}, {"reason", notice}});
+  scheduler_.finished(report.result.bytes_read, run.begin);
+  switch (report.end) {
+    case TaskEnd::done:
+      done(run, report);
+      break;
+    case TaskEnd::failed:
+      failed(run, report);
+      break;
+    case TaskEnd::disk_full:
+      disk_full(run, report);
+      break;
+    case TaskEnd::source_changed:
+      ++figures_.errors["source-changed"];
+      [[fallthrough]];
+    case TaskEnd::source_gone:
+      log_.info(report.end == TaskEnd::source_gone ? "source-gone" : "source-changed",
+                {{"job", id}, {"source", run.job.source}});
+      record([this, job = run.job, delay_ms = settle_ms(run.job)] {
+        store_.postpone(job.id, "the source changed", delay_ms);
+        source_changed(job);
+      });
+      break;
+    case TaskEnd::stopped:
+      log_.info("stopped", {{"job", id}, {"source", run.job.source}});
+      record([this, id] { store_.postpone(id, "stopped with the service"); });
+      break;
+  }
+  record([this, job = run.job, directory = fs::path(run.work->task().output).parent_path().string()] {
+    const std::optional<Job> now = store_.job(job.id);
+    if (now && now->state == JobState::cancelled) discard_work(job, directory);
+  });
+  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !lies_in(*watch, run.job.source)) {
+    forget_other_watches();
+  }
+  if (stopping_ && running_.empty() && stopped_) {
+    grace_timer_.cancel();
+    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+  }
+  wake();
+}
+
+// A plane of a stack or a header's data may still be written to while the file that is watched stays as it is: then
+// nothing else keeps the next attempt from beginning at once.
+std::int64_t JobRunner::settle_ms(const Job& job) const {
+  const WatchConfig* watch = watch_of(job.watch);
+  const double settle_s = watch == nullptr ? WatchConfig{}.settle_s : watch->settle_s;
+  return std::max<std::int64_t>(1, std::llround(settle_s * 1000));
+}
+
+// The job waits; from here on it is discovered with what is there now, or forgotten where nothing is.
+void JobRunner::source_changed(const Job& job) {
+  if (const auto now = identify(job.source)) {
+    store_.observe(job.watch, job.source, *now, job.options);
+  } else if (is_gone(job.source)) {
+    store_.remove(job.id);
+  }
+  look_again_(job);
+}
+
+void JobRunner::done(const RunningJob& run, const TaskReport& report) {
+  const JobResult& result = report.result;
+  record([this, id = run.job.id, result] {
+    store_.finish(id, result);
+    deletion_.done(id);
+  });
+  left_.add(run.job.identity.bytes, Clock::now());
+  std::uint64_t bytes_out = 0;
+  for (const JobOutput& output : result.outputs) bytes_out += output.bytes;
+  log_.info("done", {{"job", run.job.id},
+                     {"source", run.job.source},
+                     {"seconds", seconds_text(result.seconds)},
+                     {"outputs", result.outputs.size()},
+                     {"bytes", bytes_out},
+                     {"converted", report.converted ? "yes" : "no, done already"}});
+  if (!report.converted) return;
+  figures_.seconds.observe(result.seconds);
+  ++figures_.done;
+  figures_.bytes_in += run.job.identity.bytes;
+  figures_.bytes_out += result.bytes_written;
+  const Clock::time_point now = Clock::now();
+  last_minute_.add(run.job.identity.bytes, now);
+  for (const std::string& watch : {std::string(), run.job.watch}) {
+    converted_.try_emplace(watch, kRates, started_).first->second.add(run.job.identity.bytes, now);
+  }
+  disks_.written(fs::path(run.work->task().output).parent_path().string(), result.bytes_written, now);
+}
+
+void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
+  ++figures_.errors[error_kind(report.result.exit_code)];
+  log_.error("failed", {{"job", run.job.id},
+                        {"source", run.job.source},
+                        {"exit_code", report.result.exit_code},
+                        {"reason", report.result.reason}});
+  record([this, id = run.job.id, bytes = run.job.identity.bytes, result = report.result] {
+    store_.fail(id, result);
+    const std::optional<Job> now = store_.job(id);
+    if (now && now->state != JobState::waiting) left_.add(bytes, Clock::now());
+  });
+}
+
+void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
+  const std::string directory = fs::path(run.work->task().output).parent_path().string();
+  const DiskRoom room = room_in(directory);
+  if (report.planned_bytes > room.total) {  // waiting makes no disk larger
+    TaskReport never = report;
+    never.result.reason =
+        cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",
+            format_bytes(room.total), "; choose another output or a smaller size");
+    failed(run, never);
+    return;
+  }
+  ++figures_.errors["disk-full"];
+  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
+                  Clock::now());
+  log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
+  record([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
+}
+
+// A state file on a full disk takes no report: it is kept until there is room, and nothing starts meanwhile.
+void JobRunner::record(std::function<void()> step) {
+  pending_.push_back(std::move(step));
+  write_pending();
+}
+
+void JobRunner::write_pending() {
+  try {
+    while (!pending_.empty()) {
+      pending_.front()();
+      pending_.pop_front();
+    }
+    store_fault_.clear();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error& error) {
+    say_fault(error);
+  }
+}
+
+void JobRunner::say_fault(const Error& error) {
+  if (store_fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
+  store_fault_ = error.what();
+}
+
+void JobRunner::look_at_disks() {
+  const auto free_of = [](const std::string& directory) { return room_in(directory).free; };
+  for (const std::string& directory : full_disks_.look(free_of, Clock::now())) {
+    log_.info("disk-has-room", {{"directory", directory}, {"free", format_bytes(free_of(directory))}});
+  }
+}
+
+void JobRunner::look_for_stalls() {
+  for (auto& [id, run] : running_) {
+    run.work->look();
+    const std::string stall = run.work->stall(kQuiet);
+    if (!stall.empty() && !run.stall_said) {
+      log_.warn("stalled", {{"job", id}, {"source", run.job.source}, {"reason", stall}});
+    }
+    run.stall_said = !stall.empty();
+  }
+}
+
+void JobRunner::arm_timer() {
+  if (stopping_ && pending_.empty()) {
+    timer_.cancel();
+    return;
+  }
+  auto delay = milliseconds::max();
+  const Clock::time_point now = Clock::now();
+  if (!pending_.empty() || !store_fault_.empty() || !full_disks_.empty() || !running_.empty()) delay = kLook;
+  if (const auto until = scheduler_.bandwidth_until(now)) {
+    delay = std::min(delay, std::chrono::ceil<milliseconds>(*until - now));
+  }
+  try {
+    if (const auto due = store_.next_due_ms()) delay = std::min(delay, milliseconds(std::max<std::int64_t>(*due, 1)));
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error&) {
+    delay = kLook;
+  }
+  if (delay == milliseconds::max()) {
+    timer_.cancel();
+    return;
+  }
+  timer_.expires_after(delay);
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (error) return;
+    look_at_disks();
+    look_for_stalls();
+    write_pending();
+    wake();
+  });
+}
+
+void JobRunner::pause() {
+  if (!scheduler_.paused()) log_.info("pause", {});
+  scheduler_.pause();
+}
+
+void JobRunner::resume() {
+  if (scheduler_.paused()) log_.info("resume", {});
+  scheduler_.resume();
+  wake();
+}
+
+std::string JobRunner::hold() const {
+  if (!store_fault_.empty()) return store_fault_;
+  std::string full;
+  for (const OutputDisk& disk : disks()) {
+    const std::string held = hold_of(disk.room);
+    if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
+  }
+  if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
+  if (!full.empty()) return full;
+  return scheduler_.paused() ? "paused by request" : "";
+}
+
+std::string JobRunner::hold_of(const DiskRoom& disk) const {
+  const std::string directory = full_disks_.directory_on(disk.device);
+  return directory.empty() ? "" : no_room_text(directory, disk);
+}
+
+void JobRunner::abandon(std::int64_t id) {
+  const auto at = running_.find(id);
+  if (at != running_.end()) at->second.work->stop(kAbandon);
+}
+
+void JobRunner::cancelled(const Job& job) {
+  if (running_.contains(job.id)) {
+    abandon(job.id);
+  } else if (const WatchConfig* watch = watch_of(job.watch)) {
+    discard_work(job, output_directory(*watch, job.source));
+  }
+}
+
+// Whoever cancels wants the disk back; `retry` converts from the beginning.
+void JobRunner::discard_work(const Job& job, const std::string& directory) const {
+  const CleaningReport report = discard_interrupted(directory, job.source);
+  for (const std::string& path : report.removed) log_.info("cleaned", {{"job", job.id}, {"removed", path}});
+  for (const std::string& line : report.left) log_.warn("not-cleaned", {{"job", job.id}, {"reason", line}});
+}
+
+void JobRunner::shut_down(milliseconds grace, std::function<void()> stopped) {
+  stopping_ = true;
+  stopped_ = std::move(stopped);
+  if (running_.empty()) {
+    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+    return;
+  }
+  grace_timer_.expires_after(grace);
+  grace_timer_.async_wait([this](boost::system::error_code error) {
+    if (error) return;
+    for (auto& [id, run] : running_) run.work->stop(kAbandon);
+  });
+}
+
+void JobRunner::kill() {
+  grace_timer_.cancel();
+  for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
+}
+
+double JobRunner::bytes_per_s() const { return last_minute_.at(Clock::now()).bytes_per_s; }
+
+RecentRate::Rates JobRunner::converted(const std::string& watch) const {
+  const auto at = converted_.find(watch);
+  return at == converted_.end() ? RecentRate::Rates{} : at->second.at(Clock::now());
+}
+
+std::vector<OutputDisk> JobRunner::disks() const { return disks_.disks(Clock::now()); }
+
+}  // namespace weir

@@ -1,0 +1,143 @@
+// Runs the waiting jobs: takes them from the state file in the scheduler's
+// order, gives each its processes, and writes down what became of it. One thread,
+// that of the io_context.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/disks/full_disks.h"
+#include "daemon/disks/output_disks.h"
+#include "daemon/disks/recent_rate.h"
+#include "daemon/jobs/conversion_job.h"
+#include "daemon/jobs/scheduler.h"
+#include "daemon/jobs/seconds_histogram.h"
+#include "daemon/jobs/source_deletion.h"
+#include "daemon/log/event_log.h"
+#include "daemon/store/job_store.h"
+#include "format/base/error.h"
+
+namespace weir {
+
+/// Since the start of the process.
+struct RunnerFigures {
+  SecondsHistogram seconds;  ///< of conversions that ended well
+  std::uint64_t done = 0;
+  std::uint64_t bytes_in = 0;   ///< of the sources of those
+  std::uint64_t bytes_out = 0;  ///< of their outputs
+  /// Failed attempts, by what was wrong; all of them from the start on, so that a rate can be taken of the first one.
+  std::map<std::string, std::uint64_t> errors{{"input", 0},    {"io", 0},     {"budget", 0},    {"usage", 0},
+                                              {"internal", 0}, {"killed", 0}, {"disk-full", 0}, {"source-changed", 0}};
+};
+
+/// A conversion that says nothing for so long is said to stand still.
+inline constexpr std::chrono::seconds kQuiet{60};
+
+struct RunningJob {
+  Job job;
+  std::chrono::steady_clock::time_point begin;
+  std::unique_ptr<ConversionJob> work;
+  bool stall_said = false;
+};
+
+class JobRunner {
+ public:
+  /// The source of `job` was rewritten, and the job is discovered again; or it is gone, and so is the job.
+  using LookAgain = std::function<void(const Job& job)>;
+
+  /// `store` and `log` must outlive the runner. Nothing starts before configure().
+  JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
+            LookAgain look_again);
+
+  /// From now on as `config` says; running jobs end as they began. What is not over of watches that are no more is
+  /// forgotten: it is found again where one comes back.
+  void configure(const DaemonConfig& config);
+  /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
+  void wake();
+
+  void pause();
+  void resume();
+  /// What nothing starts for, in words; empty: nothing stands against it.
+  std::string hold() const;
+  bool paused() const { return scheduler_.paused(); }
+  /// Why the state file cannot be written; empty: it can.
+  const std::string& store_fault() const { return store_fault_; }
+
+  /// Ends the job's work, if it runs: its source was rewritten.
+  void abandon(std::int64_t id);
+  /// `job` was cancelled: ends its work, if it runs, and removes what it could be continued from.
+  void cancelled(const Job& job);
+  /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
+  /// and waits for the next start of the service.
+  void shut_down(std::chrono::milliseconds grace, std::function<void()> stopped);
+  /// shut_down's grace is over now, and nobody is asked.
+  void kill();
+
+  const std::map<std::int64_t, RunningJob>& running() const { return running_; }
+  const RunnerFigures& figures() const { return figures_; }
+  /// Source bytes a second, over the last minute.
+  double bytes_per_s() const;
+  /// Of what was converted, over the last ten minutes; empty: of all watches.
+  RecentRate::Rates converted(const std::string& watch = "") const;
+  /// Of jobs that left the queue for good, whatever became of them, over the last ten minutes.
+  RecentRate::Rates left() const { return left_.at(std::chrono::steady_clock::now()); }
+  /// The file systems that the watches' outputs lie on.
+  std::vector<OutputDisk> disks() const;
+  /// Why jobs with outputs on `disk` wait, in words; empty: they do not.
+  std::string hold_of(const DiskRoom& disk) const;
+
+ private:
+  bool start_next();
+  void start(const WatchConfig& watch, const Job& job);
+  void ended(std::int64_t id, const TaskReport& report);
+  std::int64_t settle_ms(const Job& job) const;
+  void source_changed(const Job& job);
+  void discard_work(const Job& job, const std::string& directory) const;
+  void done(const RunningJob& run, const TaskReport& report);
+  void failed(const RunningJob& run, const TaskReport& report);
+  void disk_full(const RunningJob& run, const TaskReport& report);
+  void forget_other_watches();
+  void record(std::function<void()> step);
+  void write_pending();
+  void say_fault(const Error& error);
+  void arm_timer();
+  void look_at_disks();
+  void look_for_stalls();
+  std::optional<Job> next_job(const WatchConfig& watch) const;
+  const WatchConfig* watch_of(const std::string& label) const;
+
+  boost::asio::io_context& io_;
+  JobStore& store_;
+  const EventLog& log_;
+  std::string program_;
+  LookAgain look_again_;
+  DaemonConfig config_;
+  Scheduler scheduler_;
+  FullDisks full_disks_;
+  SourceDeletion deletion_;
+  std::map<std::int64_t, RunningJob> running_;
+  std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
+  std::string store_fault_;
+  RunnerFigures figures_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  RecentRate left_{std::chrono::seconds(600), started_};  ///< jobs that wait no more: done, failed or quarantined
+  RecentRate last_minute_{std::chrono::seconds(60), started_};
+  std::map<std::string, RecentRate> converted_;  ///< by watch; "": of all
+  OutputDisks disks_;
+  boost::asio::steady_timer timer_;
+  boost::asio::steady_timer grace_timer_;
+  std::function<void()> stopped_;
+  bool stopping_ = false;
+};
+
+}  // namespace weir

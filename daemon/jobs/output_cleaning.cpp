@@ -1,0 +1,254 @@
+#include "daemon/jobs/output_cleaning.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "compressor/resume/journal.h"
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/descriptor.h"
+#include "format/io/file_system.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// An interrupted conversion that nobody continues; it may hold as much disk as its result.
+constexpr std::chrono::hours kKeptFor{7 * 24};
+
+constexpr std::string_view kPartial = ".partial";
+constexpr std::string_view kRecordPartial = ".json.partial";
+constexpr std::string_view kPrevious = ".json.previous";
+constexpr std::string_view kWork = ".work";
+constexpr std::string_view kThumbnail = ".png.";
+
+// The output that `path` was left by, if it is of a conversion: something.nvdb.
+std::optional<fs::path> output_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const auto without = [&](std::string_view ending, std::size_t from) -> std::optional<fs::path> {
+    if (!name.ends_with(ending) || name.size() < from + ending.size()) return std::nullopt;
+    const std::string output = name.substr(from, name.size() - from - ending.size());
+    if (!output.ends_with(".nvdb")) return std::nullopt;
+    return path.parent_path() / output;
+  };
+  if (name.starts_with('.')) {
+    if (auto output = without(kWork, 1)) return output;
+    const std::size_t thumbnail = name.find(cat(".nvdb", kThumbnail));
+    if (thumbnail != std::string::npos && name.ends_with(kPartial)) {
+      return path.parent_path() / name.substr(1, thumbnail + std::string_view(".nvdb").size() - 1);
+    }
+  }
+  for (const std::string_view ending : {kRecordPartial, kPrevious, kPartial}) {
+    if (auto output = without(ending, 0)) return output;
+  }
+  return std::nullopt;
+}
+
+bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWork); }
+
+// The file's lock is its writer's.
+bool is_written(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  return file && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+// Spill files have no names where the file system can do that; elsewhere a kill may come between their making and
+// the removal of the name.
+void remove_spills(const fs::path& work) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(work, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("spill") && name.size() == 11) fs::remove(entry.path(), ignored);
+  }
+}
+
+fs::path canonical(const fs::path& path) {
+  std::error_code ignored;
+  return fs::weakly_canonical(path, ignored);
+}
+
+std::string entry_of(const Checkpoint& checkpoint, const char* name) {
+  const auto at = checkpoint.identity.find(name);
+  return at == checkpoint.identity.end() ? std::string() : at->second;
+}
+
+bool lies_in(const fs::path& path, const fs::path& directory) {
+  return std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();
+}
+
+// Whether the source is, as far as its first file says, still what it was.
+bool is_of_this_source(const Checkpoint& checkpoint) {
+  const auto source = identify(entry_of(checkpoint, "source"));
+  if (!source) return false;
+  // Size and time are those of all its files together.
+  if (!entry_of(checkpoint, "source files").empty()) return true;
+  return cat(source->bytes) == entry_of(checkpoint, "source bytes") &&
+         cat(source->mtime_ns) == entry_of(checkpoint, "source modified (ns)");
+}
+
+// Without the locks that read_journal takes: of a conversion that may be running.
+std::optional<Checkpoint> glance_at_journal(const fs::path& work) {
+  std::ifstream file(work / "journal", std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return parse_checkpoint(text.str());
+}
+
+class Cleaner {
+ public:
+  explicit Cleaner(std::chrono::milliseconds patience) : deadline_(Clock::now() + patience) {}
+
+  using Worthless = std::function<bool(const fs::path& work, const fs::path& output)>;
+
+  /// Removes `paths`, which are of `output`, work directories only where nobody needs them.
+  void clean(const fs::path& output, const std::vector<fs::path>& paths, const Worthless& worthless) {
+    const std::string lock_path = output.string() + std::string(kPartial);
+    try {
+      const bool was_there = files->exists(lock_path);
+      // Held, so that no conversion begins on what is looked at and removed here.
+      const std::unique_ptr<File> lock = hold(lock_path);
+      if (lock == nullptr) {
+        leave(lock_path, "another process is writing it");
+        return;
+      }
+      for (const fs::path& path : paths) {
+        if (is_work(path)) {
+          clean_work(path, output, worthless);
+        } else if (path.filename().string().ends_with(kPrevious)) {
+          restore(path);
+        } else if (path != lock_path) {
+          remove(path);
+        }
+      }
+      was_there ? remove(lock_path) : files->remove(lock_path);
+    } catch (const Error& error) {
+      leave(paths.front(), error.what());
+    }
+  }
+
+  CleaningReport report;
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+
+ private:
+  // Null where another process has it.
+  std::unique_ptr<File> hold(const std::string& lock_path) const {
+    for (;;) {
+      try {
+        return files->open(lock_path);
+      } catch (const Error&) {
+        if (!is_written(lock_path)) throw;
+        if (Clock::now() >= deadline_) return nullptr;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
+  void clean_work(const fs::path& work, const fs::path& output, const Worthless& worthless) {
+    try {
+      if (!worthless(work, output)) return;
+      remove_leftovers(*files, output);
+    } catch (const Error& error) {
+      leave(work, error.what());
+      return;
+    }
+    remove_spills(work);
+    remove(work);
+  }
+
+  void remove(const fs::path& path) {
+    std::error_code error;
+    if (fs::remove(path, error)) report.removed.push_back(path.string());
+    if (error) leave(path, error.message());
+  }
+
+  // The old record of an overwritten volume: see the numbered steps in format/output/output_files.cpp.
+  void restore(const fs::path& path) {
+    const fs::path record = fs::path(path).replace_extension();  // without .previous
+    std::error_code error;
+    if (fs::exists(record, error)) {
+      remove(path);
+    } else {
+      fs::rename(path, record, error);
+      if (error) leave(path, error.message());
+    }
+  }
+
+  void leave(const fs::path& path, const std::string& reason) {
+    report.left.push_back(cat(path.string(), ": ", reason));
+  }
+
+  Clock::time_point deadline_;
+};
+
+template <typename Iterator>
+void list(const std::string& directory, std::map<fs::path, std::vector<fs::path>>& by_output) {
+  std::error_code error;
+  for (auto at = Iterator(directory, fs::directory_options::skip_permission_denied, error); !error && at != end(at);
+       at.increment(error)) {
+    const std::optional<fs::path> output = output_of(at->path());
+    std::error_code ignored;
+    if (output && (is_work(at->path()) ? at->is_directory(ignored) : at->is_regular_file(ignored))) {
+      by_output[*output].push_back(at->path());
+    }
+  }
+}
+
+}  // namespace
+
+CleaningReport clean_outputs(const std::string& directory, const std::string& sources, bool recursive,
+                             std::chrono::milliseconds patience) {
+  Cleaner cleaner(patience);
+  const fs::path own = canonical(sources);
+  const auto worthless = [&](const fs::path& work, const fs::path& output) {
+    const std::optional<Checkpoint> interrupted = read_journal(*cleaner.files, output);
+    if (!interrupted) return true;
+    // A stack's source is a pattern: no service converts one.
+    if (entry_of(*interrupted, "format") == "stack" || !lies_in(entry_of(*interrupted, "source"), own)) return false;
+    std::error_code ignored;
+    const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
+    return old || !is_of_this_source(*interrupted);
+  };
+  // Listed first: what is removed while a directory is read may be listed or not.
+  std::map<fs::path, std::vector<fs::path>> by_output;
+  recursive ? list<fs::recursive_directory_iterator>(directory, by_output)
+            : list<fs::directory_iterator>(directory, by_output);
+  for (auto& [output, paths] : by_output) {
+    std::sort(paths.begin(), paths.end());
+    cleaner.clean(output, paths, worthless);
+  }
+  return std::move(cleaner.report);
+}
+
+CleaningReport discard_interrupted(const std::string& directory, const std::string& source) {
+  Cleaner cleaner(std::chrono::milliseconds(0));
+  const std::string place = canonical(source).string();
+  const auto of_source = [&](const fs::path& work) {
+    const std::optional<Checkpoint> interrupted = glance_at_journal(work);
+    return interrupted && entry_of(*interrupted, "source") == place;
+  };
+  std::map<fs::path, std::vector<fs::path>> by_output;
+  list<fs::directory_iterator>(directory, by_output);
+  for (auto& [output, paths] : by_output) {
+    std::erase_if(paths, [&](const fs::path& path) { return !is_work(path) || !of_source(path); });
+    if (paths.empty()) continue;
+    cleaner.clean(output, paths, [&](const fs::path& work, const fs::path&) { return of_source(work); });
+  }
+  return std::move(cleaner.report);
+}
+
+}  // namespace weir

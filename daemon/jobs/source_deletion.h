@@ -1,0 +1,69 @@
+// Deletes the sources of watches that say source = "delete-after-verify": the only copy of a result goes last. What
+// must hold before:
+//   1. the job is done, converted and every output verified, by the options that the watch has now, and the watch
+//      still takes its source;
+//   2. `delete_after` seconds have passed since, in this process, and the source is the file that was converted:
+//      by size, time and inode (FileIdentity), and no status of it is younger than its certificate;
+//   3. every output is there with the size it had, and its certificate is of this source, and of this file alone:
+//      data that a header names may be another header's, too, so that such sources stay;
+//   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
+//      Where that cannot be known, the writer must say itself that it is done (says_when_done).
+// Jobs of an earlier process are taken up a few at a time. One thread, that of the io_context.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/log/event_log.h"
+#include "daemon/store/job_store.h"
+#include "format/io/file_system.h"
+
+namespace weir {
+
+class SourceDeletion {
+ public:
+  /// `store` and `log` must outlive the object.
+  SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log);
+
+  /// From now on as `config` says; what is done already waits for the whole of its time again.
+  void configure(const DaemonConfig& config);
+  /// That job is done now.
+  void done(std::int64_t id);
+  /// Whether no source waits to be deleted, and all jobs have been looked through.
+  bool idle() const { return due_.empty() && !taking_up_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class Outcome { over, later };
+
+  void work();
+  void take_up();
+  void look();
+  void arm();
+  void wait_until(Clock::time_point time);
+  Outcome look_at(const Job& job, const WatchConfig& watch);
+  Outcome remove(const Job& job, const WatchConfig& watch, bool writers_known);
+  void keep(const Job& job, const std::string& reason) const;
+  const WatchConfig* deleting_watch(const std::string& label) const;
+
+  const JobStore& store_;
+  const EventLog& log_;
+  std::vector<WatchConfig> watches_;               ///< those that delete
+  std::map<std::int64_t, Clock::time_point> due_;  ///< by job
+  std::set<std::int64_t> in_use_;                  ///< of which it was said
+  bool taking_up_ = false;
+  std::int64_t taken_up_ = 0;  ///< id of the last job that was looked through
+  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
+  boost::asio::steady_timer timer_;
+};
+
+}  // namespace weir

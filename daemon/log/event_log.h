@@ -1,0 +1,53 @@
+// The daemon's log: one line per event, "NAME key=value ...", so that a person
+// can read it and a program can take it apart. One thread.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "daemon/config/config.h"
+#include "format/base/text.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace weir {
+
+/// A key and its value as text.
+struct Field {
+  template <typename T>
+  Field(std::string_view name, const T& content) : key(name), value(cat(content)) {}
+  std::string_view key;
+  std::string value;
+};
+
+/// "done job=7 source=\"/in/a b.raw\"": a value with a space, a quote, an equals sign or a control character is
+/// quoted, and those inside are escaped with a backslash, so that an event stays one line.
+std::string event_text(std::string_view name, std::initializer_list<Field> fields);
+
+class EventLog {
+ public:
+  /// To service.log_file, rotated at log_size, or to stderr. Throws Error(io) where the file cannot be opened.
+  explicit EventLog(const ServiceConfig& service);
+
+  /// Opens the file of `service` anew (another program may have renamed the old one) and takes its level.
+  /// Throws like the constructor; then the old log goes on.
+  void reopen(const ServiceConfig& service);
+
+  void debug(std::string_view name, std::initializer_list<Field> fields) const;
+  void info(std::string_view name, std::initializer_list<Field> fields) const;
+  void warn(std::string_view name, std::initializer_list<Field> fields) const;
+  void error(std::string_view name, std::initializer_list<Field> fields) const;
+
+ private:
+  /// `level` is one of spdlog::level::level_enum.
+  void write(int level, std::string_view name, std::initializer_list<Field> fields) const;
+
+  std::shared_ptr<spdlog::logger> logger_;
+};
+
+}  // namespace weir

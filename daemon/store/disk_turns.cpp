@@ -1,0 +1,33 @@
+#include "daemon/store/disk_turns.h"
+
+#include <chrono>
+#include <utility>
+
+namespace weir {
+namespace {
+
+constexpr std::chrono::milliseconds kBetween{1};
+
+}  // namespace
+
+void DiskTurns::take(std::function<void()> work) {
+  queue_.push_back(std::move(work));
+  if (queue_.size() == 1) await_next();
+}
+
+void DiskTurns::await_next() {
+  timer_.expires_at(next_);
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) run_next();
+  });
+}
+
+// The work stays in the queue while it runs, so that what it asks for comes after it.
+void DiskTurns::run_next() {
+  queue_.front()();
+  queue_.pop_front();
+  next_ = boost::asio::steady_timer::clock_type::now() + kBetween;
+  if (!queue_.empty()) await_next();
+}
+
+}  // namespace weir

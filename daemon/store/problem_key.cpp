@@ -1,0 +1,51 @@
+#include "daemon/store/problem_key.h"
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_letter(char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+// Whether the text does not go on on either side as a word would.
+bool is_word_at(std::string_view text, std::size_t at, std::size_t length) {
+  const bool begins = at == 0 || !is_letter(text[at - 1]) || !is_letter(text[at]);
+  const std::size_t end = at + length;
+  return begins && (end == text.size() || !is_letter(text[end]) || !is_letter(text[end - 1]));
+}
+
+}  // namespace
+
+std::string_view without_path(std::string_view source, std::string_view reason) {
+  if (!source.empty() && reason.starts_with(source) && reason.substr(source.size()).starts_with(": ")) {
+    reason.remove_prefix(source.size() + 2);
+  }
+  return reason;
+}
+
+std::string problem_key(std::string_view source, std::string_view reason) {
+  std::string text(without_path(source, reason));
+  // The path or the name may stand further inside, too, as that of the output's.
+  for (const std::string_view name : {source, source.substr(source.rfind('/') + 1)}) {
+    if (name.empty()) continue;
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+      if (!is_word_at(text, at, name.size())) continue;
+      text.replace(at, name.size(), 1, '*');
+    }
+  }
+  std::string key;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) >= 0x80) {
+      key += '?';
+    } else if (!is_digit(c)) {
+      key += c;
+    } else if (!key.ends_with('#')) {
+      key += '#';
+    }
+  }
+  return key.empty() ? "no reason" : key;
+}
+
+}  // namespace weir

@@ -1,0 +1,165 @@
+#include "daemon/watch/completion.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <string_view>
+
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/scalar_type.h"
+#include "format/base/text.h"
+#include "ingest/raw/raw_name.h"
+#include "ingest/source/extent.h"
+
+namespace weir {
+namespace {
+
+using State = CompletionAnswer::State;
+
+std::optional<Index3> extent_of(std::string_view dims) {
+  const std::vector<std::string> parts = split(dims, ',');
+  if (parts.size() != 3) return std::nullopt;
+  const auto x = parse_int(parts[0]);
+  const auto y = parse_int(parts[1]);
+  const auto z = parse_int(parts[2]);
+  if (!x || !y || !z) return std::nullopt;
+  return Index3{*x, *y, *z};
+}
+
+// Of the file `path`, where it is a raw one whose shape is known. What convert will refuse has no expected size.
+std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std::string& path) {
+  const std::optional<RawName> name = parse_raw_name(path);
+  const auto dims = watch.convert_option("dims");
+  const auto type_name = watch.convert_option("type");
+  const auto extent = dims ? extent_of(*dims) : name ? std::optional(name->extent) : std::nullopt;
+  const auto type = type_name ? parse_scalar(*type_name) : name ? name->type : std::nullopt;
+  if (!extent || !type) return std::nullopt;
+  try {
+    const std::int64_t offset = parse_int(watch.convert_option("offset").value_or("0")).value_or(0);
+    return checked_volume_bytes(*extent, scalar_bytes(*type), path) + static_cast<std::uint64_t>(offset);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+// False where nothing is there.
+bool look_at(const std::string& path, struct stat& status) {
+  if (::stat(path.c_str(), &status) == 0) return true;
+  if (says_missing(errno)) return false;
+  throw io_error(path, "look at it", errno);
+}
+
+}  // namespace
+
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path) {
+  CompletionRules rules;
+  rules.policy = watch.complete;
+  rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
+  rules.expected_bytes = expected_bytes(watch, path);
+  rules.marker = watch.marker;
+  return rules;
+}
+
+FileSample sample_file(const std::string& path, const std::string& marker) {
+  FileSample sample;
+  struct stat status {};
+  if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
+  sample.exists = true;
+  sample.identity = identity_of(status);
+  sample.marked = !marker.empty() && look_at(path + marker, status);
+  return sample;
+}
+
+void FileCompletion::happened(FileEventKind kind, Time now) {
+  switch (kind) {
+    case FileEventKind::found:
+    case FileEventKind::created:
+      writer_ = Writer::unknown;
+      break;
+    case FileEventKind::written:
+      writer_ = Writer::open;
+      unchanged_since_ = now;
+      break;
+    case FileEventKind::closed:
+      writer_ = Writer::closed;
+      unchanged_since_ = now;
+      break;
+    case FileEventKind::moved_in:
+      writer_ = Writer::renamed;
+      break;
+    case FileEventKind::permitted:
+    case FileEventKind::marked:
+    case FileEventKind::removed:
+    case FileEventKind::overflow:
+    case FileEventKind::root_lost:
+    case FileEventKind::root_back:
+      break;
+  }
+}
+
+CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
+  if (!sample.exists) return {State::gone, {}, {}};
+  if (seen_ != sample.identity) {
+    seen_ = sample.identity;
+    unchanged_since_ = now;
+  }
+  CompletionAnswer its_close{State::waiting, Time::max(), "a program has it open for writing"};
+  switch (rules_.policy) {
+    case Completion::close:
+      if (writer_ == Writer::open) return its_close;
+      return writer_ == Writer::closed ? whole() : when_unchanged(rules_.settle, now);
+    case Completion::rename:
+      if (writer_ == Writer::renamed || writer_ == Writer::unknown) return whole();
+      return {State::waiting, Time::max(), "it has not got its name by a rename"};
+    case Completion::marker:
+      if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
+      return when_unchanged(kCloseSettle, now);
+    case Completion::size:
+      if (!rules_.expected_bytes) {
+        return {State::broken, {}, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type"};
+      }
+      if (sample.identity.bytes < *rules_.expected_bytes) {
+        if (writer_ == Writer::closed || writer_ == Writer::renamed) return when_unchanged(rules_.settle, now);
+        return {State::waiting, now + rules_.settle,
+                cat("it has ", sample.identity.bytes, " of ", *rules_.expected_bytes, " bytes")};
+      }
+      return when_unchanged(kCloseSettle, now);
+    case Completion::stable:
+      return when_unchanged(rules_.settle, now);
+    case Completion::automatic:
+      break;
+  }
+  switch (writer_) {
+    case Writer::open:
+      return its_close;
+    case Writer::closed:
+      return sample.identity.bytes == rules_.expected_bytes ? whole() : when_unchanged(kCloseSettle, now);
+    case Writer::renamed:
+      return whole();
+    case Writer::unknown:
+      break;
+  }
+  return when_unchanged(rules_.settle, now);
+}
+
+CompletionAnswer FileCompletion::when_unchanged(std::chrono::nanoseconds settle, Time now) const {
+  const Time until = unchanged_since_ + std::chrono::duration_cast<Time::duration>(settle);
+  const bool may_not_have_begun = seen_->bytes == 0 && (writer_ == Writer::unknown || writer_ == Writer::open);
+  if (may_not_have_begun) return {State::waiting, Time::max(), "it is empty"};
+  if (now >= until) return whole();
+  return {State::waiting, until, "it changed a moment ago"};
+}
+
+CompletionAnswer FileCompletion::whole() const {
+  if (seen_->bytes == 0) return {State::broken, {}, "is empty (0 bytes); write it again"};
+  if (rules_.expected_bytes && seen_->bytes != *rules_.expected_bytes) {
+    return {State::broken,
+            {},
+            cat("has ", seen_->bytes, " bytes and should have ", *rules_.expected_bytes,
+                "; write it again, or correct its name or dims, type and offset")};
+  }
+  return {State::complete, {}, {}};
+}
+
+}  // namespace weir

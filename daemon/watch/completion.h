@@ -1,0 +1,93 @@
+// When a source is whole. Pure: it is told what happened to the file (FileEvent), what the file looks like
+// (FileSample) and what time it is, and answers. Clocks may jump: times are steady, a file's mtime is only
+// compared for equality.
+//
+// Policies (WatchConfig::complete), each also without a change for kCloseSettle or `settle` where it says so:
+//   close   a writer closed it; found without its writer: unchanged for settle
+//   rename  it has its name by a rename; found without its writer: at once
+//   marker  NAME.done is beside it, unchanged for kCloseSettle
+//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle
+//   stable  unchanged for settle
+//   auto    renamed: at once
+//           closed: at once where its expected size is known and reached, else unchanged for kCloseSettle
+//           being written and its close will be seen: that is waited for, however long
+//           found without its writer, or linked: unchanged for settle
+// An empty file is waited for unless its writer closed or renamed it. A file that is complete by its policy and empty,
+// or of another size than expected, is broken.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "daemon/config/config.h"
+#include "daemon/store/job.h"
+#include "daemon/watch/file_event.h"
+
+namespace weir {
+
+/// After a close: time for a second writer, or the same one, to open the file again.
+inline constexpr std::chrono::milliseconds kCloseSettle{200};
+
+struct CompletionRules {
+  Completion policy = Completion::automatic;
+  std::chrono::nanoseconds settle{std::chrono::seconds{2}};
+  std::optional<std::uint64_t> expected_bytes;  ///< of the file, where its name or the options say it
+  std::string marker;                           ///< of the policy marker, for messages
+};
+
+/// The rules for `path`, a source of `watch`. The expected size is that of a raw file: NAME_XxYxZ_TYPE.raw or
+/// dims and type (and offset) among the convert options.
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path);
+
+/// What a path looks like now.
+struct FileSample {
+  bool exists = false;  ///< as a regular file, behind links too
+  FileIdentity identity;
+  bool marked = false;  ///< path + marker exists
+};
+
+/// Looks at the file system. `marker` empty: not looked for. Throws Error(io) where it cannot be looked at for
+/// another reason than that nothing is there.
+FileSample sample_file(const std::string& path, const std::string& marker);
+
+struct CompletionAnswer {
+  enum class State {
+    complete,  ///< convert it, in the state of the sample
+    waiting,   ///< look again with a new sample at `until`, or after the next event
+    broken,    ///< whole as far as its writer is concerned, and useless; until the next event
+    gone       ///< not there
+  };
+  State state = State::waiting;
+  std::chrono::steady_clock::time_point until{};  ///< of waiting; time_point::max(): not before the next event
+  std::string reason;                             ///< of waiting, in words; of broken, one line without the path
+};
+
+/// One file's way to being complete. Made when the first event of the file arrives, and fed all of them; small
+/// (and may be dropped when it is complete, broken or gone: the next event makes a new one).
+class FileCompletion {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit FileCompletion(CompletionRules rules) : rules_(std::move(rules)) {}
+
+  /// Something happened to the file. found, created, written, closed, moved_in and marked mean something, others
+  /// are ignored. A sample must follow at once.
+  void happened(FileEventKind kind, Time now);
+  CompletionAnswer look(const FileSample& sample, Time now);
+
+ private:
+  enum class Writer { unknown, open, closed, renamed };
+
+  CompletionAnswer when_unchanged(std::chrono::nanoseconds settle, Time now) const;
+  CompletionAnswer whole() const;
+
+  CompletionRules rules_;
+  Writer writer_ = Writer::unknown;
+  std::optional<FileIdentity> seen_;
+  Time unchanged_since_{};
+};
+
+}  // namespace weir

@@ -1,0 +1,59 @@
+// Tells what happens to the sources in a watched directory, for as long as it
+// lives: nothing that PathFilter refuses, and no source left out. By inotify where the
+// file system's changes pass through this machine, by looking again and again elsewhere.
+//
+// The directory may be missing, go away, come back or be replaced at any time. What cannot be
+// watched (a directory without permission, a link that leaves the tree) is said once, in one line, and
+// everything else goes on.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "daemon/watch/file_event.h"
+
+namespace weir {
+
+/// Both are called from handlers of the io_context only, never from within a call of the watch; they must not
+/// destroy it.
+struct WatchListener {
+  std::function<void(const FileEvent&)> event;
+  std::function<void(const std::string& line)> notice;  ///< for the log: "PATH: what, what to do"
+};
+
+struct WatchFigures {
+  std::uint64_t overflows = 0;    ///< of the inotify queue
+  std::uint64_t directories = 0;  ///< being watched
+  std::uint64_t files = 0;        ///< sources there are, as far as known
+  bool looked = false;            ///< all that was there at first is known
+};
+
+class DirectoryWatch {
+ public:
+  virtual ~DirectoryWatch() = default;
+  /// inotify or poll: what is used now.
+  virtual WatchMethod method() const = 0;
+  /// Whether the directory is there, as of the last look.
+  virtual bool up() const = 0;
+  virtual WatchFigures figures() const = 0;
+  /// What stood against inotify may be over (a limit was raised): the way to watch is chosen anew.
+  virtual void choose_again() {}
+};
+
+class Inotify;
+using OpenInotify = std::function<std::unique_ptr<Inotify>()>;
+
+/// Watches config.directory from now on by config.watch. automatic: inotify where it sees everything
+/// (file_system_kind.h), else polling; inotify whose limits are reached becomes polling and a notice says so.
+/// Events of one file are merged within 20 ms, by polling within config.poll_interval_s.
+std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
+                                                     WatchListener listener);
+/// The same with another inotify than the system's, for tests.
+std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
+                                                     WatchListener listener, OpenInotify open_inotify);
+
+}  // namespace weir

@@ -1,0 +1,115 @@
+#include "daemon/watch/file_writers.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "daemon/watch/file_system_kind.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool sees_all_changes(int file) {
+  const int kept = errno;
+  struct statfs status {};
+  const bool local =
+      ::fstatfs(file, &status) == 0 && file_system_kind(static_cast<std::uint64_t>(status.f_type)).sees_all_changes;
+  errno = kept;
+  return local;
+}
+
+bool is_process(const fs::path& directory) {
+  return directory.filename().string().find_first_not_of("0123456789") == std::string::npos;
+}
+
+// Whether /proc/PID/fdinfo/FD says that the descriptor may write: "flags:\t0100002", in octal.
+bool may_write(const fs::path& information) {
+  std::ifstream lines(information);
+  std::string word;
+  while (lines >> word) {
+    if (word != "flags:") continue;
+    int flags = 0;
+    lines >> std::oct >> flags;
+    return (flags & O_ACCMODE) != O_RDONLY;
+  }
+  return false;
+}
+
+bool has_descriptor(const fs::path& process, const struct stat& file) {
+  std::error_code error;
+  for (fs::directory_iterator at(process / "fd", error), end; !error && at != end; at.increment(error)) {
+    struct stat status {};
+    if (::stat(at->path().c_str(), &status) != 0) continue;
+    if (status.st_dev == file.st_dev && status.st_ino == file.st_ino &&
+        may_write(process / "fdinfo" / at->path().filename())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Lines of /proc/PID/maps are "7f00-7f10 rw-s 00000000 fe:00 1234 PATH", device and inode the fourth and fifth.
+bool has_mapping(const fs::path& process, const struct stat& file) {
+  std::ifstream maps(process / "maps");
+  std::string line;
+  while (std::getline(maps, line)) {
+    std::istringstream words(line);
+    std::string range;
+    std::string rights;
+    std::string offset;
+    unsigned major = 0;
+    unsigned minor = 0;
+    char colon = 0;
+    ino_t inode = 0;
+    words >> range >> rights >> offset >> std::hex >> major >> colon >> minor >> std::dec >> inode;
+    if (!words || rights.size() != 4 || rights[1] != 'w' || rights[3] != 's') continue;
+    if (inode == file.st_ino && makedev(major, minor) == file.st_dev) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  // The kernel tells the holder of a lease by this signal that a writer waits; the lease ends with the object anyway.
+  static const auto ignored = std::signal(SIGIO, SIG_IGN);
+  static_cast<void>(ignored);
+  struct stat status {};
+  if (!file_ || ::fstat(file_.get(), &status) != 0) {
+    some_ = true;  // one with a lease for writing, as file servers take it, is the reason to expect
+    return;
+  }
+  if (::fcntl(file_.get(), F_SETLEASE, F_RDLCK) == 0) {
+    leased_ = true;
+    return;
+  }
+  // A file server grants no lease without one of its own, whoever writes.
+  const bool local = sees_all_changes(file_.get());
+  if (errno == EAGAIN && local) {
+    some_ = true;
+    return;
+  }
+  known_ = local && ::geteuid() == 0;  // who may look at all processes
+  std::error_code error;
+  for (fs::directory_iterator at("/proc", error), end; !error && at != end && !some_; at.increment(error)) {
+    if (is_process(at->path())) some_ = has_descriptor(at->path(), status) || has_mapping(at->path(), status);
+  }
+}
+
+FileWriters::~FileWriters() {
+  if (leased_) ::fcntl(file_.get(), F_SETLEASE, F_UNLCK);
+}
+
+}  // namespace weir

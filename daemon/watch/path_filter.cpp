@@ -1,0 +1,111 @@
+#include "daemon/watch/path_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "daemon/watch/glob.h"
+#include "format/base/text.h"
+#include "format/io/real_path.h"
+#include "ingest/raw/raw_name.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The names of ingest/source_registry.cpp, but for those of weir's own results, images and text.
+constexpr std::array<std::string_view, 15> kExtensions{".nrrd",   ".nhdr", ".mhd",  ".mha", ".nii",
+                                                       ".nii.gz", ".h5",   ".hdf5", ".he5", ".nc",
+                                                       ".nc4",    ".cdf",  ".vti",  ".vtk", ".vdb"};
+constexpr std::array<std::string_view, 3> kNeverSources{".partial", ".nvdb.json", ".nvdb.json.previous"};
+
+std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
+
+// ASCII letters only: other bytes are no letters here.
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+bool matches(const std::vector<std::string>& patterns, std::string_view path) {
+  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+    return matches_glob(pattern, pattern.find('/') == std::string::npos ? name_of(path) : path);
+  });
+}
+
+bool is_known_format(std::string_view path, bool any_raw) {
+  const std::string_view name = name_of(path);
+  if (name.starts_with('.')) return false;
+  const std::string lower = lower_case(name);
+  if (lower.ends_with(".raw")) return any_raw || parse_raw_name(name).has_value();
+  return std::any_of(kExtensions.begin(), kExtensions.end(),
+                     [&](std::string_view extension) { return lower.ends_with(extension); });
+}
+
+bool is_at_or_below(std::string_view path, std::string_view directory) {
+  return path.starts_with(directory) &&
+         (directory.empty() || path.size() == directory.size() || path[directory.size()] == '/');
+}
+
+}  // namespace
+
+PathFilter::PathFilter(const WatchConfig& watch)
+    : directory_(watch.directory),
+      real_directory_(real_path(watch.directory).string()),
+      recursive_(watch.recursive),
+      any_raw_(watch.convert_option("dims") && watch.convert_option("type")),
+      include_(watch.include),
+      exclude_(watch.exclude),
+      marker_(watch.complete == Completion::marker ? watch.marker : std::string()) {
+  for (const std::string& path : watch.excluded_paths) {
+    const fs::path relative = real_path(path).lexically_relative(real_directory_);
+    if (!relative.empty() && *relative.begin() != "..") excluded_.push_back(relative.string());
+  }
+}
+
+bool PathFilter::is_excluded(std::string_view path) const {
+  return std::any_of(excluded_.begin(), excluded_.end(),
+                     [&](const std::string& excluded) { return is_at_or_below(path, excluded); });
+}
+
+bool PathFilter::accepts_file(std::string_view path) const {
+  if (!recursive_ && path.find('/') != std::string_view::npos) return false;
+  if (std::any_of(kNeverSources.begin(), kNeverSources.end(), [&](auto end) { return path.ends_with(end); })) {
+    return false;
+  }
+  if (!marker_.empty() && path.ends_with(marker_)) return false;
+  if (!(include_.empty() ? is_known_format(path, any_raw_) : matches(include_, path))) return false;
+  return !matches(exclude_, path) && !is_excluded(path);
+}
+
+bool PathFilter::enters_directory(std::string_view path) const {
+  return recursive_ && !name_of(path).starts_with('.') && !matches(exclude_, path) && !is_excluded(path);
+}
+
+std::optional<std::string> PathFilter::marked_source(std::string_view path) const {
+  if (marker_.empty() || !path.ends_with(marker_)) return std::nullopt;
+  const std::string_view source = path.substr(0, path.size() - marker_.size());
+  if (name_of(source).empty() || !accepts_file(source)) return std::nullopt;
+  return std::string(source);
+}
+
+std::string PathFilter::link_refusal(const std::string& path) const {
+  const std::string link = cat(directory_, '/', path);
+  std::error_code error;
+  const std::string target = fs::canonical(link, error).string();
+  if (error) return cat("a symbolic link that cannot be followed: ", error.message());
+  if (!is_at_or_below(target, real_directory_)) {
+    return cat("a symbolic link to ", target, ", outside the watched directory; watch that directory too");
+  }
+  const std::string_view inside = std::string_view(target).substr(real_directory_.size());
+  if (is_excluded(inside.substr(inside.starts_with('/') ? 1 : 0))) {
+    return cat("a symbolic link to ", target, ", which is weir's own");
+  }
+  return {};
+}
+
+}  // namespace weir

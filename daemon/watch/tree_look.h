@@ -1,0 +1,51 @@
+// A look at all that lies in a watched directory, a piece at a time, so that
+// nothing else has to wait for a large one.
+#pragma once
+
+#include <dirent.h>
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "daemon/watch/source_table.h"
+
+namespace weir {
+
+class TreeLook {
+ public:
+  /// Called before a directory is listed, so that what comes after the listing can be noticed. `path` is relative,
+  /// empty: the watched directory itself.
+  using Entering = std::function<void(const std::string& path)>;
+
+  /// What is seen goes to `table`, which must outlive the object.
+  TreeLook(SourceTable& table, Entering entering) : table_(table), entering_(std::move(entering)) {}
+
+  /// Look at `directory`, and all directories below it that the filter enters.
+  void add(const std::string& directory) { waiting_.push_back(directory); }
+  /// Look at the file or link `path` now, if the table wants it.
+  void look_at(const std::string& path);
+  /// `directory` has another name now, or none: what is still to be looked at in it is not.
+  void leave(const std::string& directory);
+  void clear();
+  /// Looks at some entries, for about a millisecond on a local disk. False when there is nothing more to look at.
+  bool step();
+
+ private:
+  struct CloseDirectory {
+    void operator()(DIR* stream) const { ::closedir(stream); }
+  };
+
+  void open_next();
+  void look_at(const struct stat& status, const std::string& path);
+
+  SourceTable& table_;
+  Entering entering_;
+  std::deque<std::string> waiting_;
+  std::string directory_;
+  std::unique_ptr<DIR, CloseDirectory> stream_;
+};
+
+}  // namespace weir

@@ -1,0 +1,38 @@
+#include "format/io/bandwidth.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+namespace weir {
+namespace {
+
+/// How much of a second's bytes may be moved at once after a pause.
+constexpr double kBurst_s = 0.1;
+/// How long a cancellation may be overlooked.
+constexpr std::chrono::milliseconds kNap{100};
+
+}  // namespace
+
+Bandwidth::Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel, BandwidthClock clock)
+    : cancel_(cancel),
+      clock_(std::move(clock)),
+      bucket_(static_cast<double>(bytes_per_s), kBurst_s * static_cast<double>(bytes_per_s), clock_.now()) {}
+
+Bandwidth::Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel)
+    : Bandwidth(bytes_per_s, cancel,
+                {std::chrono::steady_clock::now, [](auto time) { std::this_thread::sleep_for(time); }}) {}
+
+void Bandwidth::spend(std::uint64_t bytes) {
+  TokenBucket::Time now = clock_.now();
+  const TokenBucket::Time until = [&] {
+    const std::scoped_lock lock(mutex_);
+    return bucket_.take(bytes, now);
+  }();
+  for (; now < until; now = clock_.now()) {
+    if (cancel_ != nullptr && *cancel_) return;
+    clock_.sleep(std::min<TokenBucket::Time::duration>(kNap, until - now));
+  }
+}
+
+}  // namespace weir

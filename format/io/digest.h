@@ -1,0 +1,79 @@
+// Content digests: xxh3-128 of pieces, combined into one. The digest of a whole
+// is the xxh3-128 of its pieces' digests in order (16 bytes each, xxHash's
+// canonical big-endian form), so pieces may be hashed in parallel or while
+// streaming. Two such digests exist, both written as 32 lower-case hex digits:
+//   file    pieces of 16 MiB, the last one shorter
+//   source  one piece a leaf, see FORMAT.md, "Digests"
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "format/io/file_system.h"
+
+struct XXH3_state_s;
+
+namespace weir {
+
+/// Bytes of a piece of a file.
+inline constexpr std::uint64_t kDigestPieceBytes = std::uint64_t{16} << 20U;
+
+/// A good size for the scratch memory of piece_digest: it stays in the second-level cache.
+inline constexpr std::size_t kDigestScratchBytes = std::size_t{1} << 20U;
+
+/// An xxh3-128 in canonical form.
+struct Digest {
+  std::array<std::byte, 16> bytes{};
+
+  /// 32 lower-case hex digits.
+  std::string hex() const;
+  friend constexpr bool operator==(const Digest&, const Digest&) = default;
+};
+
+/// xxh3-128 of one piece.
+Digest piece_digest(std::span<const std::byte> piece);
+/// xxh3-128 of `bytes` bytes of a file from `offset` on, read through `scratch`, of any size.
+Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::span<std::byte> scratch);
+/// The same of the float32 values of a leaf inside the domain (x fastest), as little-endian bytes.
+Digest leaf_digest(std::span<const float> values);
+
+/// Combines digests as they come, in constant memory. Not thread-safe.
+class DigestStream {
+ public:
+  DigestStream();
+  ~DigestStream();
+  DigestStream(DigestStream&&) noexcept;
+  DigestStream& operator=(DigestStream&&) noexcept;
+
+  void update(const Digest& next);
+  /// Several consecutive ones.
+  void update(std::span<const Digest> next);
+  /// Of everything so far; more may follow.
+  Digest digest() const;
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_s* state) const;
+  };
+  std::unique_ptr<XXH3_state_s, Free> state_;
+};
+
+/// DigestStream of all `pieces` at once.
+Digest combine(std::span<const Digest> pieces);
+
+/// Number of pieces of a file of `bytes`.
+constexpr std::uint64_t piece_count(std::uint64_t bytes) {
+  return bytes / kDigestPieceBytes + (bytes % kDigestPieceBytes != 0 ? 1 : 0);
+}
+/// Piece `i` of a file in memory; i < piece_count(file.size()).
+std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint64_t i);
+
+/// Digest of a whole file, one thread.
+Digest file_digest(std::span<const std::byte> file);
+Digest file_digest(File& file);
+
+}  // namespace weir

@@ -1,0 +1,28 @@
+#include "format/io/file_id.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+std::optional<FileId> file_id(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return FileId{status.st_dev, status.st_ino};
+}
+
+void require_not_input(std::span<const FileId> inputs, const std::string& output) {
+  for (const char* suffix : {"", ".partial", ".json", ".json.partial", ".json.previous"}) {
+    const std::string path = output + suffix;
+    const std::optional<FileId> there = file_id(path);
+    if (!there || std::find(inputs.begin(), inputs.end(), *there) == inputs.end()) continue;
+    throw usage_error(cat(path, ": belongs to the input, and writing ", output,
+                          " would replace or remove it; choose another output with -o"));
+  }
+}
+
+}  // namespace weir

@@ -1,0 +1,241 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+
+namespace weir {
+namespace {
+
+class PosixFile final : public File {
+ public:
+  PosixFile(int descriptor, std::string path, bool exclusive)
+      : descriptor_(descriptor), path_(std::move(path)), exclusive_(exclusive) {}
+  ~PosixFile() override { ::close(descriptor_); }
+  PosixFile(const PosixFile&) = delete;
+  PosixFile& operator=(const PosixFile&) = delete;
+
+  const std::string& path() const override { return path_; }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw io_error(path_, cat("write ", bytes.size(), " bytes at offset ", offset), errno);
+      offset += static_cast<std::uint64_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    }
+  }
+
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t done = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw io_error(path_, cat("read ", bytes.size(), " bytes at offset ", offset), errno);
+      if (done == 0)
+        throw Error(ErrorKind::io, cat(path_, ": ends at offset ", offset, ", expected ", bytes.size(), " bytes more"));
+      offset += static_cast<std::uint64_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    }
+  }
+
+  bool preallocate(std::uint64_t bytes) override {
+    // fallocate and not posix_fallocate: the latter writes zeros where the file system cannot reserve.
+    int status = 0;
+    do {
+      status = bytes == 0 ? 0 : ::fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes));
+    } while (status != 0 && errno == EINTR);
+    if (status == 0) return true;
+    if (errno != EOPNOTSUPP && errno != ENOSYS) throw io_error(path_, cat("reserve ", bytes, " bytes"), errno);
+    if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0)
+      throw io_error(path_, cat("set the size to ", bytes), errno);
+    return false;
+  }
+
+  void clear() override {
+    if (::ftruncate(descriptor_, 0) != 0) throw io_error(path_, "set the size to 0", errno);
+  }
+
+  void start_writeback() override { ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
+
+  void sync() override {
+    if (::fsync(descriptor_) != 0) throw io_error(path_, "flush to the device", errno);
+  }
+
+  std::uint64_t size() override {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) throw io_error(path_, "read the size", errno);
+    return static_cast<std::uint64_t>(status.st_size);
+  }
+
+  int descriptor() const override { return descriptor_; }
+  bool exclusive() const override { return exclusive_; }
+  void set_exclusive() { exclusive_ = true; }
+
+ private:
+  int descriptor_;
+  std::string path_;
+  bool exclusive_;
+};
+
+[[noreturn]] void refuse_foreign(const std::string& path, const char* what) {
+  throw usage_error(cat(path, ": ", what, ", so it is none of weir's own files; remove it or choose another output"));
+}
+
+class PosixFileSystem final : public FileSystem {
+ public:
+  explicit PosixFileSystem(PosixFileSystemOptions options) : options_(std::move(options)) {}
+
+  std::unique_ptr<File> create(const std::string& path) override {
+    std::unique_ptr<File> file = open(path);
+    struct stat status {};
+    if (::fstat(file->descriptor(), &status) != 0) throw io_error(path, "look at", errno);
+    // Emptied by this name, it would be empty by the other one.
+    if (status.st_nlink > 1) refuse_foreign(path, "has a second name (a hard link)");
+    file->clear();
+    return file;
+  }
+
+  std::unique_ptr<File> open(const std::string& path) override {
+    for (;;) {
+      // O_NONBLOCK: a pipe of this name must not wait for its other end.
+      constexpr int kFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+      int descriptor = ::open(path.c_str(), kFlags | O_EXCL, 0666);
+      const bool made = descriptor >= 0;
+      if (!made && errno == EEXIST) descriptor = ::open(path.c_str(), kFlags, 0666);
+      if (descriptor < 0 && errno == ELOOP) refuse_foreign(path, "is a symbolic link");
+      if (descriptor < 0) throw io_error(path, "create", errno);
+      auto file = std::make_unique<PosixFile>(descriptor, path, made);
+      if (lock(descriptor) == 0) {
+        file->set_exclusive();
+      } else if (errno == EWOULDBLOCK) {
+        throw Error(ErrorKind::io,
+                    cat(path, ": is being written by another process; wait for it or choose another output"));
+      } else {
+        tell_that_locks_fail(path, errno);
+      }
+      // Between open and lock the writer before us may have renamed this very file to its result:
+      // writing to it then would destroy that.
+      struct stat mine {};
+      struct stat named {};
+      if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
+      if (!S_ISREG(mine.st_mode)) refuse_foreign(path, "is no regular file");
+      if (::lstat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
+      return file;
+    }
+  }
+
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override {
+    int descriptor = ::open(directory.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+    if (descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+      std::string name = directory + "/spillXXXXXX";
+      descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+      if (descriptor >= 0) ::unlink(name.c_str());
+    }
+    if (descriptor < 0) throw io_error(directory, "create a temporary file in it", errno);
+    return std::make_unique<PosixFile>(descriptor, directory + " (temporary file)", true);
+  }
+
+  void rename(const std::string& from, const std::string& to) override {
+    if (::rename(from.c_str(), to.c_str()) != 0) throw io_error(from, "rename to " + to, errno);
+  }
+
+  void rename_new(const std::string& from, const std::string& to) override {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+    if (errno != EINVAL && errno != ENOSYS) throw io_error(from, "rename to " + to, errno);
+    // This file system cannot refuse to replace: look first.
+    if (exists(to)) throw io_error(from, "rename to " + to, EEXIST);
+    rename(from, to);
+  }
+
+  bool link(const std::string& from, const std::string& to) override {
+    if (::link(from.c_str(), to.c_str()) == 0) return true;
+    // EPERM is also of a file that is another user's, which the system may protect from links.
+    if (errno == EPERM || errno == EOPNOTSUPP || errno == ENOSYS || errno == EMLINK) return false;
+    throw io_error(from, "link to " + to, errno);
+  }
+
+  void remove(const std::string& path) override {
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT) throw io_error(path, "remove", errno);
+  }
+
+  void make_directory(const std::string& path) override {
+    if (::mkdir(path.c_str(), 0777) == 0) return;
+    if (errno != EEXIST) throw io_error(path, "create the directory", errno);
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) == 0 && !S_ISDIR(status.st_mode)) refuse_foreign(path, "is no directory");
+  }
+
+  void remove_directory(const std::string& path) override {
+    if (::rmdir(path.c_str()) != 0 && errno != ENOENT) throw io_error(path, "remove the directory", errno);
+  }
+
+  void sync_directory(const std::string& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) throw io_error(path, "open the directory", errno);
+    const int status = ::fsync(descriptor);
+    const int reason = errno;
+    ::close(descriptor);
+    // Some network file systems cannot flush a directory and say EINVAL; their renames are durable by themselves.
+    if (status != 0 && reason != EINVAL) throw io_error(path, "flush the directory", reason);
+  }
+
+  bool exists(const std::string& path) override {
+    struct stat status {};
+    return ::lstat(path.c_str(), &status) == 0;
+  }
+
+  bool is_replaceable(const std::string& path) override {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+  }
+
+  bool is_memory(const std::string& directory) override {
+    struct statfs status {};
+    if (::statfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the file system", errno);
+    constexpr auto kTmpfs = 0x01021994;
+    constexpr auto kRamfs = static_cast<decltype(status.f_type)>(0x858458f6);
+    return status.f_type == kTmpfs || status.f_type == kRamfs;
+  }
+
+  std::uint64_t free_bytes(const std::string& directory) override {
+    struct statvfs status {};
+    if (::statvfs(directory.c_str(), &status) != 0) throw io_error(directory, "look at the free space", errno);
+    return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
+  }
+
+ private:
+  int lock(int descriptor) const {
+    return (options_.lock != nullptr ? options_.lock : ::flock)(descriptor, LOCK_EX | LOCK_NB);
+  }
+
+  void tell_that_locks_fail(const std::string& path, int reason) {
+    if (told_.exchange(true) || !options_.notice) return;
+    options_.notice(cat(path, ": cannot be locked: ", std::generic_category().message(reason),
+                        "; see to it that no other process writes this output"));
+  }
+
+  PosixFileSystemOptions options_;
+  std::atomic<bool> told_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<FileSystem> make_posix_file_system(PosixFileSystemOptions options) {
+  return std::make_unique<PosixFileSystem>(std::move(options));
+}
+
+}  // namespace weir

@@ -1,0 +1,41 @@
+// The float leaf: 512 values of an 8^3 block, byte for byte as NanoVDB stores it.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "format/base/index.h"
+#include "format/layout/nanovdb_layout.h"
+#include "format/layout/node_statistics.h"
+
+namespace weir {
+
+/// Values of a leaf in its own order: index x<<6 | y<<3 | z, z fastest.
+using LeafValues = std::array<float, kLeafVoxels>;
+
+/// Copies in-domain values of one leaf out of a dense block into leaf order; the rest becomes `outside`.
+/// `values` holds `box` (index space, x fastest); `node` is the leaf's 8^3 box; `inside` = node & domain,
+/// not empty, inside `box`.
+void gather_leaf(std::span<const float> values, const Box& box, const Box& node, const Box& inside, float outside,
+                 LeafValues& leaf);
+
+/// Statistics of the active values (those in `inside`) in mask order.
+NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const Box& inside);
+
+/// Leaves whose statistics are computed together: each one's arithmetic is a chain of divisions that
+/// wait for each other, eight chains at a time keep the machine busy.
+inline constexpr std::size_t kLeafBatch = 8;
+
+/// The same for up to kLeafBatch leaves that lie wholly inside the domain, in one go: bit for bit what
+/// leaf_statistics gives for each. `nodes` and `statistics` are as long as `leaves`.
+void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Box> nodes,
+                          std::span<NodeStatistics> statistics);
+
+/// Writes the 2144 bytes of a float leaf whose active voxels are those of `inside`.
+void encode_float_leaf(const LeafValues& values, const Box& node, const Box& inside, const NodeStatistics& statistics,
+                       std::span<std::byte, nvdb::kFloatLeafBytes> image);
+
+}  // namespace weir

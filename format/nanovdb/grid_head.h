@@ -1,0 +1,47 @@
+// Everything before the first upper node: file header, file meta data, padded
+// name, GridData, TreeData, root and root tiles, with the head checksum.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "format/base/index.h"
+#include "format/layout/node_statistics.h"
+#include "format/layout/tree_layout.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+/// One entry of the root table.
+struct RootTile {
+  Index3 origin;            ///< lowest voxel, a multiple of 4096
+  std::uint64_t child = 0;  ///< file offset of the upper node, 0 for a value tile
+  bool active = false;      ///< value tiles only
+  float value = 0;          ///< value tiles only
+};
+
+struct GridHead {
+  GridType type = GridType::float32;
+  std::string name;                           ///< 1 to 255 bytes
+  std::array<double, 3> voxel_size{1, 1, 1};  ///< > 0
+  std::array<double, 3> origin{0, 0, 0};      ///< world position of index (0, 0, 0)
+  float background = 0;
+  NodeStatistics statistics;                    ///< of the whole grid; count = active voxels
+  std::array<std::uint64_t, 3> active_tiles{};  ///< lower, upper and root level
+  std::vector<RootTile> tiles;                  ///< sorted by origin x, y, z
+  bool breadth_first = true;                    ///< leaves lie in traversal order and have one size
+};
+
+/// The bytes [0, layout.uppers) of the file.
+std::vector<std::byte> encode_head(const GridHead& head, const TreeLayout& layout);
+
+/// The macrocells' blind-data record (288 bytes), followed in the file by the data.
+std::vector<std::byte> encode_macrocell_record(const TreeLayout& layout);
+
+/// CRC-32 (0xEDB88320) over the head of a 32.4.2 grid: bytes [16, end of the root tiles) of the grid.
+std::uint32_t head_checksum(std::span<const std::byte> grid_head);
+
+}  // namespace weir

@@ -1,0 +1,24 @@
+// The blind data records of a grid: bounds of all, content of weir's macrocells.
+#pragma once
+
+#include <cstdint>
+
+#include "format/base/index.h"
+#include "format/nanovdb/nvdb_bytes.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+struct NvdbBlindData {
+  MacrocellView macrocells;
+  /// Past the last byte of records and data, from the grid's start; the grid's size where a record
+  /// has elements of unknown size; `tree_end` where there are no records.
+  std::uint64_t end = 0;
+};
+
+/// Checks the records of `grid`, which begin at or behind `tree_end`, and finds the macrocells over
+/// `bbox`. Macrocells that are not aligned to 4 bytes in memory (a foreign tool moved the grid) count
+/// as absent. Throws Error(input) naming offset and value.
+NvdbBlindData read_nvdb_blind_data(const NvdbBytes& grid, std::uint64_t tree_end, const Box& bbox);
+
+}  // namespace weir

@@ -1,0 +1,30 @@
+// A NanoVDB file mapped read-only, with its validated first grid. Owns the mapping.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "format/io/file_mapping.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+class NvdbFile {
+ public:
+  /// Maps and validates. Throws Error(input) for a missing, empty or invalid file.
+  explicit NvdbFile(const std::string& path)
+      : path_(path), mapping_(path, ".nvdb"), grid_(NvdbGrid::open(mapping_.bytes(), path)) {}
+
+  const std::string& path() const { return path_; }
+  const NvdbGrid& grid() const { return grid_; }
+  std::span<const std::byte> bytes() const { return mapping_.bytes(); }
+  const FileMapping& mapping() const { return mapping_; }
+
+ private:
+  std::string path_;
+  FileMapping mapping_;
+  NvdbGrid grid_;
+};
+
+}  // namespace weir

@@ -1,0 +1,137 @@
+// A read-only view of one grid of a NanoVDB file held in memory (mapped
+// or not). `open` validates everything before any offset is trusted: after it
+// returned, no call reads outside the span, whatever the bytes are. It walks the
+// internal nodes only (some 8 MB of a 1 GB float file), so a file of any size
+// opens without reading its values. All calls are const and thread-safe.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "format/base/index.h"
+#include "format/layout/nvdb_type.h"
+#include "format/nanovdb/nvdb_header.h"
+
+namespace weir {
+
+struct MinMax {
+  float min;
+  float max;
+};
+
+/// What covers a voxel: a leaf, or a value tile of 8, 128 or 4096 voxels, or nothing (background).
+struct GridBlock {
+  Index3 origin;         ///< lowest voxel
+  std::int64_t dim = 0;  ///< voxels along an edge: 8, 128 or 4096
+  bool active = false;   ///< tile state; true for leaves
+  float value = 0;       ///< tile value or background; unused for leaves
+  /// Leaf node, null for tiles; 32-byte aligned relative to the grid, which a foreign file may hold
+  /// at any offset: read it through format/leaf/leaf_decode.h.
+  const std::byte* leaf = nullptr;
+};
+
+/// An entry of the root's table: an upper node of 4096^3 voxels, or a value tile of that size.
+struct RootEntry {
+  Index3 origin;                     ///< lowest voxel
+  const std::byte* upper = nullptr;  ///< null: a tile
+  bool active = false;               ///< tile state
+  float value = 0;                   ///< tile value
+};
+
+/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
+/// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).
+struct MacrocellView {
+  std::int64_t cell = 0;          ///< voxels along an edge
+  std::int64_t apron = 0;         ///< voxels
+  NodeLattice lattice;            ///< cells over the index bounding box
+  std::span<const MinMax> cells;  ///< lattice.size() entries, x fastest
+};
+
+class NvdbGrid {
+ public:
+  /// `file` must stay valid and unchanged while the view is used. `path` is for messages only.
+  /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
+  /// NanoVDB file of a supported type.
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path);
+  /// The same for a grid that all_nvdb_segments found, where the above opens the first.
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record);
+
+  GridType type() const { return type_; }
+  const std::string& name() const { return name_; }
+  /// Of active voxels, half open; the domain in weir's files. {} without active voxels, else less than
+  /// 2^62 voxels within the root tiles: look at the volume before allocating by it.
+  Box index_bbox() const { return bbox_; }
+  float background() const { return background_; }
+  float value_min() const { return value_min_; }  ///< of the decoded active values, as stored in the root
+  float value_max() const { return value_max_; }
+  std::array<double, 3> voxel_size() const { return voxel_size_; }
+  std::array<double, 9> matrix() const { return matrix_; }  ///< row-major: world = matrix * index + world_origin
+  std::array<double, 3> world_origin() const { return world_origin_; }  ///< of index (0, 0, 0)
+  std::uint64_t grid_offset() const { return grid_offset_; }            ///< bytes from the file's start
+  std::uint64_t grid_bytes() const { return grid_bytes_; }              ///< gridSize
+  /// grid_bytes() less the padding at the tail: the end of the last node, blind data record or blind
+  /// data, whichever is last; grid_bytes() where blind data has elements of unknown size.
+  std::uint64_t data_bytes() const { return data_bytes_; }
+  std::uint32_t version() const { return version_; }                         ///< see nvdb_version_text
+  std::uint64_t active_voxels() const { return active_voxels_; }             ///< as stored in the tree
+  std::array<std::uint32_t, 3> node_counts() const { return node_counts_; }  ///< leaf, lower, upper
+  std::array<std::uint32_t, 3> tile_counts() const { return tile_counts_; }  ///< active: lower, upper, root; as stored
+  std::uint32_t root_tiles() const { return root_tiles_; }                   ///< entries of the root table
+  std::uint32_t head_checksum() const { return head_checksum_; }             ///< all bits set where absent
+  MacrocellView macrocells() const { return macrocells_; }
+
+  /// What covers voxel `i` (any coordinates).
+  GridBlock block_at(const Index3& i) const;
+  /// Decoded value of voxel `i`: what a stock accessor returns. Throws as decode_leaf.
+  float value(const Index3& i) const;
+  /// Decodes leaf `block.leaf` into 512 values, index x<<6 | y<<3 | z (z fastest). Throws Error(input)
+  /// where the width of an FpN leaf is invalid, which open leaves unread.
+  void decode_leaf(const std::byte* leaf, std::span<float, 512> values) const;
+  /// Bits a voxel of a leaf: 1, 2, 4, 8, 16 or 32. Throws as decode_leaf.
+  unsigned leaf_bits(const std::byte* leaf) const;
+  /// True where voxel (x<<6 | y<<3 | z) of a leaf is active.
+  static bool leaf_voxel_active(const std::byte* leaf, unsigned offset);
+  /// Calls `visit` for every entry of the root's table, in file order.
+  void for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const;
+  /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper
+  /// node its tiles and children. Tiles of background value that are inactive are visited too.
+  void for_each_block(const std::function<void(const GridBlock&)>& visit) const;
+
+  std::span<const std::byte> bytes() const { return file_; }  ///< the whole file
+  /// The grid less its padding: what a copy of the grid needs.
+  std::span<const std::byte> data() const { return file_.subspan(grid_offset_, data_bytes_); }
+
+ private:
+  NvdbGrid() = default;
+
+  static void visit_upper(const Index3& origin, const std::byte* upper,
+                          const std::function<void(const GridBlock&)>& visit);
+
+  std::span<const std::byte> file_;
+  std::string path_;
+  std::uint32_t version_ = 0;
+  GridType type_ = GridType::float32;
+  std::string name_;
+  Box bbox_;
+  float background_ = 0;
+  float value_min_ = 0;
+  float value_max_ = 0;
+  std::array<double, 3> voxel_size_{};
+  std::array<double, 9> matrix_{};
+  std::array<double, 3> world_origin_{};
+  std::uint64_t grid_offset_ = 0;
+  std::uint64_t grid_bytes_ = 0;
+  std::uint64_t data_bytes_ = 0;
+  std::uint64_t active_voxels_ = 0;
+  std::array<std::uint32_t, 3> node_counts_{};
+  std::array<std::uint32_t, 3> tile_counts_{};
+  std::uint32_t root_tiles_ = 0;
+  std::uint32_t head_checksum_ = 0;
+  MacrocellView macrocells_;
+};
+
+}  // namespace weir

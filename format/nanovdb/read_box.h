@@ -1,0 +1,15 @@
+// Decoded values of a box of voxels, out of the tree they are stored in.
+#pragma once
+
+#include <span>
+
+#include "format/base/index.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+/// What NvdbGrid::value gives for every voxel of `box`, in and outside the domain, x fastest, into `values`, which has
+/// box.voxels() floats. A leaf is decoded once. Throws as NvdbGrid::decode_leaf.
+void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values);
+
+}  // namespace weir

@@ -1,0 +1,25 @@
+// What a commit that was killed leaves beside an output, and how weir tells it from other people's files.
+#pragma once
+
+#include <string>
+
+#include "format/io/file_system.h"
+
+namespace weir {
+
+/// What OUT.nvdb.partial holds while it is a lock alone and a sidecar of `sidecar_text` is put into place.
+std::string commit_record(const std::string& sidecar_text);
+
+/// Whether `sidecar` is a sidecar of weir and `volume` the file that it describes, by length and head checksum. False
+/// where one of them cannot be read.
+bool describes(FileSystem& files, const std::string& sidecar, File& volume);
+bool describes(FileSystem& files, const std::string& sidecar, const std::string& volume);
+
+/// Whether a commit that was killed, whose OUT.nvdb.partial was `partial`, put `sidecar` into its place.
+bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial);
+
+/// Whether OUT.nvdb.partial is the lock of a commit that came to its end, but not to the removal of what the output
+/// was made from.
+bool is_committed(FileSystem& files, const std::string& output);
+
+}  // namespace weir

@@ -1,0 +1,200 @@
+#include "format/output/output_files.h"
+
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/output/commit_traces.h"
+#include "format/sidecar/sidecar.h"
+
+namespace weir {
+namespace {
+
+constexpr std::string_view kPrevious = ".previous";
+
+std::string previous_of(const std::string& sidecar) { return cat(sidecar, kPrevious); }
+
+}  // namespace
+
+std::string directory_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+void require_place(FileSystem& files, const std::string& path, std::size_t beside) {
+  constexpr std::size_t kLongestName = 255;  // bytes; NAME_MAX of Linux
+  const std::string directory = directory_of(path);
+  if (!files.exists(directory)) {
+    throw Error(ErrorKind::io,
+                cat(path, ": the directory ", directory, " does not exist; make it or choose another output"));
+  }
+  const std::size_t name = path.size() - (path.rfind('/') + 1);
+  if (name + beside > kLongestName) {
+    throw usage_error(cat(path, ": its name has ", name, " bytes, and with what weir writes beside it at most ",
+                          kLongestName - beside, " can be used; choose a shorter one"));
+  }
+  if (!files.is_replaceable(path)) {
+    throw usage_error(cat(path, ": is no regular file, and nothing else is replaced; choose another output with -o"));
+  }
+}
+
+void require_alone(const File& partial) {
+  if (partial.exclusive()) return;
+  throw Error(ErrorKind::io, cat(partial.path(),
+                                 ": exists, and files cannot be locked here, so that its writer may still be at work; "
+                                 "remove it if there is none"));
+}
+
+OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwrite)
+    : files_(files), path_(path), sidecar_(sidecar_path(path)), directory_(directory_of(path)), overwrite_(overwrite) {
+  require_place(files_, path_, previous_of(sidecar_).size() - path_.size());
+  require_place(files_, sidecar_, kPrevious.size());
+  const std::string partial = path_ + ".partial";
+  const bool left_over = files_.exists(partial);
+  if (!overwrite_) {
+    refuse_existing(path_);
+    if (!left_over) refuse_existing(sidecar_);
+  }
+  // What a process that was killed has left says whose the sidecar is, until create empties it.
+  partial_ = left_over ? files_.open(partial) : files_.create(partial);
+  require_alone(*partial_);
+  try {
+    settle(left_over);
+    if (!left_over) return;
+    partial_.reset();
+    partial_ = files_.create(partial);
+    require_alone(*partial_);
+  } catch (const Error&) {
+    if (!left_over) remove_quietly(partial);
+    throw;
+  }
+}
+
+// A commit that was killed between its steps 4 and 5. Under the lock nobody is between them; who was may have come to
+// its end meanwhile.
+void OutputFiles::settle(bool left_over) {
+  if (const std::string partial = sidecar_ + ".partial"; files_.exists(partial)) {
+    files_.create(partial);  // refuses what is somebody's, now and not when the work is done
+    files_.remove(partial);
+  }
+  if (overwrite_) return restore_previous();
+  if (!files_.exists(sidecar_)) return;
+  refuse_existing(path_);
+  if (!left_over || !placed_by_commit(files_, sidecar_, *partial_)) refuse_existing(sidecar_);
+  files_.remove(sidecar_);
+}
+
+// The old volume's own sidecar: the one that lies beside it would be taken for it by the next commit.
+void OutputFiles::restore_previous() {
+  const std::string previous = previous_of(sidecar_);
+  if (!files_.exists(previous) || !files_.exists(path_)) return;
+  if (!describes(files_, sidecar_, path_) && describes(files_, previous, path_)) files_.rename(previous, sidecar_);
+}
+
+// By a second name, which takes nothing; where there are none, by a copy.
+void OutputFiles::keep_previous(const std::string& previous) {
+  files_.remove(previous);  // of an earlier crash
+  if (files_.link(sidecar_, previous)) return;
+  try {
+    const std::unique_ptr<File> from = files_.open(sidecar_);
+    std::vector<std::byte> text(from->size());
+    from->read_at(0, text);
+    const std::unique_ptr<File> to = files_.create(previous);
+    to->write_at(0, text);
+    to->sync();
+  } catch (const Error&) {
+    remove_quietly(previous);
+    throw;
+  }
+}
+
+void OutputFiles::refuse_existing(const std::string& path) {
+  if (!files_.exists(path)) return;
+  throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
+}
+
+void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }
+
+OutputFiles::~OutputFiles() {
+  if (committed_) {
+    // The lock of a volume in another place: gone only now that what the volume was made from is.
+    if (volume_) remove_quietly(path_ + ".partial");
+    return;
+  }
+  remove_quietly(path_ + ".partial");
+  remove_quietly(sidecar_ + ".partial");
+}
+
+void OutputFiles::remove_quietly(const std::string& path) noexcept {
+  try {
+    files_.remove(path);
+  } catch (const Error&) {
+    // The failure that led here is the one to report.
+  }
+}
+
+// What each step leaves if the machine stops after it:
+//   1. volume.partial flushed           both names as before (nothing, or the old pair); where it is a lock alone, it
+//                                       holds the digest of the sidecar to be
+//   2. sidecar.partial written, flushed the same
+//   3. old sidecar linked to .previous  the same, and a second name of the old sidecar, or a copy of it
+//   4. sidecar renamed into place       new sidecar beside no volume or the old one: its size and head
+//                                       checksum do not agree, so `verify` and the daemon see "not done"; no
+//                                       volume beside OUT.nvdb.partial, which agrees with the sidecar: the next
+//                                       conversion replaces it. The next --overwrite of the old volume puts
+//                                       its own sidecar back first
+//   5. volume renamed into place        the new pair
+//   6. .previous removed                the new pair alone
+//   7. directory flushed                the new pair, durable
+// A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
+void OutputFiles::commit(const std::string& sidecar_text) {
+  const std::string volume_partial = volume().path();
+  const std::string sidecar_partial = sidecar_ + ".partial";
+  const std::string previous = previous_of(sidecar_);
+  volume().sync();  // 1
+  if (volume_) {
+    const std::string record = commit_record(sidecar_text);
+    partial_->write_at(0, std::as_bytes(std::span(record)));
+    partial_->sync();
+  }
+  {
+    const std::unique_ptr<File> file = files_.create(sidecar_partial);  // 2
+    file->write_at(0, std::as_bytes(std::span(sidecar_text)));
+    file->sync();
+  }
+  const bool replaces = overwrite_ && files_.exists(sidecar_);
+  if (replaces) keep_previous(previous);  // 3
+  bool sidecar_placed = false;
+  try {
+    if (overwrite_) {
+      files_.rename(sidecar_partial, sidecar_);  // 4
+      sidecar_placed = true;
+      files_.rename(volume_partial, path_);  // 5
+    } else {
+      files_.rename_new(sidecar_partial, sidecar_);
+      sidecar_placed = true;
+      files_.rename_new(volume_partial, path_);
+    }
+  } catch (const Error&) {
+    if (replaces) {
+      try {
+        files_.rename(previous, sidecar_);
+        files_.remove(previous);  // still there where both were names of one file
+      } catch (const Error&) {
+        // The old sidecar stays under .previous; the volume's name was not touched.
+      }
+    } else if (sidecar_placed) {
+      remove_quietly(sidecar_);
+    }
+    throw;
+  }
+  committed_ = true;
+  if (replaces) remove_quietly(previous);  // 6
+  files_.sync_directory(directory_);       // 7
+}
+
+}  // namespace weir

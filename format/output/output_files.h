@@ -1,0 +1,70 @@
+// The two files of a conversion, OUT.nvdb and OUT.nvdb.json, from their first
+// byte to their names: a reader never sees half of one, a crash loses nothing
+// that was there before, and a failure leaves the directory as it was.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "format/io/file_system.h"
+
+namespace weir {
+
+class OutputFiles {
+ public:
+  /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
+  /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
+  /// false, where its name is too long for the names beside it, or where something else than a regular file would be
+  /// replaced. A sidecar that a killed commit left without its volume is no output, and is removed; one that it put
+  /// beside the volume from before makes room for that volume's own.
+  OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
+  /// Removes what was not committed.
+  ~OutputFiles();
+  OutputFiles(const OutputFiles&) = delete;
+  OutputFiles& operator=(const OutputFiles&) = delete;
+
+  /// Directory of the output, "." where the path has none.
+  const std::string& directory() const { return directory_; }
+
+  /// The volume's bytes are those of `file`, on the same file system, and not of OUT.nvdb.partial, which stays the
+  /// lock until this object ends. A failure leaves `file`, which is its owner's to remove.
+  void write_to(std::shared_ptr<File> file);
+
+  /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
+  bool reserve(std::uint64_t bytes) { return volume().preallocate(bytes); }
+  File& volume() { return volume_ ? *volume_ : *partial_; }
+
+  /// The protocol's end, see the numbered steps in the source. After it returned, both files are
+  /// durable under their names.
+  void commit(const std::string& sidecar_text);
+
+ private:
+  void refuse_existing(const std::string& path);
+  void settle(bool left_over);
+  void restore_previous();
+  void keep_previous(const std::string& previous);
+  void remove_quietly(const std::string& path) noexcept;
+
+  FileSystem& files_;
+  std::string path_;
+  std::string sidecar_;
+  std::string directory_;
+  bool overwrite_;
+  bool committed_ = false;
+  std::unique_ptr<File> partial_;
+  std::shared_ptr<File> volume_;  // where not partial_
+};
+
+/// Throws what OutputFiles does where no output can be made at `path`, whose longest name of weir's own beside it is
+/// longer by `beside` bytes.
+void require_place(FileSystem& files, const std::string& path, std::size_t beside);
+
+/// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
+void require_alone(const File& partial);
+
+/// Directory part of a path, "." where there is none.
+std::string directory_of(const std::string& path);
+
+}  // namespace weir

@@ -1,0 +1,49 @@
+#include "format/output/partial_file.h"
+
+#include <cerrno>
+#include <string_view>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/output/output_files.h"
+
+namespace weir {
+
+PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
+    : files_(files), path_(path), overwrite_(overwrite) {
+  require_place(files_, path, std::string_view(".partial").size());
+  if (!overwrite && files_.exists(path)) {
+    throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
+  }
+  file_ = files_.create(path + ".partial");
+  require_alone(*file_);
+}
+
+PartialFile::~PartialFile() {
+  if (committed_) return;
+  try {
+    files_.remove(path_ + ".partial");
+  } catch (const Error&) {
+    // The failure that led here is the one to report.
+  }
+}
+
+void PartialFile::reserve(std::uint64_t bytes) {
+  if (file_->preallocate(bytes)) return;
+  const std::uint64_t free = files_.free_bytes(directory_of(path_));
+  if (free < bytes) throw io_error(path_, cat("reserve ", bytes, " bytes where ", free, " are free"), ENOSPC);
+}
+
+void PartialFile::commit() {
+  const std::string partial = path_ + ".partial";
+  file_->sync();  // 1
+  if (overwrite_) {
+    files_.rename(partial, path_);  // 2
+  } else {
+    files_.rename_new(partial, path_);
+  }
+  committed_ = true;
+  files_.sync_directory(directory_of(path_));  // 3
+}
+
+}  // namespace weir

@@ -1,0 +1,370 @@
+#include "format/sidecar/sidecar.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::array<const char*, 6> kBitKeys{"1", "2", "4", "8", "16", "32"};
+
+template <typename Archive, typename E>
+void describe_error(Archive& archive, E& error) {
+  archive.field("mse", error.mse);
+  archive.field("rmse", error.rmse);
+  archive.field("nmse", error.nmse);
+  archive.field("psnr_db", error.psnr_db);
+  archive.field("max_abs", error.max_abs);
+  archive.field("lossless", error.lossless);
+}
+
+// The document's keys, once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
+template <typename Archive, typename S>
+void describe(Archive& archive, S& s) {
+  archive.object("source", [&] {
+    archive.field("path", s.source.path);
+    archive.field("format", s.source.format);
+    archive.field("dataset", s.source.dataset);
+    archive.field("extent", s.source.extent);
+    archive.field("type", s.source.type);
+    archive.field("bytes", s.source.bytes);
+    archive.field("mtime", s.source.mtime);
+    archive.field("digest", s.source.digest);
+    archive.field("index", s.source.index);
+    archive.field("axes", s.source.axes);
+    archive.field("units", s.source.units);
+    archive.field("unit_si", s.source.unit_si);
+    archive.field("scale", s.source.scale);
+    archive.field("offset", s.source.offset);
+    archive.optional_field("files_digest", s.source.files_digest);
+  });
+  archive.object("grid", [&] {
+    archive.field("name", s.grid.name);
+    archive.field("type", s.grid.type);
+    archive.field("extent", s.grid.extent);
+    archive.field("voxel_size", s.grid.voxel_size);
+    archive.field("origin", s.grid.origin);
+    archive.field("index_bbox", s.grid.index_bbox);
+  });
+  archive.field("value_range", s.value_range);
+  archive.object("nonfinite", [&] {
+    archive.field("count", s.nonfinite.count);
+    archive.field("policy", s.nonfinite.policy);
+  });
+  archive.object("missing", [&] {
+    archive.field("count", s.missing.count);
+    archive.field("values", s.missing.values);
+  });
+  archive.object("conversion_loss", [&] {
+    archive.field("inexact", s.conversion_loss.inexact);
+    archive.field("overflow", s.conversion_loss.overflow);
+    archive.field("max_abs_error", s.conversion_loss.max_abs_error);
+  });
+  archive.object("background", [&] {
+    archive.field("value", s.background.value);
+    archive.field("method", s.background.method);
+    archive.field("share", s.background.share);
+  });
+  archive.object("histogram", [&] {
+    archive.field("min", s.histogram.min);
+    archive.field("max", s.histogram.max);
+    archive.field("counts", s.histogram.counts);
+  });
+  archive.object("budget", [&] {
+    archive.field("kind", s.budget.kind);
+    archive.field("requested", s.budget.requested);
+    archive.field("file_bytes", s.budget.file_bytes);
+    archive.field("dense_float32_bytes", s.budget.dense_float32_bytes);
+    archive.field("rate", s.budget.rate);
+  });
+  archive.object("selection", [&] {
+    archive.field("metric", s.selection.metric);
+    archive.field("fill", s.selection.fill);
+    archive.field("brick", s.selection.brick);
+    archive.field("leaves_total", s.selection.leaves_total);
+    archive.field("leaves_kept", s.selection.leaves_kept);
+    archive.object("bits", [&] {
+      for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], s.selection.bits[i]);
+    });
+  });
+  archive.object("error", [&] { describe_error(archive, s.error); });
+  archive.optional_object("visible", s.visible, [&](auto& visible) {
+    archive.field("scene", visible.scene);
+    archive.field("blocks", visible.blocks);
+    archive.field("voxels", visible.voxels);
+    describe_error(archive, visible.error);
+    archive.optional_field("scene_digest", visible.scene_digest);
+  });
+  archive.object("macrocells", [&] {
+    archive.field("cell", s.macrocells.cell);
+    archive.field("dims", s.macrocells.dims);
+    archive.field("apron", s.macrocells.apron);
+  });
+  archive.object("timing", [&] {
+    archive.field("survey_s", s.timing.survey_s);
+    archive.field("encode_s", s.timing.encode_s);
+    archive.field("total_s", s.timing.total_s);
+    archive.field("bytes_read", s.timing.bytes_read);
+    archive.field("bytes_written", s.timing.bytes_written);
+    archive.field("peak_rss_bytes", s.timing.peak_rss_bytes);
+  });
+  archive.object("file", [&] {
+    archive.field("bytes", s.file.bytes);
+    archive.field("grid_offset", s.file.grid_offset);
+    archive.hex_field("head_checksum", s.file.head_checksum);
+    archive.field("digest", s.file.digest);
+  });
+  archive.object("weir", [&] {
+    archive.field("version", s.weir.version);
+    archive.field("commit", s.weir.commit);
+    archive.field("options", s.weir.options);
+  });
+}
+
+constexpr int kMaxSidecarDepth = 16;  ///< twice what one has
+
+class JsonWriter {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  template <typename Fields>
+  void object(const char* key, const Fields& fields) {
+    Json* const outer = at_;
+    at_ = &((*outer)[key] = Json::object());
+    fields();
+    at_ = outer;
+  }
+
+  template <typename T, typename Fields>
+  void optional_object(const char* key, const std::optional<T>& value, const Fields& fields) {
+    if (value) object(key, [&] { fields(*value); });
+  }
+
+  template <typename T>
+  void field(const char* key, const T& value) {
+    (*at_)[key] = value;
+  }
+  void field(const char* key, const std::optional<double>& value) { (*at_)[key] = value ? Json(*value) : Json(); }
+  void field(const char* key, const Index3& i) { (*at_)[key] = array(i); }
+  void field(const char* key, const Box& box) { (*at_)[key] = {array(box.lo), array(box.hi)}; }
+  void optional_field(const char* key, const std::string& value) {
+    if (!value.empty()) field(key, value);
+  }
+  void hex_field(const char* key, std::uint32_t value) {
+    std::array<char, 9> text{};
+    std::snprintf(text.data(), text.size(), "%08x", value);
+    (*at_)[key] = text.data();
+  }
+
+  const Json& document() const { return document_; }
+
+ private:
+  static std::array<std::int64_t, 3> array(const Index3& i) { return {i.x, i.y, i.z}; }
+
+  Json document_ = Json::object();
+  Json* at_ = &document_;
+};
+
+class JsonReader {
+ public:
+  using Json = nlohmann::json;
+
+  JsonReader(const Json& document, const std::string& path) : path_(path), at_(&document) {}
+
+  template <typename Fields>
+  void object(const char* key, const Fields& fields) {
+    const Json* const outer = at_;
+    const std::string outer_prefix = prefix_;
+    at_ = &find(key);
+    if (!at_->is_object()) fail(key, "an object", *at_);
+    prefix_ += cat(key, '.');
+    fields();
+    at_ = outer;
+    prefix_ = outer_prefix;
+  }
+
+  template <typename T, typename Fields>
+  void optional_object(const char* key, std::optional<T>& value, const Fields& fields) {
+    value.reset();
+    if (!at_->contains(key)) return;
+    value = T();
+    object(key, [&] { fields(*value); });
+  }
+
+  template <typename T>
+  void field(const char* key, T& value) {
+    read(key, find(key), value);
+  }
+
+  void optional_field(const char* key, std::string& value) {
+    value.clear();
+    if (at_->contains(key)) field(key, value);
+  }
+
+  void hex_field(const char* key, std::uint32_t& value) {
+    std::string text;
+    field(key, text);
+    const bool digits =
+        std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+    if (text.size() != 8 || !digits) fail(key, "8 lower-case hex digits", find(key));
+    value = static_cast<std::uint32_t>(std::stoul(text, nullptr, 16));
+  }
+
+ private:
+  // Arrays and objects are not shown: they may be large, and nested deeper than a recursion can follow.
+  static std::string shown(const Json& value) {
+    if (value.is_array()) return cat("an array of ", value.size());
+    if (value.is_object()) return "an object";
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+  }
+
+  [[noreturn]] void fail(const std::string& key, const char* expected, const Json& found) const {
+    throw Error(ErrorKind::input, cat(path_, ": key ", prefix_, key, ": expected ", expected, ", found ", shown(found),
+                                      "; write the sidecar again with weir convert"));
+  }
+
+  const Json& find(const char* key) const {
+    const auto found = at_->find(key);
+    if (found == at_->end()) {
+      throw Error(ErrorKind::input,
+                  cat(path_, ": key ", prefix_, key, " is missing; write the sidecar again with weir convert"));
+    }
+    return *found;
+  }
+
+  void read(const std::string& key, const Json& from, std::string& to) const {
+    if (!from.is_string()) fail(key, "a string", from);
+    to = from.get<std::string>();
+  }
+  void read(const std::string& key, const Json& from, bool& to) const {
+    if (!from.is_boolean()) fail(key, "true or false", from);
+    to = from.get<bool>();
+  }
+  void read(const std::string& key, const Json& from, std::uint64_t& to) const {
+    if (!from.is_number_unsigned()) fail(key, "a whole number, not negative", from);
+    to = from.get<std::uint64_t>();
+  }
+  void read(const std::string& key, const Json& from, std::int64_t& to) const {
+    const bool fits = from.is_number_unsigned()
+                          ? from.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<std::int64_t>::max()}
+                          : from.is_number_integer();
+    if (!fits) fail(key, "a whole number", from);
+    to = from.get<std::int64_t>();
+  }
+  void read(const std::string& key, const Json& from, double& to) const {
+    if (!from.is_number() && !from.is_null()) fail(key, "a number or null", from);
+    to = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
+  }
+  void read(const std::string& key, const Json& from, std::optional<double>& to) const {
+    to.reset();
+    if (!from.is_null()) read(key, from, to.emplace());
+  }
+  template <typename T, std::size_t N>
+  void read(const std::string& key, const Json& from, std::array<T, N>& to) const {
+    if (!from.is_array() || from.size() != N) fail(key, N == 2 ? "an array of 2" : "an array of 3", from);
+    for (std::size_t i = 0; i < N; ++i) read(cat(key, '[', i, ']'), from[i], to[i]);
+  }
+  void read(const std::string& key, const Json& from, Index3& to) const {
+    std::array<std::int64_t, 3> values{};
+    read(key, from, values);
+    to = {values[0], values[1], values[2]};
+  }
+  void read(const std::string& key, const Json& from, Box& to) const {
+    std::array<Index3, 2> corners;
+    read(key, from, corners);
+    to = {corners[0], corners[1]};
+  }
+  template <typename T>
+  void read(const std::string& key, const Json& from, std::vector<T>& to) const {
+    if (!from.is_array()) fail(key, "an array", from);
+    to.resize(from.size());
+    for (std::size_t i = 0; i < to.size(); ++i) read(cat(key, '[', i, ']'), from[i], to[i]);
+  }
+  void read(const std::string& key, const Json& from, std::map<std::string, std::string>& to) const {
+    if (!from.is_object()) fail(key, "an object of strings", from);
+    to.clear();
+    for (const auto& [name, value] : from.items()) read(cat(key, '.', name), value, to[name]);
+  }
+
+  const std::string& path_;
+  const Json* at_;
+  std::string prefix_;
+};
+
+}  // namespace
+
+std::string sidecar_path(const std::string& volume_path) { return volume_path + ".json"; }
+
+std::string to_json_text(const Sidecar& sidecar) {
+  JsonWriter writer;
+  writer.field("weir_sidecar", kSidecarVersion);
+  describe(writer, sidecar);
+  std::string text = "{";
+  const char* separator = "\n";
+  for (const auto& [key, value] : writer.document().items()) {
+    text += cat(separator, "  \"", key, "\": ", value.dump(-1, ' ', false, JsonWriter::Json::error_handler_t::replace));
+    separator = ",\n";
+  }
+  return text + "\n}\n";
+}
+
+Sidecar parse_sidecar(std::string_view text, const std::string& path) {
+  nlohmann::json document;
+  // A level of nesting takes 80 times the memory of its byte.
+  const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > kMaxSidecarDepth) {
+      throw Error(ErrorKind::input, cat(path, ": nested deeper than ", kMaxSidecarDepth,
+                                        " levels, no sidecar is; write it again with weir convert"));
+    }
+    return true;
+  };
+  try {
+    document = nlohmann::json::parse(text, check_depth);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw Error(ErrorKind::input,
+                cat(path, ": at byte ", error.byte - 1, ": not valid JSON; write the sidecar again with weir convert"));
+  } catch (const nlohmann::json::out_of_range&) {
+    throw Error(ErrorKind::input,
+                path + ": a number is beyond the range of double; write the sidecar again with weir convert");
+  }
+  if (!document.is_object()) throw Error(ErrorKind::input, path + ": not a JSON object; give the sidecar of a volume");
+  JsonReader reader(document, path);
+  std::int64_t version = 0;
+  reader.field("weir_sidecar", version);
+  if (version != kSidecarVersion) {
+    throw Error(ErrorKind::input, cat(path, ": key weir_sidecar: version ", version, ", but this weir reads version ",
+                                      kSidecarVersion, "; use the weir that wrote it"));
+  }
+  Sidecar sidecar;
+  describe(reader, sidecar);
+  return sidecar;
+}
+
+std::string utc_text(std::int64_t nanoseconds) {
+  using namespace std::chrono;
+  // By seconds and what is left: the first second that begins before the first time that 64 bits hold in nanoseconds is
+  // none of those times, and neither is its midnight.
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  std::int64_t rest = nanoseconds % kSecond;
+  if (rest < 0) rest += kSecond;
+  const std::int64_t before = nanoseconds / kSecond - (nanoseconds % kSecond < 0 ? 1 : 0);
+  const seconds second(before);
+  const auto day = floor<days>(second);
+  const year_month_day date{sys_days(day)};
+  const hh_mm_ss clock(second - day);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09dZ", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()), static_cast<int>(rest));
+  return text.data();
+}
+
+}  // namespace weir

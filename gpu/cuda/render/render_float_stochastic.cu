@@ -1,0 +1,4 @@
+#include "gpu/cuda/render/render_kernel.cuh"
+
+template void weir::launch_render(const RenderTask<TableSampler<FloatBlock, Filter::stochastic>>&, std::uint32_t,
+                                  std::uint32_t, Float3*, cudaStream_t);

@@ -1,4 +1,0 @@
-#include "gpu/cuda/render_kernel.cuh"
-
-template void weir::launch_render(const RenderTask<TableSampler<QuantisedBlock, Filter::stochastic>>&, std::uint32_t,
-                                  std::uint32_t, Float3*, cudaStream_t);

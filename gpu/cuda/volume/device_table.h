@@ -1,0 +1,28 @@
+// The block table of a grid that lies in device memory, built there: one thread a
+// block walks the tree, which a host would have to read in full.
+#pragma once
+
+#include "format/nanovdb/nvdb_grid.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "gpu/cuda/volume/block_table.h"
+
+namespace weir {
+
+/// Block is FloatBlock for grids of float32, QuantisedBlock for all others.
+template <class Block>
+class DeviceTable {
+ public:
+  /// `data` is the device's copy of grid.data(), which must outlive the object; `grid`, still validated, says where
+  /// its upper nodes are. Throws Error(input) where the domain has more than 2^31 blocks or leaves span more than
+  /// 128 GiB, Error(io) where the device has no room.
+  DeviceTable(const NvdbGrid& grid, const std::byte* data);
+
+  const BlockTable<Block>& view() const { return view_; }
+  std::uint64_t bytes() const { return blocks_.bytes(); }
+
+ private:
+  DeviceArray<Block> blocks_;
+  BlockTable<Block> view_;
+};
+
+}  // namespace weir

@@ -1,0 +1,91 @@
+#include "gpu/image/colormap.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+namespace {
+
+/// Control point: position in [0, 1] and sRGB in 0..255.
+struct Stop {
+  float position;
+  std::array<float, 3> srgb;
+};
+
+constexpr std::array kGray{Stop{0.00F, {0, 0, 0}}, Stop{1.00F, {255, 255, 255}}};
+constexpr std::array kWhite{Stop{0.00F, {250, 250, 250}}, Stop{1.00F, {250, 250, 250}}};
+constexpr std::array kHeat{Stop{0.00F, {10, 4, 20}}, Stop{0.30F, {128, 18, 40}}, Stop{0.55F, {221, 80, 20}},
+                           Stop{0.80F, {250, 180, 50}}, Stop{1.00F, {255, 250, 220}}};
+constexpr std::array kCoolWarm{Stop{0.00F, {52, 84, 190}}, Stop{0.25F, {126, 166, 240}}, Stop{0.50F, {224, 221, 218}},
+                               Stop{0.75F, {240, 150, 118}}, Stop{1.00F, {180, 14, 42}}};
+// Dark violet to yellow over blue-green, lightness rising evenly.
+constexpr std::array kDusk{Stop{0.00F, {64, 8, 86}}, Stop{0.25F, {60, 80, 140}}, Stop{0.50F, {34, 142, 140}},
+                           Stop{0.75F, {96, 202, 96}}, Stop{1.00F, {252, 230, 40}}};
+// Soft tissue, then bone. Light, because a path tracer takes it for the share of light scattered.
+constexpr std::array kCt{Stop{0.00F, {176, 92, 76}}, Stop{0.25F, {222, 154, 124}}, Stop{0.50F, {238, 204, 172}},
+                         Stop{0.75F, {248, 232, 210}}, Stop{1.00F, {255, 252, 246}}};
+// Water: deep blue to foam.
+constexpr std::array kWater{Stop{0.00F, {8, 24, 58}}, Stop{0.35F, {20, 84, 140}}, Stop{0.70F, {84, 176, 204}},
+                            Stop{1.00F, {240, 252, 252}}};
+// "magma" of matplotlib (Smith and van der Walt, CC0): within 1/255 of its 256 colours.
+constexpr std::array kMagma{
+    Stop{0.0000F, {0, 0, 4}},      Stop{0.0235F, {2, 2, 13}},      Stop{0.0784F, {14, 11, 43}},
+    Stop{0.1451F, {36, 18, 83}},   Stop{0.1882F, {54, 16, 107}},   Stop{0.2275F, {71, 16, 120}},
+    Stop{0.2902F, {96, 24, 128}},  Stop{0.4078F, {144, 42, 129}},  Stop{0.5059F, {184, 55, 121}},
+    Stop{0.5961F, {220, 72, 105}}, Stop{0.6549F, {238, 91, 94}},   Stop{0.7059F, {247, 114, 92}},
+    Stop{0.7569F, {252, 138, 98}}, Stop{0.8235F, {254, 170, 116}}, Stop{0.9216F, {254, 216, 154}},
+    Stop{1.0000F, {252, 253, 191}}};
+
+struct Map {
+  std::string_view name;
+  std::span<const Stop> stops;
+};
+constexpr std::array kMaps{Map{"gray", kGray}, Map{"white", kWhite}, Map{"heat", kHeat},   Map{"cool-warm", kCoolWarm},
+                           Map{"dusk", kDusk}, Map{"ct", kCt},       Map{"water", kWater}, Map{"magma", kMagma}};
+
+}  // namespace
+
+float srgb_from_linear(float linear) {
+  const float v = clamped(linear, 0.0F, 1.0F);
+  return v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1.0F / 2.4F) - 0.055F;
+}
+
+float linear_from_srgb(float srgb) {
+  const float v = clamped(srgb, 0.0F, 1.0F);
+  return v <= 0.04045F ? v / 12.92F : std::pow((v + 0.055F) / 1.055F, 2.4F);
+}
+
+std::vector<std::string_view> colormap_names() {
+  std::vector<std::string_view> names;
+  names.reserve(std::size(kMaps));
+  for (const Map& map : kMaps) names.push_back(map.name);
+  return names;
+}
+
+std::vector<Float3> colormap(std::string_view name, std::size_t entries) {
+  const auto map = std::find_if(kMaps.begin(), kMaps.end(), [&](const Map& m) { return m.name == name; });
+  if (map == kMaps.end()) {
+    std::string known;
+    for (const Map& m : kMaps) known += cat(known.empty() ? "" : ", ", m.name);
+    throw Error(ErrorKind::usage, cat("unknown colormap \"", name, "\"; use one of ", known));
+  }
+  std::vector<Float3> colours(entries);
+  auto stop = map->stops.begin();
+  for (std::size_t i = 0; i < entries; ++i) {
+    const float u = entries == 1 ? 0.0F : static_cast<float>(i) / static_cast<float>(entries - 1);
+    while (stop + 2 != map->stops.end() && u > stop[1].position) ++stop;
+    const float f = clamped((u - stop[0].position) / (stop[1].position - stop[0].position), 0.0F, 1.0F);
+    const auto channel = [&](std::size_t c) {
+      return linear_from_srgb(mix(stop[0].srgb[c], stop[1].srgb[c], f) / 255);
+    };
+    colours[i] = {channel(0), channel(1), channel(2)};
+  }
+  return colours;
+}
+
+}  // namespace weir

@@ -1,0 +1,43 @@
+// Random numbers of one sample of one pixel. The stream depends on (seed, pixel,
+// sample) alone, so an image does not depend on threads, tiles or back end.
+#pragma once
+
+#include "gpu/math/portable.h"
+
+namespace weir {
+
+/// PCG32 (O'Neill 2014, XSH-RR output of a 64-bit congruential generator), seeded by hashing.
+class Random {
+ public:
+  WEIR_HOST_DEVICE Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
+      : state_(scramble(scramble(scramble(seed) ^ pixel) ^ sample)),
+        increment_(scramble(pixel + 0x632be59bd9b4e019ULL * (sample + 1)) | 1U) {}
+
+  WEIR_HOST_DEVICE std::uint32_t bits() {
+    const std::uint64_t old = state_;
+    state_ = old * 6364136223846793005ULL + increment_;
+    const auto xorshifted = static_cast<std::uint32_t>(((old >> 18U) ^ old) >> 27U);
+    const auto rotation = static_cast<std::uint32_t>(old >> 59U);
+    return (xorshifted >> rotation) | (xorshifted << ((32U - rotation) & 31U));
+  }
+
+  /// Uniform in [0, 1): a multiple of 2^-24, 0 included, 1 never.
+  WEIR_HOST_DEVICE float uniform() { return static_cast<float>(bits() >> 8U) * 0x1p-24F; }
+
+ private:
+  // splitmix64's finaliser (Steele et al. 2014): a bijection that mixes all bits.
+  WEIR_HOST_DEVICE static constexpr std::uint64_t scramble(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15ULL;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31U);
+  }
+
+  std::uint64_t state_;
+  std::uint64_t increment_;
+};
+
+/// Optical depth to the next tentative collision, exponentially distributed; finite for u in [0, 1).
+WEIR_HOST_DEVICE inline float free_depth(float u) { return -std::log(1.0F - u); }
+
+}  // namespace weir

@@ -1,0 +1,59 @@
+// What renders: the CPU or a device, behind one interface. A back end loads
+// volumes, several at a time if asked, and makes pictures of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/image/image.h"
+#include "gpu/render/render_setup.h"
+#include "gpu/render/sample_options.h"
+#include "gpu/volume/dense_volume.h"
+
+namespace weir {
+
+/// How a volume came in.
+struct LoadSummary {
+  std::string way;          ///< "mapped"; of the device a load_path_name
+  std::uint64_t bytes = 0;  ///< of the grid, tail padding left out
+  double seconds = 0;       ///< of the transfer alone
+  std::string note;         ///< why a faster way was refused; empty: none was
+};
+
+/// A volume that its back end can render; it stays until the object goes.
+class LoadedVolume {
+ public:
+  virtual ~LoadedVolume() = default;
+  virtual const VolumeInfo& info() const = 0;
+  virtual const LoadSummary& load_summary() const = 0;
+};
+
+struct Picture {
+  Image image;  ///< mean radiance
+  ToneMapping tone;
+  double render_s = 0;  ///< of the samples alone
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string_view name() const = 0;
+  /// `file` stays mapped as long as the volume needs it. `cell`: voxels along a macrocell's edge, at least; 0: what is
+  /// fastest here. `reuse` (may be null), a volume of this back end that nobody needs any more, lends its memory.
+  virtual std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
+                                             std::unique_ptr<LoadedVolume> reuse) = 0;
+  /// A volume that is held voxel by voxel; `volume` stays as long as it is needed.
+  virtual std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) = 0;
+  /// `volume` must be this back end's. May run while another volume is loaded from another thread. Throws
+  /// Error(interrupted) where `cancel` was set, and as RenderSetup.
+  virtual Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
+                         const SampleOptions& sampling) = 0;
+};
+
+/// `threads` 0: all of the machine's.
+std::unique_ptr<Backend> make_cpu_backend(int threads);
+
+}  // namespace weir

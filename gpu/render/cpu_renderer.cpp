@@ -1,0 +1,74 @@
+#include "gpu/render/cpu_renderer.h"
+
+#include <oneapi/tbb/blocked_range2d.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+
+#include "format/base/error.h"
+
+namespace weir {
+
+namespace {
+
+constexpr std::int32_t kTile = 16;            // pixels
+constexpr std::uint32_t kSamplesPerPass = 4;  // a tile of a pass is some milliseconds of work
+
+}  // namespace
+
+template <class Volume>
+Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options) {
+  Image image(task.width, task.height);
+  std::atomic<std::uint64_t> done{0};
+  std::mutex reporting;
+  const auto cancelled = [&] { return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed); };
+
+  const auto render_tile = [&](std::int32_t x0, std::int32_t x1, std::int32_t y0, std::int32_t y1, std::uint32_t first,
+                               std::uint32_t last) {
+    for (std::int32_t y = y0; y < y1; ++y) {
+      for (std::int32_t x = x0; x < x1; ++x) {
+        Float3& sum = image.pixels[image.index(x, y)];
+        for (std::uint32_t s = first; s < last; ++s) sum += render_sample(task, x, y, s);
+      }
+    }
+    done += static_cast<std::uint64_t>(x1 - x0) * static_cast<std::uint64_t>(y1 - y0) * (last - first);
+    if (!options.progress) return;
+    if (const std::unique_lock lock(reporting, std::try_to_lock); lock) options.progress(done.load());
+  };
+
+  // More threads than cores are granted too: who asks for them wants to see them.
+  std::optional<oneapi::tbb::global_control> limit;
+  if (options.threads > 0) {
+    limit.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  }
+  oneapi::tbb::task_arena arena(options.threads > 0 ? options.threads : oneapi::tbb::task_arena::automatic);
+  for (std::uint32_t first = 0; first < options.samples && !cancelled(); first += kSamplesPerPass) {
+    const std::uint32_t last = std::min(first + kSamplesPerPass, options.samples);
+    arena.execute([&] {
+      const oneapi::tbb::blocked_range2d<std::int32_t> tiles(0, (task.height + kTile - 1) / kTile, 1, 0,
+                                                             (task.width + kTile - 1) / kTile, 1);
+      oneapi::tbb::parallel_for(tiles, [&](const auto& range) {
+        for (std::int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty) {
+          for (std::int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
+            if (cancelled()) return;
+            render_tile(tx * kTile, std::min((tx + 1) * kTile, task.width), ty * kTile,
+                        std::min((ty + 1) * kTile, task.height), first, last);
+          }
+        }
+      });
+    });
+  }
+  if (cancelled()) throw Error(ErrorKind::interrupted, "interrupted; no image was written");
+  const float scale = 1.0F / static_cast<float>(std::max(options.samples, 1U));
+  for (Float3& pixel : image.pixels) pixel = pixel * scale;
+  return image;
+}
+
+template Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options);
+template Image render_cpu(const RenderTask<DenseSampler>& task, const CpuRenderOptions& options);
+
+}  // namespace weir

@@ -1,0 +1,75 @@
+#include "gpu/render/playback.h"
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <utility>
+
+#include "format/base/seconds_since.h"
+
+namespace weir {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// What `work` returns, and its time added to `seconds`: each stage has a sum of its own.
+template <class Work>
+auto timed(double& seconds, const Work& work) {
+  struct Stop {
+    double& seconds;
+    Clock::time_point start = Clock::now();
+    ~Stop() { seconds += seconds_since(start); }
+  };
+  const Stop stop{seconds};
+  return work();
+}
+
+}  // namespace
+
+std::string_view PlaybackReport::limit() const {
+  if (load_s >= render_s && load_s >= write_s) return "load";
+  return render_s >= write_s ? "render" : "write";
+}
+
+PlaybackReport play(Backend& backend, std::span<const std::string> files, const Scene& scene,
+                    const RenderOptions& options, const SampleOptions& sampling, const FrameWriter& write) {
+  PlaybackReport report;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point first_written = start;
+  // Of the stages' threads, of which each is waited for before the next of its kind starts. A future of std::async
+  // waits when it goes, so that no thread outlives this function.
+  const auto load = [&](const std::string& path, std::unique_ptr<LoadedVolume> reuse) {
+    return timed(report.load_s,
+                 [&] { return backend.load(std::make_shared<const NvdbFile>(path), 0, std::move(reuse)); });
+  };
+  std::unique_ptr<LoadedVolume> done;
+  std::future<std::unique_ptr<LoadedVolume>> loading;
+  std::future<void> writing;
+  const auto start_load = [&](std::size_t step) {
+    if (step == files.size()) return;
+    loading = std::async(std::launch::async, load, std::cref(files[step]), std::move(done));
+  };
+  start_load(0);
+  for (std::size_t step = 0; step < files.size(); ++step) {
+    std::unique_ptr<LoadedVolume> volume = loading.get();
+    start_load(step + 1);
+    Picture picture = timed(report.render_s, [&] { return backend.render(*volume, scene, options, sampling); });
+    report.load = volume->load_summary();
+    done = std::move(volume);
+    if (writing.valid()) writing.get();
+    writing = std::async(std::launch::async, [&, step, picture = std::move(picture)] {
+      timed(report.write_s, [&] { write(step, picture); });
+      if (step == 0) first_written = Clock::now();
+    });
+  }
+  if (writing.valid()) writing.get();
+  report.frames = files.size();
+  report.total_s = seconds_since(start);
+  const bool several = report.frames > 1;
+  const double frames = static_cast<double>(several ? report.frames - 1 : report.frames);
+  report.sustained = frames / (several ? seconds_since(first_written) : report.total_s);
+  return report;
+}
+
+}  // namespace weir

@@ -1,0 +1,163 @@
+#include "gpu/render/render_setup.h"
+
+#include <algorithm>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "gpu/image/colormap.h"
+#include "gpu/math/narrow.h"
+#include "gpu/scene/scene_transfer.h"
+
+namespace weir {
+
+namespace {
+
+// What a mode looks best with where the scene says nothing.
+struct ModeDefaults {
+  std::string_view colormap;
+  double density;  // optical depth of the longest edge at opacity 1
+  Double3 background;
+  double exposure;
+};
+
+ModeDefaults defaults_of(RenderMode mode) {
+  switch (mode) {
+    case RenderMode::path:
+      return {"ct", 250, {0.03, 0.035, 0.045}, 1.4};
+    case RenderMode::dvr:
+      return {"dusk", 200, {0.03, 0.035, 0.045}, 1};
+    case RenderMode::iso:
+      return {"ct", 1, {0.03, 0.035, 0.045}, 1};
+    case RenderMode::mip:
+      break;
+  }
+  return {"gray", 1, {0, 0, 0}, 1};
+}
+
+// The grid's range where it is one; NaN policies of other writers may leave none, then the cells'.
+MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
+  MinMax range{grid.value_min(), grid.value_max()};
+  if (is_finite(range.min) && is_finite(range.max) && range.min <= range.max) return range;
+  range = {kInfinity, -kInfinity};
+  for (const MinMax& cell : cells.bounds()) {
+    if (is_finite(cell.min)) range.min = std::min(range.min, cell.min);
+    if (is_finite(cell.max)) range.max = std::max(range.max, cell.max);
+  }
+  return range.min <= range.max ? range : MinMax{0, 1};
+}
+
+Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const Environment* environment) {
+  Lighting light;
+  if (environment != nullptr) light.environment = environment->view();
+  const SceneLighting& s = scene.lighting;
+  light.up = normalised(narrow(scene.camera.up), {0, 0, 1});
+  light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
+  light.horizon = narrow(s.horizon.value_or(Double3{0.6, 0.6, 0.6}));
+  light.ground = narrow(s.ground.value_or(Double3{0.22, 0.2, 0.18}));
+  // The default ground is what a screen shows, whatever the exposure.
+  const double exposure = std::max(s.exposure.value_or(defaults.exposure), 1e-6);
+  const Double3& ground = defaults.background;
+  light.background =
+      narrow(s.background.value_or(Double3{ground[0] / exposure, ground[1] / exposure, ground[2] / exposure}));
+  light.sky_behind = s.environment_behind;
+  std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
+  if (environment != nullptr) key.clear();  // it has its own sun
+  for (const SceneLight& l : s.lights.value_or(key)) {
+    if (light.light_count == kMaxLights) break;
+    light.lights[light.light_count++] = {normalised(narrow(l.direction), {0, 0, 1}), narrow(l.irradiance)};
+  }
+  return light;
+}
+
+// Between the background and the value farthest from it: a surface of the background's noise shows nothing.
+float default_iso(const TransferFunction& transfer, float background) {
+  const double low = transfer.low();
+  const double high = transfer.high();
+  const double from = is_finite(background) ? std::clamp<double>(background, low, high) : low;
+  const double farthest = high - from >= from - low ? high : low;
+  return static_cast<float>(from + 0.35 * (farthest - from));
+}
+
+}  // namespace
+
+static_assert(kMaxSceneLights == kMaxLights);
+
+VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells) {
+  return {frame_of(grid), value_range(grid, cells), grid.background()};
+}
+
+RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
+                         const RenderOptions& options)
+    : domain_(volume.frame.domain),
+      cells_(cells),
+      transfer_(make_transfer_function(scene.volume, volume.range, options.background.value_or(volume.background),
+                                       defaults_of(scene.mode).colormap)),
+      environment_(options.environment ? options.environment : load_environment(scene)) {
+  const ModeDefaults defaults = defaults_of(scene.mode);
+  const Double3 size = volume.frame.size();
+  const double longest = *std::max_element(size.begin(), size.end());
+
+  // From the domain's lowest corner.
+  const auto local = [&](const Index3& i) {
+    const Index3 offset = i - domain_.lo;
+    return Float3{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)};
+  };
+  medium_.transfer = transfer_.view();
+  medium_.cells = cells_.lattice();
+  const Box seen = shown(scene);
+  medium_.shown = {local(seen.lo), local(seen.hi)};
+  medium_.cell_values = cells_.bounds().data();
+  medium_.stretch = narrow(volume.frame.stretch());
+  medium_.density = static_cast<float>(scene.volume.density.value_or(defaults.density) / longest);
+  medium_.albedo = static_cast<float>(scene.volume.albedo);
+  medium_.emission = static_cast<float>(scene.volume.emission);
+  medium_.g = static_cast<float>(scene.volume.anisotropy);
+
+  frame_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso)
+                                : default_iso(transfer_, options.background.value_or(volume.background));
+  frame_.iso_color = rgb(transfer_.at(frame_.iso));
+  frame_.lighting = make_lighting(scene, defaults, environment_.get());
+  frame_.camera =
+      make_camera(scene.camera, volume.frame, framed(scene), static_cast<double>(options.width) / options.height);
+  frame_.mode = scene.mode;
+  frame_.width = options.width;
+  frame_.height = options.height;
+  frame_.seed = options.seed;
+  // Sample positions are counted in floats: at most 2^22 along the longest way through.
+  frame_.step = static_cast<float>(std::max(0.5, 2 * longest / (1 << 22)));
+  frame_.shading = static_cast<float>(scene.volume.shading);
+  frame_.max_bounces = scene.volume.max_bounces;
+  tone_ = {.exposure = static_cast<float>(scene.lighting.exposure.value_or(defaults.exposure)),
+           .soft_clip = scene.mode == RenderMode::path};
+}
+
+const std::vector<float>& RenderSetup::majorants() const {
+  if (majorants_.empty()) majorants_ = cells_.majorants(transfer_);
+  return majorants_;
+}
+
+// The scene's region, or the whole domain.
+Box RenderSetup::shown(const Scene& scene) const {
+  if (!scene.volume.region) return domain_;
+  const Box box = intersect(*scene.volume.region, domain_);
+  if (!box.empty()) return box;
+  const Box& d = domain_;
+  throw Error(ErrorKind::usage, cat("the scene's region shows no voxel of the volume, whose index box is [[", d.lo.x,
+                                    ", ", d.hi.x, "], [", d.lo.y, ", ", d.hi.y, "], [", d.lo.z, ", ", d.hi.z, "]]"));
+}
+
+// What the camera frames: an opacity below a hundredth is a haze that nobody looks at.
+std::vector<Box> RenderSetup::framed(const Scene& scene) const {
+  const Box all = shown(scene);
+  if (scene.camera.framing == Framing::volume) return {all};
+  std::vector<Box> boxes = cells_.content([&](std::size_t i) {
+    const MinMax& bounds = cells_.bounds()[i];
+    return scene.mode == RenderMode::iso ? bounds.min <= frame_.iso && frame_.iso <= bounds.max
+                                         : majorants()[i] > 0.01F;
+  });
+  for (Box& box : boxes) box = intersect(box, all);
+  std::erase_if(boxes, [](const Box& box) { return box.empty(); });
+  return boxes.empty() ? std::vector<Box>{all} : boxes;
+}
+
+}  // namespace weir

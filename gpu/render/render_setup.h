@@ -1,0 +1,91 @@
+// One picture of one volume but for the volume itself: camera, light, transfer
+// function and majorants as a scene asks for them, whatever holds the voxels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "format/nanovdb/macrocells.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "format/sidecar/scene.h"
+#include "gpu/image/image_output.h"
+#include "gpu/render/render_task.h"
+#include "gpu/scene/environment.h"
+#include "gpu/scene/scene_camera.h"
+#include "gpu/scene/transfer_function.h"
+#include "gpu/volume/macrocell_grid.h"
+#include "gpu/volume/volume_sampler.h"
+
+namespace weir {
+
+struct RenderOptions {
+  std::int32_t width = 960;   ///< pixels
+  std::int32_t height = 720;  ///< pixels
+  Filter filter = Filter::trilinear;
+  std::uint64_t seed = 0;
+  std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
+  /// Instead of the volume's own, so that all steps of a series look alike.
+  std::optional<float> background = std::nullopt;
+  /// The scene's; null: loaded from where the scene says. Who renders the scene again hands it over.
+  std::shared_ptr<const Environment> environment = nullptr;
+};
+
+/// What a picture depends on besides the voxels.
+struct VolumeInfo {
+  GridFrame frame;
+  MinMax range{0, 1};    ///< of the values; finite
+  float background = 0;  ///< the value that is transparent where a scene gives no opacity
+};
+
+/// Of a grid, whose values lie in `cells` where its root names no finite range.
+VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells);
+
+class RenderSetup {
+ public:
+  /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a
+  /// region outside the volume, and as load_environment.
+  RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene, const RenderOptions& options);
+  RenderSetup(const RenderSetup&) = delete;
+  RenderSetup& operator=(const RenderSetup&) = delete;
+
+  /// The picture of `volume` (see volume_sampler.h), which lies over the same domain. The pointers in it are to
+  /// this object, `cells` and the environment.
+  template <class Volume>
+  RenderTask<Volume> task(const Volume& volume) const {
+    RenderTask<Volume> task = bare_task(volume);
+    task.medium.cell_opacity = majorants().data();
+    return task;
+  }
+  /// The same without majorants, for who finds them elsewhere.
+  template <class Volume>
+  RenderTask<Volume> bare_task(const Volume& volume) const {
+    RenderTask<Volume> task;
+    static_cast<RenderFrame&>(task) = frame_;
+    static_cast<MediumProperties&>(task.medium) = medium_;
+    task.medium.volume = volume;
+    return task;
+  }
+
+  const TransferFunction& transfer_function() const { return transfer_; }
+  /// With host pointers; not present where the scene has none.
+  const EnvironmentView& environment() const { return frame_.lighting.environment; }
+  ToneMapping tone() const { return tone_; }
+
+ private:
+  const std::vector<float>& majorants() const;
+  Box shown(const Scene& scene) const;
+  std::vector<Box> framed(const Scene& scene) const;
+
+  Box domain_;
+  const MacrocellGrid& cells_;
+  TransferFunction transfer_;
+  mutable std::vector<float> majorants_;  ///< empty until asked for
+  std::shared_ptr<const Environment> environment_;
+  MediumProperties medium_;
+  RenderFrame frame_;
+  ToneMapping tone_;
+};
+
+}  // namespace weir

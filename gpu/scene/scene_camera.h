@@ -1,0 +1,44 @@
+// The camera that a scene describes, in the frame of a grid. Physical space is
+// index space with its voxels' proportions: lengths in shortest voxel edges.
+#pragma once
+
+#include <span>
+
+#include "format/nanovdb/nvdb_grid.h"
+#include "format/sidecar/scene.h"
+#include "gpu/scene/camera.h"
+
+namespace weir {
+
+/// Where a grid lies: world = origin + voxel_size * index.
+struct GridFrame {
+  Box domain;          ///< voxels
+  Double3 voxel_size;  ///< world units, > 0
+  Double3 origin;      ///< world position of index (0, 0, 0)
+
+  /// Edges of a voxel in units of the shortest.
+  Double3 stretch() const;
+  /// A point of index space in physical space, whose origin is the domain's lowest corner.
+  Double3 physical(const Double3& index) const;
+  /// Edges of the domain in physical space.
+  Double3 size() const;
+};
+
+GridFrame frame_of(const NvdbGrid& grid);
+
+/// Unit vectors: `up`, azimuth 0 and azimuth 90 degrees, a right-handed frame.
+struct AzimuthFrame {
+  Float3 up;
+  Float3 ahead;
+  Float3 left;
+};
+
+/// The frame about `up` (any length but 0) that azimuths of cameras are counted in, turned by `degrees`
+/// counter-clockwise seen from above. Azimuth 0 is +x where up is +z.
+AzimuthFrame azimuth_frame(const Double3& up, double degrees);
+
+/// `aspect` is width / height. An orbiting camera stands where the boxes `content` (voxels, not
+/// empty) fill the picture but for a small margin. Throws Error(usage) where position and look_at coincide.
+Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect);
+
+}  // namespace weir

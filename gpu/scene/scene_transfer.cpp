@@ -1,0 +1,53 @@
+#include "gpu/scene/scene_transfer.h"
+
+#include <algorithm>
+
+#include "format/sidecar/scene_opacity.h"
+#include "gpu/image/colormap.h"
+
+namespace weir {
+
+namespace {
+
+// Share of the largest distance from the background up to which the default is transparent: noise
+// around the background would veil everything else.
+constexpr double kTransparentShare = 0.06;
+
+double default_opacity(double value, double low, double high, double background) {
+  const double reach = std::max(std::abs(high - background), std::abs(low - background));
+  if (!(reach > 0)) return 0.5;  // a constant volume is a fog, not nothing
+  const double x = (std::abs(value - background) / reach - kTransparentShare) / (1 - kTransparentShare);
+  return x > 0 ? x * std::sqrt(x) : 0;
+}
+
+}  // namespace
+
+TransferFunction make_transfer_function(const SceneVolume& volume, MinMax range, float background,
+                                        std::string_view default_colormap) {
+  if (volume.range) range = {static_cast<float>((*volume.range)[0]), static_cast<float>((*volume.range)[1])};
+  const std::string_view name = volume.colormap.empty() ? default_colormap : std::string_view(volume.colormap);
+  const std::vector<Float3> colours = colormap(name, kTransferEntries);
+  const std::vector<float> opacities = volume.opacity.empty() ? std::vector<float>{} : opacity_table(volume.opacity);
+  std::vector<Rgba> table(kTransferEntries);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double position = static_cast<double>(i) / static_cast<double>(kTransferEntries - 1);
+    Float3 colour = colours[i];
+    if (!volume.color.empty()) {
+      const auto srgb_of = [](const ColorPoint& p) {
+        return Float3{static_cast<float>(p.srgb[0]), static_cast<float>(p.srgb[1]), static_cast<float>(p.srgb[2])};
+      };
+      const Float3 srgb = interpolate(volume.color, position, srgb_of,
+                                      [](const Float3& a, const Float3& b, float f) { return mix(a, b, f); });
+      colour = {linear_from_srgb(srgb.x), linear_from_srgb(srgb.y), linear_from_srgb(srgb.z)};
+    }
+    const double low = range.min;
+    const double high = range.max;
+    const float opacity =
+        opacities.empty() ? static_cast<float>(default_opacity(low + position * (high - low), low, high, background))
+                          : opacities[i];
+    table[i] = {colour.x, colour.y, colour.z, opacity};
+  }
+  return {std::move(table), range.min, range.max};
+}
+
+}  // namespace weir

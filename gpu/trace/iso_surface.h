@@ -1,0 +1,61 @@
+// An implicit surface value(p) = iso: cells whose bounds hold the iso value are
+// marched for a change of sign, which is then refined by bisection. The surface
+// is matt and two-sided, its normal the gradient.
+#pragma once
+
+#include "gpu/scene/lighting.h"
+#include "gpu/trace/medium.h"
+#include "gpu/volume/volume_sampler.h"
+
+namespace weir {
+
+/// Halvings of the interval that holds the surface: half a voxel to 1e-5 of one.
+inline constexpr int kIsoRefinements = 16;
+
+/// Parameter of the first crossing along a ray that `enter` has moved into the volume, or -1. NaN and
+/// infinite values are on neither side.
+template <class Volume>
+WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso, float step) {
+  CellWalk walk(medium.cells, ray, 0.0F, length);
+  CellSpan span;
+  while (walk.next(medium.cells, ray, span)) {
+    const MinMax& bounds = medium.cell_values[span.cell];
+    if (iso < bounds.min || iso > bounds.max) continue;
+    float a = span.t0;
+    float at_a = medium.volume.smooth(ray.at(a));
+    while (a < span.t1) {
+      float b = lesser(a + step, span.t1);
+      if (!(b > a)) break;  // a step below the precision of t
+      const float at_b = medium.volume.smooth(ray.at(b));
+      const bool crosses = is_finite(at_a) && is_finite(at_b) && (at_a < iso) != (at_b < iso);
+      if (crosses) {
+        for (int i = 0; i < kIsoRefinements; ++i) {
+          const float middle = 0.5F * (a + b);
+          if ((medium.volume.smooth(ray.at(middle)) < iso) == (at_a < iso)) {
+            a = middle;
+          } else {
+            b = middle;
+          }
+        }
+        return b;
+      }
+      a = b;
+      at_a = at_b;
+    }
+  }
+  return -1.0F;
+}
+
+/// Radiance from unit `direction`; the surface has `colour`.
+template <class Volume>
+WEIR_HOST_DEVICE Float3 shade_iso(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
+                                  const Float3& direction, float iso, const Float3& colour, float step) {
+  Ray ray = medium.ray(origin, direction);
+  const float length = enter(ray, medium.shown);
+  const float t = find_iso(medium, ray, length, iso, step);
+  if (t < 0.0F) return lighting.behind(direction);
+  const Float3 normal = normalised(gradient(medium.volume, ray.at(t)) / medium.stretch, -direction);
+  return colour * lighting.on_surface(dot(normal, direction) > 0.0F ? -normal : normal);
+}
+
+}  // namespace weir

@@ -1,0 +1,41 @@
+// Maximum intensity projection: the largest value along a ray, coloured by the
+// transfer function and laid over what is behind. Cells whose largest value is
+// not above the one found are skipped.
+#pragma once
+
+#include "gpu/math/random.h"
+#include "gpu/scene/lighting.h"
+#include "gpu/trace/medium.h"
+
+namespace weir {
+
+/// Largest finite value along a ray that `enter` has moved into the volume, at samples `step` apart;
+/// -infinity where there is none.
+template <class Volume>
+WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, float length, float step, float jitter) {
+  float best = -kInfinity;
+  CellWalk walk(medium.cells, ray, 0.0F, length);
+  CellSpan span;
+  while (walk.next(medium.cells, ray, span)) {
+    if (medium.cell_values[span.cell].max <= best) continue;  // false where the bound is NaN, unknown
+    float k = std::ceil(span.t0 / step - jitter);
+    for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
+      const float value = medium.volume.smooth(ray.at(t));
+      if (value > best && is_finite(value)) best = value;
+    }
+  }
+  return best;
+}
+
+/// Radiance from unit `direction`.
+template <class Volume>
+WEIR_HOST_DEVICE Float3 project_max(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
+                                    const Float3& direction, float step, Random& random) {
+  Ray ray = medium.ray(origin, direction);
+  const float length = enter(ray, medium.shown);
+  const float best = max_along(medium, ray, length, step, random.uniform());
+  const Rgba colour = medium.transfer.at(best);
+  return mix(lighting.behind(direction), rgb(colour), colour.a);
+}
+
+}  // namespace weir

@@ -1,0 +1,52 @@
+// What a ray travels through: a volume, its transfer function, its majorants,
+// and how much light a collision keeps. One type for host and device; Volume is
+// anything with `extent`, `sample` and `smooth` (see volume_sampler.h).
+#pragma once
+
+#include "format/nanovdb/nvdb_grid.h"
+#include "gpu/math/dda.h"
+#include "gpu/math/random.h"
+#include "gpu/math/vector3.h"
+#include "gpu/scene/transfer_function.h"
+
+namespace weir {
+
+/// An extinction above this is as good as a wall; it keeps products of lengths finite.
+inline constexpr float kMaxExtinction = 1e30F;
+
+/// All of a medium but its volume.
+struct MediumProperties {
+  TransferFunctionView transfer;
+  CellLattice cells;
+  RayBox shown;                         ///< the part of the volume that is seen, inside the domain
+  const float* cell_opacity = nullptr;  ///< largest opacity of each cell
+  const MinMax* cell_values = nullptr;  ///< bounds of the values of each cell
+  Float3 stretch{1, 1, 1};              ///< edges of a voxel, in units of the shortest
+  float density = 1;                    ///< extinction at opacity 1, per unit of length
+  float albedo = 1;                     ///< share of light scattered at a collision, times the colour
+  float emission = 0;                   ///< source radiance at a collision, times the colour
+  float g = 0;                          ///< mean cosine of scattering
+
+  WEIR_HOST_DEVICE float extinction(float opacity) const { return lesser(opacity * density, kMaxExtinction); }
+  WEIR_HOST_DEVICE float majorant(std::int64_t cell) const { return extinction(cell_opacity[cell]); }
+
+  /// The ray from `origin` (index space) along a unit direction of physical space.
+  WEIR_HOST_DEVICE Ray ray(const Float3& origin, const Float3& direction) const {
+    return {origin, direction / stretch};
+  }
+};
+
+template <class Volume>
+struct Medium : MediumProperties {
+  Volume volume;
+
+  /// At a position inside the domain; filters may draw numbers.
+  WEIR_HOST_DEVICE Rgba colour(const Float3& position, Random& random) const {
+    return transfer.at(volume.sample(position, random));
+  }
+};
+
+/// Colour of a table entry without its opacity.
+WEIR_HOST_DEVICE inline Float3 rgb(const Rgba& c) { return {c.r, c.g, c.b}; }
+
+}  // namespace weir

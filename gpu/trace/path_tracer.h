@@ -1,0 +1,90 @@
+// Volume path tracing: multiple scattering with delta tracking, directional
+// lights by ratio tracking at every collision, the sky where a path escapes. An
+// environment is met both ways, by directions drawn towards its light and by
+// those that scattering draws, weighed by the balance heuristic (Veach and
+// Guibas, Optimally Combining Sampling Techniques, SIGGRAPH 1995). The radiance
+// is an unbiased estimate up to the bounce limit.
+#pragma once
+
+#include "gpu/scene/lighting.h"
+#include "gpu/trace/phase.h"
+#include "gpu/trace/tracking.h"
+
+namespace weir {
+
+/// Collisions after which Russian roulette may end a path.
+inline constexpr int kRouletteAfter = 4;
+
+namespace detail {
+
+// Light from all directional lights, and from one direction of the environment, scattered at `position`
+// towards where the path came from. One loop, so that a device holds one copy of the tracking.
+template <class Volume>
+WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lighting& lighting, const Float3& position,
+                                     const Float3& direction, Random& random) {
+  Float3 sum;
+  const int count = lighting.light_count + (lighting.environment.present() ? 1 : 0);
+  for (int i = 0; i < count; ++i) {
+    Float3 towards;
+    Float3 light;
+    float scattered = 0;
+    if (i < lighting.light_count) {
+      towards = lighting.lights[i].direction;
+      light = lighting.lights[i].irradiance;
+      scattered = phase(dot(direction, towards), medium.g);
+    } else {
+      const EnvironmentSample drawn = lighting.environment.sample(random);
+      towards = drawn.direction;
+      light = drawn.radiance;
+      // phase / density, times the balance heuristic's weight density / (density + phase)
+      const float turned = phase(dot(direction, towards), medium.g);
+      scattered = turned / (drawn.density + turned);
+    }
+    Ray shadow = medium.ray(position, towards);
+    const float length = enter(shadow, medium.shown);
+    const float visible = ratio_track(medium, shadow, length, random);
+    sum += light * (visible * scattered);
+  }
+  return sum;
+}
+
+}  // namespace detail
+
+/// Radiance that arrives at `origin` (index space) from unit `direction` (physical space), at most
+/// `max_bounces` collisions.
+template <class Volume>
+WEIR_HOST_DEVICE Float3 trace_path(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
+                                   Float3 direction, int max_bounces, Random& random) {
+  Float3 radiance;
+  Float3 throughput{1, 1, 1};
+  Ray ray = medium.ray(origin, direction);
+  float turned = 0;  // with an environment: density with which the phase function drew `direction`
+  for (int bounce = 0;; ++bounce) {
+    const float length = enter(ray, medium.shown);
+    const Flight flight = length > 0.0F ? delta_track(medium, ray, length, random) : Flight{};
+    if (flight.end == FlightEnd::absorbed) return radiance;
+    if (flight.end == FlightEnd::escaped) {
+      if (bounce == 0) return radiance + throughput * lighting.behind(direction);
+      float weight = 1.0F;
+      if (lighting.environment.present()) weight = turned / (turned + lighting.environment.density(direction));
+      return radiance + throughput * lighting.sky(direction) * weight;
+    }
+    const Float3 position = ray.at(flight.t);
+    radiance += throughput * rgb(flight.colour) * medium.emission;
+    throughput = throughput * rgb(flight.colour) * medium.albedo;
+    if (bounce == max_bounces || !(max_component(throughput) > 0.0F)) return radiance;
+    radiance += throughput * detail::direct_light(medium, lighting, position, direction, random);
+    if (bounce >= kRouletteAfter) {
+      const float survival = lesser(max_component(throughput), 1.0F);
+      if (random.uniform() >= survival) return radiance;
+      throughput = throughput * (1.0F / survival);
+    }
+    const float u = random.uniform();
+    const Float3 before = direction;
+    direction = sample_phase(before, medium.g, u, random.uniform());
+    if (lighting.environment.present()) turned = phase(dot(before, direction), medium.g);
+    ray = medium.ray(position, direction);
+  }
+}
+
+}  // namespace weir

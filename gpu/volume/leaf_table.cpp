@@ -1,0 +1,107 @@
+#include "gpu/volume/leaf_table.h"
+
+#include <bit>
+#include <limits>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "gpu/math/narrow.h"
+
+namespace weir {
+
+namespace {
+
+// 10^12 voxels are 2 * 10^9 blocks; local voxel coordinates stay far inside 32 bits.
+constexpr std::int64_t kMaxBlocks = std::int64_t{1} << 31;
+constexpr std::int64_t kMaxExtent = std::int64_t{1} << 30;
+constexpr std::uint64_t kMaxEntry = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+NodeLattice leaf_lattice(const Box& domain) {
+  if (domain.empty()) throw Error(ErrorKind::input, "the grid has no active voxel; nothing to render");
+  const Index3 e = domain.extent();
+  const std::string extent = cat(e.x, " x ", e.y, " x ", e.z);
+  if (e.x > kMaxExtent || e.y > kMaxExtent || e.z > kMaxExtent) {
+    throw Error(ErrorKind::input, cat("the grid's bounding box is ", extent, " voxels, at most 2^30 an axis render"));
+  }
+  const NodeLattice lattice = make_lattice(domain, kLeafDim);
+  // Three axes of 2^27 blocks overflow 64 bits: compare by division.
+  if (lattice.count.x > kMaxBlocks / lattice.count.y / lattice.count.z) {
+    throw Error(ErrorKind::input, cat("the grid's bounding box is ", extent, " voxels, more than 2^31 blocks of 8^3;",
+                                      " convert a part of it with --roi"));
+  }
+  return lattice;
+}
+
+void check_entry_range(std::uint64_t tiles, std::uint64_t units) {
+  if (tiles > kMaxEntry / 2) {
+    throw Error(ErrorKind::input, "the grid has more than 2^31 value tiles; convert a part of it with --roi");
+  }
+  if (units + tiles > kMaxEntry) {
+    throw Error(ErrorKind::input, cat("the grid's leaves span ", format_bytes(units * nvdb::kAlignment),
+                                      ", more than a 32-bit table of 32-byte units holds; convert to a smaller size"));
+  }
+}
+
+LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(leaf_lattice(grid.index_bbox())) {
+  // Entry 0 is the background: calloc's untouched pages cost nothing where a sparse grid is empty.
+  entries_.reset(
+      static_cast<std::uint32_t*>(std::calloc(static_cast<std::size_t>(lattice_.size()), sizeof(std::uint32_t))));
+  if (!entries_) throw std::bad_alloc();
+
+  tile_values_.push_back(grid.background());
+  const auto background_bits = std::bit_cast<std::uint32_t>(grid.background());
+  const std::byte* first_leaf = nullptr;
+  const std::byte* last_leaf = nullptr;
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.leaf != nullptr) {
+      if (first_leaf == nullptr || block.leaf < first_leaf) first_leaf = block.leaf;
+      if (last_leaf == nullptr || block.leaf > last_leaf) last_leaf = block.leaf;
+    } else if (std::bit_cast<std::uint32_t>(block.value) != background_bits) {
+      add(block, static_cast<std::uint32_t>(tile_values_.size()));
+      tile_values_.push_back(block.value);
+    }
+  });
+
+  check_entry_range(tile_values_.size(),
+                    first_leaf == nullptr ? 0 : static_cast<std::uint64_t>(last_leaf - first_leaf) / nvdb::kAlignment);
+  const auto tiles = static_cast<std::uint32_t>(tile_values_.size());
+  if (first_leaf != nullptr) {
+    grid.for_each_block([&](const GridBlock& block) {
+      if (block.leaf == nullptr) return;
+      const auto units = static_cast<std::uint64_t>(block.leaf - first_leaf) / nvdb::kAlignment;
+      add(block, tiles + static_cast<std::uint32_t>(units));
+    });
+  }
+
+  view_ = {.entries = entries_.get(),
+           .tile_values = tile_values_.data(),
+           .leaves = first_leaf,
+           .count = narrow(lattice_.count),
+           .shift = narrow(lattice_.domain.lo - lattice_.first * kLeafDim),
+           .extent = narrow(lattice_.domain.extent()),
+           .tile_count = tiles,
+           .type = grid.type()};
+}
+
+// Tiles of 128 or 4096 voxels cover many blocks; what overhangs the domain is never looked up.
+void LeafTable::add(const GridBlock& block, std::uint32_t entry) {
+  const Box all{{0, 0, 0}, lattice_.count};
+  const Index3 lo = floor_div(block.origin, kLeafDim) - lattice_.first;
+  const std::int64_t n = block.dim / kLeafDim;
+  const Box covered = intersect({lo, lo + Index3{n, n, n}}, all);
+  for (std::int64_t z = covered.lo.z; z < covered.hi.z; ++z) {
+    for (std::int64_t y = covered.lo.y; y < covered.hi.y; ++y) {
+      for (std::int64_t x = covered.lo.x; x < covered.hi.x; ++x) {
+        entries_[static_cast<std::size_t>(lattice_.linear({x, y, z}))] = entry;
+      }
+    }
+  }
+}
+
+std::uint64_t LeafTable::bytes() const {
+  return static_cast<std::uint64_t>(lattice_.size()) * sizeof(std::uint32_t) + tile_values_.size() * sizeof(float);
+}
+
+}  // namespace weir

@@ -1,0 +1,104 @@
+#include "ingest/hdf5/file/hdf5_attribute.h"
+
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "ingest/hdf5/file/hdf5_handle.h"
+
+namespace weir {
+namespace {
+
+/// An open attribute and how many values of which type it has; none where it cannot be read.
+struct Attribute {
+  Attribute(hid_t object, const char* name) {
+    if (!has_attribute(object, name)) return;
+    handle = Hdf5Handle(H5Aopen(object, name, H5P_DEFAULT));
+    type = Hdf5Handle(H5Aget_type(handle.get()));
+    space = Hdf5Handle(H5Aget_space(handle.get()));
+    const hssize_t points = H5Sget_simple_extent_npoints(space.get());
+    if (!type || points <= 0 || points > static_cast<hssize_t>(kMaxAttributeValues)) return;
+    values = static_cast<std::size_t>(points);
+    kind = H5Tget_class(type.get());
+  }
+
+  template <typename T>
+  std::vector<T> read_as(hid_t memory_type) const {
+    std::vector<T> read(values);
+    if (H5Aread(handle.get(), memory_type, read.data()) < 0) return {};
+    return read;
+  }
+
+  Hdf5Handle handle;
+  Hdf5Handle type;
+  Hdf5Handle space;
+  std::size_t values = 0;
+  H5T_class_t kind = H5T_NO_CLASS;
+};
+
+std::string attribute_text(const char* text, std::size_t limit) {
+  std::string_view view(text, strnlen(text, limit));
+  while (view.ends_with(' ')) view.remove_suffix(1);
+  return std::string(view);
+}
+
+std::vector<std::string> fixed_texts(const Attribute& attribute) {
+  const std::size_t width = H5Tget_size(attribute.type.get());
+  if (width == 0 || width > kMaxAttributeBytes / attribute.values) return {};
+  std::vector<char> bytes(width * attribute.values);
+  if (H5Aread(attribute.handle.get(), attribute.type.get(), bytes.data()) < 0) return {};
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < attribute.values; ++i) texts.push_back(attribute_text(bytes.data() + i * width, width));
+  return texts;
+}
+
+std::vector<std::string> variable_texts(const Attribute& attribute) {
+  // The library converts no character sets: the memory's must be the file's.
+  const Hdf5Handle memory_type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(memory_type.get(), H5T_VARIABLE);
+  H5Tset_cset(memory_type.get(), H5Tget_cset(attribute.type.get()));
+  std::vector<char*> pointers(attribute.values, nullptr);
+  std::vector<std::string> texts;
+  if (H5Aread(attribute.handle.get(), memory_type.get(), pointers.data()) >= 0) {
+    for (const char* text : pointers) texts.push_back(text == nullptr ? "" : attribute_text(text, kMaxAttributeBytes));
+  }
+  H5Dvlen_reclaim(memory_type.get(), attribute.space.get(), H5P_DEFAULT, pointers.data());
+  return texts;
+}
+
+template <typename T>
+std::vector<StoredValue> stored(const std::vector<T>& values) {
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, name) > 0; }
+
+std::vector<double> number_attribute(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.kind != H5T_INTEGER && attribute.kind != H5T_FLOAT) return {};
+  return attribute.read_as<double>(H5T_NATIVE_DOUBLE);
+}
+
+std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.kind == H5T_FLOAT) return stored(attribute.read_as<double>(H5T_NATIVE_DOUBLE));
+  if (attribute.kind == H5T_INTEGER && H5Tget_sign(attribute.type.get()) == H5T_SGN_NONE) {
+    return stored(attribute.read_as<std::uint64_t>(H5T_NATIVE_UINT64));
+  }
+  if (attribute.kind == H5T_INTEGER) return stored(attribute.read_as<std::int64_t>(H5T_NATIVE_INT64));
+  std::vector<StoredValue> values;
+  for (const std::string& text : text_attribute(object, name)) {
+    if (const auto value = parse_stored_value(text)) values.push_back(*value);
+  }
+  return values;
+}
+
+std::vector<std::string> text_attribute(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.kind != H5T_STRING) return {};
+  return H5Tis_variable_str(attribute.type.get()) > 0 ? variable_texts(attribute) : fixed_texts(attribute);
+}
+
+}  // namespace weir

@@ -1,0 +1,36 @@
+#include "ingest/hdf5/file/hdf5_error.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+// Called for each function of the failed call, the innermost first.
+herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* error, void* reason) {
+  auto& text = *static_cast<std::string*>(reason);
+  if (text.empty() && error->desc != nullptr) text = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+std::string hdf5_reason() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
+  // Descriptions quote names from the file.
+  std::replace_if(
+      reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
+  while (reason.ends_with(' ') || reason.ends_with('.')) reason.pop_back();
+  return reason.empty() ? "no reason given" : reason;
+}
+
+Error hdf5_error(const std::string& where, const std::string& what) {
+  return {ErrorKind::input, cat(where, ": ", what, ": ", hdf5_reason())};
+}
+
+}  // namespace weir

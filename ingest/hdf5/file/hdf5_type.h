@@ -1,0 +1,26 @@
+// Types of HDF5 values: which ones are scalars weir converts, and words for all.
+#pragma once
+
+#include <hdf5.h>
+
+#include <optional>
+#include <string>
+
+#include "format/base/scalar_type.h"
+
+namespace weir {
+
+struct StoredType {
+  ScalarType scalar = ScalarType::float32;
+  bool big_endian = false;
+};
+
+/// Two's complement integers of 8 to 64 bits and IEEE 754 floats of 16, 32 and 64 bits without padding;
+/// nullopt for any other type. The caller holds Hdf5Lock.
+std::optional<StoredType> stored_type(hid_t type);
+
+/// "float32", "big-endian int16", "compound of 3 members", "float of 80 bits in 16 bytes". The caller holds
+/// Hdf5Lock.
+std::string type_text(hid_t type);
+
+}  // namespace weir

@@ -1,0 +1,113 @@
+#include "ingest/hdf5/file/hdf5_walk.h"
+
+#include <array>
+#include <deque>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_object.h"
+#include "ingest/headers/header_text.h"
+
+namespace weir {
+namespace {
+
+struct Link {
+  std::string name;
+  bool external = false;
+};
+
+herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
+  if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_EXTERNAL) {
+    static_cast<std::vector<Link>*>(links)->push_back({name, info->type == H5L_TYPE_EXTERNAL});
+  }
+  return 0;
+}
+
+struct Group {
+  std::string name;
+  Hdf5Handle handle;
+  int depth = 0;  ///< 0: the one that the walk begins at
+};
+
+Error too_deep(const Group& group) {
+  std::array<char, 4096> file{};
+  H5Fget_name(group.handle.get(), file.data(), file.size() - 1);
+  return input_error(file.data(), cat("groups are nested more than ", kMaxGroupDepth, " deep in ",
+                                      in_quotes(group.name), "; name a dataset with --dataset"));
+}
+
+class GroupWalk {
+ public:
+  explicit GroupWalk(const std::function<void(std::string, Hdf5Handle)>& visit) : visit_(visit) {}
+
+  void run(hid_t file, const std::string& name) {
+    Hdf5Handle root(H5Oopen(file, name.c_str(), H5P_DEFAULT));
+    if (!root || !is_new(root.get())) return;
+    groups_.push_back({name == "/" ? "" : name, std::move(root), 0});
+    // External links wait until all there is in the file itself has its name.
+    while (!groups_.empty() || !external_.empty()) {
+      if (groups_.empty()) {
+        const std::string link = std::move(external_.front());
+        external_.pop_front();
+        Hdf5Handle object(H5Oopen(file, link.c_str(), H5P_DEFAULT));
+        if (!object) continue;
+        // A file closed and opened again has another number: what is new could not be told from what is not.
+        kept_.emplace_back(H5Iget_file_id(object.get()));
+        take(link, std::move(object), 1);
+      } else {
+        const Group group = std::move(groups_.front());
+        groups_.pop_front();
+        enter(group);
+      }
+    }
+  }
+
+ private:
+  bool is_new(hid_t object) {
+    H5O_info_t info;
+    return H5Oget_info2(object, &info, H5O_INFO_BASIC) >= 0 && seen_.emplace(info.fileno, info.addr).second;
+  }
+
+  void enter(const Group& group) {
+    if (group.depth > kMaxGroupDepth) throw too_deep(group);
+    std::vector<Link> links;
+    H5Literate(group.handle.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &links);
+    for (const Link& link : links) {
+      std::string path = group.name + '/' + link.name;
+      if (!link.external) {
+        take(path, Hdf5Handle(H5Oopen(group.handle.get(), link.name.c_str(), H5P_DEFAULT)), group.depth + 1);
+      } else if (followed_ < kMaxExternalLinks) {
+        ++followed_;
+        external_.push_back(std::move(path));
+      }
+    }
+  }
+
+  void take(const std::string& path, Hdf5Handle object, int depth) {
+    if (!object || !is_new(object.get())) return;
+    if (is_dataset(object.get()) || is_openpmd_constant(object.get())) {
+      visit_(path, std::move(object));
+    } else if (H5Iget_type(object.get()) == H5I_GROUP) {
+      groups_.push_back({path, std::move(object), depth});
+    }
+  }
+
+  const std::function<void(std::string, Hdf5Handle)>& visit_;
+  std::set<std::pair<unsigned long, haddr_t>> seen_;
+  std::deque<Group> groups_;
+  std::deque<std::string> external_;
+  std::size_t followed_ = 0;
+  std::vector<Hdf5Handle> kept_;
+};
+
+}  // namespace
+
+void walk_datasets(hid_t file, const std::string& name,
+                   const std::function<void(std::string name, Hdf5Handle object)>& visit) {
+  GroupWalk(visit).run(file, name);
+}
+
+}  // namespace weir

@@ -1,0 +1,57 @@
+#include "ingest/hdf5/filters/filter_fletcher32.h"
+
+#include <algorithm>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+/// Words summed before the sums are reduced: the second one stays below 2^47.
+constexpr std::size_t kWordsAtATime = 32768;
+
+/// The remainder of ones' complement, which has two zeros: only a sum of nothing but zeros is 0.
+std::uint64_t reduce(std::uint64_t sum) { return sum == 0 ? 0 : (sum - 1) % 0xFFFFU + 1; }
+
+}  // namespace
+
+std::uint32_t fletcher32(std::span<const std::byte> bytes) {
+  const std::size_t whole = bytes.size() / 2;
+  std::uint64_t first = 0;
+  std::uint64_t second = 0;
+  for (std::size_t start = 0; start < whole; start += kWordsAtATime) {
+    const std::size_t end = std::min(start + kWordsAtATime, whole);
+    for (std::size_t i = start; i < end; ++i) {
+      first += std::to_integer<std::uint64_t>(bytes[2 * i]) << 8U | std::to_integer<std::uint64_t>(bytes[2 * i + 1]);
+      second += first;
+    }
+    first = reduce(first);
+    second = reduce(second);
+  }
+  if (bytes.size() % 2 == 1) {
+    first = reduce(first + (std::to_integer<std::uint64_t>(bytes.back()) << 8U));
+    second = reduce(second + first);
+  }
+  return static_cast<std::uint32_t>(second << 16U | first);
+}
+
+std::span<std::byte> check_fletcher32(std::span<std::byte> bytes) {
+  if (bytes.size() < kFletcher32Bytes) {
+    throw Error(ErrorKind::input, cat("holds ", bytes.size(), " bytes, fewer than its checksum takes"));
+  }
+  const std::span<std::byte> checked = bytes.first(bytes.size() - kFletcher32Bytes);
+  std::uint32_t stored = 0;
+  for (std::size_t i = 0; i < kFletcher32Bytes; ++i) {
+    stored |= std::to_integer<std::uint32_t>(bytes[checked.size() + i]) << (8 * i);
+  }
+  const std::uint32_t computed = fletcher32(checked);
+  // HDF5 before 1.6.3 stored the two bytes of each half the other way round on little-endian machines.
+  const std::uint32_t reversed = (computed & 0x00FF00FFU) << 8U | (computed >> 8U & 0x00FF00FFU);
+  if (stored != computed && stored != reversed) {
+    throw Error(ErrorKind::input, cat("its checksum is ", stored, ", its bytes give ", computed));
+  }
+  return checked;
+}
+
+}  // namespace weir

@@ -1,0 +1,28 @@
+#include "ingest/hdf5/meaning/axis_places.h"
+
+#include "format/base/text.h"
+#include "ingest/hdf5/meaning/dimension_scales.h"
+#include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/hdf5/meaning/plain_placement.h"
+
+namespace weir {
+
+std::vector<AxisPlace> axis_places(hid_t file, const Hdf5Object& object, std::span<const std::int64_t> extents) {
+  std::vector<AxisPlace> axes;
+  for (const std::int64_t extent : extents) axes.push_back({extent, {}, {}, {}, {}});
+  const std::vector<Hdf5Handle> groups = enclosing_groups(file, object.name);
+  place_by_openpmd(object.handle.get(), groups, axes);
+  place_by_scales(object.handle.get(), axes);
+  place_by_attributes(object.handle.get(), groups, axes);
+  return axes;
+}
+
+std::string axes_text(std::span<const AxisPlace> axes) {
+  std::string text;
+  for (const AxisPlace& axis : axes) {
+    text += cat(text.empty() ? "" : " x ", axis.label, axis.label.empty() ? "" : "=", axis.extent);
+  }
+  return text;
+}
+
+}  // namespace weir

@@ -1,0 +1,89 @@
+#include "ingest/hdf5/meaning/dataset_facts.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/hdf5/meaning/volume_slice.h"
+
+namespace weir {
+namespace {
+
+std::vector<std::int64_t> extents_of(hid_t dataset) {
+  const Hdf5Handle space(H5Dget_space(dataset));
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank <= 0) return {};
+  std::vector<hsize_t> dims(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
+  std::vector<std::int64_t> extents;
+  extents.reserve(dims.size());
+  for (const hsize_t d : dims) {
+    extents.push_back(static_cast<std::int64_t>(std::min<hsize_t>(d, std::numeric_limits<std::int64_t>::max())));
+  }
+  return extents;
+}
+
+std::string type_obstacle(const DatasetFacts& facts) {
+  if (facts.type) return {};
+  const bool labels = facts.type_text == "boolean" || facts.type_text.starts_with("enumeration");
+  return cat("its type is ", facts.type_text, "; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64",
+             labels ? ", so store it as uint8" : "");
+}
+
+std::string shape_obstacle(const DatasetFacts& facts) {
+  if (facts.axes.empty()) return "a single value; a volume has three axes";
+  if (facts.axes.size() < kVolumeRank) {
+    return cat(facts.axes.size(), facts.axes.size() == 1 ? " axis (" : " axes (", axes_text(facts.axes),
+               "); a volume has three");
+  }
+  const auto is_empty = [](const AxisPlace& axis) { return axis.extent < 1; };
+  return std::any_of(facts.axes.begin(), facts.axes.end(), is_empty) ? cat("empty: ", axes_text(facts.axes)) : "";
+}
+
+void look_at_constant(hid_t object, DatasetFacts& facts) {
+  const std::vector<double> value = number_attribute(object, "value");
+  facts.type_text = "constant";
+  if (value.size() != 1) return;
+  facts.constant = value[0];
+  facts.type = StoredType{ScalarType::float64, false};
+  facts.type_text = "float64";
+}
+
+}  // namespace
+
+std::string DatasetFacts::layout_text() const {
+  if (storage) return storage->text();
+  return constant ? cat("constant ", *constant) : "";
+}
+
+DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
+  const hid_t handle = object.handle.get();
+  DatasetFacts facts;
+  const bool stored = is_dataset(handle);
+  facts.axes = axis_places(file, object, stored ? extents_of(handle) : openpmd_shape(handle));
+  if (stored) {
+    const Hdf5Handle type(H5Dget_type(handle));
+    facts.type = stored_type(type.get());
+    facts.type_text = type_text(type.get());
+    facts.storage = storage_of(handle);
+  } else {
+    look_at_constant(handle, facts);
+  }
+  if (facts.type) {
+    const bool set = facts.storage && facts.storage->fill_is_set;
+    facts.meaning = value_meaning(handle, *facts.type,
+                                  set ? std::span<const std::byte>(facts.storage->fill) : std::span<const std::byte>());
+  }
+  for (const std::string& obstacle :
+       {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),
+        facts.meaning.obstacle}) {
+    if (facts.obstacle.empty()) facts.obstacle = obstacle;
+  }
+  return facts;
+}
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+// All that is known of a dataset without reading its values: what listing and
+// opening share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ingest/hdf5/file/hdf5_object.h"
+#include "ingest/hdf5/file/hdf5_type.h"
+#include "ingest/hdf5/meaning/axis_places.h"
+#include "ingest/hdf5/meaning/value_meaning.h"
+#include "ingest/hdf5/storage/storage.h"
+
+namespace weir {
+
+struct DatasetFacts {
+  std::vector<AxisPlace> axes;  ///< slowest first
+  std::string type_text;
+  std::optional<StoredType> type;  ///< of those that can be converted
+  std::optional<Storage> storage;  ///< of a dataset
+  std::optional<double> constant;  ///< of an openPMD constant component: its value
+  ValueMeaning meaning;            ///< where there is a type
+  std::string obstacle;            ///< why it cannot be converted; empty where it can
+
+  /// "contiguous", "chunked 64 x 64 x 64, gzip", "constant 0".
+  std::string layout_text() const;
+};
+
+/// Looks at a dataset or openPMD constant. The caller holds Hdf5Lock.
+DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object);
+
+}  // namespace weir

@@ -1,0 +1,32 @@
+// Axis names and coordinates by HDF5's dimension scales, as NetCDF-4 writes its
+// dimensions and coordinate variables.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <span>
+
+#include "ingest/hdf5/meaning/axis_places.h"
+
+namespace weir {
+
+/// Coordinates of an axis that are looked at, at most: 8 MiB of them.
+inline constexpr std::size_t kMaxCoordinates = std::size_t{1} << 20U;
+/// How far a coordinate may lie from where regular spacing puts it, in spacings: coordinates in degrees or
+/// kilometres are often rounded to a few digits.
+inline constexpr double kRegularTolerance = 1e-3;
+
+/// Fills labels by the names of the scales of `dataset` (attribute DIMENSION_LIST), and spacing and origin, where
+/// they are not set, by their values. Irregular coordinates get a note instead. Falling coordinates get the
+/// spacing's size, the lowest coordinate as origin, and a note: indices stay as they are. The
+/// caller holds Hdf5Lock.
+void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
+
+/// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values.
+bool is_bare_dimension(hid_t dataset);
+
+/// What place_by_scales makes of the coordinates of one axis.
+void place_by_coordinates(std::span<const double> coordinates, double precision, AxisPlace& axis);
+
+}  // namespace weir

@@ -1,0 +1,84 @@
+#include "ingest/hdf5/meaning/value_meaning.h"
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/values/decode_values.h"
+
+namespace weir {
+namespace {
+
+// NC_FILL_SHORT ... of netcdf.h.
+std::optional<StoredValue> netcdf_default_fill(ScalarType type) {
+  switch (type) {
+    case ScalarType::int16:
+      return std::int64_t{-32767};
+    case ScalarType::uint16:
+      return std::uint64_t{65535};
+    case ScalarType::int32:
+      return std::int64_t{-2147483647};
+    case ScalarType::uint32:
+      return std::uint64_t{4294967295};
+    case ScalarType::int64:
+      return std::int64_t{-9223372036854775806};
+    case ScalarType::uint64:
+      return std::uint64_t{18446744073709551614U};
+    case ScalarType::float32:
+    case ScalarType::float64:
+      return 9.9692099683868690e+36;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_netcdf(hid_t object) {
+  const Hdf5Handle root(H5Gopen2(object, "/", H5P_DEFAULT));
+  return root && has_attribute(root.get(), "_NCProperties");
+}
+
+// Whether the stored value `fill` is `value`.
+bool equals(std::span<const std::byte> fill, const StoredType& type, const StoredValue& value) {
+  float read = 0;
+  decode_values(fill, type.scalar, type.big_endian, {1, 0, {value}}, {&read, 1});
+  return is_missing(read);
+}
+
+// The attribute as one finite number; `fallback` where it is absent.
+double packing(hid_t object, const char* name, double fallback, std::string& obstacle) {
+  if (!has_attribute(object, name)) return fallback;
+  const std::vector<StoredValue> values = stored_value_attribute(object, name);
+  const double value = values.size() == 1 ? as_double(values[0]) : std::nan("");
+  if (std::isfinite(value) && (value != 0.0 || fallback == 0.0)) return value;
+  obstacle = cat("its attribute ", name, fallback == 0.0 ? " is not one finite number" : " is not one number but 0",
+                 ", so what its values mean is unknown; correct or remove it");
+  return fallback;
+}
+
+}  // namespace
+
+ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const std::byte> fill) {
+  ValueMeaning meaning;
+  for (const char* name : {"_FillValue", "missing_value"}) {
+    for (const StoredValue& value : stored_value_attribute(object, name)) meaning.mapping.missing.push_back(value);
+  }
+  const auto by_netcdf = netcdf_default_fill(type.scalar);
+  if (meaning.mapping.missing.empty() && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
+      is_netcdf(object)) {
+    meaning.mapping.missing.push_back(*by_netcdf);
+  }
+  meaning.mapping.scale = packing(object, "scale_factor", 1.0, meaning.obstacle);
+  meaning.mapping.offset = packing(object, "add_offset", 0.0, meaning.obstacle);
+  for (const char* name : {"units", "Units"}) {
+    const std::vector<std::string> texts = text_attribute(object, name);
+    if (meaning.units.empty() && !texts.empty()) meaning.units = texts[0];
+  }
+  meaning.unit_si = openpmd_unit_si(object);
+  return meaning;
+}
+
+}  // namespace weir

@@ -1,0 +1,76 @@
+#include "ingest/hdf5/storage/chunk_store.h"
+
+#include <string_view>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_error.h"
+#include "ingest/hdf5/file/hdf5_handle.h"
+
+namespace weir {
+namespace {
+
+/// What libhdf5 1.10 calls a failure is an answer: the index was read and does not name the chunk. Later ones
+/// say that it has 0 bytes.
+constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
+
+}  // namespace
+
+bool ChunkLayout::is_partial(std::span<const hsize_t> corner) const {
+  for (std::size_t axis = 0; axis < corner.size(); ++axis) {
+    if (chunk[axis] > extent[axis] - corner[axis]) return true;
+  }
+  return false;
+}
+
+std::string corner_text(std::span<const hsize_t> corner) {
+  std::string text;
+  for (const hsize_t c : corner) text += cat(text.empty() ? "" : ", ", c);
+  return text;
+}
+
+ChunkStore::ChunkStore(hid_t dataset, std::string name) : dataset_(dataset), name_(std::move(name)) {
+  const Hdf5Lock lock;
+  const Hdf5Handle space(H5Dget_space(dataset_));
+  const Hdf5Handle creation(H5Dget_create_plist(dataset_));
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  unsigned options = 0;
+  if (rank > 0) {
+    layout_.extent.resize(static_cast<std::size_t>(rank));
+    layout_.chunk.resize(static_cast<std::size_t>(rank));
+  }
+  auto pipeline = own_pipeline(creation.get());
+  if (rank <= 0 || H5Sget_simple_extent_dims(space.get(), layout_.extent.data(), nullptr) != rank ||
+      H5Pget_chunk(creation.get(), rank, layout_.chunk.data()) != rank ||
+      H5Pget_chunk_opts(creation.get(), &options) < 0 || !pipeline) {
+    throw Error(ErrorKind::input, cat(name_, ": its chunks cannot be told; the file is damaged"));
+  }
+  layout_.partial_unfiltered = (options & H5D_CHUNK_DONT_FILTER_PARTIAL_CHUNKS) != 0;
+  pipeline_ = std::move(*pipeline);
+}
+
+std::optional<ChunkStore::Chunk> ChunkStore::fetch(std::span<const hsize_t> corner, std::span<std::byte> into) const {
+  const auto where = [&] { return cat(name_, ": chunk at ", corner_text(corner)); };
+  const Hdf5Lock lock;
+  // The library keeps the place of the last chunk it looked up: both calls see the same one.
+  hsize_t bytes = 0;
+  if (H5Dget_chunk_storage_size(dataset_, corner.data(), &bytes) < 0) {
+    if (hdf5_reason() == kNotAllocated) return std::nullopt;
+    throw hdf5_error(where(), "cannot be found, the file is damaged or being written");
+  }
+  if (bytes == 0) return std::nullopt;
+  if (bytes > into.size()) {
+    throw Error(ErrorKind::input, cat(where(), ": takes ", bytes, " bytes, and at most ", into.size(),
+                                      " can be right; the file is damaged"));
+  }
+  Chunk chunk;
+  chunk.bytes = static_cast<std::size_t>(bytes);
+  if (H5Dread_chunk(dataset_, H5P_DEFAULT, corner.data(), &chunk.left_out, into.data()) < 0) {
+    throw hdf5_error(where(), cat("its ", bytes, " bytes cannot be read, the file is cut short or damaged"));
+  }
+  if (layout_.partial_unfiltered && layout_.is_partial(corner)) chunk.left_out = kAllLeftOut;
+  return chunk;
+}
+
+}  // namespace weir

@@ -1,0 +1,43 @@
+// A virtual dataset's mappings: which elements of it lie where in which other
+// dataset. The library reads what it cannot find as fill values, without a word;
+// here every source is found, or named in an error.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/virtual/coverage.h"
+
+namespace weir {
+
+/// Elements of one source dataset, which has been found and looked at.
+struct VirtualMapping {
+  std::string file;             ///< path; empty: the virtual dataset's own
+  std::string dataset;          ///< inside it
+  Hdf5Handle in_source;         ///< space of the source dataset, its elements selected
+  Hdf5Handle in_virtual;        ///< space of the virtual dataset, as many elements selected
+  AxisBox bounds;               ///< of the elements in the virtual dataset
+  std::vector<hsize_t> chunk;   ///< of the source dataset, slowest axis first; empty where it has none
+  std::size_t value_bytes = 0;  ///< of the source's type
+};
+
+/// The mappings of `dataset` (in the file `parent`) that have elements in `wanted`, in the file's order; those
+/// that go on without end are cut to what there is, those with a block number in the source's name become one
+/// for each block. Every source is opened once and closed again. Throws Error(input), beginning with `where`:
+/// naming the source where it is missing, too small, never written, behind a missing filter, or itself spread over
+/// files, and the first element of `wanted` that no mapping has. The caller holds Hdf5Lock.
+std::vector<VirtualMapping> virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
+                                             const std::string& where);
+
+/// The source dataset of a mapping. Throws as above. The caller holds Hdf5Lock.
+Hdf5Handle open_virtual_source(hid_t virtual_dataset, const std::string& file, const std::string& dataset,
+                               const std::string& where);
+
+/// A source's name as the file has it, with `block` in place of each %b, and % for %%.
+std::string virtual_source_name(const std::string& stored, std::uint64_t block);
+
+}  // namespace weir

@@ -1,0 +1,40 @@
+// The text header of MetaImage, ITK's own format (.mha, .mhd):
+// https://itk.org/Wiki/ITK/MetaIO/Documentation.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "format/base/scalar_type.h"
+
+namespace weir {
+
+/// What the header says, checked for itself but not against any file. Vectors are empty where the header lacks the
+/// key; x comes first.
+struct MetaImageHeader {
+  std::size_t header_bytes = 0;  ///< up to the first byte after the line of ElementDataFile
+  ScalarType type = ScalarType::float32;
+  bool big_endian = false;
+  bool compressed = false;             ///< zlib
+  std::uint64_t compressed_bytes = 0;  ///< 0: not said
+  std::uint64_t header_size = 0;       ///< bytes before the values in their file; 0: none, or after a local header
+  bool at_end = false;                 ///< HeaderSize -1: the values are the file's last bytes
+  std::vector<std::int64_t> dim_size;  ///< NDims of them, at least one, perhaps below 1
+  std::string data_file;               ///< as written; empty: LOCAL, the values follow the header
+
+  std::vector<double> spacing;    ///< ElementSpacing, or ElementSize where that is absent
+  std::vector<double> origin;     ///< Offset, also called Origin and Position
+  std::vector<double> transform;  ///< NDims x NDims: row a is the direction of axis a
+  double slope = 1;               ///< ElementToIntensityFunctionSlope
+  double offset = 0;              ///< ElementToIntensityFunctionOffset
+};
+
+/// Parses the header that `text` begins with; `whole` tells that the text is all of the file. Pure. Throws
+/// Error(input), beginning with `path`, naming key, line and value, for what is no header or describes what weir does
+/// not read: channels, values as text, lists of data files.
+MetaImageHeader parse_meta_image_header(std::string_view text, bool whole, const std::string& path);
+
+}  // namespace weir

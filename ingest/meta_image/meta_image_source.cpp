@@ -1,0 +1,77 @@
+#include "ingest/meta_image/meta_image_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ingest/files/input_file.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/headers/header_volume.h"
+#include "ingest/meta_image/meta_image_header.h"
+#include "ingest/values/axis_placement.h"
+
+namespace weir {
+namespace {
+
+void place(const MetaImageHeader& header, HeaderVolume& volume) {
+  const std::size_t axes = header.dim_size.size();
+  const std::size_t shown = std::min<std::size_t>(3, axes);
+  std::vector<Vector3> steps(shown, Vector3{});
+  Vector3 first{};
+  for (std::size_t a = 0; a < shown; ++a) {
+    const double length = header.spacing.empty() ? 1.0 : header.spacing[a];
+    for (std::size_t c = 0; c < shown; ++c) {
+      const double direction = header.transform.empty() ? (a == c ? 1.0 : 0.0) : header.transform[a * axes + c];
+      steps[a][c] = direction * length;
+    }
+    first[a] = header.origin.empty() ? 0.0 : header.origin[a];
+  }
+  const AxisPlacement placement = place_axes(steps, first);
+  // The length itself: directions are written with rounding.
+  for (std::size_t a = 0; a < std::min(shown, header.spacing.size()); ++a) {
+    volume.info.spacing[a] = std::fabs(header.spacing[a]);
+  }
+  volume.info.origin = placement.origin;
+  if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
+}
+
+HeaderVolume describe_meta_image(const std::string& path) {
+  InputFile file(path, DirectIo::off);
+  const std::string head = read_head(file);
+  const MetaImageHeader header = parse_meta_image_header(head, head.size() == file.size(), path);
+  HeaderVolume volume;
+  volume.info.path = path;
+  volume.info.format = "meta-image";
+  volume.info.file_bytes = file.size();
+  volume.info.mtime_ns = file.mtime_ns();
+  volume.info.files = {file.state()};
+  volume.info.mapping.scale = header.slope;
+  volume.info.mapping.offset = header.offset;
+  volume.extents = header.dim_size;
+  volume.type = header.type;
+  volume.big_endian = header.big_endian;
+  const bool local = header.data_file.empty();
+  volume.data_path = local ? path : path_beside(path, header.data_file);
+  volume.data_offset = local && header.header_size == 0 ? header.header_bytes : header.header_size;
+  volume.at_end = header.at_end;
+  volume.packed = header.compressed;
+  volume.packed_bytes = header.compressed_bytes;
+  place(header, volume);
+  return volume;
+}
+
+}  // namespace
+
+bool recognises_meta_image(std::string_view path, std::span<const std::byte>) {
+  const std::string name = lower_case(path);
+  return name.ends_with(".mha") || name.ends_with(".mhd");
+}
+
+std::unique_ptr<VolumeSource> open_meta_image(const std::string& path, const SourceOptions& options) {
+  return open_header_volume(describe_meta_image(path), options);
+}
+
+std::vector<DatasetInfo> list_meta_image(const std::string& path, const SourceOptions&) {
+  return list_header_volume(describe_meta_image(path));
+}
+
+}  // namespace weir

@@ -1,0 +1,27 @@
+// MetaImage volumes: .mha with the values after the header, .mhd with them in a
+// file of their own.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
+#include "ingest/source_registry.h"
+
+namespace weir {
+
+/// By the name, .mha or .mhd: the text has no magic.
+bool recognises_meta_image(std::string_view path, std::span<const std::byte> head);
+
+/// --index chooses along the axes after the third; spacing, offset and transform become spacing and origin as
+/// place_axes does it. Throws Error(input) for what parse_meta_image_header refuses, and what open_header_volume
+/// throws.
+std::unique_ptr<VolumeSource> open_meta_image(const std::string& path, const SourceOptions& options);
+std::vector<DatasetInfo> list_meta_image(const std::string& path, const SourceOptions& options);
+
+}  // namespace weir

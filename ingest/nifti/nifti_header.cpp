@@ -1,0 +1,234 @@
+#include "ingest/nifti/nifti_header.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/headers/header_text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kBytes1 = 348;
+constexpr std::size_t kBytes2 = 540;
+
+/// Byte offsets of the fields that are read; `Small` is the type of dim, `Real` that of pixdim, scl_slope and the
+/// matrices.
+struct Layout1 {
+  using Small = std::int16_t;
+  using Real = float;
+  using Offset = float;
+  using Code = std::int16_t;
+  using Units = std::uint8_t;
+  static constexpr std::size_t kHeader = kBytes1, kMagic = 344, kDim = 40, kDatatype = 70, kPixdim = 76,
+                               kVoxOffset = 108, kSlope = 112, kIntercept = 116, kQformCode = 252, kSformCode = 254,
+                               kQuaternion = 256, kQoffset = 268, kSrow = 280, kUnits = 123;
+  static constexpr std::string_view kSingle{"n+1\0", 4}, kPair{"ni1\0", 4};
+};
+struct Layout2 {
+  using Small = std::int64_t;
+  using Real = double;
+  using Offset = std::int64_t;
+  using Code = std::int32_t;
+  using Units = std::int32_t;
+  static constexpr std::size_t kHeader = kBytes2, kMagic = 4, kDim = 16, kDatatype = 12, kPixdim = 104,
+                               kVoxOffset = 168, kSlope = 176, kIntercept = 184, kQformCode = 344, kSformCode = 348,
+                               kQuaternion = 352, kQoffset = 376, kSrow = 400, kUnits = 500;
+  static constexpr std::string_view kSingle{"n+2\0\r\n\032\n", 8}, kPair{"ni2\0\r\n\032\n", 8};
+};
+
+struct Datatype {
+  std::int16_t code;
+  std::string_view name;
+  std::optional<ScalarType> type;  ///< nullopt: cannot be read
+};
+constexpr std::array<Datatype, 17> kDatatypes{{{1, "1-bit", {}},
+                                               {2, "uint8", ScalarType::uint8},
+                                               {4, "int16", ScalarType::int16},
+                                               {8, "int32", ScalarType::int32},
+                                               {16, "float32", ScalarType::float32},
+                                               {32, "complex64", {}},
+                                               {64, "float64", ScalarType::float64},
+                                               {128, "RGB24", {}},
+                                               {256, "int8", ScalarType::int8},
+                                               {512, "uint16", ScalarType::uint16},
+                                               {768, "uint32", ScalarType::uint32},
+                                               {1024, "int64", ScalarType::int64},
+                                               {1280, "uint64", ScalarType::uint64},
+                                               {1536, "float128", {}},
+                                               {1792, "complex128", {}},
+                                               {2048, "complex256", {}},
+                                               {2304, "RGBA32", {}}}};
+
+template <typename T>
+T load(std::span<const std::byte> bytes, std::size_t at, bool big_endian) {
+  std::array<std::byte, sizeof(T)> value;
+  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), sizeof(T), value.begin());
+  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(value.begin(), value.end());
+  return std::bit_cast<T>(value);
+}
+
+template <typename Layout>
+class FieldReader {
+ public:
+  FieldReader(std::span<const std::byte> bytes, bool big_endian, const std::string& path)
+      : bytes_(bytes), big_endian_(big_endian), path_(path) {}
+
+  NiftiHeader read() const {
+    NiftiHeader header;
+    header.big_endian = big_endian_;
+    header.pair = is_pair();
+    header.extents = extents();
+    header.type = type();
+    header.values_offset = values_offset(header.pair);
+    read_scale(header);
+    read_placement(header);
+    constexpr std::array<std::string_view, 8> kLengthUnits{"", "m", "mm", "um"};
+    header.length_unit = kLengthUnits[static_cast<std::uint32_t>(at<typename Layout::Units>(Layout::kUnits)) & 7U];
+    return header;
+  }
+
+ private:
+  template <typename T>
+  T at(std::size_t offset) const {
+    return load<T>(bytes_, offset, big_endian_);
+  }
+  double real(std::size_t offset, std::size_t i) const {
+    return static_cast<double>(at<typename Layout::Real>(offset + i * sizeof(typename Layout::Real)));
+  }
+  template <typename T>
+  Error wrong(std::string_view field, std::size_t offset, const T& value, const std::string& expected) const {
+    return Error(ErrorKind::input, cat(path_, ": ", field, " at byte ", offset, " is ", value, "; ", expected));
+  }
+
+  bool is_pair() const {
+    const auto stored = bytes_.subspan(Layout::kMagic, Layout::kSingle.size());
+    const std::string_view magic(reinterpret_cast<const char*>(stored.data()), stored.size());
+    if (magic == Layout::kSingle || magic == Layout::kPair) return magic == Layout::kPair;
+    throw wrong("magic", Layout::kMagic, in_quotes(magic),
+                cat("it must be ", Layout::kSingle.substr(0, 3), " or ", Layout::kPair.substr(0, 3),
+                    Layout::kSingle.size() > 4 ? " and its line ends, which copying as text changes"
+                                               : "; Analyze 7.5 files, which have none, cannot be read"));
+  }
+
+  std::vector<std::int64_t> extents() const {
+    using Small = typename Layout::Small;
+    const auto dim = [&](std::int64_t i) {
+      return std::int64_t{at<Small>(Layout::kDim + static_cast<std::size_t>(i) * sizeof(Small))};
+    };
+    if (dim(0) < 1 || dim(0) > 7) throw wrong("dim[0]", Layout::kDim, dim(0), "it must be 1 to 7");
+    std::vector<std::int64_t> extents;
+    for (std::int64_t i = 1; i <= dim(0); ++i) {
+      if (dim(i) < 1) {
+        throw wrong(cat("dim[", i, ']'), Layout::kDim + static_cast<std::size_t>(i) * sizeof(Small), dim(i),
+                    "it must be at least 1");
+      }
+      extents.push_back(dim(i));
+    }
+    return extents;
+  }
+
+  ScalarType type() const {
+    const auto code = at<std::int16_t>(Layout::kDatatype);
+    const auto* const known =
+        std::find_if(kDatatypes.begin(), kDatatypes.end(), [&](const Datatype& d) { return d.code == code; });
+    if (known != kDatatypes.end() && known->type) return *known->type;
+    throw wrong("datatype", Layout::kDatatype, cat(code, known == kDatatypes.end() ? "" : cat(" (", known->name, ')')),
+                "integers of 8 to 64 bits, float32 and float64 can be read");
+  }
+
+  std::uint64_t values_offset(bool pair) const {
+    const auto offset = at<typename Layout::Offset>(Layout::kVoxOffset);
+    // In a single file four bytes that tell of extensions follow the header.
+    const auto least = static_cast<typename Layout::Offset>(pair ? 0 : Layout::kHeader + 4);
+    constexpr auto kMost = static_cast<typename Layout::Offset>(std::int64_t{1} << 62U);
+    const auto whole = static_cast<double>(offset);
+    if (!(offset >= least && offset <= kMost) || whole != std::floor(whole)) {
+      throw wrong("vox_offset", Layout::kVoxOffset, offset, cat("it must be a whole number, at least ", least));
+    }
+    return static_cast<std::uint64_t>(offset);
+  }
+
+  // "If scl_slope is nonzero, then each voxel value should be scaled"; writers also leave NaN for "no scale".
+  void read_scale(NiftiHeader& header) const {
+    const double slope = real(Layout::kSlope, 0);
+    if (slope == 0 || !std::isfinite(slope)) return;
+    const double intercept = real(Layout::kIntercept, 0);
+    if (!std::isfinite(intercept)) {
+      throw wrong("scl_inter", Layout::kIntercept, intercept, cat("with scl_slope ", slope, " it must be finite"));
+    }
+    header.slope = slope;
+    header.intercept = intercept;
+  }
+
+  void read_placement(NiftiHeader& header) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      // As the reference library takes it: what is no length is 1.
+      const double length = std::fabs(real(Layout::kPixdim, a + 1));
+      header.spacing[a] = std::isfinite(length) && length > 0 ? length : 1.0;
+      header.steps[a][a] = header.spacing[a];
+    }
+    if (at<typename Layout::Code>(Layout::kSformCode) > 0) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t a = 0; a < 3; ++a) header.steps[a][c] = real(Layout::kSrow, 4 * c + a);
+        header.first[c] = real(Layout::kSrow, 4 * c + 3);
+      }
+      header.steps_rule = true;
+    } else if (at<typename Layout::Code>(Layout::kQformCode) > 0) {
+      read_qform(header);
+    }
+  }
+
+  // nifti1.h, "METHOD 2"; the left out quaternion component a is not negative.
+  void read_qform(NiftiHeader& header) const {
+    const double b = real(Layout::kQuaternion, 0);
+    const double c = real(Layout::kQuaternion, 1);
+    const double d = real(Layout::kQuaternion, 2);
+    const double a = std::sqrt(std::max(0.0, 1.0 - (b * b + c * c + d * d)));
+    const std::array<Vector3, 3> columns{{{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
+                                          {2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
+                                          {2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c}}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double side = axis == 2 && real(Layout::kPixdim, 0) < 0 ? -1.0 : 1.0;  // qfac
+      for (std::size_t w = 0; w < 3; ++w) header.steps[axis][w] = columns[axis][w] * header.spacing[axis] * side;
+      header.first[axis] = real(Layout::kQoffset, axis);
+    }
+  }
+
+  std::span<const std::byte> bytes_;
+  bool big_endian_;
+  const std::string& path_;
+};
+
+/// The byte order in which the first four bytes are a header's size; nullopt where neither is.
+std::optional<bool> is_big_endian(std::span<const std::byte> head) {
+  if (head.size() < 4) return std::nullopt;
+  for (const bool big_endian : {false, true}) {
+    const auto size = load<std::uint32_t>(head, 0, big_endian);
+    if (size == kBytes1 || size == kBytes2) return big_endian;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool begins_like_nifti(std::span<const std::byte> head) { return is_big_endian(head).has_value(); }
+
+NiftiHeader parse_nifti_header(std::span<const std::byte> bytes, const std::string& path) {
+  const std::optional<bool> big_endian = is_big_endian(bytes);
+  if (!big_endian) {
+    throw Error(ErrorKind::input, cat(path, ": is no NIfTI file: its first four bytes are neither 348 nor 540"));
+  }
+  const auto size = load<std::uint32_t>(bytes, 0, *big_endian);
+  if (bytes.size() < size) {
+    throw Error(ErrorKind::input, cat(path, ": ends after ", bytes.size(), " bytes, its header alone has ", size));
+  }
+  return size == kBytes1 ? FieldReader<Layout1>(bytes, *big_endian, path).read()
+                         : FieldReader<Layout2>(bytes, *big_endian, path).read();
+}
+
+}  // namespace weir

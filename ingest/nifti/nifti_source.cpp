@@ -1,0 +1,96 @@
+#include "ingest/nifti/nifti_source.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/files/input_file.h"
+#include "ingest/headers/header_text.h"
+#include "ingest/headers/header_volume.h"
+#include "ingest/nifti/nifti_header.h"
+#include "ingest/streams/stream_inflater.h"
+
+namespace weir {
+namespace {
+
+bool is_gzip(std::span<const std::byte> head) {
+  return head.size() >= 2 && head[0] == std::byte{0x1F} && head[1] == std::byte{0x8B};
+}
+
+std::vector<std::byte> read_bytes(InputFile& file, std::uint64_t offset, std::size_t count) {
+  std::vector<std::byte> bytes(static_cast<std::size_t>(std::min<std::uint64_t>(count, file.size() - offset)));
+  file.read_buffered(offset, bytes, ReadPath::through);
+  return bytes;
+}
+
+/// The first kMaxNiftiHeader bytes of what a gzip file holds, or all of fewer.
+std::vector<std::byte> unpacked_head(InputFile& file) {
+  constexpr std::size_t kPiece = 4096;
+  std::vector<std::byte> head;
+  StreamInflater inflater(file.path());
+  // gzip's own header may hold a long name or comment, but none that is worth reading on.
+  const std::uint64_t end = std::min<std::uint64_t>(file.size(), kHeaderLimit);
+  for (std::uint64_t offset = 0; offset < end && head.size() < kMaxNiftiHeader; offset += kPiece) {
+    inflater.push(read_bytes(file, offset, kPiece), [&](std::span<const std::byte> bytes) {
+      const auto wanted = bytes.first(std::min(bytes.size(), kMaxNiftiHeader - head.size()));
+      head.insert(head.end(), wanted.begin(), wanted.end());
+    });
+  }
+  return head;
+}
+
+void place(const NiftiHeader& header, HeaderVolume& volume) {
+  const std::size_t axes = std::min<std::size_t>(3, header.extents.size());
+  const AxisPlacement placement = place_axes(std::span(header.steps).first(axes), header.first);
+  volume.info.spacing = placement.spacing;
+  // The length itself: quaternions are written with rounding.
+  for (std::size_t a = 0; a < axes && !header.steps_rule; ++a) volume.info.spacing[a] = header.spacing[a];
+  volume.info.origin = placement.origin;
+  if (!header.length_unit.empty()) volume.attributes.emplace_back("length unit", header.length_unit);
+  if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
+}
+
+HeaderVolume describe_nifti(const std::string& path) {
+  InputFile file(path, DirectIo::off);
+  std::vector<std::byte> head = read_bytes(file, 0, kMaxNiftiHeader);
+  HeaderVolume volume;
+  volume.packed = is_gzip(head);
+  if (volume.packed) head = unpacked_head(file);
+  const NiftiHeader header = parse_nifti_header(head, path);
+  if (header.pair && volume.packed) {
+    throw Error(ErrorKind::input, cat(path, ": is the packed header of a .hdr and .img pair; unpack both with gunzip"));
+  }
+  volume.info.path = path;
+  volume.info.format = "nifti";
+  volume.info.file_bytes = file.size();
+  volume.info.mtime_ns = file.mtime_ns();
+  volume.info.files = {file.state()};
+  volume.info.mapping.scale = header.slope;
+  volume.info.mapping.offset = header.intercept;
+  volume.extents = header.extents;
+  volume.type = header.type;
+  volume.big_endian = header.big_endian;
+  volume.data_path = header.pair ? std::filesystem::path(path).replace_extension(".img").string() : path;
+  (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
+  place(header, volume);
+  return volume;
+}
+
+}  // namespace
+
+bool recognises_nifti(std::string_view path, std::span<const std::byte> head) {
+  const std::string name = lower_case(path);
+  return name.ends_with(".nii") || name.ends_with(".nii.gz") || (name.ends_with(".hdr") && begins_like_nifti(head));
+}
+
+std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options) {
+  return open_header_volume(describe_nifti(path), options);
+}
+
+std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions&) {
+  return list_header_volume(describe_nifti(path));
+}
+
+}  // namespace weir

@@ -1,0 +1,27 @@
+// NIfTI volumes: .nii and .nii.gz with the values after the header, .hdr with
+// them in the .img beside it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
+#include "ingest/source_registry.h"
+
+namespace weir {
+
+/// By the name: .nii, .nii.gz, or .hdr where the file also begins as NIfTI does. The magic lies further in.
+bool recognises_nifti(std::string_view path, std::span<const std::byte> head);
+
+/// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third; the sform, else the qform, becomes spacing
+/// and origin as place_axes does it. Throws Error(input) for what parse_nifti_header refuses, and what
+/// open_header_volume throws.
+std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options);
+std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions& options);
+
+}  // namespace weir

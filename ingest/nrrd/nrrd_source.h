@@ -1,0 +1,27 @@
+// NRRD volumes: .nrrd with the values after the header, .nhdr with them in a file
+// of their own.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
+#include "ingest/source_registry.h"
+
+namespace weir {
+
+/// By its magic, whatever the name.
+bool recognises_nrrd(std::string_view path, std::span<const std::byte> head);
+
+/// A first axis of one value (NRRD keeps channels there) is dropped, --index chooses along the axes after the next
+/// three. Space directions become spacing and origin as place_axes does it. Throws Error(input) for what
+/// parse_nrrd_header refuses, for vectors and colours, and what open_header_volume throws.
+std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options);
+std::vector<DatasetInfo> list_nrrd(const std::string& path, const SourceOptions& options);
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+#include "ingest/plan/page_buffer.h"
+
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+PageBuffer::PageBuffer(std::size_t size) {
+  if (size == 0) return;
+  void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    throw io_error("memory", cat("get ", size, " bytes for reading; lower --memory"), errno);
+  }
+  bytes_ = {static_cast<std::byte*>(memory), size};
+}
+
+PageBuffer::~PageBuffer() {
+  if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
+}
+
+PageBuffer::PageBuffer(PageBuffer&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+
+PageBuffer& PageBuffer::operator=(PageBuffer&& other) noexcept {
+  std::swap(bytes_, other.bytes_);
+  return *this;
+}
+
+}  // namespace weir

@@ -1,0 +1,90 @@
+#include "ingest/source/source_view.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/source/extent.h"
+
+namespace weir {
+namespace {
+
+class SourceView final : public VolumeSource {
+ public:
+  // `info` is the source's own but for its domain, which lies inside the source's, and its place.
+  SourceView(std::unique_ptr<VolumeSource> source, SourceInfo info)
+      : source_(std::move(source)), info_(std::move(info)) {}
+
+  const SourceInfo& info() const override { return info_; }
+  AccessShape access() const override { return source_->access(); }
+  std::uint64_t bytes_read() const override { return source_->bytes_read(); }
+  std::uint64_t working_bytes() const override { return source_->working_bytes(); }
+  bool in_memory() const override { return source_->in_memory(); }
+  ConversionLoss read(const Box& box, std::span<float> values) override {
+    check(box);
+    return source_->read(box, values);
+  }
+  ConversionLoss read_alone(const Box& box, std::span<float> values) override {
+    check(box);
+    return source_->read_alone(box, values);
+  }
+
+ private:
+  void check(const Box& box) const {
+    if (!box.empty() && info_.domain().contains(box)) return;
+    throw Error(ErrorKind::internal,
+                cat(info_.path, ": read of box ", box_text(box), " outside the region ", box_text(info_.domain())));
+  }
+
+  std::unique_ptr<VolumeSource> source_;
+  SourceInfo info_;
+};
+
+Error unusable(const std::string& path, bool given, std::string_view option, double value, std::string_view rule) {
+  if (given) return {ErrorKind::usage, cat(path, ": --", option, " has ", value, "; each must be ", rule)};
+  return {ErrorKind::input,
+          cat(path, ": its ", option, " has ", value, ", which is not ", rule, "; give --", option, " x,y,z")};
+}
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, const Box& region) {
+  const SourceInfo& info = source->info();
+  if (region.empty()) {
+    throw Error(ErrorKind::usage, cat(info.path, ": --roi ", box_text(region),
+                                      " holds no voxel; each axis is "
+                                      "FROM:TO with FROM below TO"));
+  }
+  if (!info.domain().contains(region)) {
+    throw Error(ErrorKind::usage, cat(info.path, ": --roi ", box_text(region), " reaches outside the volume ",
+                                      box_text(info.domain()), "; keep it within"));
+  }
+  SourceInfo cropped = info;
+  cropped.extent = region.extent();
+  cropped.index_origin = region.lo;
+  return std::make_unique<SourceView>(std::move(source), std::move(cropped));
+}
+
+std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source, const SourceOptions& options) {
+  SourceInfo placed = source->info();
+  placed.spacing = options.spacing.value_or(placed.spacing);
+  placed.origin = options.origin.value_or(placed.origin);
+  for (const double s : placed.spacing) {
+    if (!(s > 0.0) || !std::isfinite(s)) {
+      throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "finite and above 0");
+    }
+    if (s < kLeastSpacing || s > kMostSpacing) {
+      throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "within 1e-37 and 1e+37");
+    }
+  }
+  for (const double o : placed.origin) {
+    if (!std::isfinite(o)) throw unusable(placed.path, options.origin.has_value(), "origin", o, "finite");
+  }
+  if (!options.spacing && !options.origin) return source;
+  return std::make_unique<SourceView>(std::move(source), std::move(placed));
+}
+
+}  // namespace weir

@@ -1,0 +1,148 @@
+#include "ingest/values/decode_values.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "format/base/error.h"
+#include "ingest/values/convert_values.h"
+
+namespace weir {
+namespace {
+
+/// Values decoded at a time: the temporaries stay in the first-level cache.
+constexpr std::size_t kAtOnce = 512;
+
+using MissingMask = std::array<bool, kAtOnce>;
+
+template <typename T>
+class Decoder {
+ public:
+  Decoder(ScalarType type, const ValueMapping& mapping) : type_(type), mapping_(mapping) {
+    for (const StoredValue& value : mapping.missing) {
+      if (!holds(type, value)) continue;
+      std::visit([this](const auto v) { missing_.push_back(static_cast<T>(v)); }, value);
+    }
+  }
+
+  ConversionLoss decode(std::span<T> stored, std::span<float> values) const {
+    MissingMask missing{};
+    for (const T m : missing_) mark(stored, m, missing);
+    // A missing value, 1e36 in a double say, must not count as rounded.
+    for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
+    const ConversionLoss loss = mapping_.scales() ? scale(stored, missing, values)
+                                                  : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
+    const float mark = missing_value();
+    const float other = std::bit_cast<float>(kMissingBits ^ 1U);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (missing[i]) {
+        std::memcpy(&values[i], &mark, sizeof mark);
+      } else if (!missing_.empty() && is_missing(values[i])) {
+        std::memcpy(&values[i], &other, sizeof other);
+      }
+    }
+    return loss;
+  }
+
+ private:
+  static void mark(std::span<const T> stored, T value, MissingMask& missing) {
+    if (value != value) {
+      for (std::size_t i = 0; i < stored.size(); ++i) missing[i] |= stored[i] != stored[i];
+    } else {
+      for (std::size_t i = 0; i < stored.size(); ++i) missing[i] |= stored[i] == value;
+    }
+  }
+
+  ConversionLoss scale(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
+    std::array<double, kAtOnce> scaled;
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      scaled[i] = missing[i] ? 0.0 : static_cast<double>(stored[i]) * mapping_.scale + mapping_.offset;
+    }
+    const auto used = std::span<const double>(scaled).first(stored.size());
+    return convert_values(std::as_bytes(used), ScalarType::float64, kNativeIsBig, values);
+  }
+
+  ScalarType type_;
+  const ValueMapping& mapping_;
+  std::vector<T> missing_;
+};
+
+template <typename T>
+void load(const std::byte* bytes, bool swap, std::span<T> into) {
+  std::memcpy(into.data(), bytes, into.size_bytes());
+  if (!swap) return;
+  for (T& value : into) {
+    auto* const first = reinterpret_cast<std::byte*>(&value);
+    std::reverse(first, first + sizeof(T));
+  }
+}
+
+template <typename T>
+ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool swap, const ValueMapping& mapping,
+                         std::span<float> values) {
+  const Decoder<T> decoder(type, mapping);
+  std::array<T, kAtOnce> stored;
+  ConversionLoss loss;
+  for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
+    const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
+    const auto used = std::span(stored).first(part.size());
+    load<T>(bytes.data() + start * sizeof(T), swap, used);
+    loss.add(decoder.decode(used, part));
+  }
+  return loss;
+}
+
+// float16 has no arithmetic of its own everywhere: every value is exact in float32.
+ConversionLoss decode_half(std::span<const std::byte> bytes, bool big_endian, const ValueMapping& mapping,
+                           std::span<float> values) {
+  const Decoder<float> decoder(ScalarType::float32, mapping);
+  std::array<float, kAtOnce> widened;
+  ConversionLoss loss;
+  for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
+    const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
+    const auto used = std::span(widened).first(part.size());
+    convert_values(bytes.subspan(2 * start, 2 * part.size()), ScalarType::float16, big_endian, used);
+    loss.add(decoder.decode(used, part));
+  }
+  return loss;
+}
+
+}  // namespace
+
+ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
+                             const ValueMapping& mapping, std::span<float> values) {
+  if (mapping.identity()) return convert_values(bytes, type, big_endian, values);
+  const bool swap = big_endian != kNativeIsBig;
+  switch (type) {
+    case ScalarType::uint8:
+      return decode_as<std::uint8_t>(bytes, type, swap, mapping, values);
+    case ScalarType::int8:
+      return decode_as<std::int8_t>(bytes, type, swap, mapping, values);
+    case ScalarType::uint16:
+      return decode_as<std::uint16_t>(bytes, type, swap, mapping, values);
+    case ScalarType::int16:
+      return decode_as<std::int16_t>(bytes, type, swap, mapping, values);
+    case ScalarType::uint32:
+      return decode_as<std::uint32_t>(bytes, type, swap, mapping, values);
+    case ScalarType::int32:
+      return decode_as<std::int32_t>(bytes, type, swap, mapping, values);
+    case ScalarType::uint64:
+      return decode_as<std::uint64_t>(bytes, type, swap, mapping, values);
+    case ScalarType::int64:
+      return decode_as<std::int64_t>(bytes, type, swap, mapping, values);
+    case ScalarType::float16:
+      return decode_half(bytes, big_endian, mapping, values);
+    case ScalarType::float32:
+      return decode_as<float>(bytes, type, swap, mapping, values);
+    case ScalarType::float64:
+      return decode_as<double>(bytes, type, swap, mapping, values);
+  }
+  throw Error(ErrorKind::internal, "unknown scalar type");
+}
+
+}  // namespace weir

@@ -1,0 +1,30 @@
+// A dense array as it lies in a file: values in file order, x fastest, without
+// compression. What raw files are, and what most headers describe.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "format/base/scalar_type.h"
+#include "ingest/files/input_file.h"
+#include "ingest/source/stored_value.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// How the values lie in the file.
+struct RawLayout {
+  std::uint64_t offset = 0;  ///< bytes before the first value
+  ScalarType type = ScalarType::float32;
+  bool big_endian = false;
+  ValueMapping mapping;
+};
+
+/// A source of `info`, whose values lie in `file` by `layout`; fills info.type, mapping, file_bytes,
+/// mtime_ns and files where they are zero or empty. The extent's bytes must fit the file: what does not fit is an
+/// Error(internal), for the caller has the words for it. Needs up to kStagingBytes (ingest/plan/staging.h)
+/// besides the callers' buffers.
+std::unique_ptr<VolumeSource> make_raw_values(std::unique_ptr<InputFile> file, const RawLayout& layout,
+                                              SourceInfo info);
+
+}  // namespace weir

@@ -1,0 +1,109 @@
+#include "compressor/plan/memory_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <string>
+
+#include "format/base/error.h"
+#include "format/io/digest.h"
+#include "ingest/plan/staging.h"
+
+namespace weir::memory_plan_test {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+const Box kLarge{{0, 0, 0}, {3000, 3000, 3000}};
+
+TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
+  for (const std::uint64_t ceiling : {256 * kMiB, 300 * kMiB, 512 * kMiB, 4096 * kMiB}) {
+    for (const std::size_t threads : {1U, 2U, 7U, 16U}) {
+      for (const std::uint64_t resident : {10 * kMiB, 60 * kMiB}) {
+        const MemoryPlan plan = plan_memory(ceiling, resident, threads, kLarge);
+        const std::uint64_t rows =
+            threads * static_cast<std::uint64_t>(plan.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
+        // The passes follow each other: blocks, rows and digests are never held together.
+        EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
+        EXPECT_LT(resident + kStagingBytes + rows, ceiling);
+        EXPECT_LT(resident + plan.digest_threads * kDigestPieceBytes, ceiling);
+        EXPECT_GE(plan.block_bytes, kMiB);
+        EXPECT_GE(plan.segment_regions, 1);
+        EXPECT_GE(plan.digest_threads, 1U);
+        EXPECT_LE(plan.digest_threads, threads);
+      }
+    }
+  }
+}
+
+TEST(MemoryPlan, MoreMemoryNeverMeansSmallerShares) {
+  MemoryPlan before;
+  before.block_bytes = 0;
+  before.segment_regions = 0;
+  before.digest_threads = 0;
+  for (std::uint64_t ceiling = 200 * kMiB; ceiling < 8192 * kMiB; ceiling += 97 * kMiB) {
+    const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge);
+    EXPECT_GE(plan.block_bytes, before.block_bytes);
+    EXPECT_GE(plan.segment_regions, before.segment_regions);
+    EXPECT_GE(plan.digest_threads, before.digest_threads);
+    before = plan;
+  }
+}
+
+TEST(MemoryPlan, TooLittleIsAnErrorWhoseAdviceIsEnough) {
+  for (const Box& domain : {Box{{0, 0, 0}, {1, 1, 1}}, kLarge, Box{{0, 0, 0}, {20000, 20000, 20000}}}) {
+    for (const std::size_t threads : {1U, 64U}) {
+      try {
+        plan_memory(kMiB, 20 * kMiB, threads, domain);
+        FAIL();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string message = error.what();
+        std::smatch match;
+        const std::regex form("--memory 1.0 MiB is too small for this volume with " + std::to_string(threads) +
+                              " threads; give at least ([0-9]+)MiB");
+        ASSERT_TRUE(std::regex_match(message, match, form)) << message;
+        EXPECT_NO_THROW(plan_memory(std::stoull(match[1]) * kMiB, 20 * kMiB, threads, domain));
+        EXPECT_THROW(plan_memory((std::stoull(match[1]) - 2) * kMiB, 20 * kMiB, threads, domain), Error);
+      }
+    }
+  }
+}
+
+TEST(MemoryPlan, ACeilingForLargerBlocksHoldsThem) {
+  const MemoryPlan plan = plan_memory(256 * kMiB, 30 * kMiB, 4, kLarge);
+  for (const std::uint64_t block : {plan.block_bytes / 2, plan.block_bytes + 1, 512 * kMiB, 5000 * kMiB + 7}) {
+    const std::uint64_t ceiling = ceiling_for_blocks(plan, 256 * kMiB, block);
+    EXPECT_GE(plan_memory(ceiling, 30 * kMiB, 4, kLarge).block_bytes, block);
+    if (block > plan.block_bytes) {
+      EXPECT_LT(plan_memory(ceiling - 32, 30 * kMiB, 4, kLarge).block_bytes, block);
+    }
+  }
+}
+
+TEST(MemoryPlan, ThreadsDefaultToTheProcessorsThatTheCeilingHolds) {
+  const auto chosen = [](std::size_t processors) {
+    return choose_threads(0, processors, 512 * kMiB, 40 * kMiB, {{0, 0, 0}, {512, 512, 512}});
+  };
+  EXPECT_EQ(chosen(0), 1U);
+  EXPECT_EQ(chosen(1), 1U);
+  EXPECT_EQ(chosen(8), 8U);
+  for (const std::size_t processors : {112U, 128U, 512U, 4096U}) {
+    const std::size_t threads = chosen(processors);
+    EXPECT_GT(threads, 48U) << processors;
+    EXPECT_LT(threads, 112U) << processors;
+    EXPECT_NO_THROW(plan_memory(512 * kMiB, 40 * kMiB, threads, {{0, 0, 0}, {512, 512, 512}}));
+  }
+}
+
+TEST(MemoryPlan, ThreadsThatWereAskedForAreNotReduced) {
+  EXPECT_EQ(choose_threads(300, 8, 64 * kMiB, 40 * kMiB, kLarge), 300U);
+  EXPECT_EQ(choose_threads(0, 8, kMiB, 40 * kMiB, kLarge), 1U) << "the plan refuses it then";
+}
+
+TEST(MemoryPlan, NoticeNamesTheFewerThreads) {
+  EXPECT_EQ(fewer_threads_notice(60, 128, 512 * kMiB),
+            "--memory 512.0 MiB holds 60 of 128 threads; give more to use them all");
+}
+
+}  // namespace
+}  // namespace weir::memory_plan_test

@@ -1,0 +1,268 @@
+#include "compressor/resume/journal.h"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "format/base/error.h"
+#include "tests/compressor/support/memory_file_system.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::journal_test {
+namespace {
+
+using test::MemoryFileSystem;
+using Names = std::vector<std::string>;
+
+const ConversionIdentity kIdentity{{"source", "a"}, {"--rate", "8"}};
+constexpr Box kSome{{0, 0, 0}, {4, 4, 1}};
+
+Names saved_names() { return {"./.o.nvdb.work/journal", "./.o.nvdb.work/rows"}; }
+
+// A journal with a survey begun, its rows of 10 bytes.
+void begin_survey(Journal& journal) {
+  journal.open("rows")->preallocate(10);
+  journal.state.survey.done.add(kSome);
+}
+
+TEST(Journal, WithoutASaveLeavesNothing) {
+  MemoryFileSystem files;
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {});
+    begin_survey(journal);
+    EXPECT_EQ(journal.directory(), "./.o.nvdb.work");
+    EXPECT_FALSE(journal.resumable());
+  }
+  EXPECT_EQ(files.names(), Names{});
+}
+
+TEST(Journal, ASaveFollowsTheProtocol) {
+  MemoryFileSystem memory;
+  FaultyFileSystem files(memory, -1, 0);
+  Journal journal(files, "o.nvdb", kIdentity, {});
+  begin_survey(journal);
+  const std::size_t before = files.calls().size();
+  journal.save();
+  const Names calls = files.calls();
+  EXPECT_EQ(Names(calls.begin() + static_cast<std::ptrdiff_t>(before), calls.end()),
+            (Names{"sync", "create", "write", "sync", "rename", "sync_directory", "sync_directory"}));
+  EXPECT_TRUE(journal.resumable());
+  journal.save();
+  EXPECT_EQ(files.calls().size() - calls.size(), 6U) << "the hidden directory has its name by then";
+}
+
+TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
+  for (const char* work_dir : {"", "/scratch"}) {
+    MemoryFileSystem files;
+    const JournalOptions options{work_dir, 0, nullptr, nullptr, {}};
+    {
+      Journal journal(files, "o.nvdb", kIdentity, options);
+      begin_survey(journal);
+      journal.save();
+    }
+    const Names saved = files.names();
+    files.lose_unflushed();
+    EXPECT_EQ(files.names(), saved);
+    EXPECT_TRUE(Journal(files, "o.nvdb", kIdentity, options).resumable());
+  }
+}
+
+TEST(Journal, TakesUpWhatWasSavedAndNothingElse) {
+  MemoryFileSystem files;
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {});
+    begin_survey(journal);
+    journal.save();
+    journal.state.survey.done.add({{0, 0, 1}, {4, 4, 2}});  // not saved
+    journal.open("volume")->preallocate(1000);              // nothing of it counts
+  }
+  EXPECT_EQ(files.names(), saved_names());
+  std::string said;
+  {
+    Journal journal(files, "o.nvdb", kIdentity,
+                    {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
+    EXPECT_TRUE(journal.resumable());
+    EXPECT_EQ(journal.state.survey.done.boxes(), std::vector<Box>{kSome});
+    EXPECT_EQ(journal.open("rows")->size(), 10U);
+  }
+  EXPECT_EQ(said, "");
+  EXPECT_EQ(files.names(), saved_names()) << "a run that did nothing loses nothing";
+  Journal(files, "o.nvdb", kIdentity, {}).discard();
+  EXPECT_EQ(files.names(), Names{});
+}
+
+TEST(Journal, EncodedLeavesStandOnVolumeAndRecords) {
+  MemoryFileSystem files;
+  const Names all{"./.o.nvdb.work/journal", "./.o.nvdb.work/records", "./.o.nvdb.work/rows", "./.o.nvdb.work/volume"};
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {});
+    begin_survey(journal);
+    journal.open("records")->preallocate(20);
+    journal.open("volume")->preallocate(30);
+    journal.state.encoded.add(kSome);
+    journal.save();
+  }
+  EXPECT_EQ(files.names(), all);
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {});
+    EXPECT_EQ(journal.state.files,
+              (std::map<std::string, std::uint64_t>{{"records", 20}, {"rows", 10}, {"volume", 30}}));
+    journal.save();  // before any of them is opened
+  }
+  EXPECT_EQ(files.names(), all);
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {});
+    journal.open("records");
+    journal.open("volume");
+    journal.state.encoded = {};
+    journal.save();
+  }
+  EXPECT_EQ(files.names(), saved_names());
+}
+
+TEST(Journal, SpillFilesGoWhereTheUserSays) {
+  MemoryFileSystem files;
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
+    begin_survey(journal);
+    journal.save();
+  }
+  const Names names = files.names();
+  ASSERT_EQ(names.size(), 2U);
+  EXPECT_EQ(names[0], "./.o.nvdb.work/journal");
+  EXPECT_TRUE(names[1].starts_with("/scratch/.o.nvdb.") && names[1].ends_with(".work/rows")) << names[1];
+  std::string said;
+  const Journal journal(files, "o.nvdb", kIdentity,
+                        {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
+  EXPECT_TRUE(
+      said.starts_with("o.nvdb: an interrupted conversion of it is not continued: its spill files were in "
+                       "/scratch/.o.nvdb."))
+      << said;
+  EXPECT_EQ(files.names(), Names{}) << "wherever they are";
+}
+
+// Whoever moves or names it otherwise finds the files beside the journal, not those beside what is at its old place.
+TEST(Journal, StandsOnTheFilesBesideItWhereverItIs) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  namespace fs = std::filesystem;
+  fs::create_directory(directory / "a");
+  const auto interrupt = [&](const std::string& output) {
+    Journal journal(*files, output, kIdentity, {});
+    begin_survey(journal);
+    journal.save();
+  };
+  interrupt(directory / "a/o.nvdb");
+  fs::rename(directory / "a", directory / "b");
+  fs::create_directory(directory / "a");
+  interrupt(directory / "a/o.nvdb");
+  EXPECT_TRUE(Journal(*files, directory / "b/../b/o.nvdb", kIdentity, {}).resumable());
+  EXPECT_TRUE(remove_leftovers(*files, directory / "b/o.nvdb"));
+  EXPECT_FALSE(fs::exists(directory / "b/.o.nvdb.work/rows"));
+  EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
+}
+
+TEST(Journal, LeavesTheSpillFilesOfTheOutputAtItsOldPlace) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  namespace fs = std::filesystem;
+  fs::create_directory(directory / "a");
+  fs::create_directory(directory / "scratch");
+  const JournalOptions scratch{directory / "scratch", 0, nullptr, nullptr, {}};
+  const auto interrupt = [&] {
+    Journal journal(*files, directory / "a/o.nvdb", kIdentity, scratch);
+    begin_survey(journal);
+    journal.save();
+  };
+  interrupt();
+  fs::rename(directory / "a", directory / "b");
+  fs::create_directory(directory / "a");
+  interrupt();
+  EXPECT_FALSE(read_journal(*files, directory / "b/o.nvdb"));
+  EXPECT_FALSE(Journal(*files, directory / "b/o.nvdb", kIdentity, scratch).resumable());
+  EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
+}
+
+TEST(Journal, RemovesLeftoversOnceAndSaysWhetherThereWereAny) {
+  MemoryFileSystem files;
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
+    begin_survey(journal);
+    journal.save();
+  }
+  EXPECT_TRUE(read_journal(files, "o.nvdb"));
+  EXPECT_TRUE(remove_leftovers(files, "o.nvdb"));
+  EXPECT_EQ(files.names(), Names{});
+  EXPECT_FALSE(read_journal(files, "o.nvdb"));
+  EXPECT_FALSE(remove_leftovers(files, "o.nvdb"));
+}
+
+TEST(Journal, IsDueByTimeAndByCancellation) {
+  MemoryFileSystem files;
+  std::atomic<bool> cancel{false};
+  Journal journal(files, "o.nvdb", kIdentity, {"", 3600, &cancel, nullptr, {}});
+  begin_survey(journal);
+  EXPECT_FALSE(journal.due());
+  cancel = true;
+  EXPECT_TRUE(journal.due());
+  journal.save();
+  EXPECT_TRUE(journal.resumable()) << "waited for";
+}
+
+// The work goes on meanwhile, and hears of the failure at the next pause.
+TEST(Journal, AFailedSaveIsReportedAndTheOneBeforeCounts) {
+  MemoryFileSystem memory;
+  int sync = 0;
+  {
+    FaultyFileSystem none(memory, -1, 0);
+    Journal journal(none, "o.nvdb", kIdentity, {});
+    begin_survey(journal);
+    journal.save();
+    sync = static_cast<int>(none.calls().size());
+    journal.discard();
+  }
+  FaultyFileSystem files(memory, sync, ENOSPC);  // the first call of the second save
+  {
+    Journal journal(files, "o.nvdb", kIdentity, {"", 1e-9, nullptr, nullptr, {}});
+    begin_survey(journal);
+    journal.save_now();
+    journal.state.survey.done.add({{0, 0, 1}, {4, 4, 2}});
+    journal.save();
+    const auto fails = [&] {
+      try {
+        while (!journal.due()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return false;
+      } catch (const Error& error) {
+        return error.kind() == ErrorKind::io;
+      }
+    };
+    EXPECT_TRUE(fails());
+    EXPECT_TRUE(journal.resumable());
+  }
+  Journal journal(memory, "o.nvdb", kIdentity, {});
+  EXPECT_EQ(journal.state.survey.done.boxes(), std::vector<Box>{kSome});
+}
+
+TEST(Journal, TheFilesOfALivingConversionAreLocked) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  Journal journal(*files, directory / "o.nvdb", kIdentity, {});
+  begin_survey(journal);
+  journal.save();
+  try {
+    read_journal(*files, directory / "o.nvdb");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), directory / ".o.nvdb.work/rows" +
+                                ": is being written by another process; wait for it or choose another output");
+  }
+}
+
+}  // namespace
+}  // namespace weir::journal_test

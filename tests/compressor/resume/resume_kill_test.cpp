@@ -1,0 +1,187 @@
+// Conversions that die at any call to the file system, by a kill, with the machine
+// or of a full disk, and are run again: the bytes are those of one that was not
+// disturbed.
+#include <gtest/gtest.h>
+
+#include "compressor/resume.h"
+#include "tests/compressor/support/resumed.h"
+
+namespace weir::test {
+namespace {
+
+using ResumeKill = ResumeTest;
+using ResumeKillOfHoles = ResumeOfHoles;
+
+TEST_F(ResumeKill, Float) {
+  ConversionOptions options = base();
+  expect_same_bytes(options, 60);
+}
+
+TEST_F(ResumeKill, Quantised) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::fpn;
+  options.budget.kind = Budget::Kind::rate;
+  options.budget.rate = 5;
+  expect_same_bytes(options, 24);
+}
+
+TEST_F(ResumeKill, WhicheverEncodingIsBetter) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::automatic;
+  expect_same_bytes(options, 24);
+}
+
+TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::fpn;
+  options.budget.kind = Budget::Kind::psnr;
+  options.budget.target = 43;
+  EXPECT_GE(undisturbed(options).encode_passes, 2);
+  expect_same_bytes(options, 40);
+  options.budget.kind = Budget::Kind::max_error;
+  options.budget.target = 0.5;
+  EXPECT_EQ(undisturbed(options).encode_passes, 1);
+  expect_same_bytes(options, 24);
+}
+
+// The process lives on and says what is kept; all else is gone.
+TEST_F(ResumeKill, AFullDisk) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::fpn;
+  const Result expected = undisturbed(options);
+  const int calls = calls_of(options);
+  const std::string kept = "; what is done is kept in ./.out.nvdb.work, the same command continues it";
+  constexpr int kPoints = 40;
+  int continued = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const int at = calls * i / kPoints;
+    SCOPED_TRACE("call " + std::to_string(at) + " of " + std::to_string(calls));
+    MemoryFileSystem memory;
+    FaultyFileSystem files(memory, at, ENOSPC);
+    std::string message;
+    try {
+      run(options, files);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+      message = error.what();
+    }
+    if (message.empty()) {  // the removal of what is not needed any more
+      EXPECT_TRUE(memory.content("out.nvdb") == expected.file);
+      continue;
+    }
+    const Names names = memory.names();
+    const bool resumable = message.ends_with(kept);
+    EXPECT_EQ(!names.empty(), resumable) << message;
+    for (const std::string& name : names) EXPECT_TRUE(name.starts_with(kHidden)) << name;
+    continued += resumable ? 1 : 0;
+    run(options, memory);
+    EXPECT_EQ(memory.names(), kResult);
+    EXPECT_TRUE(memory.content("out.nvdb") == expected.file);
+  }
+  if (!kSanitized) {
+    EXPECT_GT(continued, kPoints / 5);
+  }
+}
+
+// Where the outputs have their names and what they were made from is not removed yet.
+TEST_F(ResumeKill, ADoneConversionIsTidiedUp) {
+  for (const bool overwrite : {false, true}) {
+    // Whether it died at call number `at` after the volume got its name.
+    const auto dies = [&](MemoryFileSystem& memory, int at) {
+      ConversionOptions options = base();
+      if (overwrite) run(options, memory);
+      options.overwrite = overwrite;
+      FaultyFileSystem files(memory, -1, EIO, FaultyFileSystem::After::fails);
+      files.fail_after_rename_to("out.nvdb", at);
+      try {
+        run(options, files);
+      } catch (const Error&) {
+        EXPECT_TRUE(files.failed());
+      }
+      return files.failed();
+    };
+    int left = 0;
+    for (int at = 0;; ++at) {
+      SCOPED_TRACE(at);
+      MemoryFileSystem memory;
+      if (!dies(memory, at)) break;
+      left += memory.names() == kResult ? 0 : 1;
+      clear_leftovers(memory, "out.nvdb");
+      EXPECT_EQ(memory.names(), kResult);
+      EXPECT_EQ(memory.directories(), Names{});
+      EXPECT_FALSE(clear_leftovers(memory, "out.nvdb")) << "nothing is there";
+
+      MemoryFileSystem other;
+      dies(other, at);
+      other.make_directory("/scratch");
+      ConversionOptions again = base();
+      again.overwrite = true;
+      again.work_dir = "/scratch";
+      again.resume = Resume::off;
+      run(again, other);
+      EXPECT_EQ(other.names(), kResult);
+      EXPECT_EQ(other.directories(), Names{"/scratch"});
+    }
+    EXPECT_GE(left, 4) << "lock, directory, journal, rows";
+  }
+}
+
+TEST_F(ResumeKill, Scene) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::automatic;
+  Scene scene;
+  scene.volume.range = {-100, 110};
+  scene.volume.opacity = {{0, 0}, {0.6, 0}, {0.8, 0.3}, {1, 1}};
+  options.scene = SceneFile{scene, "s.toml"};
+  expect_same_bytes(options, 24);
+}
+
+TEST_F(ResumeKillOfHoles, ThePapersMethod) {
+  ConversionOptions options = base();
+  options.paper_background = true;
+  options.metric = Metric::farthest;
+  options.fill = FillMode::background;
+  options.non_finite = NonFinitePolicy::background;
+  expect_same_bytes(options, 24);
+}
+
+// The result is there: the same command says so, and what it was made from is not needed any more.
+TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
+  const ConversionOptions options = base();
+  for (const int call : {0, 1, 2}) {
+    MemoryFileSystem memory;
+    FaultyFileSystem files(memory, -1, EIO, FaultyFileSystem::After::fails);
+    files.fail_after_rename_to("out.nvdb", call);
+    try {
+      run(options, files);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+    }
+    ASSERT_TRUE(files.failed()) << call;
+    EXPECT_TRUE(memory.exists("out.nvdb.partial")) << "the lock goes last";
+    try {
+      run(options, memory);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "out.nvdb: exists; choose another output with -o or pass --overwrite");
+    }
+    EXPECT_EQ(memory.names(), kResult) << call;
+    EXPECT_EQ(memory.directories(), Names{}) << call;
+  }
+}
+
+// Of an --overwrite that somebody interrupted, and will continue.
+TEST_F(ResumeKill, BeforeTheCommit_ARefusedCommandKeepsWhatIsDone) {
+  ConversionOptions options = base();
+  MemoryFileSystem memory;
+  run(options, memory);
+  options.overwrite = true;
+  ASSERT_TRUE(killed(options, memory, calls_of(options) / 2));
+  const Names before = memory.names();
+  options.overwrite = false;
+  EXPECT_THROW(run(options, memory), Error);
+  EXPECT_EQ(memory.names(), before);
+}
+
+}  // namespace
+}  // namespace weir::test

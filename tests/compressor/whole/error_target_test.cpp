@@ -1,0 +1,199 @@
+// Targets of error instead of size: met by what is decoded, fused or not, and by
+// no smaller a file than need be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "compressor/conversion.h"
+#include "format/base/error.h"
+#include "format/leaf/leaf_decode.h"
+#include "ingest/synthetic/synthetic.h"
+#include "tests/compressor/support/converted.h"
+#include "tests/stock/stock_tree.h"
+
+namespace weir::error_target_test {
+namespace {
+
+using test::Converted;
+using test::MemoryVolume;
+using test::StockReader;
+
+struct Case {
+  std::string name;
+  std::string kind;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const SyntheticKind& kind : synthetic_kinds()) {
+    std::string name;
+    for (const char c : kind.name) {
+      if (c != '-') name += c;
+    }
+    all.push_back({name, std::string(kind.name)});
+  }
+  return all;
+}
+
+class ErrorTarget : public testing::TestWithParam<Case> {
+ protected:
+  MemoryVolume volume() const {
+    const auto source = open_synthetic(GetParam().kind, {{45, 30, 25}, 5});
+    return MemoryVolume(*source);
+  }
+  static ConversionOptions options_for(Budget::Kind kind, double target, Encoding encoding) {
+    ConversionOptions options;
+    options.budget.kind = kind;
+    options.budget.target = target;
+    options.encoding = encoding;
+    options.non_finite = NonFinitePolicy::background;
+    return options;
+  }
+};
+
+// Largest error and sum of squares over the finite voxels, by the stock reader.
+struct Read {
+  double max_abs = 0;
+  double mse = 0;
+  double range = 0;
+};
+
+Read read_back(const MemoryVolume& volume, const Converted& converted) {
+  const StockReader reader(converted.file);
+  EXPECT_TRUE(reader.valid());
+  Read read;
+  long double squares = 0;
+  std::uint64_t finite = 0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  const Box domain = volume.info().domain();
+  for (std::int64_t n = 0; n < domain.voxels(); ++n) {
+    const Index3 i = domain.lo + index_at(n, domain.extent());
+    const float v = volume.at(i);
+    if (!std::isfinite(v)) continue;
+    const double d = std::fabs(static_cast<double>(v) - static_cast<double>(reader.value(i)));
+    read.max_abs = std::max(read.max_abs, d);
+    squares += static_cast<long double>(d) * static_cast<long double>(d);
+    low = std::min(low, static_cast<double>(v));
+    high = std::max(high, static_cast<double>(v));
+    ++finite;
+  }
+  if (finite == 0) return read;
+  read.mse = static_cast<double>(squares / static_cast<long double>(finite));
+  read.range = high - low;
+  return read;
+}
+
+TEST_P(ErrorTarget, EveryVoxelIsWithinTheLargestErrorAsked) {
+  MemoryVolume source = volume();
+  const auto& values = source.values();
+  float low = std::numeric_limits<float>::infinity();
+  float high = -low;
+  for (const float v : values) {
+    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  }
+  const double range = high > low ? static_cast<double>(high) - static_cast<double>(low) : 1;
+  std::size_t last_bytes = 0;
+  for (const double part : {0.0, 1e-6, 1e-3, 0.02, 0.3, 2.0}) {
+    const Converted converted =
+        test::convert(source, options_for(Budget::Kind::max_error, part * range, Encoding::automatic));
+    EXPECT_LE(read_back(source, converted).max_abs, part * range) << part;
+    EXPECT_LE(converted.sidecar.error.max_abs, part * range) << part;
+    EXPECT_EQ(converted.sidecar.budget.kind, "max_error");
+    EXPECT_EQ(converted.sidecar.budget.requested, part * range);
+    if (part > 0) {
+      EXPECT_LE(converted.file.size(), last_bytes) << part;
+    }
+    last_bytes = converted.file.size();
+  }
+}
+
+TEST_P(ErrorTarget, ThePsnrIsAtLeastTheOneAsked) {
+  MemoryVolume source = volume();
+  for (const double target : {20.0, 45.0, 70.0, 110.0}) {
+    const Converted converted = test::convert(source, options_for(Budget::Kind::psnr, target, Encoding::automatic));
+    const Read read = read_back(source, converted);
+    if (read.mse > 0 && read.range > 0) {
+      EXPECT_GE(20 * std::log10(read.range) - 10 * std::log10(read.mse), target - 1e-9) << target;
+      EXPECT_GE(converted.sidecar.error.psnr_db, target);
+    }
+    EXPECT_EQ(converted.sidecar.budget.kind, "psnr");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ErrorTarget, testing::ValuesIn(cases()),
+                         [](const auto& parameter) { return parameter.param.name; });
+
+TEST(ErrorTargets, ASmallerFileMissesThePsnr) {
+  const auto source = open_synthetic("turbulence", {{128, 64, 64}, 5});
+  MemoryVolume volume(*source);
+  for (const Encoding encoding : {Encoding::automatic, Encoding::fpn, Encoding::float32}) {
+    ConversionOptions options;
+    options.encoding = encoding;
+    options.budget.kind = Budget::Kind::psnr;
+    options.budget.target = 40;
+    const Converted converted = test::convert(volume, options);
+    EXPECT_GE(converted.sidecar.error.psnr_db, 40);
+    EXPECT_LE(converted.sidecar.error.psnr_db, 40.1);
+    const Converted smaller = test::convert_to(volume, options, converted.file.size() * 97 / 100);
+    EXPECT_LT(smaller.sidecar.error.psnr_db, 40);
+  }
+}
+
+TEST(ErrorTargets, WhatAnEncodingCannotReachIsSaid) {
+  const auto source = open_synthetic("noise", {{64, 32, 32}, 5});
+  MemoryVolume volume(*source);
+  const auto refusal = [&](Budget::Kind kind, double target, Encoding encoding) -> std::string {
+    ConversionOptions options;
+    options.encoding = encoding;
+    options.budget.kind = kind;
+    options.budget.target = target;
+    try {
+      test::convert(volume, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::budget);
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(refusal(Budget::Kind::max_error, 1e-9, Encoding::fpn),
+            "out.nvdb: --max-error 1e-09 cannot be met: --encoding fpn has leaves whose range 16 bits do not divide "
+            "that finely; use --encoding auto or float");
+  const std::string at_most = refusal(Budget::Kind::psnr, 90, Encoding::fp8);
+  EXPECT_EQ(at_most.substr(0, at_most.find("about")), "out.nvdb: --psnr 90 cannot be met: --encoding fp8 reaches ");
+  EXPECT_EQ(refusal(Budget::Kind::psnr, 300, Encoding::automatic), "no error");  // float32 keeps every bit
+  EXPECT_EQ(refusal(Budget::Kind::max_error, 0, Encoding::automatic), "no error");
+}
+
+TEST(ErrorTargets, HoldForAFusedDecoderToo) {
+  // fma(code, quantum, minimum) may differ by an ulp: the bound leaves room for it.
+  const auto source = open_synthetic("turbulence", {{64, 64, 64}, 9});
+  MemoryVolume volume(*source);
+  for (const double target : {1e-5, 1e-4, 1e-3, 1e-2}) {
+    ConversionOptions options;
+    options.encoding = Encoding::fpn;
+    options.budget.kind = Budget::Kind::max_error;
+    options.budget.target = target;
+    const Converted converted = test::convert(volume, options);
+    double worst = 0;
+    converted.grid().for_each_block([&](const GridBlock& block) {
+      if (block.leaf == nullptr) return;
+      for (unsigned n = 0; n < 512; ++n) {
+        const std::uint32_t code = leaf_code(block.leaf + nvdb::leaf::kCodes, fpn_bits_log2(block.leaf), n);
+        const float fused = std::fma(static_cast<float>(code), load<float>(block.leaf + nvdb::leaf::kQuantum),
+                                     load<float>(block.leaf + nvdb::leaf::kQuantMinimum));
+        const float value = volume.at(block.origin + Index3{n >> 6U, n >> 3U & 7U, n & 7U});
+        worst = std::max(worst, std::fabs(static_cast<double>(value) - static_cast<double>(fused)));
+      }
+    });
+    EXPECT_GT(worst, 0);
+    EXPECT_LE(worst, target);
+  }
+}
+
+}  // namespace
+}  // namespace weir::error_target_test

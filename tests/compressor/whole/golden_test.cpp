@@ -1,0 +1,194 @@
+// The same input and options give the same file: for any number of threads, memory
+// ceiling and kind of reading, today and in a year. A digest that changes is a
+// change of the format or of the selection, to be made on purpose.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <vector>
+
+#include "compressor/conversion.h"
+#include "format/base/error.h"
+#include "format/io/digest.h"
+#include "ingest/source_registry.h"
+#include "ingest/synthetic/synthetic.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::golden_test {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+
+struct Golden {
+  const char* kind;
+  Index3 extent;
+  Budget budget;
+  Metric metric;
+  FillMode fill;
+  NonFinitePolicy non_finite;
+  const char* digest;
+  Encoding encoding = Encoding::float32;
+};
+
+std::string name_of(const ::testing::TestParamInfo<Golden>& info) {
+  std::string name = std::string(info.param.kind) + "_" + std::to_string(info.index);
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
+
+class GoldenTest : public ::testing::TestWithParam<Golden> {
+ protected:
+  void SetUp() override {
+    const auto source = open_synthetic(GetParam().kind, {GetParam().extent, 1});
+    std::vector<float> values(static_cast<std::size_t>(volume(GetParam().extent)));
+    source->read(source->info().domain(), values);
+    std::ofstream file(input(), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(float)));
+  }
+
+  std::string input() const { return directory_ / "in.raw"; }
+
+  std::string convert(std::size_t threads, std::uint64_t memory, DirectIo direct_io) const {
+    const Golden& golden = GetParam();
+    SourceOptions source_options;
+    source_options.extent = golden.extent;
+    source_options.type = ScalarType::float32;
+    source_options.direct_io = direct_io;
+    const auto source = open_source(input(), source_options);
+    ConversionOptions options;
+    options.output = directory_ / "out.nvdb";
+    options.overwrite = true;
+    options.budget = golden.budget;
+    options.encoding = golden.encoding;
+    options.metric = golden.metric;
+    options.fill = golden.fill;
+    options.non_finite = golden.non_finite;
+    options.threads = threads;
+    options.memory = memory;
+    const auto files = make_posix_file_system();
+    const Sidecar sidecar = convert_volume(*source, options, {}, *files);
+    // The sidecar's figure is the file's, read back by other means.
+    std::ifstream file(options.output, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(bytes.size(), sidecar.file.bytes);
+    EXPECT_EQ(file_digest(std::as_bytes(std::span(bytes))).hex(), sidecar.file.digest);
+    return sidecar.file.digest;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
+  const std::string expected = GetParam().digest;
+  for (const std::size_t threads : {1U, 2U, 3U, 4U, 7U}) {
+    EXPECT_EQ(convert(threads, 256 * kMiB, DirectIo::automatic), expected) << threads << " threads";
+  }
+  EXPECT_EQ(convert(2, 3072 * kMiB, DirectIo::automatic), expected);
+  EXPECT_EQ(convert(2, 256 * kMiB, DirectIo::off), expected);
+  try {
+    EXPECT_EQ(convert(2, 256 * kMiB, DirectIo::on), expected);
+  } catch (const Error& error) {
+    // The place for temporary files is on a file system that has no direct I/O.
+    EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+  }
+}
+
+constexpr Budget kRate8{Budget::Kind::rate, 8, 0};
+constexpr Budget kRate3{Budget::Kind::rate, 3, 0};
+constexpr Budget kOdd{Budget::Kind::size, 8, 1234567};
+constexpr Budget kLossless{Budget::Kind::lossless, 8, 0};
+
+INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
+                         ::testing::Values(Golden{"cloud",
+                                                  {300, 200, 150},
+                                                  kRate8,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "f59e459cfd2f650abf97b53b664df898"},
+                                           Golden{"turbulence",
+                                                  {131, 140, 135},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "39ec1765af63d79f9e777e26531965be"},
+                                           Golden{"noise",
+                                                  {131, 140, 17},
+                                                  kOdd,
+                                                  Metric::farthest,
+                                                  FillMode::background,
+                                                  NonFinitePolicy::error,
+                                                  "1e10599919130f6c007b520be9ad8950"},
+                                           Golden{"checkerboard",
+                                                  {129, 129, 129},
+                                                  kOdd,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "dd2a1d786be5bab4ff21fda2b6d3f0a1"},
+                                           Golden{"sphere",
+                                                  {200, 100, 140},
+                                                  kLossless,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "034b8cc00c8b17ce35163939efbb823d"},
+                                           Golden{"some-nan",
+                                                  {100, 100, 100},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::background,
+                                                  "20d763e9eda84dfd26296f6c27954d87"},
+                                           Golden{"gradient",
+                                                  {4100, 9, 10},
+                                                  kLossless,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "02f48b189bdd0a7f62ee1fbe788a667b"},
+                                           Golden{"cloud",
+                                                  {300, 200, 150},
+                                                  kRate8,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "19c371a21b5d927bfb4ff0fa61f8e4a5",
+                                                  Encoding::automatic},
+                                           Golden{"turbulence",
+                                                  {131, 140, 135},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "d205c86889bc45b086ff0840a62f1590",
+                                                  Encoding::fpn},
+                                           Golden{"some-nan",
+                                                  {100, 100, 100},
+                                                  kOdd,
+                                                  Metric::sse,
+                                                  FillMode::background,
+                                                  NonFinitePolicy::background,
+                                                  "6f2c0c03619c57941b9b0fab522fe1f0",
+                                                  Encoding::fpn},
+                                           Golden{"offset",
+                                                  {100, 101, 102},
+                                                  kLossless,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "6687003b90dd97a522c4ad4de17f7a9b",
+                                                  Encoding::automatic},
+                                           Golden{"noise",
+                                                  {131, 140, 17},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "59c78a68799b87b1e28417441d6ac194",
+                                                  Encoding::fp4}),
+                         name_of);
+
+}  // namespace
+}  // namespace weir::golden_test

@@ -1,0 +1,28 @@
+// Lookups made by kernels, for tests to compare with the host's.
+#pragma once
+
+#include <vector>
+
+#include "gpu/cuda/volume/brick_atlas.h"
+#include "gpu/cuda/volume/device_table.h"
+#include "gpu/volume/volume_sampler.h"
+
+namespace weir::test {
+
+/// Every voxel of the table's domain, x fastest.
+template <class Block>
+std::vector<float> read_voxels(const BlockTable<Block>& table);
+
+/// `smooth` at each position, nearest or trilinear.
+template <class Block>
+std::vector<float> read_smooth(const BlockTable<Block>& table, Filter filter, const std::vector<Float3>& positions);
+std::vector<float> read_smooth(const BrickAtlas& atlas, const std::vector<Float3>& positions);
+/// The mean of `draws` stochastic samples at each position.
+template <class Block>
+std::vector<float> read_stochastic(const BlockTable<Block>& table, const std::vector<Float3>& positions, int draws);
+
+}  // namespace weir::test
+
+/// Skips a test where there is no device to run it on.
+#define WEIR_NEEDS_DEVICE() \
+  if (device_count() == 0) GTEST_SKIP() << "no CUDA device"

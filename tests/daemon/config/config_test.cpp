@@ -1,0 +1,320 @@
+#include "daemon/config/config.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "format/base/error.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+#include "tools/options/convert_syntax.h"
+
+namespace weir::config_test {
+namespace {
+
+const std::string kWatch = "[[watch]]\ndirectory = 'in'\noutput = 'out'\n";
+
+class Config : public testing::Test {
+ protected:
+  DaemonConfig load(const std::string& text) {
+    write_file(path_, text);
+    return load_config(path_, convert_syntax());
+  }
+  /// The message without the path before ":LINE:COLUMN: "; empty: it is accepted.
+  std::string refusal(const std::string& text) {
+    try {
+      load(text);
+      return "";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with(path_ + ":")) << message;
+      return message.substr(path_.size() + 1);
+    }
+  }
+  /// Of a key in the fourth line, in the [[watch]].
+  std::string watch_refusal(const std::string& line) { return refusal(kWatch + line); }
+  /// Of a key in the second line, in [service].
+  std::string service_refusal(const std::string& line) { return refusal("[service]\n" + line + "\n" + kWatch); }
+
+  TemporaryDirectory directory_;
+  std::string path_ = directory_ / "watch.toml";
+};
+
+TEST_F(Config, Defaults) {
+  const DaemonConfig config = load(kWatch);
+  EXPECT_EQ(config.path, path_);
+  EXPECT_EQ(config.service.state, directory_ / "weir.db");
+  EXPECT_EQ(config.service.listen.text(), "127.0.0.1:8470");
+  EXPECT_EQ(config.service.memory, 1073741824U);
+  EXPECT_EQ(job_memory(config.service), 1006632960U);
+  EXPECT_EQ(config.service.jobs, 1);
+  EXPECT_EQ(config.service.work_dir, "");
+  EXPECT_EQ(config.service.log_file, "");
+  EXPECT_EQ(config.service.log_level, "info");
+  ASSERT_EQ(config.watches.size(), 1U);
+  const WatchConfig& watch = config.watches[0];
+  EXPECT_EQ(watch.label, directory_ / "in");
+  EXPECT_EQ(watch.directory, directory_ / "in");
+  EXPECT_EQ(watch.output, directory_ / "out");
+  EXPECT_EQ(watch.name, "");
+  EXPECT_FALSE(watch.recursive);
+  EXPECT_TRUE(watch.include.empty());
+  EXPECT_EQ(watch.complete, Completion::automatic);
+  EXPECT_EQ(watch.watch, WatchMethod::automatic);
+  EXPECT_EQ(watch.priority, Priority::oldest);
+  EXPECT_EQ(watch.source, AfterDone::keep);
+  EXPECT_TRUE(watch.thumbnails);
+  EXPECT_TRUE(watch.convert_options.empty());
+  EXPECT_TRUE(watch.excluded_paths.empty());
+}
+
+TEST_F(Config, EveryKeyIsRead) {
+  const DaemonConfig config = load(R"([service]
+state = "var/state.db"
+listen = "[::1]:0"
+control_socket = "weir.sock"
+port_file = "/run/weir.port"
+memory = "2GiB"
+jobs = 3
+threads = 2
+nice = 19
+io_class = "idle"
+bandwidth = 200000000
+work_dir = "work/"
+grace = 2.5
+history = 0.5
+log = "log/weir.log"
+log_level = "debug"
+log_size = "1MB"
+log_files = 9
+[[watch]]
+label = "density"
+directory = "../run/./42/"
+output = "/scratch/nvdb"
+recursive = true
+include = ["*.h5", "*.nc"]
+exclude = ["checkpoint*"]
+name = "{stem}_{step}.nvdb"
+complete = "marker"
+marker = ".ok"
+settle = 0.5
+watch = "poll"
+poll_interval = 3
+priority = "newest"
+source = "delete-after-verify"
+delete_after = 5
+follow = "anywhere"
+thumbnails = false
+dataset = "/fields/density"
+psnr = 60
+index = [0, "*"]
+)");
+  const ServiceConfig& service = config.service;
+  EXPECT_EQ(service.state, directory_ / "var/state.db");
+  EXPECT_EQ(service.listen.host, "::1");
+  EXPECT_EQ(service.listen.port, 0);
+  EXPECT_EQ(service.control_socket, directory_ / "weir.sock");
+  EXPECT_EQ(service.port_file, "/run/weir.port");
+  EXPECT_EQ(service.memory, std::uint64_t{2} << 30);
+  EXPECT_EQ(job_memory(service), ((std::uint64_t{2} << 30) - (std::uint64_t{64} << 20)) / 3);
+  EXPECT_EQ(service.jobs, 3);
+  EXPECT_EQ(service.threads, 2);
+  EXPECT_EQ(service.nice, 19);
+  EXPECT_EQ(service.io_class, IoClass::idle);
+  EXPECT_EQ(service.bandwidth, 200000000U);
+  EXPECT_EQ(service.work_dir, directory_ / "work");
+  EXPECT_EQ(service.grace_s, 2.5);
+  EXPECT_EQ(service.history_days, 0.5);
+  EXPECT_EQ(service.log_file, directory_ / "log/weir.log");
+  EXPECT_EQ(service.log_level, "debug");
+  EXPECT_EQ(service.log_size, 1000000U);
+  EXPECT_EQ(service.log_files, 9);
+  const WatchConfig& watch = config.watches.at(0);
+  EXPECT_EQ(watch.label, "density");
+  EXPECT_EQ(watch.directory, (directory_.path().parent_path() / "run/42").string());
+  EXPECT_EQ(watch.output, "/scratch/nvdb");
+  EXPECT_TRUE(watch.recursive);
+  EXPECT_EQ(watch.include, (std::vector<std::string>{"*.h5", "*.nc"}));
+  EXPECT_EQ(watch.exclude, std::vector<std::string>{"checkpoint*"});
+  EXPECT_EQ(watch.name, "{stem}_{step}.nvdb");
+  EXPECT_EQ(watch.complete, Completion::marker);
+  EXPECT_EQ(watch.marker, ".ok");
+  EXPECT_EQ(watch.settle_s, 0.5);
+  EXPECT_EQ(watch.watch, WatchMethod::poll);
+  EXPECT_EQ(watch.poll_interval_s, 3);
+  EXPECT_EQ(watch.priority, Priority::newest);
+  EXPECT_EQ(watch.source, AfterDone::delete_after_verify);
+  EXPECT_EQ(watch.delete_after_s, 5);
+  EXPECT_EQ(watch.follow, Follow::anywhere);
+  EXPECT_FALSE(watch.thumbnails);
+  EXPECT_EQ(watch.convert_options, (std::vector<std::string>{"--dataset=/fields/density", "--index=0,*", "--psnr=60"}));
+  EXPECT_EQ(watch.convert_option("psnr"), "60");
+  EXPECT_EQ(watch.convert_option("dataset"), "/fields/density");
+  EXPECT_EQ(watch.convert_option("rate"), std::nullopt);
+  EXPECT_EQ(load(kWatch + "lossless = true").watches[0].convert_option("lossless"), "true");
+}
+
+TEST_F(Config, UnknownKeysAreNamedWithTheirPlace) {
+  EXPECT_EQ(refusal("extra = 1\n" + kWatch),
+            "1:1: unknown key \"extra\" in the configuration; there are service, watch");
+  EXPECT_TRUE(service_refusal("memmory = 1").starts_with("2:1: unknown key \"memmory\" in [service]; there are "));
+  EXPECT_TRUE(watch_refusal("  stack = true").starts_with("4:3: unknown key \"stack\" in [[watch]]; there are "));
+  EXPECT_TRUE(watch_refusal("overwrite = true").starts_with("4:1: unknown key \"overwrite\" in [[watch]]; "));
+  EXPECT_TRUE(watch_refusal("max-error = 1").starts_with("4:1: unknown key \"max-error\" in [[watch]]; "));
+}
+
+TEST_F(Config, WrongShapes) {
+  EXPECT_EQ(refusal(""), "1:1: there is no [[watch]]; add one for each directory to watch");
+  EXPECT_EQ(refusal("[watch]\ndirectory = 'in'"), "1:1: watch must be an array of tables: [[watch]]");
+  EXPECT_EQ(refusal("service = 3\n" + kWatch), "1:11: service must be a table: [service]");
+  EXPECT_EQ(refusal("[[watch]]\noutput = 'out'"), "1:1: [[watch]] needs a directory");
+  EXPECT_EQ(refusal("[[watch]]\ndirectory = 'in'"), "1:1: [[watch]] needs an output, a directory");
+  EXPECT_TRUE(refusal("[service\n" + kWatch).starts_with("1:9: ")) << refusal("[service\n" + kWatch);
+}
+
+TEST_F(Config, WrongValuesOfTheService) {
+  EXPECT_EQ(service_refusal("state = ''"), "2:9: state is empty, it must be a path");
+  EXPECT_EQ(service_refusal("state = 'watch.toml'"), "2:9: state is this file, " + path_);
+  EXPECT_EQ(service_refusal("listen = 'unix:weir.sock'"), "2:10: listen is HOST:PORT; a Unix socket is control_socket");
+  EXPECT_EQ(
+      service_refusal("control_socket = '/" + std::string(107, 'x') + "'"),
+      "2:18: control_socket is a path of 108 bytes, /" + std::string(107, 'x') + "; the system takes 107 at most");
+  EXPECT_EQ(service_refusal("log = 'weir.db'"),
+            "1:1: two of state, log, port_file and control_socket are one file, " + (directory_ / "weir.db"));
+  EXPECT_EQ(service_refusal("jobs = 0"), "2:8: jobs is 0, it must be from 1 to 1024");
+  EXPECT_EQ(service_refusal("jobs = 1.5"), "2:8: jobs must be a whole number");
+  EXPECT_EQ(service_refusal("nice = -1"), "2:8: nice is -1, it must be from 0 to 19");
+  EXPECT_EQ(service_refusal("io_class = 'slow'"),
+            "2:12: io_class is \"slow\", it must be one of none, best-effort, idle");
+  EXPECT_EQ(service_refusal("log_level = 'loud'"),
+            "2:13: log_level is \"loud\", it must be one of trace, debug, info, warn, error, off");
+  const std::string size = " must be a size such as 1073741824, \"64MiB\" or \"1.5GB\"";
+  EXPECT_EQ(service_refusal("memory = 'much'"), "2:10: memory" + size);
+  EXPECT_EQ(service_refusal("bandwidth = -1"), "2:13: bandwidth" + size);
+  EXPECT_EQ(service_refusal("log_size = 1.5"), "2:12: log_size" + size);
+}
+
+TEST_F(Config, MemoryMustDoForAllJobs) {
+  EXPECT_EQ(service_refusal("memory = '128MiB'"), "");
+  EXPECT_EQ(service_refusal("memory = 134217727"),
+            "2:10: memory is 128.0 MiB, too little for the daemon and jobs = 1; it must be at least 128.0 MiB");
+  EXPECT_EQ(service_refusal("jobs = 16"),
+            "2:8: memory is 1.0 GiB, too little for the daemon and jobs = 16; it must be at least 1.1 GiB");
+  EXPECT_EQ(service_refusal("memory = 1"),
+            "2:10: memory is 1 B, too little for the daemon and jobs = 1; it must be at least 128.0 MiB");
+}
+
+TEST_F(Config, OthersThanLoopbackNeedAToken) {
+  EXPECT_EQ(service_refusal("listen = '127.0.0.9:1'"), "");
+  EXPECT_EQ(service_refusal("listen = 'localhost:1'"), "");
+  for (const std::string address : {"0.0.0.0:8470", "[::]:8470", "10.1.2.3:8470"}) {
+    EXPECT_EQ(service_refusal("listen = '" + address + "'"),
+              "2:10: listen is " + address + ", which other machines may reach; add a token or token_file");
+    EXPECT_EQ(service_refusal("listen = '" + address + "'\ntoken = 'secret'"), "");
+  }
+  EXPECT_EQ(service_refusal("listen = '8470'"),
+            "2:10: \"8470\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
+  EXPECT_EQ(service_refusal("token = ''"), "2:9: the token is empty; openssl rand -hex 32 makes one");
+  EXPECT_EQ(service_refusal("token = 'a b'"),
+            "2:9: the token must be ASCII without spaces; openssl rand -hex 32 makes one");
+}
+
+TEST_F(Config, ATokenFromAFile) {
+  const std::string file = directory_ / "token";
+  const std::string service = "[service]\ntoken_file = 'token'\n";
+  EXPECT_EQ(refusal(service + kWatch), "2:14: " + file + ": cannot read the token: No such file or directory");
+  write_file(file, "s3cret\n");
+  std::filesystem::permissions(file, std::filesystem::perms(0644));
+  EXPECT_EQ(refusal(service + kWatch), "2:14: " + file + ": can be read by everybody; chmod o-r it");
+  std::filesystem::permissions(file, std::filesystem::perms(0640));
+  EXPECT_EQ(load(service + kWatch).service.token, "s3cret");
+  EXPECT_EQ(refusal(service + "token = 'other'\n" + kWatch), "2:14: token and token_file exclude each other; give one");
+  write_file(file, " \n");
+  EXPECT_EQ(refusal(service + kWatch), "2:14: the token is empty; openssl rand -hex 32 makes one");
+}
+
+TEST_F(Config, WrongValuesOfAWatch) {
+  EXPECT_EQ(watch_refusal("complete = 'soon'"),
+            "4:12: complete is \"soon\", it must be one of auto, close, rename, marker, size, stable");
+  EXPECT_EQ(watch_refusal("complete = 'close'\nwatch = 'poll'"),
+            "4:12: complete is close, which polling never sees; use stable, size or marker");
+  EXPECT_EQ(watch_refusal("watch = 'eye'"), "4:9: watch is \"eye\", it must be one of auto, inotify, poll");
+  EXPECT_EQ(watch_refusal("source = 'delete'"),
+            "4:10: source is \"delete\", it must be one of keep, delete-after-verify");
+  EXPECT_EQ(watch_refusal("settle = 0"), "4:10: settle is 0, it must be from 0.01 to 86400");
+  EXPECT_EQ(watch_refusal("recursive = 'yes'"), "4:13: recursive must be true or false");
+  EXPECT_EQ(watch_refusal("include = '*.raw'"), "4:11: include must be an array of strings");
+  EXPECT_EQ(watch_refusal("exclude = ['']"), "4:11: exclude has an empty pattern");
+  EXPECT_EQ(watch_refusal("marker = ''"), "4:10: marker is \"\", it must be a suffix such as .done");
+  EXPECT_EQ(watch_refusal("label = ''"), "4:9: label is empty");
+}
+
+TEST_F(Config, NamesMustTellSourcesApart) {
+  EXPECT_EQ(watch_refusal("name = '{stem}_a.nvdb'"), "");
+  EXPECT_EQ(watch_refusal("name = 'a.nvdb'"),
+            "4:8: name is \"a.nvdb\", which gives all sources one output; put {stem} in it");
+  EXPECT_EQ(watch_refusal("name = '{stem}'"), "4:8: name is \"{stem}\", it must end with .nvdb");
+  EXPECT_EQ(watch_refusal("name = '../{stem}.nvdb'"),
+            "4:8: name is \"../{stem}.nvdb\", it must not have a slash; directories are named by output");
+  EXPECT_EQ(watch_refusal("name = '{time}.nvdb'"),
+            "4:8: {time} in an output's name is not known; there are {stem}, {dataset} and {step}");
+}
+
+TEST_F(Config, ConversionOptionsAreCheckedAsTheCommandDoes) {
+  EXPECT_EQ(watch_refusal("rate = 'fast'"),
+            "4:8: rate is \"fast\", it must be a positive number: dense float32 bytes / file bytes");
+  EXPECT_EQ(watch_refusal("rate = 8\nlossless = true"),
+            "5:12: size, rate, psnr, max_error and lossless exclude each other; give one");
+  EXPECT_EQ(watch_refusal("brick = 16"),
+            "4:9: brick 16 is for metric farthest, closest or median; sse chooses single leaves");
+  EXPECT_EQ(watch_refusal("dims = [64, 64]"),
+            "4:8: dims is \"64,64\", it must be X,Y,Z, three whole numbers of voxels");
+  EXPECT_EQ(watch_refusal("background = -5\norigin = [-1, 0, 2.5]\nnonfinite = 'keep'"), "");
+}
+
+TEST_F(Config, ConflictsAreFoundAtTheirKey) {
+  EXPECT_EQ(refusal("[[watch]]\ndirectory = 'in'\noutput = 'in'\n"),
+            "3:10: " + (directory_ / "in") + " is watched and lies in the output " + (directory_ / "in") +
+                ", so that results would be converted again; separate them, " + (directory_ / "in/nvdb") +
+                " is a good output for instance");
+  // No key to point at: the table.
+  EXPECT_EQ(refusal(kWatch + kWatch), "4:1: there is a watch of the label \"" + (directory_ / "in") +
+                                          "\" already; give this one a label of its own");
+}
+
+TEST_F(Config, OwnFilesAreNeverSources) {
+  const DaemonConfig config = load(R"([service]
+state = "in/weir.db"
+log = "in/deep/weir.log"
+work_dir = "elsewhere"
+[[watch]]
+directory = "in"
+output = "in/nvdb"
+[[watch]]
+directory = "in2"
+output = "in/deep/nvdb"
+)");
+  const std::string in = directory_ / "in/";
+  EXPECT_EQ(config.watches[0].excluded_paths,
+            (std::vector<std::string>{in + "deep/nvdb", in + "deep/weir.log", in + "nvdb", in + "weir.db",
+                                      in + "weir.db-journal", in + "weir.db-shm", in + "weir.db-wal"}));
+  EXPECT_TRUE(config.watches[1].excluded_paths.empty());
+}
+
+TEST_F(Config, UnreadableFiles) {
+  const auto message = [](const std::string& path) -> std::string {
+    try {
+      load_config(path, convert_syntax());
+      return "";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message(path_), path_ + ": cannot read: No such file or directory");
+  EXPECT_EQ(message(directory_.path().string()), directory_.path().string() + ": cannot read: Is a directory");
+}
+
+}  // namespace
+}  // namespace weir::config_test

@@ -1,0 +1,88 @@
+#include "daemon/config/watch_conflicts.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "format/base/text.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::watch_conflicts_test {
+namespace {
+
+WatchConfig watch(const std::string& directory, const std::string& output) {
+  WatchConfig config;
+  config.label = config.directory = directory;
+  config.output = output;
+  return config;
+}
+
+/// "WATCH KEY: MESSAGE"; empty: there is none.
+std::string conflict(const std::vector<WatchConfig>& watches) {
+  const auto found = find_conflict(watches);
+  return found ? cat(found->watch, ' ', found->key, ": ", found->message) : "";
+}
+
+TEST(WatchConflicts, NoneBetweenDifferentPlaces) {
+  EXPECT_EQ(conflict({watch("/in", "/in/nvdb"), watch("/in2", "/in2/nvdb"), watch("/in3", "/out")}), "");
+  EXPECT_EQ(conflict({watch("/in", "/innvdb"), watch("/innvdb2", "/x")}), "") << "a common beginning is no directory";
+}
+
+TEST(WatchConflicts, ALabelTwice) {
+  const std::string message =
+      R"(1 label: there is a watch of the label "/in" already; give this one a label of its own)";
+  EXPECT_EQ(conflict({watch("/in", "/a"), watch("/in", "/b")}), message);
+  WatchConfig labelled = watch("/in", "/b");
+  labelled.label = "coarse";
+  EXPECT_EQ(conflict({watch("/in", "/a"), labelled}), "");
+}
+
+TEST(WatchConflicts, SourcesInAnOutput) {
+  EXPECT_EQ(conflict({watch("/in", "/in")}),
+            "0 output: /in is watched and lies in the output /in, so that results would be converted again; separate "
+            "them, /in/nvdb is a good output for instance");
+  EXPECT_EQ(conflict({watch("/run/in", "/run")}),
+            "0 output: /run/in is watched and lies in the output /run, so that results would be converted again; "
+            "separate them, /run/in/nvdb is a good output for instance");
+  EXPECT_EQ(conflict({watch("/in", "/out"), watch("/out/deep", "/b")}),
+            "1 directory: /out/deep is watched and lies in the output /out of the watch \"/in\", so that results "
+            "would be converted again; separate them, /out/deep/nvdb is a good output for instance");
+}
+
+TEST(WatchConflicts, TheSameNames) {
+  WatchConfig second = watch("/in2", "/out");
+  EXPECT_EQ(conflict({watch("/in", "/out"), second}),
+            "1 output: the watch \"/in\" writes the same names, {stem}.nvdb in /out; give this one another output or "
+            "name");
+  second.name = "{stem}.nvdb";
+  EXPECT_NE(conflict({watch("/in", "/out"), second}), "");
+  second.name = "{stem}_2.nvdb";
+  EXPECT_EQ(conflict({watch("/in", "/out"), second}), "");
+}
+
+TEST(WatchConflicts, DeletingWhatAnotherOneReads) {
+  WatchConfig outer = watch("/in", "/a");
+  WatchConfig inner = watch("/in/deep", "/b");
+  inner.source = AfterDone::delete_after_verify;
+  EXPECT_EQ(conflict({outer, inner}), "");
+  outer.recursive = true;
+  EXPECT_EQ(conflict({outer, inner}),
+            "1 source: sources would be deleted that the watch \"/in\" converts too; keep them, or watch different "
+            "directories");
+  EXPECT_EQ(conflict({inner, outer}),
+            "0 source: sources would be deleted that the watch \"/in\" converts too; keep them, or watch different "
+            "directories");
+}
+
+TEST(WatchConflicts, LinksAreFollowed) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory(directory / "real");
+  std::filesystem::create_directory_symlink(directory / "real", directory / "link");
+  EXPECT_TRUE(is_within(directory / "link/missing/file", directory / "real"));
+  EXPECT_TRUE(is_within(directory / "real", directory / "link"));
+  EXPECT_FALSE(is_within(directory / "real", directory / "real/nvdb"));
+  EXPECT_EQ(find_conflict(std::vector{watch(directory / "real", directory / "link")})->key, "output");
+}
+
+}  // namespace
+}  // namespace weir::watch_conflicts_test

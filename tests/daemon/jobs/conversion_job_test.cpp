@@ -1,0 +1,244 @@
+// One job with the real `weir`: what it reports for every way it can end.
+#include "daemon/jobs/conversion_job.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/support/run_command.h"
+
+namespace weir::conversion_job_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+class ConversionJobTest : public testing::Test {
+ protected:
+  std::string write_source(const std::string& name, std::size_t voxels) const {
+    std::string bytes(voxels, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+    write_file(directory_ / name, bytes);
+    return directory_ / name;
+  }
+
+  ConversionTask task(const std::string& source) const {
+    ConversionTask task;
+    task.program = WEIR_COMMAND;
+    task.source = source;
+    task.identity = identify(source).value_or(FileIdentity{});
+    task.output = directory_ / "out/";
+    task.memory = std::uint64_t{256} << 20U;
+    task.threads = 1;
+    return task;
+  }
+
+  TaskReport run(const ConversionTask& task, const std::function<void(ConversionJob&)>& meanwhile = {}) {
+    boost::asio::io_context io;
+    std::optional<TaskReport> report;
+    std::unique_ptr<ConversionJob> job = std::make_unique<ConversionJob>(io, task, [&](const TaskReport& ended) {
+      EXPECT_FALSE(report);
+      report = ended;
+      job.reset();
+    });
+    while (!report && io.run_one() > 0) {
+      if (job && meanwhile) meanwhile(*job);
+    }
+    EXPECT_TRUE(report);
+    return report.value_or(TaskReport{});
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
+  ConversionTask limited = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
+  limited.thumbnails = false;
+  limited.bandwidth = 4 << 20U;
+  const TaskReport report = run(limited);
+  EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  const std::uint64_t moved = report.result.bytes_read + report.result.bytes_written;
+  EXPECT_GT(report.result.seconds, 0.75 * static_cast<double>(moved) / static_cast<double>(limited.bandwidth));
+}
+
+TEST_F(ConversionJobTest, SaysWhyItStandsStill) {
+  ConversionTask slow = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
+  slow.thumbnails = false;
+  slow.bandwidth = 4 << 20U;
+  std::string stall;
+  const TaskReport report = run(slow, [&](ConversionJob& job) {
+    if (!stall.empty() || !job.fraction()) return;
+    EXPECT_EQ(job.stall(std::chrono::seconds(60)), "");
+    job.look();
+    std::ifstream children(cat("/proc/self/task/", ::gettid(), "/children"));
+    pid_t child = 0;
+    ASSERT_TRUE(children >> child);
+    ::kill(child, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    stall = job.stall(std::chrono::seconds(1));
+    ::kill(child, SIGCONT);
+  });
+  EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  EXPECT_TRUE(stall.starts_with("nothing done by convert for ")) << stall;
+  EXPECT_TRUE(stall.ends_with(" s: it was stopped by a signal; SIGCONT lets it go on")) << stall;
+}
+
+TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";
+  std::string steps;
+  const TaskReport first = run(task(source), [&](ConversionJob& job) {
+    if (!steps.ends_with(cat(job.step(), ' '))) steps += cat(job.step(), ' ');
+    EXPECT_LE(job.fraction().value_or(0), 1);
+  });
+  EXPECT_EQ(first.end, TaskEnd::done) << first.result.reason;
+  EXPECT_EQ(steps, "convert verify render ");
+  EXPECT_TRUE(first.converted);
+  ASSERT_EQ(first.result.outputs.size(), 1U);
+  EXPECT_EQ(first.result.outputs[0].path, output);
+  EXPECT_EQ(first.result.outputs[0].bytes, fs::file_size(output));
+  EXPECT_EQ(first.result.outputs[0].thumbnail, output + ".png");
+  EXPECT_GT(first.result.outputs[0].psnr_db, 0.0);
+  EXPECT_EQ(first.result.bytes_written, fs::file_size(output));
+  EXPECT_GE(first.result.bytes_read, std::uint64_t{48 * 40 * 32});
+  EXPECT_GT(first.result.peak_rss_bytes, 0U);
+  EXPECT_EQ(first.notices, Names{});
+  EXPECT_EQ(list_directory(directory_ / "out"),
+            (Names{"a_48x40x32_uint8.nvdb", "a_48x40x32_uint8.nvdb.json", "a_48x40x32_uint8.nvdb.png"}));
+
+  const auto written = fs::last_write_time(output + ".png");
+  const TaskReport second = run(task(source));
+  EXPECT_EQ(second.end, TaskEnd::done);
+  EXPECT_FALSE(second.converted);
+  EXPECT_EQ(second.result.bytes_written, 0U);
+  EXPECT_EQ(second.result.outputs, first.result.outputs);
+  EXPECT_EQ(fs::last_write_time(output + ".png"), written);
+}
+
+TEST_F(ConversionJobTest, SaysWhatConvertSays) {
+  const std::string source = write_source("short_48x40x32_uint8.raw", 1000);
+  const TaskReport report = run(task(source));
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 3);
+  EXPECT_TRUE(report.result.reason.starts_with(source + ": ")) << report.result.reason;
+  EXPECT_NE(report.result.log_tail.find("weir: " + report.result.reason), std::string::npos);
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  ConversionTask stale = task(source);
+  ++stale.identity.mtime_ns;
+  EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
+  fs::resize_file(source, 10);  // and one that fails for it costs no attempt
+  EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
+}
+
+// The header, which is what is watched, stays as it is.
+TEST_F(ConversionJobTest, DataOfAHeaderRewrittenMeanwhile_IsASourceThatChanged) {
+  write_source("a.bin", 128 << 14U);
+  write_file(directory_ / "a.nhdr",
+             "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 128 128 128\nencoding: raw\ndata file: a.bin\n");
+  ConversionTask limited = task(directory_ / "a.nhdr");
+  limited.bandwidth = 4 << 20U;
+  bool rewritten = false;
+  const TaskReport report = run(limited, [&](ConversionJob& job) {
+    if (rewritten || !job.fraction()) return;
+    rewritten = true;
+    fs::last_write_time(directory_ / "a.bin", fs::last_write_time(directory_ / "a.bin") + std::chrono::hours(1));
+  });
+  EXPECT_TRUE(rewritten);
+  EXPECT_EQ(report.end, TaskEnd::source_changed);
+  EXPECT_EQ(report.result.exit_code, 3);
+  EXPECT_TRUE(report.result.reason.starts_with(directory_ / "a.bin: changed while it was read: it was written to at "))
+      << report.result.reason;
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, ASourceThatVanishedIsGone) {
+  EXPECT_EQ(run(task(directory_ / "a_48x40x32_uint8.raw")).end, TaskEnd::source_gone);
+}
+
+TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";
+  ASSERT_EQ(run(task(source)).end, TaskEnd::done);
+  {
+    std::fstream file(output, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(-1, std::ios::end).put('x');  // in the padding: only the digest tells
+  }
+  const TaskReport damaged = run(task(source));
+  EXPECT_EQ(damaged.end, TaskEnd::failed);
+  EXPECT_EQ(damaged.result.exit_code, 5);
+  EXPECT_TRUE(damaged.result.reason.starts_with("verify: " + output + ": sidecar file.digest: found "))
+      << damaged.result.reason;
+  EXPECT_FALSE(fs::exists(output));
+  const TaskReport again = run(task(source));
+  EXPECT_EQ(again.end, TaskEnd::done);
+  EXPECT_TRUE(again.converted);
+}
+
+TEST_F(ConversionJobTest, StopsWhenAsked) {
+  const std::string source = directory_ / "zeros_1024x1024x512_uint8.raw";
+  write_file(source, "");
+  fs::resize_file(source, std::uintmax_t{1} << 29U);
+  bool asked = false;
+  const TaskReport report = run(task(source), [&](ConversionJob& job) {
+    if (!job.fraction() || asked) return;
+    EXPECT_GT(job.resident_bytes(), 0U);
+    asked = true;
+    job.stop(std::chrono::seconds(20));
+  });
+  EXPECT_EQ(report.end, TaskEnd::stopped);
+  EXPECT_EQ(report.result.exit_code, 130);
+  EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, AKilledProcessIsAFailureThatSaysSo) {
+  ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  killed.program = directory_ / "weir";
+  write_file(killed.program, "#!/bin/sh\nkill -9 $$\n");
+  fs::permissions(killed.program, fs::perms::owner_all);
+  const TaskReport report = run(killed);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 137);
+  EXPECT_EQ(report.result.reason, "convert was ended by signal 9 (Killed); the system may have been out of memory");
+}
+
+TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  write_file(directory_ / "file", "");
+  ConversionTask below = task(source);
+  below.output = directory_ / "file/out/";
+  const TaskReport report = run(below);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 5);
+  EXPECT_EQ(report.result.reason, (directory_ / "file/out") + ": make the directory: Not a directory");
+}
+
+TEST_F(ConversionJobTest, AKilledRenderIsDoneOnceMore) {
+  ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  killed.thumbnails = true;
+  const std::string killer = directory_ / "weir.sh";
+  const std::string mark = directory_ / "killed";
+  write_file(killer, "#!/bin/sh\nif [ \"$1\" = render ] && [ ! -e " + mark + " ]; then touch " + mark +
+                         "; kill -9 $$; fi\nexec " + killed.program + " \"$@\"\n");
+  fs::permissions(killer, fs::perms::owner_all);
+  killed.program = killer;
+  const TaskReport report = run(killed);
+  EXPECT_EQ(report.end, TaskEnd::done);
+  EXPECT_TRUE(fs::exists(mark));
+  EXPECT_EQ(report.notices, std::vector<std::string>{});
+  ASSERT_EQ(report.result.outputs.size(), 1U);
+  EXPECT_TRUE(fs::exists(report.result.outputs[0].thumbnail));
+}
+
+}  // namespace
+}  // namespace weir::conversion_job_test

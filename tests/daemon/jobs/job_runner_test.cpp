@@ -1,0 +1,207 @@
+// Jobs from the state file to their results, with the real `weir`.
+#include "daemon/jobs/job_runner.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "compressor/resume/journal.h"
+#include "daemon/store/file_identity.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "tests/support/run_command.h"
+
+namespace weir::job_runner_test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+class JobRunnerTest : public testing::Test {
+ protected:
+  JobRunnerTest() {
+    config_.service.log_file = directory_ / "log";
+    config_.service.threads = 1;
+    for (const char* label : {"a", "b"}) {
+      WatchConfig watch;
+      watch.label = label;
+      watch.directory = directory_ / label;
+      watch.output = directory_ / "out";
+      watch.thumbnails = false;
+      fs::create_directory(watch.directory);
+      config_.watches.push_back(watch);
+    }
+    runner_.configure(config_);
+  }
+
+  /// A complete source, and its job waiting.
+  Job add(const std::string& label, const std::string& name, std::size_t bytes = 24 * 20 * 16) {
+    const std::string source = directory_ / (label + "/" + name + "_24x20x16_uint8.raw");
+    write_file(source, std::string(bytes, 'x'));
+    const Job job = store_.observe(label, source, *identify(source), "options").job;
+    EXPECT_TRUE(store_.enqueue(job.id));
+    return job;
+  }
+  /// A job that takes a while: a gibibyte of zeros.
+  Job add_long() {
+    const std::string source = directory_ / "a/long_1024x1024x1024_uint8.raw";
+    write_file(source, "");
+    fs::resize_file(source, std::uintmax_t{1} << 30U);
+    const Job job = store_.observe("a", source, *identify(source), "options").job;
+    EXPECT_TRUE(store_.enqueue(job.id));
+    return job;
+  }
+  void run_until(const std::function<bool()>& over) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!over() && std::chrono::steady_clock::now() < deadline) io_.run_one_for(milliseconds(50));
+    EXPECT_TRUE(over());
+  }
+  JobState state(const Job& job) const { return store_.job(job.id)->state; }
+  bool idle() const { return runner_.running().empty(); }
+
+  TemporaryDirectory directory_;
+  DaemonConfig config_ = [this] {
+    DaemonConfig config;
+    config.service.log_file = directory_ / "log";
+    return config;
+  }();
+  boost::asio::io_context io_;
+  JobStore store_{directory_ / "weir.db"};
+  EventLog log_{config_.service};
+  std::vector<std::string> changed_;
+  JobRunner runner_{io_, store_, log_, WEIR_COMMAND, [this](const Job& job) { changed_.push_back(job.source); }};
+};
+
+TEST_F(JobRunnerTest, ConvertsWhatWaits) {
+  const Job one = add("a", "one");
+  const Job two = add("b", "two");
+  const Job bad = add("a", "bad", 100);
+  runner_.wake();
+  run_until([&] { return idle() && store_.count({JobState::waiting, "", ""}) == 0; });
+  EXPECT_EQ(state(one), JobState::done);
+  EXPECT_EQ(state(two), JobState::done);
+  EXPECT_EQ(state(bad), JobState::quarantined);
+  EXPECT_EQ(runner_.figures().done, 2U);
+  EXPECT_EQ(runner_.figures().bytes_in, 2U * 24 * 20 * 16);
+  std::map<std::string, std::uint64_t> errors = RunnerFigures{}.errors;
+  EXPECT_EQ(errors.size(), 8U);
+  errors["input"] = 1;
+  EXPECT_EQ(runner_.figures().errors, errors);
+  EXPECT_EQ(runner_.figures().seconds.count(), 2U);
+  EXPECT_GT(runner_.bytes_per_s(), 0);
+  EXPECT_EQ(list_directory(directory_ / "out").size(), 4U);
+  const std::string log = read_file(config_.service.log_file);
+  for (const Job& job : {one, two}) {
+    EXPECT_NE(log.find(cat(" info start job=", job.id, ' ')), std::string::npos) << log;
+    EXPECT_NE(log.find(cat(" info done job=", job.id, ' ')), std::string::npos) << log;
+  }
+  EXPECT_NE(log.find(cat(" error failed job=", bad.id, ' ')), std::string::npos) << log;
+}
+
+TEST_F(JobRunnerTest, NoMoreAtOnceThanAsked) {
+  config_.service.jobs = 2;
+  config_.service.memory = std::uint64_t{1} << 30U;
+  runner_.configure(config_);
+  for (const char* name : {"1", "2", "3", "4"}) add("a", name);
+  runner_.wake();
+  std::size_t most = 0;
+  run_until([&] {
+    most = std::max(most, runner_.running().size());
+    return idle() && store_.count({JobState::done, "", ""}) == 4;
+  });
+  EXPECT_EQ(most, 2U);
+}
+
+TEST_F(JobRunnerTest, ASourceThatChangedBeforeItsTurnIsLookedAtAgain) {
+  const Job job = add("a", "one");
+  write_file(job.source, "rewritten");
+  runner_.wake();
+  EXPECT_TRUE(idle());
+  EXPECT_EQ(changed_.front(), job.source);
+}
+
+TEST_F(JobRunnerTest, StartsNothingWhilePaused) {
+  const Job job = add("a", "one");
+  runner_.pause();
+  runner_.wake();
+  EXPECT_TRUE(idle());
+  EXPECT_EQ(runner_.hold(), "paused by request");
+  runner_.resume();
+  EXPECT_EQ(runner_.hold(), "");
+  run_until([&] { return state(job) == JobState::done; });
+}
+
+TEST_F(JobRunnerTest, AbandonEndsACancelledJob) {
+  const Job job = add_long();
+  runner_.wake();
+  run_until([&] { return runner_.running().at(job.id).work->fraction().has_value(); });
+  EXPECT_TRUE(store_.cancel(job.id));
+  runner_.abandon(job.id);
+  run_until([&] { return idle(); });
+  EXPECT_EQ(state(job), JobState::cancelled);
+  EXPECT_EQ(list_directory(directory_ / "out"), std::vector<std::string>{});
+}
+
+// Nobody continues it; `retry` begins anew.
+TEST_F(JobRunnerTest, CancelRemovesWhatCouldBeContinued) {
+  config_.watches[0].convert_options = {"--save-interval=0"};
+  runner_.configure(config_);
+  const Job running = add_long();
+  const Job waiting = add("b", "waits");
+  const Job other = add("b", "other");
+  runner_.pause();
+  for (const Job& job : {waiting, other}) {
+    const auto files = make_posix_file_system();
+    const std::string output = directory_ / ("out/" + fs::path(job.source).stem().string() + ".nvdb");
+    fs::create_directories(directory_ / "out");
+    Journal journal(*files, output, {{"source", job.source}}, {"", 0, nullptr, nullptr, {}});
+    journal.open("rows")->preallocate(1);
+    journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
+    journal.save_now();
+  }
+  EXPECT_TRUE(store_.cancel(waiting.id));
+  runner_.cancelled(waiting);
+  const std::vector<std::string> others{".other_24x20x16_uint8.nvdb.work/", ".other_24x20x16_uint8.nvdb.work/journal",
+                                        ".other_24x20x16_uint8.nvdb.work/rows"};
+  EXPECT_EQ(list_directory(directory_ / "out"), others);
+
+  EXPECT_TRUE(store_.cancel(other.id));
+  runner_.resume();
+  const fs::path journal = directory_ / "out/.long_1024x1024x1024_uint8.nvdb.work/journal";
+  run_until([&] { return fs::exists(journal); });
+  EXPECT_TRUE(store_.cancel(running.id));
+  runner_.cancelled(running);
+  run_until([&] { return idle(); });
+  EXPECT_EQ(state(running), JobState::cancelled);
+  EXPECT_EQ(list_directory(directory_ / "out"), others);
+  EXPECT_NE(read_file(config_.service.log_file).find(cat(" info cleaned job=", running.id, " removed=")),
+            std::string::npos);
+}
+
+TEST_F(JobRunnerTest, ShutDownLetsAJobEndWithinTheGrace) {
+  const Job job = add("a", "one");
+  runner_.wake();
+  bool stopped = false;
+  runner_.shut_down(milliseconds(20'000), [&] { stopped = true; });
+  const Job late = add("a", "late");
+  runner_.wake();
+  run_until([&] { return stopped; });
+  EXPECT_EQ(state(job), JobState::done);
+  EXPECT_EQ(state(late), JobState::waiting);
+}
+
+TEST_F(JobRunnerTest, ShutDownAbandonsWhatTakesLongerAtNoCost) {
+  const Job job = add_long();
+  runner_.wake();
+  run_until([&] { return runner_.running().at(job.id).work->fraction().has_value(); });
+  bool stopped = false;
+  runner_.shut_down(milliseconds(1), [&] { stopped = true; });
+  run_until([&] { return stopped; });
+  EXPECT_EQ(state(job), JobState::waiting);
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  EXPECT_EQ(store_.job(job.id)->due_ms, 0);
+  EXPECT_EQ(list_directory(directory_ / "out"), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace weir::job_runner_test

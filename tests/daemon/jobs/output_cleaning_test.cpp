@@ -1,0 +1,233 @@
+#include "daemon/jobs/output_cleaning.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <future>
+#include <thread>
+
+#include "compressor/resume/journal.h"
+#include "daemon/store/file_identity.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "tests/support/run_command.h"
+
+namespace weir::output_cleaning_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+using std::chrono::milliseconds;
+
+// Where no source is of the service's.
+CleaningReport clean(const TemporaryDirectory& directory, bool recursive = false,
+                     milliseconds patience = milliseconds(0)) {
+  return clean_outputs(directory.path().string(), "/no/such/sources", recursive, patience);
+}
+
+// Of the sources in `sources`.
+CleaningReport clean(const TemporaryDirectory& directory, const TemporaryDirectory& sources) {
+  return clean_outputs(directory.path().string(), sources.path().string(), false, milliseconds(0));
+}
+
+TEST(OutputCleaning, RemovesWhatAKilledConversionLeavesAndNothingElse) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory / ".a.nvdb.work");
+  fs::create_directories(directory / "deep/.b.nvdb.work");
+  fs::create_directories(directory / "precious.nvdb.partial");  // a directory is nobody's partial file
+  for (const char* name :
+       {"a.nvdb.partial", "a.nvdb.json.partial", ".a.nvdb.png.123.partial", ".a.nvdb.work/spillAb3dE6",
+        "deep/b.nvdb.partial", "done.nvdb", "done.nvdb.json", "done.nvdb.png", "notes.partial", "old.nvdb.json",
+        "old.nvdb.json.previous", "lost.nvdb.json.previous"}) {
+    write_file(directory / name, name);
+  }
+  const CleaningReport report = clean(directory);
+  EXPECT_EQ(report.left, Names{});
+  EXPECT_EQ(report.removed,
+            (Names{directory / ".a.nvdb.png.123.partial", directory / ".a.nvdb.work", directory / "a.nvdb.json.partial",
+                   directory / "a.nvdb.partial", directory / "old.nvdb.json.previous"}));
+  EXPECT_EQ(list_directory(directory.path()),
+            (Names{"deep/", "deep/.b.nvdb.work/", "deep/b.nvdb.partial", "done.nvdb", "done.nvdb.json", "done.nvdb.png",
+                   "lost.nvdb.json", "notes.partial", "old.nvdb.json", "precious.nvdb.partial/"}));
+  EXPECT_EQ(read_file(directory / "lost.nvdb.json"), "lost.nvdb.json.previous") << "the record came back";
+  clean(directory, true);
+  EXPECT_EQ(list_directory(directory / "deep"), Names{});
+}
+
+// What an interrupted conversion of `source` to "a.nvdb" leaves, spill files in `spills` or beside it.
+void leave_interrupted(const TemporaryDirectory& directory, const std::string& source, const std::string& spills = "",
+                       const ConversionIdentity& more = {}) {
+  const FileIdentity identity = identify(source).value_or(FileIdentity{});
+  ConversionIdentity all{
+      {"source", source}, {"source bytes", cat(identity.bytes)}, {"source modified (ns)", cat(identity.mtime_ns)}};
+  for (const auto& [name, value] : more) all[name] = value;
+  const auto files = make_posix_file_system();
+  Journal journal(*files, directory / "a.nvdb", all, {spills, 0, nullptr, nullptr, {}});
+  journal.open("rows")->preallocate(100);
+  journal.state.survey.done.add({{0, 0, 0}, {1, 1, 1}});
+  journal.save_now();
+}
+
+const Names kKept{".a.nvdb.work/", ".a.nvdb.work/journal", ".a.nvdb.work/rows"};
+
+void make_old(const TemporaryDirectory& directory) {
+  fs::last_write_time(directory / ".a.nvdb.work", fs::file_time_type::clock::now() - std::chrono::hours(8 * 24));
+}
+
+TEST(OutputCleaning, KeepsWhatCanBeContinuedAsLongAsItsSourceIsThere) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory sources;
+  const std::string source = sources / "a.raw";
+  write_file(source, "source");
+
+  leave_interrupted(directory, source);
+  write_file(directory / "a.nvdb.partial", "");
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / "a.nvdb.partial"})
+      << "the lock of a process that is dead";
+  EXPECT_EQ(list_directory(directory.path()), kKept);
+
+  write_file(source, "another source");
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
+  EXPECT_EQ(list_directory(directory.path()), Names{});
+
+  leave_interrupted(directory, source);
+  fs::remove(source);
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
+
+  write_file(source, "source");
+  leave_interrupted(directory, source);
+  make_old(directory);
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"}) << "for a week";
+
+  leave_interrupted(directory, source);
+  fs::resize_file(directory / ".a.nvdb.work/rows", 99);
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"}) << "worth nothing";
+  EXPECT_EQ(list_directory(directory.path()), Names{});
+}
+
+// Its bytes and time are those of all its files together; which of them changed, its next conversion sees.
+TEST(OutputCleaning, KeepsWhatIsOfAHeaderAsLongAsItIsThere) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory sources;
+  const std::string source = sources / "a.nhdr";
+  write_file(source, "header");
+  leave_interrupted(directory, source, "", {{"source bytes", "7"}, {"source files", "0123"}});
+  EXPECT_EQ(clean(directory, sources).removed, Names{});
+  EXPECT_EQ(list_directory(directory.path()), kKept);
+  fs::remove(source);
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
+}
+
+TEST(OutputCleaning, KeepsWhatAUserMayContinue) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory sources;
+  const TemporaryDirectory elsewhere;
+  const auto expect_kept = [&] {
+    make_old(directory);
+    EXPECT_EQ(clean(directory, sources).removed, Names{});
+    EXPECT_EQ(list_directory(directory.path()), kKept);
+  };
+  leave_interrupted(directory, elsewhere / "gone.raw");
+  expect_kept();
+  leave_interrupted(directory, sources.path().string() + "_not/gone.raw");
+  expect_kept();
+  leave_interrupted(directory, sources / "slice_%04d.raw", "", {{"format", "stack"}});
+  expect_kept();
+  leave_interrupted(directory, sources / "gone.raw");
+  EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
+}
+
+// Conversions that begin while it cleans keep what they make.
+TEST(OutputCleaning, HoldsTheLockOfWhatItRemoves) {
+  const TemporaryDirectory directory;
+  const std::string work = directory / ".a.nvdb.work";
+  std::atomic<bool> over{false};
+  const auto cleaning = std::async(std::launch::async, [&] {
+    while (!over) clean(directory);
+  });
+  const auto files = make_posix_file_system();
+  int conversions = 0;
+  int robbed = 0;
+  const auto end = std::chrono::steady_clock::now() + milliseconds(500);
+  while (std::chrono::steady_clock::now() < end) {
+    std::unique_ptr<File> lock;
+    try {
+      lock = files->create(directory / "a.nvdb.partial");
+    } catch (const Error&) {
+      continue;  // the cleaner has it
+    }
+    ++conversions;
+    files->make_directory(work);
+    write_file(work + "/rows", "rows");
+    std::this_thread::yield();
+    robbed += files->exists(work + "/rows") && files->exists(directory / "a.nvdb.partial") ? 0 : 1;
+  }
+  over = true;
+  cleaning.wait();
+  EXPECT_GT(conversions, 10);
+  EXPECT_EQ(robbed, 0) << "of " << conversions;
+}
+
+TEST(OutputCleaning, DiscardsWhatIsOfOneSource) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory sources;
+  write_file(sources / "a.raw", "source");
+  write_file(sources / "b.raw", "source");
+  fs::create_directory(directory / ".c.nvdb.work");
+  leave_interrupted(directory, sources / "a.raw");
+  const auto discard = [&](const std::string& name) {
+    return discard_interrupted(directory.path().string(), sources / name);
+  };
+  EXPECT_EQ(discard("b.raw").removed, Names{});
+  {
+    const auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");
+    const CleaningReport report = discard("a.raw");
+    EXPECT_EQ(report.removed, Names{});
+    EXPECT_EQ(report.left, Names{(directory / "a.nvdb.partial") + ": another process is writing it"});
+  }
+  fs::remove(directory / "a.nvdb.partial");
+  EXPECT_EQ(discard("a.raw").removed, Names{directory / ".a.nvdb.work"});
+  EXPECT_EQ(list_directory(directory.path()), Names{".c.nvdb.work/"});
+  EXPECT_EQ(discard_interrupted("/nowhere/at/all", "a.raw").removed, Names{});
+}
+
+TEST(OutputCleaning, RemovesSpillFilesWhereverTheyAre) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory elsewhere;
+  write_file(elsewhere / "a.raw", "source");
+  fs::create_directory(elsewhere / "spills");
+  leave_interrupted(directory, elsewhere / "a.raw", elsewhere / "spills");
+  EXPECT_EQ(list_directory(elsewhere / "spills").size(), 2U) << "a directory of its own and the rows";
+  fs::remove(elsewhere / "a.raw");
+  EXPECT_EQ(clean(directory, elsewhere).removed, Names{directory / ".a.nvdb.work"});
+  EXPECT_EQ(list_directory(elsewhere / "spills"), Names{});
+}
+
+TEST(OutputCleaning, AMissingDirectoryHasNothingToRemove) {
+  EXPECT_EQ(clean_outputs("/nowhere/at/all", "/nowhere", true, milliseconds(0)).removed, Names{});
+}
+
+TEST(OutputCleaning, LeavesWhatIsBeingWritten) {
+  const TemporaryDirectory directory;
+  fs::create_directory(directory / ".a.nvdb.work");
+  const auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");
+  const CleaningReport report = clean(directory, false, milliseconds(20));
+  EXPECT_EQ(report.removed, Names{});
+  EXPECT_EQ(report.left, Names{(directory / "a.nvdb.partial") + ": another process is writing it"});
+  EXPECT_EQ(list_directory(directory.path()), (Names{".a.nvdb.work/", "a.nvdb.partial"}));
+}
+
+TEST(OutputCleaning, WaitsForAWriterThatIsDying) {
+  const TemporaryDirectory directory;
+  auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");
+  const auto death = std::async(std::launch::async, [&] {
+    std::this_thread::sleep_for(milliseconds(50));
+    writer.reset();
+  });
+  EXPECT_EQ(clean(directory, false, milliseconds(5000)).removed, Names{directory / "a.nvdb.partial"});
+}
+
+}  // namespace
+}  // namespace weir::output_cleaning_test

@@ -1,0 +1,177 @@
+#include "daemon/jobs/worker_process.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/support/run_command.h"
+
+namespace weir::worker_process_test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+/// Runs `script` in a shell as a worker until it has ended.
+struct ShellRun {
+  boost::asio::io_context io;
+  std::vector<std::string> lines;
+  std::optional<WorkerEnd> end;
+  std::unique_ptr<WorkerProcess> worker;
+
+  explicit ShellRun(const std::string& script, int nice = 0) {
+    worker = std::make_unique<WorkerProcess>(
+        io, WorkerCommand{"/bin/sh", {"sh", "-c", script}, nice, IoClass::none},
+        [this](std::string_view line) { lines.emplace_back(line); },
+        [this](const WorkerEnd& ended) {
+          end = ended;
+          worker.reset();  // allowed here
+        });
+  }
+  void run() { io.run(); }
+};
+
+std::size_t open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(WorkerProcess, GivesExitCodeLogAndAnnouncements) {
+  ShellRun shell("echo out; echo err >&2; echo one >&3; printf 'tw' >&3; sleep 0.02; echo o >&3; exit 7");
+  shell.run();
+  ASSERT_TRUE(shell.end);
+  EXPECT_EQ(shell.end->exit_code, 7);
+  EXPECT_EQ(shell.end->log, "out\nerr\n");
+  EXPECT_EQ(shell.lines, (std::vector<std::string>{"one", "two"}));
+}
+
+TEST(WorkerProcess, KeepsTheEndOfALongLog) {
+  ShellRun shell("i=0; while [ $i -lt 5000 ]; do echo line $i; i=$((i+1)); done");
+  shell.run();
+  EXPECT_EQ(shell.end->log.size(), WorkerProcess::kLogBytes);
+  EXPECT_TRUE(shell.end->log.ends_with("line 4998\nline 4999\n"));
+}
+
+TEST(WorkerProcess, ReadsAllThatWasAnnouncedBeforeTheEnd) {
+  ShellRun shell("i=0; while [ $i -lt 3000 ]; do echo $i >&3; i=$((i+1)); done");
+  shell.run();
+  ASSERT_EQ(shell.lines.size(), 3000U);
+  EXPECT_EQ(shell.lines.back(), "2999");
+}
+
+TEST(WorkerProcess, ASignalIsSaidAsShellsSayIt) {
+  ShellRun shell("kill -SEGV $$");
+  shell.run();
+  EXPECT_EQ(shell.end->exit_code, 128 + SIGSEGV);
+}
+
+TEST(WorkerProcess, StopAsksFirst) {
+  ShellRun shell("trap 'echo asked; exit 3' TERM; echo ready >&3; while :; do sleep 0.01; done");
+  while (shell.lines.empty()) shell.io.run_one();
+  shell.worker->stop(milliseconds(5000));
+  shell.run();
+  EXPECT_EQ(shell.end->exit_code, 3);
+  EXPECT_EQ(shell.end->log, "asked\n");
+}
+
+TEST(WorkerProcess, StopKillsWhatDoesNotListen) {
+  ShellRun shell("trap '' TERM; echo ready >&3; while :; do sleep 0.01; done");
+  while (shell.lines.empty()) shell.io.run_one();
+  const auto begin = steady_clock::now();
+  shell.worker->stop(milliseconds(100));
+  shell.run();
+  EXPECT_EQ(shell.end->exit_code, 128 + SIGKILL);
+  EXPECT_GE(steady_clock::now() - begin, milliseconds(100));
+}
+
+TEST(WorkerProcess, DestructionKillsAtOnceAndCallsNobody) {
+  ShellRun shell("trap '' TERM; echo $$ >&3; while :; do sleep 0.01; done");
+  while (shell.lines.empty()) shell.io.run_one();
+  const auto pid = static_cast<pid_t>(std::stoi(shell.lines.front()));
+  shell.worker.reset();
+  EXPECT_EQ(::kill(pid, 0), -1) << "neither running nor a zombie";
+  shell.run();
+  EXPECT_FALSE(shell.end);
+}
+
+TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoDescriptorsOfOurs) {
+  const int leaked = ::dup(0);  // not close-on-exec
+  ShellRun shell("ps -o pgid=,ni= -p $$; echo $$; ls /proc/self/fd | wc -l", 5);
+  shell.run();
+  ::close(leaked);
+  std::istringstream words(shell.end->log);
+  int group = 0;
+  int nice = 0;
+  int pid = 0;
+  int descriptors = 0;
+  words >> group >> nice >> pid >> descriptors;
+  EXPECT_EQ(group, pid);
+  EXPECT_EQ(nice, 5);
+  EXPECT_EQ(descriptors, 5) << "the three, the announcements, and the directory that ls lists";
+}
+
+TEST(WorkerProcess, LeavesNoDescriptors) {
+  const std::size_t before = open_descriptors();
+  {
+    ShellRun shell("true");
+    shell.run();
+  }
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST(WorkerProcess, SaysWhyAProgramDoesNotStart) {
+  boost::asio::io_context io;
+  std::vector<std::size_t> open;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    try {
+      const WorkerProcess worker(io, {"/nowhere/weir", {"weir", "convert"}, 0, IoClass::none}, {}, {});
+      FAIL() << "started";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+      EXPECT_STREQ(error.what(), io_error("/nowhere/weir", "start it", ENOENT).what());
+    }
+    open.push_back(open_descriptors());
+  }
+  EXPECT_EQ(open[1], open[0]);
+  EXPECT_EQ(open[2], open[0]);
+}
+
+TEST(WorkerProcess, DiesWithTheDaemon) {
+  // A process that starts a worker and is killed: the worker's process must go with it.
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t daemon = ::fork();
+  if (daemon == 0) {
+    boost::asio::io_context io;
+    WorkerProcess worker(io, {"/bin/sh", {"sh", "-c", "echo $$ >&3; exec sleep 60"}, 0, IoClass::none},
+                         [&](std::string_view line) {
+                           const auto pid = static_cast<pid_t>(std::stoi(std::string(line)));
+                           [[maybe_unused]] const auto told = ::write(ends[1], &pid, sizeof pid);
+                         },
+                         {});
+    io.run();
+    ::_exit(0);
+  }
+  pid_t worker = 0;
+  ASSERT_EQ(::read(ends[0], &worker, sizeof worker), static_cast<ssize_t>(sizeof worker));
+  ::kill(daemon, SIGKILL);
+  ::waitpid(daemon, nullptr, 0);
+  const auto gone = [&] {
+    const std::string state = run_command({"ps", "-o", "state=", "-p", cat(worker)}).out;
+    return state.empty() || state.front() == 'Z';  // nobody may be there to reap it
+  };
+  const auto deadline = steady_clock::now() + std::chrono::seconds(5);
+  while (!gone() && steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(5));
+  EXPECT_TRUE(gone());
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+}  // namespace
+}  // namespace weir::worker_process_test

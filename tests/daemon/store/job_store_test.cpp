@@ -1,0 +1,509 @@
+#include "daemon/store/job_store.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/daemon/support/stored_jobs.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
+
+namespace weir::job_store_test {
+namespace {
+
+using Change = JobStore::Change;
+using test::failure;
+using test::kIdentity;
+using test::StoredJobs;
+using test::success;
+
+TEST_F(StoredJobs, AJobGoesItsWay) {
+  const JobStore::Observation seen = store_->observe("w", "/in/a.raw", kIdentity, "--rate=8");
+  EXPECT_EQ(seen.change, Change::created);
+  EXPECT_EQ(seen.before, std::nullopt);
+  EXPECT_EQ(seen.job.id, 1);
+  EXPECT_EQ(seen.job.watch, "w");
+  EXPECT_EQ(seen.job.source, "/in/a.raw");
+  EXPECT_EQ(seen.job.options, "--rate=8");
+  EXPECT_EQ(seen.job.identity, kIdentity);
+  EXPECT_EQ(seen.job.state, JobState::discovered);
+  EXPECT_EQ(seen.job.discovered_ms, now_);
+
+  now_ += 10;
+  EXPECT_TRUE(store_->enqueue(1));
+  EXPECT_EQ(job(1).state, JobState::waiting);
+  EXPECT_EQ(job(1).queued_ms, now_);
+  now_ += 10;
+  EXPECT_TRUE(store_->start(1));
+  EXPECT_EQ(job(1).state, JobState::running);
+  EXPECT_EQ(job(1).started_ms, now_);
+  now_ += 10;
+  EXPECT_TRUE(store_->finish(1, success()));
+  const Job done = job(1);
+  EXPECT_EQ(done.state, JobState::done);
+  EXPECT_EQ(done.finished_ms, now_);
+  EXPECT_EQ(done.changed_ms, now_);
+  EXPECT_EQ(done.discovered_ms, now_ - 30);
+  EXPECT_EQ(done.attempts, 0);
+  EXPECT_EQ(done.result, success());
+
+  open();
+  EXPECT_EQ(job(1).result, success());
+  EXPECT_EQ(store_->observe("w", "/in/a.raw", kIdentity, "--rate=8").change, Change::none);
+  EXPECT_EQ(job(1).state, JobState::done);
+}
+
+TEST_F(StoredJobs, StepsFromAnotherStateChangeNothing) {
+  const std::int64_t id = observe("/in/a.raw");
+  EXPECT_FALSE(store_->start(id));
+  EXPECT_FALSE(store_->finish(id, success()));
+  EXPECT_FALSE(store_->fail(id, failure(1)));
+  EXPECT_FALSE(store_->postpone(id, "no room"));
+  EXPECT_FALSE(store_->retry(id));
+  EXPECT_EQ(job(id).state, JobState::discovered);
+  store_->enqueue(id);
+  EXPECT_FALSE(store_->enqueue(id));
+  EXPECT_FALSE(store_->retry(id)) << "it is due already";
+  store_->start(id);
+  EXPECT_FALSE(store_->start(id));
+  EXPECT_FALSE(store_->remove(id));
+  store_->finish(id, success());
+  EXPECT_FALSE(store_->cancel(id));
+  EXPECT_FALSE(store_->quarantine(id, "late"));
+  EXPECT_EQ(job(id).result, success());
+  for (const std::int64_t unknown : {0, 2, -1}) {
+    EXPECT_FALSE(store_->job(unknown));
+    EXPECT_FALSE(store_->finish(unknown, success()));
+    EXPECT_FALSE(store_->fail(unknown, failure(1)));
+  }
+}
+
+TEST_F(StoredJobs, AChangedSourceIsDiscoveredAgainFromEveryState) {
+  const auto end_in = [&](JobState state, std::int64_t id) {
+    if (state == JobState::cancelled) store_->cancel(id);
+    if (state == JobState::quarantined) store_->quarantine(id, "bad");
+    if (state == JobState::discovered || state == JobState::cancelled || state == JobState::quarantined) return;
+    store_->enqueue(id);
+    if (state == JobState::waiting) return;
+    store_->start(id);
+    if (state == JobState::done) store_->finish(id, success());
+    if (state == JobState::failed) store_->fail(id, failure(4));
+  };
+  for (std::size_t i = 0; i < kJobStates; ++i) {
+    const auto state = static_cast<JobState>(i);
+    for (int change = 0; change < 4; ++change) {
+      const std::string source = cat("/in/", i, '_', change, ".raw");
+      const std::int64_t id = observe(source);
+      end_in(state, id);
+      ASSERT_EQ(job(id).state, state);
+      FileIdentity identity = kIdentity;
+      identity.bytes += change == 0 ? 1 : 0;
+      identity.mtime_ns -= change == 1 ? 1 : 0;
+      identity.inode += change == 2 ? 1 : 0;
+      now_ += 5;
+      const auto seen = store_->observe("w", source, identity, change == 3 ? "--rate=4" : "--rate=8");
+      EXPECT_EQ(seen.change, Change::changed);
+      EXPECT_EQ(seen.before, state);
+      EXPECT_EQ(seen.job.id, id);
+      EXPECT_EQ(seen.job.state, JobState::discovered);
+      EXPECT_EQ(seen.job.identity, identity);
+      EXPECT_EQ(seen.job.attempts, 0);
+      EXPECT_EQ(seen.job.discovered_ms, now_);
+      EXPECT_EQ(seen.job.queued_ms, 0);
+      EXPECT_EQ(seen.job.result, JobResult());
+      EXPECT_FALSE(store_->finish(id, success())) << "the late end of the old conversion counts";
+    }
+  }
+}
+
+TEST_F(StoredJobs, FailedAttemptsWaitLongerEachTimeAndEnd) {
+  EXPECT_EQ(backoff_ms(1), 5'000);
+  EXPECT_EQ(backoff_ms(7), 320'000);
+  EXPECT_EQ(backoff_ms(8), 600'000);
+  EXPECT_EQ(backoff_ms(1'000'000), 600'000);
+  const std::int64_t id = waiting("/in/a.raw");
+  for (const std::int64_t delay : {5'000, 10'000, 20'000, 40'000}) {
+    ASSERT_TRUE(store_->start(id));
+    ASSERT_TRUE(store_->fail(id, failure(1)));
+    EXPECT_EQ(job(id).state, JobState::waiting);
+    EXPECT_EQ(job(id).result.reason, "it broke");
+    EXPECT_EQ(store_->next_due_ms(), delay);
+    EXPECT_EQ(candidates(Priority::oldest), Names{});
+    now_ += delay - 1;
+    EXPECT_EQ(candidates(Priority::oldest), Names{});
+    EXPECT_EQ(store_->next_due_ms(), 1);
+    now_ += 1;
+    EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
+    EXPECT_EQ(store_->next_due_ms(), std::nullopt);
+  }
+  store_->start(id);
+  store_->fail(id, failure(137, "killed"));
+  EXPECT_EQ(job(id).state, JobState::failed);
+  EXPECT_EQ(job(id).attempts, 5);
+  EXPECT_TRUE(store_->retry(id));
+  EXPECT_EQ(job(id).state, JobState::discovered);
+  EXPECT_EQ(job(id).attempts, 0);
+  EXPECT_EQ(job(id).result.reason, "");
+}
+
+TEST_F(StoredJobs, RetryEndsADelay) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->fail(id, failure(1));
+  EXPECT_TRUE(store_->retry(id));
+  EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
+  EXPECT_EQ(job(id).attempts, 0);
+}
+
+TEST_F(StoredJobs, TheExitCodeDecides) {
+  const auto after = [&](int exit_code) {
+    const std::int64_t id = running(cat("/in/", exit_code, ".raw"));
+    store_->fail(id, failure(exit_code, cat("code ", exit_code)));
+    EXPECT_EQ(job(id).attempts, 1);
+    EXPECT_EQ(job(id).result.reason, cat("code ", exit_code));
+    EXPECT_EQ(job(id).result.log_tail, "a line\nanother\n");
+    return job(id).state;
+  };
+  EXPECT_EQ(after(1), JobState::waiting);
+  EXPECT_EQ(after(2), JobState::failed);
+  EXPECT_EQ(after(3), JobState::quarantined);
+  EXPECT_EQ(after(4), JobState::failed);
+  EXPECT_EQ(after(5), JobState::waiting);
+  EXPECT_EQ(after(139), JobState::waiting);
+}
+
+TEST_F(StoredJobs, PostponedAndInterruptedOnesCostNothing) {
+  const std::int64_t postponed = running("/in/a.raw");
+  EXPECT_TRUE(store_->postpone(postponed, "no room on /out"));
+  EXPECT_EQ(job(postponed).state, JobState::waiting);
+  EXPECT_EQ(job(postponed).result.reason, "no room on /out");
+  const std::int64_t interrupted = running("/in/b.raw");
+  open();
+  for (const std::int64_t id : {postponed, interrupted}) {
+    EXPECT_EQ(job(id).state, JobState::waiting);
+    EXPECT_EQ(job(id).attempts, 0);
+    EXPECT_EQ(job(id).due_ms, 0);
+  }
+  EXPECT_EQ(candidates(Priority::oldest), (Names{"/in/a.raw", "/in/b.raw"}));
+}
+
+TEST_F(StoredJobs, PostponedWithADelay_WaitsForItAndCountsNothing) {
+  const std::int64_t id = running("/in/a.raw");
+  EXPECT_TRUE(store_->postpone(id, "the source changed", 2000));
+  EXPECT_EQ(job(id).state, JobState::waiting);
+  EXPECT_EQ(job(id).attempts, 0);
+  EXPECT_EQ(candidates(Priority::oldest), Names{});
+  now_ += 2000;
+  EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
+}
+
+TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->fail(id, failure(1));
+  now_ -= std::int64_t{365} * 86'400'000;
+  EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
+  EXPECT_EQ(store_->next_due_ms(), std::nullopt);
+  EXPECT_EQ(store_->queue_age_ms(), 0);
+}
+
+TEST_F(StoredJobs, DatedInTheFuture_AreNotTheNewestForEver) {
+  now_ += 3'600'000;
+  waiting("/in/ahead.raw");
+  now_ -= 3'600'000;  // the clock is set back
+  waiting("/in/b.raw");
+  EXPECT_EQ(job(store_->find("w", "/in/ahead.raw")->id).changed_ms, now_);
+  now_ += 1000;
+  waiting("/in/c.raw");
+  EXPECT_EQ(sources({}).front(), "/in/c.raw");
+  now_ += 7'200'000;
+  waiting("/in/late.raw");
+  now_ -= 7'200'000;
+  open();  // while the service was down
+  EXPECT_EQ(job(store_->find("w", "/in/late.raw")->id).changed_ms, now_);
+}
+
+TEST_F(StoredJobs, OfOneSourceInTwoWatchesAreTwo) {
+  EXPECT_EQ(observe("/in/a.raw", kIdentity, "w"), 1);
+  EXPECT_EQ(observe("/in/a.raw", kIdentity, "v"), 2);
+  EXPECT_EQ(store_->find("v", "/in/a.raw")->id, 2);
+  EXPECT_EQ(store_->find("w", "/in/a.raw")->id, 1);
+  EXPECT_FALSE(store_->find("v", "/in/b.raw"));
+}
+
+TEST_F(StoredJobs, NumbersAreNotUsedAgain) {
+  const std::int64_t id = observe("/in/a.raw");
+  EXPECT_TRUE(store_->remove(id));
+  EXPECT_EQ(observe("/in/a.raw"), id + 1);
+}
+
+TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
+  const std::int64_t kept = observe("/in/kept.raw", kIdentity, "a");
+  std::vector<std::int64_t> ids;
+  for (const char* name : {"discovered", "waiting", "failed", "quarantined", "running", "done", "cancelled"}) {
+    ids.push_back(observe(std::string("/in/") + name, kIdentity, "b"));
+  }
+  for (const int at : {1, 2, 4, 5}) store_->enqueue(ids[static_cast<std::size_t>(at)]);
+  for (const int at : {2, 4, 5}) store_->start(ids[static_cast<std::size_t>(at)]);
+  JobResult wrong_options = success();  // of the first of several volumes
+  wrong_options.exit_code = 2;
+  store_->fail(ids[2], wrong_options);
+  store_->quarantine(ids[3], "bad");
+  store_->finish(ids[5], success());
+  store_->cancel(ids[6]);
+
+  store_->forget_other_watches({{"a", "/in"}, {"b", "/"}});
+  EXPECT_EQ(store_->count({}), 8U);
+  store_->forget_other_watches({{"a", "/in"}, {"c", "/in"}});
+  EXPECT_EQ(sources({std::nullopt, "b", ""}), (Names{"/in/cancelled", "/in/done", "/in/running"}));
+  EXPECT_TRUE(store_->job(kept));
+  EXPECT_EQ(job(ids[5]).result.outputs, success().outputs);
+  store_->forget_other_watches({});
+  EXPECT_FALSE(store_->job(kept));
+}
+
+TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
+  observe("/old/a.raw", kIdentity, "w");
+  observe("/new/a.raw", kIdentity, "w");
+  observe("/newer/a.raw", kIdentity, "w");
+  store_->forget_other_watches({{"w", "/new"}});
+  EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{"/new/a.raw"});
+}
+
+TEST_F(StoredJobs, ThatFailedAreRetried) {
+  JobResult wrong_options;
+  wrong_options.exit_code = 2;
+  const std::int64_t failed = running("/in/failed.raw");
+  store_->fail(failed, wrong_options);
+  const std::int64_t bad = observe("/in/bad.raw");
+  store_->quarantine(bad, "bad");
+  const std::int64_t done = running("/in/done.raw");
+  store_->finish(done, success());
+  EXPECT_EQ(store_->with_problems(""),
+            (std::vector<JobStore::Problem>{{failed, "w", "/in/failed.raw"}, {bad, "w", "/in/bad.raw"}}));
+  for (const std::int64_t id : {failed, bad}) EXPECT_TRUE(store_->retry(id));
+  for (const std::int64_t id : {failed, bad}) {
+    EXPECT_EQ(job(id).state, JobState::discovered);
+    EXPECT_EQ(job(id).attempts, 0);
+    EXPECT_EQ(job(id).result.reason, "");
+  }
+  EXPECT_EQ(job(done).state, JobState::done);
+}
+
+TEST_F(StoredJobs, HastenedOnesHaveOneAttemptMore) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->fail(id, failure(5));
+  EXPECT_TRUE(store_->hasten(id));
+  EXPECT_EQ(job(id).state, JobState::waiting);
+  EXPECT_EQ(job(id).due_ms, 0);
+  EXPECT_EQ(job(id).attempts, 1);
+  EXPECT_FALSE(store_->hasten(id)) << "it is due already";
+  for (int attempt = 2; attempt <= kMaxAttempts; ++attempt) {
+    EXPECT_TRUE(store_->start(id));
+    store_->fail(id, failure(5));
+    now_ += 3'600'000;
+  }
+  EXPECT_EQ(job(id).state, JobState::failed);
+  EXPECT_TRUE(store_->hasten(id));
+  EXPECT_EQ(job(id).state, JobState::discovered);
+  store_->enqueue(id);
+  store_->start(id);
+  store_->fail(id, failure(5));
+  EXPECT_EQ(job(id).state, JobState::failed) << "for good, until it is retried";
+  const std::int64_t bad = running("/in/b.raw");
+  store_->fail(bad, failure(3));
+  EXPECT_FALSE(store_->hasten(bad));
+}
+
+TEST_F(StoredJobs, AreForcedUntilTheyAreDoneOrCancelled) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->finish(id, success());
+  EXPECT_TRUE(store_->retry(id, true));
+  store_->enqueue(id);
+  store_->start(id);
+  store_->fail(id, failure(5));
+  EXPECT_TRUE(job(id).forced);
+  now_ += 3'600'000;
+  store_->start(id);
+  store_->finish(id, success());
+  EXPECT_FALSE(job(id).forced);
+  EXPECT_TRUE(store_->retry(id, true));
+  EXPECT_TRUE(store_->cancel(id));
+  EXPECT_FALSE(job(id).forced);
+}
+
+TEST_F(StoredJobs, FailuresOfADeviceAreRetriedAtAStart) {
+  JobResult device;
+  device.exit_code = 5;
+  const std::int64_t io = running("/in/io.raw");
+  for (int attempt = 1; attempt < kMaxAttempts; ++attempt) {
+    store_->fail(io, device);
+    now_ += 24 * 3'600'000;
+    store_->start(io);
+  }
+  store_->fail(io, device);
+  ASSERT_EQ(job(io).state, JobState::failed);
+  JobResult wrong_options;
+  wrong_options.exit_code = 2;
+  const std::int64_t usage = running("/in/usage.raw");
+  store_->fail(usage, wrong_options);
+  store_->retry_failed_io();
+  EXPECT_EQ(job(io).state, JobState::discovered);
+  EXPECT_EQ(job(usage).state, JobState::failed);
+}
+
+TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {
+  const std::int64_t first = running("/in/first.raw");
+  const std::int64_t second = running("/in/second.raw");
+  const std::int64_t third = running("/in/third.raw");
+  waiting("/in/waiting.raw");
+  now_ += 1000;
+  store_->finish(first, success());
+  store_->cancel(second);
+  now_ += 1000;
+  store_->finish(third, success());
+  const auto over = [&](std::int64_t age_ms, std::int64_t after, std::size_t limit = 10) {
+    std::vector<std::int64_t> ids;
+    for (const Job& job : store_->over_since(age_ms, after, limit)) ids.push_back(job.id);
+    return ids;
+  };
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(over(2000, 0), Ids{});
+  EXPECT_EQ(over(1000, 0), (Ids{first, second}));
+  EXPECT_EQ(over(1000, 0, 1), Ids{first});
+  EXPECT_EQ(over(1000, first), Ids{second});
+  EXPECT_EQ(over(0, first), (Ids{second, third}));
+}
+
+TEST_F(StoredJobs, PathsAreBytes) {
+  const std::string source = "/in/\xe9t\xe9 '\"\n%.raw";
+  const std::int64_t id = waiting(source);
+  EXPECT_EQ(store_->find("w", source)->id, id);
+  EXPECT_EQ(job(id).source, source);
+}
+
+TEST_F(StoredJobs, OnlyTheEndOfALongLogIsKept) {
+  const std::int64_t id = running("/in/a.raw");
+  JobResult result = failure(1);
+  result.log_tail = std::string(5000, 'a') + "end";
+  store_->fail(id, result);
+  EXPECT_EQ(job(id).result.log_tail, std::string(4093, 'a') + "end");
+}
+
+TEST_F(StoredJobs, TogetherIsAllOrNothing) {
+  EXPECT_THROW(store_->together([&] {
+    waiting("/in/a.raw");
+    waiting("/in/b.raw");
+    throw Error(ErrorKind::internal, "in between");
+  }),
+               Error);
+  EXPECT_EQ(store_->count({}), 0U);
+  store_->together([&] {
+    for (int i = 0; i < 2000; ++i) waiting(cat("/in/", i, ".raw"));
+  });
+  EXPECT_EQ(store_->count({JobState::waiting, "", ""}), 2000U);
+}
+
+TEST_F(StoredJobs, AFullDiskIsSurvived) {
+  const std::string place = directory_ / "small";
+  std::filesystem::create_directory(place);
+  const ScopedMount mount(place, 1 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  const std::string state = place + "/weir.db";
+  auto store = std::make_unique<JobStore>(state);
+  const std::int64_t known = store->observe("w", "/in/known.raw", kIdentity, "").job.id;
+  store->enqueue(known);
+  std::string filler(1 << 20, 'x');
+  try {
+    write_file(place + "/filler", filler);
+  } catch (const std::system_error&) {
+    // Now it is full.
+  }
+  std::string message;
+  int added = 0;
+  for (; message.empty() && added < 1000; added += message.empty() ? 1 : 0) {
+    try {
+      store->observe("w", cat("/in/", added, ".raw"), kIdentity, std::string(1000, 'o'));
+    } catch (const Error& error) {
+      message = error.what();
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+    }
+  }
+  EXPECT_EQ(message, state + ": cannot use the state: database or disk is full; make room");
+  EXPECT_THROW(store->start(known), Error);
+  EXPECT_EQ(store->job(known)->state, JobState::waiting);
+  EXPECT_EQ(store->count({}), static_cast<std::uint64_t>(added + 1));
+  std::filesystem::remove(place + "/filler");
+  EXPECT_TRUE(store->start(known));
+  EXPECT_TRUE(store->finish(known, success()));
+  store.reset();
+  store = std::make_unique<JobStore>(state);
+  EXPECT_EQ(store->notice(), "");
+  EXPECT_EQ(store->job(known)->result, success());
+}
+
+// A process does one step after the other and says each that returned; it is killed at a random moment.
+TEST_F(StoredJobs, AKillAtAnyMomentLosesNothingThatReturned) {
+  store_.reset();
+  std::mt19937 random(5);
+  std::vector<JobState> reached;  // of the jobs 1, 2, ..., as far as was said
+  for (int round = 0; round < 30; ++round) {
+    int said[2];
+    ASSERT_EQ(pipe(said), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      JobStore store(directory_ / "weir.db");
+      const auto say = [&](char step) { return write(said[1], &step, 1) == 1; };
+      for (int i = 0;; ++i) {
+        const std::int64_t id = store.observe("w", cat("/in/", round, '_', i, ".raw"), kIdentity, "").job.id;
+        if (!say('o') || !store.enqueue(id) || !say('e') || !store.start(id) || !say('s')) _exit(1);
+        if (!store.finish(id, success()) || !say('f')) _exit(1);
+      }
+    }
+    close(said[1]);
+    const auto hear = [&] {
+      char step = 0;
+      if (read(said[0], &step, 1) != 1) return false;
+      if (step == 'o') reached.push_back(JobState::discovered);
+      if (step == 'e') reached.back() = JobState::waiting;
+      if (step == 's') reached.back() = JobState::running;
+      if (step == 'f') reached.back() = JobState::done;
+      return true;
+    };
+    for (int steps = std::uniform_int_distribution<int>(1, 40)(random); steps > 0; --steps) ASSERT_TRUE(hear());
+    std::this_thread::sleep_for(std::chrono::microseconds(std::uniform_int_distribution<int>(0, 3'000)(random)));
+    kill(child, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the process ended by itself";
+    while (hear()) {
+    }
+    close(said[0]);
+    const JobStore store(directory_ / "weir.db");
+    ASSERT_EQ(store.notice(), "");
+    // One step may have been taken and not said.
+    const std::uint64_t jobs = store.count({});
+    ASSERT_TRUE(jobs == reached.size() || jobs == reached.size() + 1) << jobs << " of " << reached.size();
+    for (std::size_t i = 0; i < jobs; ++i) {
+      const Job job = store.job(static_cast<std::int64_t>(i + 1)).value();
+      if (i == reached.size()) reached.push_back(JobState::discovered);
+      const JobState next = reached[i] == JobState::discovered ? JobState::waiting
+                            : reached[i] == JobState::running  ? JobState::done
+                                                               : reached[i];
+      const JobState now = reached[i] == JobState::running ? JobState::waiting : reached[i];
+      EXPECT_TRUE(job.state == now || job.state == next) << job.source << ' ' << job_state_name(job.state);
+      EXPECT_EQ(job.result, job.state == JobState::done ? success() : JobResult());
+      EXPECT_EQ(job.attempts, 0);
+      reached[i] = job.state;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weir::job_store_test

@@ -1,0 +1,161 @@
+#include "daemon/store/state_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::state_file_test {
+namespace {
+
+class StateFile : public testing::Test {
+ protected:
+  /// The message of opening; empty: it went well.
+  std::string refusal() {
+    try {
+      open_state_file(path_, notice_);
+      return "";
+    } catch (const Error& error) {
+      kind_ = error.kind();
+      return error.what();
+    }
+  }
+  /// A state file with a row.
+  void make() {
+    const Database database = open_state_file(path_, notice_);
+    database.run("INSERT INTO outputs VALUES (42, 0, '', 0, 0, NULL, '', NULL, NULL, NULL)");
+  }
+  std::int64_t marked() {
+    const Database database = open_state_file(path_, notice_);
+    Statement sum = database.prepare("SELECT coalesce(max(job), 0) FROM outputs");
+    sum.step();
+    return sum.integer(0);
+  }
+
+  TemporaryDirectory directory_;
+  std::string path_ = directory_ / "weir.db";
+  std::string notice_;
+  ErrorKind kind_ = ErrorKind::internal;
+};
+
+TEST_F(StateFile, IsMadeOnceAndFoundAgain) {
+  make();
+  EXPECT_EQ(marked(), 42);
+  EXPECT_EQ(notice_, "");
+  EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
+}
+
+TEST_F(StateFile, IsForOneProcess) {
+  const Database first = open_state_file(path_, notice_);
+  EXPECT_EQ(refusal(), path_ +
+                           ": cannot use the state: database is locked; another process has it open, and only one "
+                           "weir watch may use a state file");
+  EXPECT_EQ(kind_, ErrorKind::io);
+}
+
+TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
+  make();
+  Database(path_).run("PRAGMA user_version=7");
+  EXPECT_EQ(refusal(), path_ +
+                           ": has version 7, this weir knows versions up to 2; run the newer weir or name another "
+                           "file as state in [service]");
+  EXPECT_EQ(kind_, ErrorKind::input);
+  Database(path_).run("PRAGMA user_version=2");
+  EXPECT_EQ(marked(), 42);
+}
+
+TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
+  make();
+  {
+    const Database old(path_);
+    for (const char* column : {"max_error", "min", "max"}) {
+      old.run(std::string("ALTER TABLE outputs DROP COLUMN ") + column);
+    }
+    old.run(
+        "INSERT INTO jobs (watch, source, options, bytes, mtime_ns, inode, state, discovered_ms, changed_ms, reason) "
+        "VALUES ('w', '/a', '', 0, 0, 0, 'failed', 0, 0, '/a: has 7 bytes')");
+    for (const char* index : {"jobs_waiting", "jobs_problem"}) old.run(std::string("DROP INDEX ") + index);
+    for (const char* column : {"forced", "problem"}) old.run(std::string("ALTER TABLE jobs DROP COLUMN ") + column);
+    old.run("PRAGMA user_version=1");
+  }
+  EXPECT_EQ(marked(), 42);
+  const Database database = open_state_file(path_, notice_);
+  EXPECT_EQ(notice_, "");
+  Statement row = database.prepare("SELECT user_version, max_error, min, max FROM outputs, pragma_user_version");
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.integer(0), 2);
+  for (const int column : {1, 2, 3}) EXPECT_EQ(row.real_or_none(column), std::nullopt);
+  Statement problem = database.prepare("SELECT problem FROM jobs");
+  ASSERT_TRUE(problem.step());
+  EXPECT_EQ(problem.text(0), "has # bytes");
+  database.run("UPDATE outputs SET max = 2.5");
+  Statement changed = database.prepare("SELECT max FROM outputs");
+  ASSERT_TRUE(changed.step());
+  EXPECT_EQ(changed.real_or_none(0), 2.5);
+}
+
+TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {
+  const std::string message = path_ + ": is a database of another program; name another file as state in [service]";
+  Database(path_).run("CREATE TABLE theirs (a)");
+  EXPECT_EQ(refusal(), message);
+  EXPECT_EQ(kind_, ErrorKind::input);
+  Database(path_).run("DROP TABLE theirs");
+  Database(path_).run("PRAGMA application_id=1");
+  EXPECT_EQ(refusal(), message);
+  EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
+}
+
+TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
+  const std::string text(5000, 'x');
+  for (const std::string n : {"1", "2"}) {
+    write_file(path_, text);
+    write_file(path_ + "-wal", "its journal");
+    EXPECT_EQ(marked(), 0);
+    EXPECT_EQ(notice_, path_ + ": cannot use the state: file is not a database; moved to " + path_ + ".corrupt-" + n +
+                           ", jobs are found anew");
+    EXPECT_EQ(read_file(path_ + ".corrupt-" + n), text);
+  }
+}
+
+TEST_F(StateFile, ThatIsCutOffIsMovedAside) {
+  make();
+  std::filesystem::resize_file(path_, 5 * 4096 + 100);
+  EXPECT_EQ(marked(), 0);
+  EXPECT_EQ(notice_, path_ + ": cannot use the state: database disk image is malformed; moved to " + path_ +
+                         ".corrupt-1, jobs are found anew");
+}
+
+TEST_F(StateFile, WithADamagedPageIsMovedAside) {
+  make();
+  std::string bytes = read_file(path_);
+  // The second page is a table's; its first byte says what kind of page it is.
+  bytes.replace(4096, 512, 512, '\x7f');
+  write_file(path_, bytes);
+  EXPECT_EQ(marked(), 0);
+  EXPECT_TRUE(notice_.ends_with("; moved to " + path_ + ".corrupt-1, jobs are found anew")) << notice_;
+  EXPECT_EQ(read_file(path_ + ".corrupt-1"), bytes);
+}
+
+TEST_F(StateFile, EmptyIsNew) {
+  write_file(path_, "");
+  EXPECT_EQ(marked(), 0);
+  EXPECT_EQ(notice_, "");
+}
+
+TEST_F(StateFile, OnAReadOnlyFileSystemIsRefused) {
+  ScopedMount mount(directory_.path(), 1 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  make();
+  mount.make_read_only();
+  EXPECT_EQ(refusal(), path_ + ": cannot use the state: it is read-only; make the file and its directory writable");
+  EXPECT_EQ(kind_, ErrorKind::io);
+  path_ = directory_ / "other.db";
+  EXPECT_EQ(refusal(), path_ +
+                           ": cannot use the state: Read-only file system; check the permissions or choose another "
+                           "place");
+  EXPECT_EQ(kind_, ErrorKind::io);
+}
+
+}  // namespace
+}  // namespace weir::state_file_test

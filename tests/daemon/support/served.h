@@ -1,0 +1,74 @@
+// A control server on a free loopback port, run by a thread of its own.
+#pragma once
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "daemon/http/control_server.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+class Served {
+ public:
+  explicit Served(Control& control, const std::string& token = "", const HttpLimits& limits = {},
+                  const std::string& control_socket = "")
+      : server_(std::make_unique<ControlServer>(io_, settings(token, limits, control_socket), control)),
+        port_(server_->port()),
+        thread_([this] { io_.run(); }) {}
+  ~Served() {
+    boost::asio::post(io_, [this] {
+      server_.reset();
+      work_.reset();
+    });
+    thread_.join();
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  std::string address() const { return cat("127.0.0.1:", port_); }
+
+  /// `work()` on the server's thread, where the control may be touched.
+  template <typename Work>
+  auto run(Work work) {
+    std::packaged_task<decltype(work())()> task(std::move(work));
+    auto result = task.get_future();
+    boost::asio::post(io_, std::move(task));
+    return result.get();
+  }
+  /// Stops listening, with all connections closed.
+  void close() {
+    run([this] { server_.reset(); });
+  }
+  /// The same, from the server's own thread: after what it does now.
+  void close_soon() {
+    boost::asio::post(io_, [this] { server_.reset(); });
+  }
+
+ private:
+  static ControlServerSettings settings(const std::string& token, const HttpLimits& limits,
+                                        const std::string& control_socket) {
+    ControlServerSettings result;
+    result.address = {"127.0.0.1", 0};
+    result.token = token;
+    result.limits = limits;
+    result.control_socket = control_socket;
+    return result;
+  }
+
+  boost::asio::io_context io_;
+  // Keeps io_ running while the server is closed.
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+  std::unique_ptr<ControlServer> server_;
+  std::uint16_t port_;
+  std::thread thread_;
+};
+
+}  // namespace weir

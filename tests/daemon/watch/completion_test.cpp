@@ -1,0 +1,226 @@
+#include "daemon/watch/completion.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/temporary_directory.h"
+
+namespace weir::completion_test {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = FileEventKind;
+using State = CompletionAnswer::State;
+using Time = FileCompletion::Time;
+
+class CompletionTest : public testing::Test {
+ protected:
+  /// What happens at a second of an imagined day, and the answer to the sample that follows.
+  CompletionAnswer at(double seconds, std::optional<Kind> event = std::nullopt) {
+    now = start + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(seconds));
+    if (event) file().happened(*event, now);
+    return file().look(sample, now);
+  }
+  FileCompletion& file() {
+    if (!file_) file_.emplace(rules);
+    return *file_;
+  }
+  void grow(std::uint64_t bytes) {
+    sample.identity.bytes = bytes;
+    ++sample.identity.mtime_ns;
+  }
+
+  /// The second at which `answer` asks to be asked again.
+  double again(const CompletionAnswer& answer) const {
+    EXPECT_EQ(answer.state, State::waiting) << answer.reason;
+    return std::chrono::duration<double>(answer.until - start).count();
+  }
+  void expect_event_is_awaited(const CompletionAnswer& answer, const std::string& reason) const {
+    EXPECT_EQ(answer.state, State::waiting);
+    EXPECT_EQ(answer.until, Time::max());
+    EXPECT_EQ(answer.reason, reason);
+  }
+
+  const Time start = Time() + 1000h;
+  Time now = start;
+  CompletionRules rules;
+  FileSample sample{true, {100, 1, 7}, false};
+
+ private:
+  std::optional<FileCompletion> file_;
+};
+
+constexpr const char* kOpen = "a program has it open for writing";
+
+TEST_F(CompletionTest, AutoFoundIsCompleteWhenUnchangedForTheSettleTime) {
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::found)), 2);
+  grow(200);
+  EXPECT_DOUBLE_EQ(again(at(1.9)), 3.9);
+  EXPECT_DOUBLE_EQ(again(at(2)), 3.9);
+  sample.identity.inode = 8;  // replaced by another one
+  EXPECT_DOUBLE_EQ(again(at(3)), 5);
+  EXPECT_EQ(at(5).state, State::complete);
+}
+
+TEST_F(CompletionTest, AutoAnOpenFileIsWaitedForHoweverLong) {
+  at(0, Kind::created);
+  expect_event_is_awaited(at(1, Kind::written), kOpen);
+  expect_event_is_awaited(at(100000), kOpen);
+  EXPECT_DOUBLE_EQ(again(at(100001, Kind::closed)), 100001.2);
+  expect_event_is_awaited(at(100001.1, Kind::written), kOpen);  // a second writer, or the same again
+  EXPECT_DOUBLE_EQ(again(at(100001.15, Kind::closed)), 100001.35);
+  EXPECT_EQ(at(100001.35).state, State::complete);
+}
+
+TEST_F(CompletionTest, AutoAClosedFileThatStillChangesIsWaitedFor) {
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::closed)), 0.2);
+  grow(101);  // through a mapping, or by another machine
+  EXPECT_DOUBLE_EQ(again(at(0.2)), 0.4);
+  EXPECT_EQ(at(0.4).state, State::complete);
+}
+
+TEST_F(CompletionTest, AutoOfExpectedSizeAndClosedIsCompleteAtOnce) {
+  rules.expected_bytes = 100;
+  EXPECT_EQ(at(0, Kind::closed).state, State::complete);
+}
+
+TEST_F(CompletionTest, AutoAFileMadeAtItsFullSizeIsNotCompleteBeforeItsClose) {
+  rules.expected_bytes = 100;
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::created)), 2);
+  expect_event_is_awaited(at(0, Kind::written), kOpen);  // space was reserved
+  EXPECT_EQ(at(50, Kind::closed).state, State::complete);
+}
+
+TEST_F(CompletionTest, AutoRenamedIsCompleteAtOnce) {
+  EXPECT_EQ(at(0, Kind::moved_in).state, State::complete);
+  expect_event_is_awaited(at(1, Kind::written), kOpen);
+}
+
+TEST_F(CompletionTest, AutoLinkedIsCompleteWhenUnchanged) {
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::created)), 2);
+  EXPECT_EQ(at(2).state, State::complete);
+}
+
+TEST_F(CompletionTest, ALookAfterLostEventsForgetsThatItWasOpen) {
+  at(0, Kind::written);
+  EXPECT_EQ(at(10, Kind::found).state, State::complete);  // it has not changed since 0
+}
+
+TEST_F(CompletionTest, AnEmptyFileIsWaitedForUntilItsWriterIsDone) {
+  sample.identity.bytes = 0;
+  at(0, Kind::created);
+  expect_event_is_awaited(at(100), "it is empty");
+  const CompletionAnswer closed = at(101.5, Kind::closed);
+  EXPECT_DOUBLE_EQ(again(closed), 101.7);
+  EXPECT_EQ(at(102).state, State::broken);
+  EXPECT_EQ(at(102).reason, "is empty (0 bytes); write it again");
+}
+
+TEST_F(CompletionTest, ATruncatedFileIsBrokenUntilSomethingHappens) {
+  rules.expected_bytes = 128;
+  again(at(0, Kind::closed));
+  const CompletionAnswer answer = at(0.2);
+  EXPECT_EQ(answer.state, State::broken);
+  EXPECT_EQ(answer.reason,
+            "has 100 bytes and should have 128; write it again, or correct its name or dims, type and offset");
+  grow(128);
+  EXPECT_EQ(at(5, Kind::closed).state, State::complete);
+}
+
+TEST_F(CompletionTest, GoneIsGone) {
+  sample = {};
+  EXPECT_EQ(at(0, Kind::removed).state, State::gone);
+}
+
+TEST_F(CompletionTest, Close) {
+  rules.policy = Completion::close;
+  expect_event_is_awaited(at(0, Kind::written), kOpen);
+  EXPECT_EQ(at(1, Kind::closed).state, State::complete);
+  EXPECT_DOUBLE_EQ(again(at(2, Kind::found)), 3);  // unchanged since 1
+  EXPECT_EQ(at(3).state, State::complete);
+}
+
+TEST_F(CompletionTest, Rename) {
+  rules.policy = Completion::rename;
+  expect_event_is_awaited(at(0, Kind::closed), "it has not got its name by a rename");
+  EXPECT_EQ(at(1, Kind::moved_in).state, State::complete);
+  EXPECT_EQ(at(2, Kind::found).state, State::complete);
+}
+
+TEST_F(CompletionTest, Marker) {
+  rules.policy = Completion::marker;
+  rules.marker = ".done";
+  expect_event_is_awaited(at(0, Kind::closed), "its marker *.done is not there");
+  sample.marked = true;
+  EXPECT_EQ(at(9, Kind::marked).state, State::complete);
+  grow(200);
+  EXPECT_DOUBLE_EQ(again(at(10, Kind::written)), 10.2);  // the marker is of what was there before
+  EXPECT_EQ(at(10.2).state, State::complete);
+}
+
+TEST_F(CompletionTest, Size) {
+  rules.policy = Completion::size;
+  rules.expected_bytes = 300;
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::written)), 2);
+  EXPECT_EQ(at(0).reason, "it has 100 of 300 bytes");
+  grow(300);
+  EXPECT_DOUBLE_EQ(again(at(50, Kind::written)), 50.2);
+  EXPECT_EQ(at(50.2).state, State::complete);  // it may stay open
+  grow(299);
+  EXPECT_DOUBLE_EQ(again(at(60, Kind::closed)), 62);
+  EXPECT_EQ(at(62).state, State::broken);
+}
+
+TEST_F(CompletionTest, SizeThatCannotBeKnown) {
+  rules.policy = Completion::size;
+  EXPECT_EQ(at(0, Kind::found).state, State::broken);
+  EXPECT_EQ(at(0).reason, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type");
+}
+
+TEST_F(CompletionTest, Stable) {
+  rules.policy = Completion::stable;
+  rules.settle = 5s;
+  at(0, Kind::created);
+  EXPECT_DOUBLE_EQ(again(at(1, Kind::written)), 6);
+  EXPECT_DOUBLE_EQ(again(at(2, Kind::closed)), 7);
+  EXPECT_EQ(at(7).state, State::complete);
+}
+
+TEST(CompletionRulesTest, ExpectedSizesOfRawFiles) {
+  WatchConfig watch;
+  const auto expected = [&](const std::string& path) { return completion_rules(watch, path).expected_bytes; };
+  EXPECT_EQ(expected("/in/a_4x5x6_uint16.raw"), 240U);
+  EXPECT_EQ(expected("/in/a_4x5x6_float64be.raw"), 960U);
+  EXPECT_EQ(expected("/in/a_4x5x6_quaternion.raw"), std::nullopt);
+  EXPECT_EQ(expected("/in/a_4x0x6_uint8.raw"), std::nullopt);
+  EXPECT_EQ(expected("/in/a_99999999x99999999x99999999_uint8.raw"), std::nullopt);
+  EXPECT_EQ(expected("/in/a.h5"), std::nullopt);
+  watch.convert_options = {"--dims=2,3,4", "--type=float32", "--offset=10"};
+  EXPECT_EQ(expected("/in/a.bin"), 106U);
+  watch.convert_options = {"--offset=10"};
+  EXPECT_EQ(expected("/in/a_2x2x2_uint8.raw"), 18U);
+  watch.settle_s = 0.25;
+  EXPECT_EQ(completion_rules(watch, "/in/a.h5").settle, 250ms);
+}
+
+TEST(FileSampleTest, RegularFilesAndTheirMarkers) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a.raw";
+  EXPECT_FALSE(sample_file(path, ".done").exists);
+  std::ofstream(path) << "12345";
+  FileSample sample = sample_file(path, ".done");
+  EXPECT_TRUE(sample.exists);
+  EXPECT_EQ(sample.identity.bytes, 5U);
+  EXPECT_FALSE(sample.marked);
+  std::ofstream(path + ".done") << "";
+  EXPECT_TRUE(sample_file(path, ".done").marked);
+  EXPECT_FALSE(sample_file(path, "").marked);
+  EXPECT_FALSE(sample_file(directory.path().string(), "").exists);
+  EXPECT_FALSE(sample_file(path + "/below", "").exists);
+  EXPECT_FALSE(sample_file(directory / std::string(300, 'n'), "").exists);
+}
+
+}  // namespace
+}  // namespace weir::completion_test

@@ -1,0 +1,560 @@
+// What both ways of watching must tell, each with the other disabled.
+#include "daemon/watch/directory_watch.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+#include <set>
+
+#include "tests/daemon/support/watched_directory.h"
+
+namespace weir::directory_watch_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = FileEventKind;
+
+class DirectoryWatchTest : public testing::TestWithParam<WatchMethod> {
+ protected:
+  bool polls() const { return GetParam() == WatchMethod::poll; }
+
+  WatchedDirectory dir{GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, DirectoryWatchTest, testing::Values(WatchMethod::inotify, WatchMethod::poll),
+                         [](const auto& method) { return std::string(watch_method_name(method.param)); });
+
+TEST_P(DirectoryWatchTest, FilesPresentAtStartAreFoundOnceAndNothingElse) {
+  write_file(dir / "a.raw", "1");
+  fs::create_directories(dir / "b/c");
+  write_file(dir / "b/c/d.raw", "2");
+  write_file(dir / "b/notes.txt", "3");
+  fs::create_directory(dir / "e.raw");
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "b/c/d.raw"));
+  dir.run_for(std::chrono::milliseconds(100));
+  std::sort(dir.events.begin(), dir.events.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+  EXPECT_EQ(dir.events, (std::vector<FileEvent>{{Kind::found, dir / "a.raw"}, {Kind::found, dir / "b/c/d.raw"}}));
+  EXPECT_EQ(dir.notices, std::vector<std::string>{});
+  EXPECT_EQ(dir.watch->method(), GetParam());
+  EXPECT_TRUE(dir.watch->up());
+  EXPECT_EQ(dir.watch->figures().files, 2U);
+  EXPECT_EQ(dir.watch->figures().directories, 4U);
+}
+
+TEST_P(DirectoryWatchTest, ASlowWriterIsToldOfFromItsFirstByteToItsClose) {
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  std::ofstream writer(dir / "a.raw");
+  ASSERT_TRUE(dir.run_until_told(polls() ? Kind::found : Kind::created, dir / "a.raw"));
+  for (int i = 0; i < 3; ++i) {
+    dir.events.clear();
+    writer << "more" << std::flush;
+    ASSERT_TRUE(dir.run_until_told(polls() ? Kind::found : Kind::written, dir / "a.raw"));
+    EXPECT_FALSE(dir.told(Kind::closed, dir / "a.raw"));
+  }
+  dir.events.clear();
+  writer << "end";
+  writer.close();
+  ASSERT_TRUE(dir.run_until_written(dir / "a.raw"));
+}
+
+TEST_P(DirectoryWatchTest, ManyWritesAreFewEvents) {
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  std::ofstream writer(dir / "a.raw");
+  for (int i = 0; i < 5000; ++i) writer << i << std::flush;
+  writer.close();
+  ASSERT_TRUE(dir.run_until_written(dir / "a.raw"));
+  dir.run_for(std::chrono::milliseconds(60));
+  const std::vector<Kind> once =
+      polls() ? std::vector{Kind::found} : std::vector{Kind::created, Kind::written, Kind::closed};
+  EXPECT_EQ(dir.kinds(dir / "a.raw"), once);
+}
+
+TEST_P(DirectoryWatchTest, RenamesWithinAndFromOutsideTheTree) {
+  write_file(dir / "a.tmp", "1");
+  write_file(dir.outside("b.raw"), "2");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::rename(dir / "a.tmp", dir / "a.raw");
+  fs::rename(dir.outside("b.raw"), dir / "b.raw");
+  const Kind renamed = polls() ? Kind::found : Kind::moved_in;
+  ASSERT_TRUE(dir.run_until([&] { return dir.told(renamed, dir / "a.raw") && dir.told(renamed, dir / "b.raw"); }));
+  dir.events.clear();
+  fs::rename(dir / "a.raw", dir / "c.raw");
+  fs::rename(dir / "b.raw", dir.outside("b.raw"));
+  ASSERT_TRUE(
+      dir.run_until([&] { return dir.told(renamed, dir / "c.raw") && dir.told(Kind::removed, dir / "b.raw"); }));
+  EXPECT_TRUE(dir.told(Kind::removed, dir / "a.raw"));
+}
+
+TEST_P(DirectoryWatchTest, RewrittenInPlaceAndByARenameAndRemoved) {
+  write_file(dir / "a.raw", "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  write_file(dir / "a.raw", "22");
+  ASSERT_TRUE(dir.run_until_written(dir / "a.raw"));
+  dir.run_for(std::chrono::milliseconds(60));
+  dir.events.clear();
+  write_file(dir.outside("new"), "33");  // as long as before
+  fs::rename(dir.outside("new"), dir / "a.raw");
+  ASSERT_TRUE(dir.run_until_told(polls() ? Kind::found : Kind::moved_in, dir / "a.raw"));
+  fs::remove(dir / "a.raw");
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "a.raw"));
+  EXPECT_EQ(dir.watch->figures().files, 0U);
+}
+
+TEST_P(DirectoryWatchTest, NestedDirectoriesWithFilesAtOnce) {
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  std::set<std::string> paths;
+  for (int i = 0; i < 50; ++i) {
+    const std::string deep = dir / ("run" + std::to_string(i) + "/a/b/c");
+    fs::create_directories(deep);
+    paths.insert(deep + "/d.raw");
+    write_file(deep + "/d.raw", "1");
+  }
+  const auto all_told = [&] {
+    return std::all_of(paths.begin(), paths.end(), [&](const auto& path) { return dir.last(path).has_value(); });
+  };
+  EXPECT_TRUE(dir.run_until(all_told));
+  dir.run_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(dir.watch->figures().directories, 201U);
+  dir.events.clear();
+  write_file(dir / "run49/a/b/c/late.raw", "1");  // all of them are watched from now on
+  EXPECT_TRUE(dir.run_until_written(dir / "run49/a/b/c/late.raw"));
+}
+
+TEST_P(DirectoryWatchTest, DirectoriesRenamedWithinOutOfAndIntoTheTree) {
+  fs::create_directories(dir / "a/b/c");
+  write_file(dir / "a/b/c/d.raw", "1");
+  fs::create_directories(dir / "ab");  // begins alike
+  write_file(dir / "ab/e.raw", "1");
+  fs::create_directories(dir.outside("far/x"));
+  write_file(dir.outside("far/x/y.raw"), "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+
+  fs::rename(dir / "a", dir / "moved");
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "moved/b/c/d.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "a/b/c/d.raw"));
+  EXPECT_EQ(dir.last(dir / "ab/e.raw"), std::nullopt);
+  write_file(dir / "moved/b/c/later.raw", "1");
+  ASSERT_TRUE(dir.run_until_written(dir / "moved/b/c/later.raw"));
+
+  fs::rename(dir.outside("far"), dir / "moved/b/near");
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "moved/b/near/x/y.raw"));
+
+  fs::rename(dir / "moved", dir.outside("gone"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "moved/b/near/x/y.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "moved/b/c/later.raw"));
+  dir.events.clear();
+  write_file(dir.outside("gone/b/c/unseen.raw"), "1");
+  dir.run_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(dir.events, std::vector<FileEvent>{});
+}
+
+TEST_P(DirectoryWatchTest, SwappedDirectoriesAreToldUnderTheirNewNames) {
+  for (const char* name : {"a", "b"}) fs::create_directory(dir / name);
+  write_file(dir / "a/of_a.raw", "1");
+  write_file(dir / "b/of_b.raw", "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::rename(dir / "a", dir / "t");
+  fs::rename(dir / "b", dir / "a");
+  fs::rename(dir / "t", dir / "b");
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "b/of_a.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "a/of_b.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "a/of_a.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "b/of_b.raw"));
+  dir.events.clear();
+  write_file(dir / "a/x.raw", "1");
+  write_file(dir / "b/y.raw", "1");
+  ASSERT_TRUE(dir.run_until_written(dir / "a/x.raw"));
+  ASSERT_TRUE(dir.run_until_written(dir / "b/y.raw"));
+}
+
+TEST_P(DirectoryWatchTest, ExchangedFilesAndDirectoriesAndADirectoryInThePlaceOfAnother) {
+  for (const char* name : {"a", "b", "empty"}) fs::create_directory(dir / name);
+  for (const char* name : {"a/of_a.raw", "b/of_b.raw", "x.raw", "y.raw"}) write_file(dir / name, name);
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  const auto exchange = [&](const char* one, const char* other) {
+    return ::renameat2(AT_FDCWD, (dir / one).c_str(), AT_FDCWD, (dir / other).c_str(), RENAME_EXCHANGE);
+  };
+  ASSERT_EQ(exchange("a", "b"), 0);
+  ASSERT_EQ(exchange("x.raw", "y.raw"), 0);
+  const auto is_there = [&](const char* name) {
+    const auto last = dir.last(dir / name);
+    return last.has_value() && last != Kind::removed;
+  };
+  ASSERT_TRUE(dir.run_until([&] { return is_there("b/of_a.raw") && is_there("a/of_b.raw") && is_there("x.raw"); }));
+  ASSERT_TRUE(dir.run_until([&] { return is_there("y.raw") && dir.last(dir / "a/of_a.raw") == Kind::removed; }));
+  fs::rename(dir / "a", dir / "empty");
+  ASSERT_TRUE(dir.run_until([&] { return is_there("empty/of_b.raw"); }));
+  dir.run_for(std::chrono::milliseconds(60));
+  dir.events.clear();
+  write_file(dir / "empty/later.raw", "1");
+  EXPECT_TRUE(dir.run_until_written(dir / "empty/later.raw"));
+}
+
+/// What a listener that keeps a list of files has, and what there is.
+std::set<std::string> listed(const std::vector<FileEvent>& events) {
+  std::set<std::string> files;
+  for (const FileEvent& event : events) {
+    if (event.kind == Kind::removed) {
+      files.erase(event.path);
+    } else {
+      files.insert(event.path);
+    }
+  }
+  return files;
+}
+
+std::set<std::string> files_in(const std::string& directory) {
+  std::set<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (entry.is_regular_file()) files.insert(entry.path().string());
+  }
+  return files;
+}
+
+TEST_P(DirectoryWatchTest, AnyOrderOfChangesEndsInTheTruth) {
+  std::mt19937 random(20251);
+  const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
+  const auto any_directory = [&] {
+    std::string path = dir.root();
+    for (int depth = any(4); depth > 0; --depth) path += std::string("/") + "abc"[any(3)];
+    return path;
+  };
+  const auto any_file = [&] { return any_directory() + "/" + "xy"[any(2)] + ".raw"; };
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  for (int round = 0; round < 15; ++round) {
+    for (int i = 0; i < 60; ++i) {
+      std::error_code ignored;
+      switch (any(8)) {
+        case 0:
+        case 1:
+          fs::create_directories(any_directory(), ignored);
+          break;
+        case 2:
+        case 3:
+          if (const std::string path = any_file(); fs::exists(fs::path(path).parent_path())) write_file(path, "1");
+          break;
+        case 4:
+          if (const std::string to = any_directory(); to != dir.root()) fs::rename(any_directory(), to, ignored);
+          break;
+        case 5:
+          fs::rename(any_file(), any_file(), ignored);
+          break;
+        case 6:
+          if (const std::string path = any_directory(); path != dir.root()) fs::remove_all(path, ignored);
+          break;
+        default:
+          fs::remove(any_file(), ignored);
+      }
+      if (any(3) == 0) dir.io.poll();
+    }
+    ASSERT_TRUE(dir.run_until([&] { return listed(dir.events) == files_in(dir.root()); })) << "round " << round;
+    EXPECT_EQ(dir.watch->figures().files, files_in(dir.root()).size());
+  }
+  EXPECT_EQ(dir.notices, std::vector<std::string>{});
+  EXPECT_EQ(dir.watch->figures().overflows, 0U);
+}
+
+TEST_P(DirectoryWatchTest, LinksThatLeaveTheTreeAreRefusedOnceAndLoopsAreNone) {
+  write_file(dir.outside("far.raw"), "1");
+  fs::create_directory(dir.outside("far"));
+  write_file(dir.outside("far/x.raw"), "1");
+  write_file(dir / "a.raw", "1");
+  fs::create_symlink(dir.outside("far.raw"), dir / "far.raw");
+  fs::create_directory_symlink(dir.outside("far"), dir / "far");
+  fs::create_directory(dir / "sub");
+  fs::create_directory_symlink("..", dir / "sub/loop");
+  fs::create_symlink("self.raw", dir / "self.raw");
+  fs::create_symlink("../a.raw", dir / "sub/inside.raw");
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "sub/inside.raw"));
+  dir.run_for(std::chrono::milliseconds(200));
+  std::set<std::string> paths;
+  for (const FileEvent& event : dir.events) paths.insert(event.path);
+  EXPECT_EQ(paths, (std::set<std::string>{dir / "a.raw", dir / "sub/inside.raw"}));
+  const std::string line = (dir / "far.raw") + ": a symbolic link to " +
+                           fs::canonical(dir.outside("far.raw")).string() +
+                           ", outside the watched directory; watch that directory too";
+  EXPECT_EQ(dir.notices, std::vector<std::string>{line});
+
+  dir.notices.clear();
+  fs::create_symlink(dir.outside("far/x.raw"), dir / "late.raw");
+  ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
+  EXPECT_EQ(dir.last(dir / "late.raw"), std::nullopt);
+  fs::create_symlink("a.raw", dir / "new.raw");
+  fs::rename(dir / "new.raw", dir / "latest.raw");  // as a link is replaced
+  EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "latest.raw"));
+}
+
+TEST_P(DirectoryWatchTest, AHardLinkIsNamedWithoutACloseAndStillTold) {
+  write_file(dir / "a.tmp", "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::create_hard_link(dir / "a.tmp", dir / "a.raw");
+  fs::remove(dir / "a.tmp");
+  ASSERT_TRUE(dir.run_until_told(polls() ? Kind::found : Kind::created, dir / "a.raw"));
+  dir.run_for(std::chrono::milliseconds(60));
+  EXPECT_EQ(dir.kinds(dir / "a.raw").size(), 1U);
+}
+
+TEST_P(DirectoryWatchTest, TheDirectoryMissingAtStartRemovedAndMadeAgain) {
+  fs::remove(dir.root());
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::root_lost, dir.root()));
+  EXPECT_FALSE(dir.watch->up());
+  fs::create_directory(dir.root());
+  write_file(dir / "a.raw", "1");
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "a.raw"));
+  EXPECT_TRUE(dir.watch->up());
+  EXPECT_EQ(dir.kinds(dir.root()), (std::vector{Kind::root_lost, Kind::root_back}));
+  dir.events.clear();
+
+  fs::remove_all(dir.root());
+  ASSERT_TRUE(dir.run_until_told(Kind::root_lost, dir.root()));
+  dir.events.clear();
+  fs::create_directories(dir / "sub");
+  write_file(dir / "sub/b.raw", "1");
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "sub/b.raw"));
+  EXPECT_EQ(dir.kinds(dir.root()), std::vector{Kind::root_back});
+  dir.events.clear();
+  write_file(dir / "c.raw", "1");
+  EXPECT_TRUE(dir.run_until_written(dir / "c.raw"));
+}
+
+TEST_P(DirectoryWatchTest, TheDirectoryReplacedByARename) {
+  write_file(dir / "old.raw", "1");
+  fs::create_directory(dir.outside("next"));
+  write_file(dir.outside("next/new.raw"), "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::rename(dir.root(), dir.outside("before"));
+  fs::rename(dir.outside("next"), dir.root());
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "new.raw"));
+  ASSERT_TRUE(dir.run_until_told(Kind::removed, dir / "old.raw"));
+  EXPECT_EQ(dir.kinds(dir.root()), (std::vector{Kind::root_lost, Kind::root_back}));
+  dir.events.clear();
+  write_file(dir.outside("before/unseen.raw"), "1");
+  write_file(dir / "seen.raw", "1");
+  ASSERT_TRUE(dir.run_until_written(dir / "seen.raw"));
+  for (const FileEvent& event : dir.events) EXPECT_EQ(event.path, dir / "seen.raw");
+}
+
+TEST_P(DirectoryWatchTest, AParentRenamedAwayIsNoticed) {
+  fs::create_directories(dir / "run/out");
+  dir.config.directory = dir / "run/out";
+  dir.start();
+  ASSERT_TRUE(dir.run_until([&] { return dir.watch->up(); }));
+  fs::rename(dir / "run", dir / "elsewhere");
+  ASSERT_TRUE(dir.run_until_told(Kind::root_lost, dir / "run/out"));
+}
+
+TEST_P(DirectoryWatchTest, NothingIsToldOfWhatIsExcluded) {
+  dir.config.exclude = {"skip*", "*_old.raw"};
+  dir.config.excluded_paths = {dir / "nvdb"};
+  for (const char* name : {"nvdb", "skipped", ".hidden", "kept"}) fs::create_directory(dir / name);
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  for (const char* name : {"nvdb/a.raw", "skipped/a.raw", ".hidden/a.raw", "a_old.raw", ".b.raw", "c.txt",
+                           "x.raw.partial", "kept/a.raw"}) {
+    write_file(dir / name, "1");
+    fs::rename(dir / name, (dir / name) + "2");
+    fs::rename((dir / name) + "2", dir / name);
+  }
+  ASSERT_TRUE(dir.run_until([&] { return dir.last(dir / "kept/a.raw").has_value(); }));
+  dir.run_for(std::chrono::milliseconds(60));
+  for (const FileEvent& event : dir.events) EXPECT_EQ(event.path, dir / "kept/a.raw");
+}
+
+TEST_P(DirectoryWatchTest, SubdirectoriesAreNotEnteredUnlessAskedFor) {
+  dir.config.recursive = false;
+  fs::create_directory(dir / "sub");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  write_file(dir / "sub/a.raw", "1");
+  fs::create_directory(dir / "sub2");
+  write_file(dir / "sub2/a.raw", "1");
+  write_file(dir / "b.raw", "1");
+  ASSERT_TRUE(dir.run_until_written(dir / "b.raw"));
+  for (const FileEvent& event : dir.events) EXPECT_EQ(event.path, dir / "b.raw");
+  EXPECT_EQ(dir.watch->figures().directories, 1U);
+}
+
+TEST_P(DirectoryWatchTest, MarkersAreToldAsTheirSources) {
+  dir.config.complete = Completion::marker;
+  write_file(dir / "early.raw", "1");
+  write_file(dir / "early.raw.done", "");
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::marked, dir / "early.raw"));
+  write_file(dir / "late.raw", "1");
+  write_file(dir / "late.raw.done", "");
+  ASSERT_TRUE(dir.run_until_told(Kind::marked, dir / "late.raw"));
+  write_file(dir / "notes.txt.done", "");
+  fs::remove(dir / "late.raw.done");
+  dir.run_for(std::chrono::milliseconds(100));
+  for (const FileEvent& event : dir.events) {
+    EXPECT_TRUE(event.path == dir / "early.raw" || event.path == dir / "late.raw") << event.path;
+    EXPECT_NE(event.kind, Kind::removed);
+  }
+}
+
+TEST_P(DirectoryWatchTest, NamesAreBytes) {
+  const std::vector<std::string> names{"new\nline.raw", "\xff\xfe\x80.raw", " .raw",
+                                       "-rf.raw",       "a'b\"c\\.raw",     std::string(251, 'n') + ".raw"};
+  write_file(dir / ("early" + names[1]), "1");
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / ("early" + names[1])));
+  fs::create_directory(dir / "d\n\xff");
+  for (const std::string& name : names) {
+    write_file(dir / name, "1");
+    write_file(dir / ("d\n\xff/" + name), "1");
+  }
+  EXPECT_TRUE(dir.run_until([&] {
+    return std::all_of(names.begin(), names.end(), [&](const auto& name) {
+      return dir.last(dir / name).has_value() && dir.last(dir / ("d\n\xff/" + name)).has_value();
+    });
+  }));
+}
+
+TEST_P(DirectoryWatchTest, PathsLongerThanTheSystemTakesAreSaidAndTheRestGoesOn) {
+  // Deeper than any path can name, made step by step.
+  const std::string name(200, 'd');
+  int at = ::open(dir.root().c_str(), O_RDONLY | O_DIRECTORY);
+  for (int i = 0; i < 25; ++i) {
+    ASSERT_EQ(::mkdirat(at, name.c_str(), 0700), 0);
+    const int below = ::openat(at, name.c_str(), O_RDONLY | O_DIRECTORY);
+    ::close(at);
+    at = below;
+  }
+  ::close(at);
+  write_file(dir / "a.raw", "1");
+  dir.start();
+  ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
+  EXPECT_NE(dir.notices.front().find(": cannot be listed: File name too long; nothing in it is converted until it can"),
+            std::string::npos);
+  EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "a.raw"));
+  write_file(dir / "b.raw", "1");
+  EXPECT_TRUE(dir.run_until_written(dir / "b.raw"));
+  EXPECT_EQ(dir.notices.size(), 1U);
+}
+
+/// Root may read everything: permissions count for somebody else.
+class SomebodyElse {
+ public:
+  explicit SomebodyElse(const std::string& owned) {
+    if (::geteuid() != 0) return;
+    for (const auto& entry : fs::recursive_directory_iterator(owned)) {
+      EXPECT_EQ(::lchown(entry.path().c_str(), kNobody, kNobody), 0);
+    }
+    EXPECT_EQ(::lchown(owned.c_str(), kNobody, kNobody), 0);
+    fs::permissions(fs::path(owned).parent_path(), fs::perms::all);
+    EXPECT_EQ(::seteuid(kNobody), 0);
+  }
+  ~SomebodyElse() {
+    if (::getuid() == 0) {
+      EXPECT_EQ(::seteuid(0), 0);
+    }
+  }
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+};
+
+TEST_P(DirectoryWatchTest, AnUnreadableDirectoryIsSaidOnceAndReadWhenItCanBe) {
+  fs::create_directory(dir / "locked");
+  write_file(dir / "locked/a.raw", "1");
+  write_file(dir / "b.raw", "1");
+  SomebodyElse self(dir.root());
+  fs::permissions(dir / "locked", fs::perms::none);
+  dir.start();
+  ASSERT_TRUE(dir.run_until_told(Kind::found, dir / "b.raw"));
+  dir.run_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(dir.notices,
+            std::vector<std::string>{(dir / "locked") +
+                                     ": cannot be listed: Permission denied; nothing in it is converted until it can"});
+  EXPECT_EQ(dir.last(dir / "locked/a.raw"), std::nullopt);
+  fs::permissions(dir / "locked", fs::perms::owner_all);
+  EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "locked/a.raw"));
+  dir.events.clear();
+  write_file(dir / "locked/c.raw", "1");
+  EXPECT_TRUE(dir.run_until_written(dir / "locked/c.raw"));
+}
+
+// rsync and tar set a link's own times right after they made it.
+TEST_P(DirectoryWatchTest, ALinkOutOfTheTree_StaysRefusedWhereItsOwnTimesAreSet) {
+  write_file(dir.outside("a.raw"), "1");
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  fs::create_symlink(dir.outside("a.raw"), dir / "link.raw");
+  const std::array<timespec, 2> times{timespec{1000, 0}, timespec{1000, 0}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, (dir / "link.raw").c_str(), times.data(), AT_SYMLINK_NOFOLLOW), 0);
+  ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
+  dir.run_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(dir.last(dir / "link.raw"), std::nullopt);
+}
+
+TEST_P(DirectoryWatchTest, AWatchThatEndsTellsNothingMore) {
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  write_file(dir / "a.raw", "1");
+  dir.io.poll();
+  dir.watch.reset();
+  dir.events.clear();
+  write_file(dir / "b.raw", "1");
+  dir.run_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(dir.events, std::vector<FileEvent>{});
+}
+
+TEST_P(DirectoryWatchTest, TwoThousandFilesAtOnce) {
+  dir.start();
+  ASSERT_TRUE(dir.settle());
+  std::set<std::string> missing;
+  for (int i = 0; i < 2000; ++i) {
+    const std::string path = dir / (std::to_string(i) + ".raw");
+    write_file(path, "1");
+    missing.insert(path);
+  }
+  EXPECT_TRUE(dir.run_until([&] {
+    for (const FileEvent& event : dir.events) missing.erase(event.path);
+    return missing.empty();
+  }));
+  EXPECT_EQ(dir.watch->figures().files, 2000U);
+  EXPECT_EQ(dir.watch->figures().overflows, 0U);
+}
+
+TEST(ChoosingWatchTest, AutomaticIsInotifyOnADiskOfThisMachine) {
+  WatchedDirectory dir(WatchMethod::automatic);
+  dir.start();
+  EXPECT_EQ(dir.watch->method(), WatchMethod::inotify);
+  write_file(dir / "a.raw", "1");
+  EXPECT_TRUE(dir.run_until([&] { return dir.last(dir / "a.raw").has_value(); }));
+  EXPECT_EQ(dir.notices, std::vector<std::string>{});
+}
+
+TEST(ChoosingWatchTest, AutomaticPollsWhatIsNotKnownToBeLocal) {
+  WatchedDirectory dir(WatchMethod::automatic);
+  dir.open_inotify = no_inotify();
+  dir.config.directory = "/proc/self/fdinfo";
+  dir.config.poll_interval_s = 1;
+  dir.start();
+  EXPECT_EQ(dir.watch->method(), WatchMethod::poll);
+  ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
+  EXPECT_EQ(dir.notices, std::vector<std::string>{"/proc/self/fdinfo: lies on type 0x9FA0, where inotify does not see "
+                                                  "what other machines do; it is looked at every 1 s instead"});
+}
+
+}  // namespace
+}  // namespace weir::directory_watch_test

@@ -1,0 +1,74 @@
+#include "format/io/digest.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/temporary_directory.h"
+
+namespace weir::digest_test {
+namespace {
+
+std::vector<std::byte> pattern(std::size_t bytes) {
+  std::vector<std::byte> data(bytes);
+  std::uint32_t state = 1;
+  for (std::byte& byte : data) {
+    state = state * 1664525U + 1013904223U;
+    byte = static_cast<std::byte>(state >> 24U);
+  }
+  return data;
+}
+
+// The reference values are of `xxhsum -H2` (xxHash 0.8), which prints the canonical form.
+TEST(Digest, IsXxh3InCanonicalForm) {
+  EXPECT_EQ(piece_digest({}).hex(), "99aa06d3014798d86001c324468d497f");
+  const std::string text = "weir";
+  EXPECT_EQ(piece_digest(std::as_bytes(std::span(text))).hex(), "58611f8d7be1fe2c3921234764190df9");
+}
+
+TEST(Digest, OfLeafIsOfLittleEndianFloats) {
+  const std::vector<float> values{1.0F, -2.5F, 0.0F};
+  const std::vector<unsigned char> bytes{0, 0, 0x80, 0x3f, 0, 0, 0x20, 0xc0, 0, 0, 0, 0};
+  EXPECT_EQ(leaf_digest(values), piece_digest(std::as_bytes(std::span(bytes))));
+}
+
+TEST(Digest, StreamEqualsCombineHoweverItIsFed) {
+  std::vector<Digest> pieces;
+  for (std::size_t i = 0; i < 100; ++i) pieces.push_back(piece_digest(pattern(i)));
+  DigestStream one_by_one;
+  for (const Digest& piece : pieces) one_by_one.update(piece);
+  DigestStream in_two;
+  in_two.update(std::span(pieces).first(33));
+  DigestStream moved = std::move(in_two);
+  moved.update(std::span(pieces).subspan(33));
+  EXPECT_EQ(one_by_one.digest(), combine(pieces));
+  EXPECT_EQ(moved.digest(), combine(pieces));
+  EXPECT_EQ(DigestStream().digest(), piece_digest({}));
+}
+
+TEST(Digest, OfFileIsOverPiecesOf16MiB) {
+  EXPECT_EQ(piece_count(0), 0U);
+  EXPECT_EQ(piece_count(1), 1U);
+  EXPECT_EQ(piece_count(kDigestPieceBytes), 1U);
+  EXPECT_EQ(piece_count(kDigestPieceBytes + 1), 2U);
+  const auto data = pattern(2 * kDigestPieceBytes + 17);
+  const std::span<const std::byte> all(data);
+  const std::vector<Digest> pieces{piece_digest(all.first(kDigestPieceBytes)),
+                                   piece_digest(all.subspan(kDigestPieceBytes, kDigestPieceBytes)),
+                                   piece_digest(all.last(17))};
+  EXPECT_EQ(file_digest(all), combine(pieces));
+  EXPECT_EQ(file_digest(all.first(kDigestPieceBytes)), combine(std::span(pieces).first(1)));
+  EXPECT_EQ(file_digest(std::span<const std::byte>{}), combine({}));
+}
+
+TEST(Digest, OfFileThroughTheFileSystemIsTheSame) {
+  const auto data = pattern(kDigestPieceBytes + 4097);
+  const auto system = make_posix_file_system();
+  const TemporaryDirectory directory;
+  const auto file = system->create(directory / "volume");
+  file->write_at(0, data);
+  EXPECT_EQ(file_digest(*file), file_digest(std::span<const std::byte>(data)));
+}
+
+}  // namespace
+}  // namespace weir::digest_test

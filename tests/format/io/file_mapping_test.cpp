@@ -1,0 +1,100 @@
+#include "format/io/file_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::file_mapping_test {
+namespace {
+
+template <class Call>
+std::string refusal_of(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    return error.what();
+  }
+  return {};
+}
+
+std::string refusal(const std::string& path) {
+  return refusal_of([&] { const FileMapping mapping(path, ".nvdb"); });
+}
+
+TEST(FileMapping, BytesOutliveMovesAndReleasedPages) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a") << "bytes";
+  FileMapping first(directory / "a", ".nvdb");
+  const FileMapping mapping(std::move(first));
+  const std::byte* const at = mapping.bytes().data();
+  ASSERT_EQ(mapping.bytes().size(), 5U);
+  EXPECT_EQ(mapping.bytes()[4], std::byte{'s'});
+  mapping.release_pages();
+  EXPECT_EQ(mapping.bytes().data(), at);
+  EXPECT_EQ(mapping.bytes()[0], std::byte{'b'});
+}
+
+TEST(FileMapping, SaysWhatCannotBeMapped) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "empty").close();
+  EXPECT_EQ(refusal(directory / "none"), directory / "none" + ": cannot open: No such file or directory");
+  EXPECT_EQ(refusal(directory / "empty"), directory / "empty" + ": the file is empty; give a .nvdb file");
+  EXPECT_EQ(refusal(directory.path().string()), directory.path().string() + ": not a regular file; give a .nvdb file");
+}
+
+TEST(FileMapping, ReadsAndPopulatesAnyRange) {
+  const TemporaryDirectory directory;
+  constexpr std::uint64_t kBytes = 70001;
+  std::string text;
+  for (std::uint64_t i = 0; i < kBytes; ++i) text.push_back(static_cast<char>(i * i % 251));
+  std::ofstream(directory / "a", std::ios::binary) << text;
+  const FileMapping mapping(directory / "a", ".nvdb");
+  EXPECT_EQ(mapping.path(), directory / "a");
+  mapping.prefetch(0, kBytes);
+  mapping.populate(0, kBytes);
+  mapping.populate(4097, kBytes - 4097);
+  EXPECT_TRUE(mapping.cached(0, kBytes));
+  EXPECT_TRUE(mapping.cached(kBytes - 1, 1));
+  std::vector<std::byte> part(60000);
+  mapping.read(10001, part);
+  EXPECT_TRUE(std::equal(part.begin(), part.end(), mapping.bytes().begin() + 10001));
+  EXPECT_EQ(refusal_of([&] { mapping.read(10002, part); }),
+            directory / "a" + ": ends at byte 70001, before what was asked for");
+  mapping.check_unchanged();
+}
+
+TEST(FileMapping, ReportsATruncatedFileWithoutASignal) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a") << std::string(40000, 'x');
+  const FileMapping mapping(directory / "a", ".nvdb");
+  std::filesystem::resize_file(directory / "a", 5000);
+  const std::string message =
+      directory / "a" + ": had 40000 bytes when it was opened, has 5000 now; open it again when it is whole";
+  EXPECT_EQ(refusal_of([&] { mapping.populate(0, 40000); }), message);
+  EXPECT_EQ(refusal_of([&] { mapping.check_unchanged(); }), message);
+  std::vector<std::byte> part(40000);
+  EXPECT_EQ(refusal_of([&] { mapping.read(0, part); }), message);
+  mapping.populate(0, 5000);
+}
+
+TEST(FileMapping, TellsARewrittenFileOfTheSameSize) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a") << "bytes";
+  const FileMapping mapping(directory / "a", ".nvdb");
+  std::filesystem::last_write_time(directory / "a",
+                                   std::filesystem::last_write_time(directory / "a") + std::chrono::nanoseconds(1));
+  EXPECT_EQ(refusal_of([&] { mapping.check_unchanged(); }),
+            directory / "a" + ": was written to since it was opened; open it again when it is whole");
+}
+
+}  // namespace
+}  // namespace weir::file_mapping_test

@@ -1,0 +1,237 @@
+// The crash-safety protocol: every call of it fails in turn, and the directory is
+// then compared exactly.
+#include "format/output/output_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "format/base/error.h"
+#include "format/output/commit_traces.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::output_files_test {
+namespace {
+
+// Names and contents of all files of a directory.
+using Listing = std::map<std::string, std::string>;
+
+class OutputFilesTest : public ::testing::Test {
+ protected:
+  std::string output() const { return directory_ / "out.nvdb"; }
+
+  void put(const std::string& name, const std::string& text) const { std::ofstream(directory_ / name) << text; }
+
+  Listing listing() const {
+    Listing all;
+    for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      all[entry.path().filename().string()] = std::string(std::istreambuf_iterator<char>(file), {});
+    }
+    return all;
+  }
+
+  // What a conversion does with its output; returns the error's message or nothing.
+  std::string write_output(FileSystem& files, bool overwrite) const {
+    try {
+      OutputFiles output_files(files, output(), overwrite);
+      output_files.reserve(6);
+      output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+      output_files.commit("sidecar");
+      return {};
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io) << error.what();
+      return error.what();
+    }
+  }
+
+  const Listing written_{{"out.nvdb", "volume"}, {"out.nvdb.json", "sidecar"}};
+  std::unique_ptr<FileSystem> real_ = make_posix_file_system();
+  TemporaryDirectory directory_;
+};
+
+TEST_F(OutputFilesTest, WritesBothFilesAndNothingElse) {
+  EXPECT_EQ(write_output(*real_, false), "");
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, ProtocolIsTheDocumentedOne) {
+  FaultyFileSystem files(*real_, -1, 0);
+  EXPECT_EQ(write_output(files, false), "");
+  const std::vector<std::string> expected{"create", "preallocate", "write",      "sync",       "create",
+                                          "write",  "sync",        "rename_new", "rename_new", "sync_directory"};
+  EXPECT_EQ(files.calls(), expected);
+  FaultyFileSystem again(*real_, -1, 0);
+  EXPECT_EQ(write_output(again, true), "");
+  const std::vector<std::string> replacing{"create", "preallocate", "write",         "sync", "create",
+                                           "write",  "sync",        "remove",        "link", "rename",
+                                           "rename", "remove",      "sync_directory"};
+  EXPECT_EQ(again.calls(), replacing);
+}
+
+TEST_F(OutputFilesTest, EachFailureOfANewOutputLeavesNothing) {
+  constexpr int kCalls = 10;
+  for (const int reason : {EIO, ENOSPC}) {
+    for (int call = 0; call < kCalls; ++call) {
+      FaultyFileSystem files(*real_, call, reason);
+      const std::string message = write_output(files, false);
+      EXPECT_TRUE(files.failed());
+      EXPECT_NE(message.find("call " + std::to_string(call) + " "), std::string::npos) << message;
+      // The last call flushes the directory: both files have their names by then.
+      EXPECT_EQ(listing(), call + 1 < kCalls ? Listing{} : written_) << "call " << call;
+      std::filesystem::remove(directory_ / "out.nvdb");
+      std::filesystem::remove(directory_ / "out.nvdb.json");
+    }
+  }
+}
+
+TEST_F(OutputFilesTest, EachFailureOfAnOverwriteLeavesTheOldPair) {
+  const Listing old{{"out.nvdb", "old volume"}, {"out.nvdb.json", "old sidecar"}};
+  constexpr int kCalls = 13;
+  for (int call = 0; call < kCalls; ++call) {
+    for (const auto& [name, text] : old) put(name, text);
+    FaultyFileSystem files(*real_, call, EIO);
+    const std::string message = write_output(files, true);
+    EXPECT_TRUE(files.failed());
+    if (call < 11) {
+      EXPECT_EQ(listing(), old) << "call " << call << ": " << message;
+    } else if (call == 11) {
+      // The second name of the old sidecar could not be removed: the result is in place all the same.
+      Listing with_previous = written_;
+      with_previous["out.nvdb.json.previous"] = "old sidecar";
+      EXPECT_EQ(listing(), with_previous);
+      EXPECT_EQ(message, "");
+    } else {
+      EXPECT_EQ(listing(), written_) << message;
+    }
+    std::filesystem::remove(directory_ / "out.nvdb.json.previous");
+  }
+}
+
+TEST_F(OutputFilesTest, RefusesAnExistingOutput) {
+  put("out.nvdb", "old volume");
+  try {
+    OutputFiles output_files(*real_, output(), false);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_EQ(std::string(error.what()), output() + ": exists; choose another output with -o or pass --overwrite");
+  }
+  EXPECT_EQ(listing(), (Listing{{"out.nvdb", "old volume"}}));
+}
+
+// Killed between the two renames: the lock's file tells its sidecar from one that somebody keeps.
+TEST_F(OutputFilesTest, ReplacesASidecarThatAKilledCommitLeft) {
+  FaultyFileSystem files(*real_, 7, EIO, FaultyFileSystem::After::fails);  // the second rename
+  {
+    OutputFiles output_files(files, output(), false);
+    output_files.write_to(real_->open(directory_ / "half"));
+    EXPECT_THROW(output_files.commit("sidecar"), Error);
+  }
+  EXPECT_EQ(listing(),
+            (Listing{{"half", ""}, {"out.nvdb.json", "sidecar"}, {"out.nvdb.partial", commit_record("sidecar")}}));
+  std::filesystem::remove(directory_ / "half");
+  EXPECT_EQ(write_output(*real_, false), "");
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, KeepsASidecarThatNoCommitLeft) {
+  put("out.nvdb.json", "kept");
+  try {
+    OutputFiles output_files(*real_, output(), false);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), output() + ".json: exists; choose another output with -o or pass --overwrite");
+  }
+  EXPECT_EQ(listing(), (Listing{{"out.nvdb.json", "kept"}}));
+}
+
+TEST_F(OutputFilesTest, ALivingCommitKeepsItsSidecar) {
+  const OutputFiles first(*real_, output(), false);
+  put("out.nvdb.json", "placed");  // as between its two renames
+  EXPECT_EQ(write_output(*real_, false), output() +
+                                             ".partial: is being written by another process; wait for it or choose "
+                                             "another output");
+  EXPECT_EQ(listing().at("out.nvdb.json"), "placed");
+}
+
+TEST_F(OutputFilesTest, DoesNotReplaceWhatAppearedMeanwhile) {
+  OutputFiles output_files(*real_, output(), false);
+  put("out.nvdb", "somebody else's");
+  try {
+    output_files.commit("sidecar");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+    EXPECT_NE(std::string(error.what()).find("File exists"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(listing().at("out.nvdb"), "somebody else's");
+  EXPECT_EQ(listing().count("out.nvdb.json"), 0U);
+}
+
+TEST_F(OutputFilesTest, TwoWritersOfOneOutputDoNotMeet) {
+  const OutputFiles first(*real_, output(), false);
+  try {
+    const OutputFiles second(*real_, output(), false);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), output() +
+                                             ".partial: is being written by another process; wait for it or choose "
+                                             "another output");
+  }
+  EXPECT_EQ(listing().count("out.nvdb.partial"), 1U);
+}
+
+TEST_F(OutputFilesTest, TakesOverThePartialFileOfADeadProcess) {
+  put("out.nvdb.partial", "half of somebody's volume, longer than ours");
+  EXPECT_EQ(write_output(*real_, false), "");
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, AVolumeInAnotherPlaceIsLeftThereUntilItIsCommitted) {
+  const std::string other = directory_ / "half";
+  const auto write = [&](bool commits) {
+    OutputFiles output_files(*real_, output(), false);
+    output_files.write_to(real_->open(other));
+    output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+    EXPECT_EQ(listing().at("out.nvdb.partial"), "") << "the lock";
+    if (commits) output_files.commit("sidecar");
+  };
+  write(false);
+  EXPECT_EQ(listing(), (Listing{{"half", "volume"}}));
+  write(true);
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, OpenKeepsWhatAFileHoldsAndCreateDoesNot) {
+  put("file", "content");
+  EXPECT_EQ(real_->open(directory_ / "file")->size(), 7U);
+  EXPECT_EQ(real_->open(directory_ / "new")->size(), 0U);
+  EXPECT_EQ(real_->create(directory_ / "file")->size(), 0U);
+}
+
+TEST_F(OutputFilesTest, SaysThatTheDirectoryIsMissing) {
+  const std::string path = directory_ / "absent/out.nvdb";
+  try {
+    OutputFiles output_files(*real_, path, false);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+    EXPECT_EQ(std::string(error.what()),
+              path + ": the directory " + directory_ / "absent" + " does not exist; make it or choose another output");
+  }
+}
+
+TEST(DirectoryOf, IsThePathBeforeTheLastSlash) {
+  EXPECT_EQ(directory_of("a/b/c.nvdb"), "a/b");
+  EXPECT_EQ(directory_of("c.nvdb"), ".");
+  EXPECT_EQ(directory_of("/c.nvdb"), "/");
+}
+
+}  // namespace
+}  // namespace weir::output_files_test

@@ -1,0 +1,74 @@
+#include "gpu/trace/ray_march.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/gpu/support/test_medium.h"
+
+namespace weir::ray_march_test {
+namespace {
+
+using test::TestMedium;
+
+Lighting dark() {
+  Lighting lighting;
+  lighting.sky_behind = false;
+  return lighting;
+}
+
+// L = c (1 - exp(-sigma d)) + exp(-sigma d) behind.
+TEST(March, HomogeneousSlab) {
+  Lighting lighting = dark();
+  lighting.background = {0.25F, 0.25F, 0.25F};
+  for (const float density : {0.0F, 0.01F, 0.05F}) {
+    TestMedium medium({64, 16, 16}, 16, density, 1.0F, [](const Float3&) { return 0.5F; });
+    Random random(1, 2, 3);
+    const double through = std::exp(-0.5 * static_cast<double>(density) * 64);
+    EXPECT_NEAR(static_cast<double>(march(*medium, lighting, {-9, 8, 8}, {1, 0, 0}, 0.5F, 0, random).x),
+                1 - through + 0.25 * through, 1e-4 + 0.03 * static_cast<double>(density));
+  }
+}
+
+TEST(March, EmptyCellsChangeNothing) {
+  const auto f = [](const Float3& p) { return p.x >= 20 && p.x < 40 ? 0.3F : 0.0F; };
+  TestMedium loose({64, 16, 16}, 16, 0.1F, 0.3F, f);
+  TestMedium tight({64, 16, 16}, 16, 0.1F, 0.3F, f);
+  tight.opacity()[0] = tight.opacity()[3] = 0;
+  const Lighting lighting = dark();
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    Random a(1, i, 0);
+    Random b(1, i, 0);
+    const Float3 direction = normalised(Float3{1, 0.05F, 0.02F}, {});
+    EXPECT_EQ(march(*loose, lighting, {-5, 7, 7}, direction, 0.5F, 0, a),
+              march(*tight, lighting, {-5, 7, 7}, direction, 0.5F, 0, b));
+  }
+}
+
+TEST(March, HugeExtinctionIsTheFirstColour) {
+  TestMedium medium({64, 16, 16}, 16, 3e38F, 1.0F, [](const Float3&) { return 1.0F; });
+  Random random(1, 2, 3);
+  EXPECT_EQ(march(*medium, dark(), {-9, 8, 8}, {1, 0, 0}, 0.5F, 0, random), (Float3{1, 1, 1}));
+}
+
+TEST(March, MissesSeeTheBackground) {
+  Lighting lighting = dark();
+  lighting.background = {0.1F, 0.2F, 0.3F};
+  TestMedium medium({64, 16, 16}, 16, 1, 1.0F, [](const Float3&) { return 1.0F; });
+  Random random(1, 2, 3);
+  EXPECT_EQ(march(*medium, lighting, {-9, 8, 8}, {-1, 0, 0}, 0.5F, 0.5F, random), lighting.background);
+  EXPECT_EQ(march(*medium, lighting, {64, 8, 8}, {1, 0, 0}, 0.5F, 0.5F, random), lighting.background);
+}
+
+// A wall at x = 32 whose normal faces the camera reflects what on_surface says.
+TEST(March, ShadingFacesTheCamera) {
+  Lighting lighting = dark();
+  lighting.zenith = lighting.horizon = lighting.ground = {0.5F, 0.5F, 0.5F};
+  TestMedium medium({64, 16, 16}, 16, 1e6F, 1.0F, [](const Float3& p) { return p.x >= 32 ? 1.0F : 0.0F; });
+  Random random(1, 2, 3);
+  EXPECT_NEAR(march(*medium, lighting, {0, 8, 8}, {1, 0, 0}, 0.5F, 1, random).x, 0.5F, 1e-6F);
+  EXPECT_NEAR(march(*medium, lighting, {0, 8, 8}, {1, 0, 0}, 0.5F, 0.5F, random).x, 0.75F, 1e-6F);
+}
+
+}  // namespace
+}  // namespace weir::ray_march_test

@@ -1,0 +1,70 @@
+#include "ingest/hdf5/meaning/dimension_scales.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace weir::dimension_scales_test {
+namespace {
+
+constexpr double kDouble = std::numeric_limits<double>::epsilon();
+constexpr double kFloat = 1.1920929e-7;
+
+AxisPlace placed(const std::vector<double>& coordinates, double precision = kDouble) {
+  AxisPlace axis;
+  place_by_coordinates(coordinates, precision, axis);
+  return axis;
+}
+
+TEST(DimensionScales, RegularCoordinatesGiveSpacingAndOrigin) {
+  const AxisPlace axis = placed({-1, -0.5, 0, 0.5});
+  EXPECT_EQ(axis.spacing, 0.5);
+  EXPECT_EQ(axis.origin, -1);
+  EXPECT_EQ(axis.note, "");
+}
+
+TEST(DimensionScales, RoundedCoordinatesAreRegular) {
+  EXPECT_EQ(placed({0, 0.3333, 0.6667, 1}).note, "");
+  std::vector<double> far;  // time in seconds since an epoch, as float32: neighbours are 64 apart
+  for (int i = 0; i < 10; ++i) far.push_back(static_cast<double>(static_cast<float>(1.0e9 + i * 3600.0)));
+  EXPECT_EQ(placed(far, kFloat).note, "");
+  EXPECT_NE(placed(far).note, "");
+}
+
+TEST(DimensionScales, IrregularOnesAreTakenAsIndices) {
+  for (const std::vector<double>& coordinates :
+       {std::vector<double>{0, 1, 3}, {0, 1, 0}, {5, 5, 5}, {0, 1.002, 2}, {-1.5e308, 0, 1.5e308}}) {
+    const AxisPlace axis = placed(coordinates);
+    EXPECT_EQ(axis.spacing, std::nullopt);
+    EXPECT_EQ(axis.origin, std::nullopt);
+    EXPECT_TRUE(axis.note.starts_with("irregular coordinates from ")) << axis.note;
+  }
+}
+
+TEST(DimensionScales, FallingOnesAreMirrored) {
+  const AxisPlace axis = placed({1000, 750, 500});
+  EXPECT_EQ(axis.spacing, 250);
+  EXPECT_EQ(axis.origin, 500);
+  EXPECT_EQ(axis.note, "coordinates fall from 1000 to 500: mirrored along this axis");
+}
+
+TEST(DimensionScales, OneCoordinateIsAnOrigin) {
+  const AxisPlace axis = placed({7});
+  EXPECT_EQ(axis.spacing, std::nullopt);
+  EXPECT_EQ(axis.origin, 7);
+}
+
+TEST(DimensionScales, NoneOrNotFiniteSayNothing) {
+  for (const std::vector<double>& coordinates :
+       {std::vector<double>{}, {std::nan("")}, {0, std::numeric_limits<double>::infinity()}}) {
+    const AxisPlace axis = placed(coordinates);
+    EXPECT_EQ(axis.spacing, std::nullopt);
+    EXPECT_EQ(axis.origin, std::nullopt);
+    EXPECT_EQ(axis.note, "");
+  }
+}
+
+}  // namespace
+}  // namespace weir::dimension_scales_test

@@ -1,0 +1,282 @@
+#include "ingest/plan/block_stream.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "tests/ingest/support/scratch.h"
+
+namespace weir::block_stream_test {
+namespace {
+
+/// Values are their linear index; can fail at one read, and remembers who read and into where.
+class CountingSource final : public VolumeSource {
+ public:
+  explicit CountingSource(const Index3& extent) { info_.extent = extent; }
+
+  const SourceInfo& info() const override { return info_; }
+  AccessShape access() const override { return {}; }
+  std::uint64_t bytes_read() const override { return 0; }
+  ConversionLoss read(const Box& box, std::span<float> values) override {
+    const std::size_t n = reads.fetch_add(1);
+    if (n == fail_at) throw Error(ErrorKind::input, "cut short");
+    EXPECT_EQ(std::ssize(values), box.voxels());
+    {
+      const std::lock_guard lock(mutex);
+      readers.insert(std::this_thread::get_id());
+      buffers.insert(values.data());
+    }
+    std::size_t i = 0;
+    for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+        for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+          values[i++] = static_cast<float>(linear_index({x, y, z}, info_.extent));
+        }
+      }
+    }
+    return {static_cast<std::uint64_t>(box.voxels()), n, static_cast<double>(n)};
+  }
+
+  std::atomic<std::size_t> reads{0};
+  std::size_t fail_at = SIZE_MAX;
+  std::mutex mutex;
+  std::set<std::thread::id> readers;
+  std::set<const float*> buffers;
+
+ private:
+  SourceInfo info_;
+};
+
+std::vector<Box> slabs(std::int64_t count) {
+  std::vector<Box> boxes;
+  for (std::int64_t z = 0; z < count; ++z) boxes.push_back({{0, 0, z}, {5, 3, z + 1}});
+  return boxes;
+}
+
+TEST(BlockStream, HandsOutBlocksInOrderWithTheirValues) {
+  CountingSource source({5, 3, 40});
+  auto boxes = slabs(40);
+  std::swap(boxes[3], boxes[30]);  // the order of the list, not of space
+  boxes[7] = {{1, 1, 7}, {2, 3, 9}};
+  std::size_t next = 0;
+  std::vector<std::int64_t> done;
+  StreamOptions options;
+  std::int64_t voxels = 0;
+  for (const Box& box : boxes) voxels += box.voxels();
+  options.progress = [&](std::int64_t so_far, std::int64_t total) {
+    EXPECT_EQ(total, voxels);
+    done.push_back(so_far);
+  };
+  const auto caller = std::this_thread::get_id();
+  const ConversionLoss loss = stream_blocks(source, boxes, options, [&](const Block& block) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    ASSERT_EQ(block.index, next);
+    EXPECT_EQ(block.voxels, boxes[next]);
+    ASSERT_EQ(std::ssize(block.values), boxes[next].voxels());
+    EXPECT_EQ(block.values.front(), static_cast<float>(linear_index(boxes[next].lo, {5, 3, 40})));
+    EXPECT_EQ(block.values.back(), static_cast<float>(linear_index(boxes[next].hi - Index3{1, 1, 1}, {5, 3, 40})));
+    ++next;
+  });
+  EXPECT_EQ(next, 40U);
+  EXPECT_EQ(loss.inexact, static_cast<std::uint64_t>(voxels));
+  EXPECT_EQ(loss.overflow, 39U * 40U / 2U);
+  EXPECT_EQ(loss.max_abs_error, 39.0);
+  ASSERT_EQ(done.size(), 40U);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_EQ(done.back(), voxels);
+  EXPECT_EQ(source.readers.size(), 1U);
+  EXPECT_FALSE(source.readers.contains(caller));
+  EXPECT_EQ(source.buffers.size(), 2U);
+}
+
+TEST(BlockStream, ReadsTheNextBlockDuringTheWork) {
+  CountingSource source({5, 3, 8});
+  stream_blocks(source, slabs(8), {}, [&](const Block& block) {
+    // Never ends if the next block is only read after this one.
+    while (source.reads < std::min<std::size_t>(block.index + 2, 8)) std::this_thread::yield();
+    EXPECT_LE(source.reads, block.index + 2);
+  });
+  EXPECT_EQ(source.reads, 8U);
+}
+
+TEST(BlockStream, NoBoxesNoWork) {
+  CountingSource source({5, 3, 8});
+  const auto loss = stream_blocks(source, {}, {}, [](const Block&) { FAIL(); });
+  EXPECT_EQ(loss.inexact, 0U);
+  EXPECT_EQ(source.reads, 0U);
+}
+
+TEST(BlockStream, OneBoxNeedsOneBuffer) {
+  CountingSource source({5, 3, 8});
+  int calls = 0;
+  stream_blocks(source, slabs(1), {}, [&](const Block& block) {
+    EXPECT_EQ(block.values[14], 14.0F);
+    ++calls;
+  });
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(source.buffers.size(), 1U);
+}
+
+TEST(BlockStream, SourceErrorEndsBothAfterTheGoodBlocks) {
+  for (const std::size_t fail_at : {0U, 1U, 5U, 19U}) {
+    CountingSource source({5, 3, 20});
+    source.fail_at = fail_at;
+    std::size_t worked = 0;
+    const auto message = message_of_error(
+        ErrorKind::input, [&] { stream_blocks(source, slabs(20), {}, [&](const Block&) { ++worked; }); });
+    EXPECT_EQ(message, "cut short");
+    EXPECT_EQ(worked, fail_at);
+    EXPECT_EQ(source.reads, fail_at + 1);
+  }
+}
+
+TEST(BlockStream, WorkErrorEndsBoth) {
+  for (const std::size_t fail_at : {0U, 1U, 5U, 19U}) {
+    CountingSource source({5, 3, 20});
+    EXPECT_THROW(stream_blocks(source, slabs(20), {},
+                               [&](const Block& block) {
+                                 if (block.index == fail_at) throw std::domain_error("NaN");
+                               }),
+                 std::domain_error);
+    EXPECT_LE(source.reads, fail_at + 2);  // the next one may have been begun
+  }
+}
+
+TEST(BlockStream, BothSidesFail) {
+  CountingSource source({5, 3, 20});
+  source.fail_at = 4;
+  EXPECT_THROW(stream_blocks(source, slabs(20), {},
+                             [&](const Block& block) {
+                               if (block.index == 3) {
+                                 while (source.reads < 5) std::this_thread::yield();
+                                 throw std::domain_error("NaN");
+                               }
+                             }),
+               std::domain_error);
+}
+
+TEST(BlockStream, CancelBeforeDuringAndByProgress) {
+  std::atomic<bool> cancel{true};
+  StreamOptions options;
+  options.cancel = &cancel;
+  CountingSource source({5, 3, 20});
+  const auto before = message_of_error(
+      ErrorKind::interrupted, [&] { stream_blocks(source, slabs(20), options, [](const Block&) { FAIL(); }); });
+  EXPECT_EQ(before, "interrupted");
+  EXPECT_EQ(source.reads, 0U);
+
+  cancel = false;
+  std::size_t worked = 0;
+  message_of_error(ErrorKind::interrupted, [&] {
+    stream_blocks(source, slabs(20), options, [&](const Block& block) {
+      ++worked;
+      if (block.index == 2) cancel = true;
+    });
+  });
+  EXPECT_EQ(worked, 3U);
+
+  cancel = false;
+  worked = 0;
+  options.progress = [&](std::int64_t done, std::int64_t) { cancel = done == 2 * 15; };
+  message_of_error(ErrorKind::interrupted,
+                   [&] { stream_blocks(source, slabs(20), options, [&](const Block&) { ++worked; }); });
+  EXPECT_EQ(worked, 2U);
+}
+
+TEST(BlockStream, CancelFromAnotherThread) {
+  CountingSource source({5, 3, 200});
+  std::atomic<bool> cancel{false};
+  StreamOptions options;
+  options.cancel = &cancel;
+  std::size_t worked = 0;
+  std::jthread other;
+  message_of_error(ErrorKind::interrupted, [&] {
+    stream_blocks(source, slabs(200), options, [&](const Block& block) {
+      ++worked;
+      if (block.index == 100) other = std::jthread([&] { cancel = true; });
+      while (block.index == 100 && !cancel) std::this_thread::yield();
+    });
+  });
+  EXPECT_EQ(worked, 101U);
+}
+
+TEST(BlockStream, RestsAfterEachBlockAndKnowsItsLoss) {
+  CountingSource source({5, 3, 40});
+  StreamOptions options;
+  std::size_t worked = 0;
+  std::size_t rests = 0;
+  options.at_rest = [&](std::size_t done) {
+    EXPECT_EQ(done, worked);
+    ++rests;
+  };
+  stream_blocks(source, slabs(40), options, [&](const Block& block) {
+    EXPECT_EQ(block.loss.overflow, block.index) << "of this block, whatever has been read meanwhile";
+    EXPECT_EQ(block.loss.inexact, 15U);
+    ++worked;
+  });
+  EXPECT_EQ(rests, 40U);
+}
+
+TEST(BlockStream, WhoeverIsAskedLastKnowsThatItIsTheEnd) {
+  CountingSource source({5, 3, 40});
+  std::atomic<bool> cancel{false};
+  std::vector<std::size_t> rests;
+  StreamOptions options;
+  options.cancel = &cancel;
+  options.at_rest = [&](std::size_t done) {
+    rests.push_back(done);
+    if (done == 3) cancel = true;  // as a signal that comes after the look at the flag
+  };
+  std::size_t worked = 0;
+  message_of_error(ErrorKind::interrupted,
+                   [&] { stream_blocks(source, slabs(40), options, [&](const Block&) { ++worked; }); });
+  EXPECT_EQ(rests, (std::vector<std::size_t>{1, 2, 3, 3}));
+  EXPECT_EQ(worked, 3U);
+}
+
+// Groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
+TEST(BlockStream, InPlaceRestsBetweenGroupsAndCancelsThere) {
+  class Empty final : public VolumeSource {
+   public:
+    const SourceInfo& info() const override { return info_; }
+    AccessShape access() const override { return {}; }
+    std::uint64_t bytes_read() const override { return 0; }
+    ConversionLoss read(const Box&, std::span<float>) override { return {1, 0, 0}; }
+
+   private:
+    SourceInfo info_;
+  };
+  Empty source;
+  std::vector<Box> boxes;
+  for (std::int64_t z = 0; z < 5; ++z) boxes.push_back({{0, 0, 32 * z}, {1024, 1024, 32 * (z + 1)}});
+  std::atomic<std::size_t> worked{0};
+  std::atomic<bool> cancel{false};
+  std::vector<std::size_t> rests;
+  StreamOptions options;
+  options.cancel = &cancel;
+  options.at_rest = [&](std::size_t done) {
+    EXPECT_EQ(done, worked);
+    rests.push_back(done);
+  };
+  EXPECT_EQ(work_in_place(source, boxes, options, [&](const Block&) { ++worked; }).inexact, 5U);
+  EXPECT_EQ(rests, (std::vector<std::size_t>{2, 4, 5}));
+  rests.clear();
+  worked = 0;
+  EXPECT_EQ(message_of_error(ErrorKind::interrupted,
+                             [&] {
+                               work_in_place(source, boxes, options, [&](const Block&) {
+                                 ++worked;
+                                 cancel = true;
+                               });
+                             }),
+            "interrupted");
+  EXPECT_EQ(rests, std::vector<std::size_t>{2});
+  EXPECT_EQ(worked, 2U);
+}
+
+}  // namespace
+}  // namespace weir::block_stream_test

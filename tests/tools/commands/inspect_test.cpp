@@ -1,0 +1,43 @@
+// weir inspect as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/support/converted_volume.h"
+
+namespace weir::inspect_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Inspect = ConvertedVolume;
+
+TEST_F(Inspect, ShowsVolumeAndCertificate) {
+  const CommandResult text = run_weir({"inspect", volume_, "--plot", directory_ / "h.png"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  EXPECT_NE(text.out.find("450001 bytes (439.5 KiB), grid at 4096, "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("grid        \"density\" float32, 40 x 30 x 20 voxels from (0, 0, 0)\n"), std::string::npos);
+  EXPECT_NE(text.out.find("budget      size 450001: 450001 of 96000 bytes"), std::string::npos) << text.out;
+  EXPECT_EQ(read_file(directory_ / "h.png").substr(0, 4), "\x89PNG");
+  const auto report = nlohmann::json::parse(run_weir({"inspect", volume_, "--json"}).out);
+  EXPECT_EQ(report["file"]["head_checksum_state"], "ok");
+  EXPECT_EQ(report["tree"]["active_voxels"], open().grid().active_voxels());
+  EXPECT_EQ(report["sidecar"]["file"]["bytes"], 450001);
+  EXPECT_EQ(report["sidecar_matches"], true);
+}
+
+TEST_F(Inspect, WorksWithoutSidecar) {
+  fs::remove(sidecar_path(volume_));
+  const auto report = nlohmann::json::parse(run_weir({"inspect", volume_, "--json", "--progress", "never"}).out);
+  EXPECT_TRUE(report["sidecar"].is_null());
+  std::uint64_t voxels = 0;
+  for (const auto& count : report["histogram"]["counts"]) voxels += count.get<std::uint64_t>();
+  EXPECT_EQ(voxels, open().grid().active_voxels());
+  const CommandResult bad = run_weir({"inspect", volume_, "--plot", directory_ / "h.jpg"});
+  EXPECT_EQ(bad.exit_code, 2);
+}
+
+}  // namespace
+}  // namespace weir::inspect_test

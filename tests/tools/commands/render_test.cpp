@@ -1,0 +1,264 @@
+// weir render from outside: pictures, exit codes, messages, and what a failure leaves behind; and the majorants of
+// a file that weir wrote.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/render/cpu_renderer.h"
+#include "gpu/render/render_scene.h"
+#include "tests/support/run_command.h"
+
+namespace weir::render_test {
+namespace {
+
+class Render : public ::testing::Test {
+ protected:
+  Render() {
+    EXPECT_EQ(run_weir({"sample", "cloud", "-o", directory_ / "c_70x60x50_float32.raw"}).exit_code, 0);
+    const CommandResult converted =
+        run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--lossless", "-o", volume_});
+    EXPECT_EQ(converted.exit_code, 0) << converted.err;
+    std::filesystem::create_directory(out_);
+  }
+
+  std::vector<std::string> arguments(const std::string& image, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all{"render", volume_, "-o", out_ + "/" + image, "--size", "40x30", "--spp", "2"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  void expect_refused(const std::vector<std::string>& all, int exit_code, const std::string& line) {
+    const CommandResult result = run_weir(all);
+    EXPECT_EQ(result.exit_code, exit_code);
+    EXPECT_EQ(result.err, "weir: " + line + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(list_directory(out_).empty());
+  }
+
+  TemporaryDirectory directory_;
+  std::string volume_ = directory_ / "c.nvdb";
+  std::string out_ = directory_ / "out";
+};
+
+TEST_F(Render, EveryModeAndFormat) {
+  for (const std::string mode : {"path", "dvr", "iso", "mip"}) {
+    for (const std::string extension : {".png", ".exr"}) {
+      const CommandResult result = run_weir(arguments(mode + extension, {"--mode", mode}));
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(result.out, "");
+    }
+  }
+  EXPECT_EQ(list_directory(out_), (std::vector<std::string>{"dvr.exr", "dvr.png", "iso.exr", "iso.png", "mip.exr",
+                                                            "mip.png", "path.exr", "path.png"}));
+}
+
+TEST_F(Render, SameBytesForAnyThreadsAndOtherForAnotherSeed) {
+  const auto bytes = [&](const std::vector<std::string>& more) {
+    EXPECT_EQ(run_weir(arguments("a.exr", more)).exit_code, 0);
+    return read_file(out_ + "/a.exr");
+  };
+  const std::string one = bytes({"--threads", "1", "--seed", "5"});
+  EXPECT_EQ(one, bytes({"--threads", "2", "--seed", "5", "--backend", "cpu"}));
+  EXPECT_EQ(one, bytes({"--threads", "7", "--seed", "5", "--progress", "always"}));
+  EXPECT_NE(one, bytes({"--seed", "6"}));
+}
+
+TEST_F(Render, Json) {
+  const CommandResult result = run_weir(arguments("a.png", {"--json", "--mode", "mip", "--filter", "nearest"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["image"], out_ + "/a.png");
+  EXPECT_EQ(report["width"], 40);
+  EXPECT_EQ(report["height"], 30);
+  EXPECT_EQ(report["mode"], "mip");
+  EXPECT_EQ(report["filter"], "nearest");
+  EXPECT_EQ(report["backend"], "cpu");
+  EXPECT_EQ(report["samples"], 2);
+  EXPECT_EQ(report["bytes"], read_file(out_ + "/a.png").size());
+}
+
+TEST_F(Render, SceneFileAndTheCommandLineOverIt) {
+  write_file(directory_ / "s.toml", "mode = \"dvr\"\n[volume]\ncolormap = \"heat\"\n");
+  const auto mode = [&](const std::vector<std::string>& more) {
+    const CommandResult result = run_weir(arguments("a.png", more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out)["mode"];
+  };
+  const std::string scene = directory_ / "s.toml";
+  EXPECT_EQ(mode({"--json", "--scene", scene}), "dvr");
+  EXPECT_EQ(mode({"--json", "--scene", scene, "--mode", "iso", "--iso", "0.25", "--camera", "10,-90,2", "--colormap",
+                  "gray"}),
+            "iso");
+}
+
+TEST_F(Render, Refusals) {
+#ifndef WEIR_HAVE_CUDA
+  expect_refused(arguments("a.png", {"--backend", "cuda"}), 2,
+                 "--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
+#endif
+  for (const std::string devices : {"0,0", "-1", "x"}) {
+    expect_refused(arguments("a.png", {"--devices=" + devices}), 2,
+                   "--devices is \"" + devices + "\", it must be numbers of CUDA devices, each once");
+  }
+  expect_refused(arguments("a.jpg"), 2, out_ + "/a.jpg: an image's name must end in .png or .exr");
+  expect_refused(arguments("a.png", {"--colormap", "jet"}), 2,
+                 "unknown colormap \"jet\"; use one of gray, white, heat, cool-warm, dusk, ct, water, magma");
+  expect_refused(
+      arguments("a.png", {"--camera", "1"}), 2,
+      "--camera is \"1\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, zoom from "
+      "0.01 to 100");
+  expect_refused(arguments("a.png", {"--iso", "high"}), 2, "--iso is \"high\", it must be a number");
+  expect_refused(arguments("a.png", {"--threads", "-1"}), 2,
+                 "--threads is \"-1\", it must be a whole number from 0 to 4096");
+  expect_refused(arguments("a.png", {"--seed", "1.5"}), 2,
+                 "--seed is \"1.5\", it must be a whole number from 0 to 9223372036854775807");
+  for (const std::string size : {"640", "0x480", "640x-1", "axb", "640x480x2", "99999x1", "32768x32768"}) {
+    expect_refused({"render", volume_, "-o", out_ + "/a.png", "--size", size}, 2,
+                   "--size is \"" + size + "\", it must be WxH in pixels, each from 1 to 32768 and 268435456 together");
+  }
+  expect_refused({"render", volume_, "-o", out_ + "/a.png", "--spp", "0"}, 2,
+                 "--spp is \"0\", it must be a whole number from 1 to 1048576");
+  write_file(directory_ / "s.toml", "[camera]\nfocal = 3\n");
+  expect_refused(arguments("a.png", {"--scene", directory_ / "s.toml"}), 3,
+                 (directory_ / "s.toml") +
+                     ":2:1: unknown key \"focal\" in [camera]; there are azimuth, elevation, fov, frame, look_at, "
+                     "position, up, zoom");
+}
+
+TEST_F(Render, AnEnvironmentLightsIt) {
+  const std::string scene = directory_ / "s.toml";
+  write_file(scene, "[lighting]\nenvironment = \"sky.hdr\"\nbackground = \"environment\"\n");
+  const std::string sky = directory_ / "sky.hdr";
+  write_file(sky, "#?RADIANCE\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x20\x40\x80\x81");
+  EXPECT_EQ(run_weir(arguments("a.exr", {"--scene", scene})).exit_code, 0);
+  EXPECT_EQ(run_weir(arguments("b.exr")).exit_code, 0);
+  EXPECT_FALSE(read_file(out_ + "/a.exr") == read_file(out_ + "/b.exr"));
+  std::filesystem::remove(out_ + "/a.exr");
+  std::filesystem::remove(out_ + "/b.exr");
+  write_file(sky, "#?RADIANCE\n\n-Y 1 +X 3\n");
+  expect_refused(arguments("a.png", {"--scene", scene}), 3,
+                 sky + ": 3 x 1 pixels; a latitude-longitude picture is twice as wide as high");
+  std::filesystem::remove(sky);
+  const CommandResult missing = run_weir(arguments("a.png", {"--scene", scene}));
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_EQ(missing.err, "weir: " + sky + ": cannot open: No such file or directory\n");
+}
+
+TEST_F(Render, UnwritableOutputIsKnownBeforeTheWork) {
+  const CommandResult result = run_weir({"render", volume_, "-o", directory_ / "missing/a.png", "--spp", "1000000"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_NE(result.err.find("missing"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('\n'), result.err.size() - 1);
+}
+
+TEST_F(Render, MissingOrForeignInput) {
+  EXPECT_EQ(run_weir({"render", directory_ / "no.nvdb", "-o", out_ + "/a.png"}).exit_code, 3);
+  EXPECT_EQ(run_weir({"render", directory_ / "c_70x60x50_float32.raw", "-o", out_ + "/a.png"}).exit_code, 3);
+  EXPECT_TRUE(list_directory(out_).empty());
+}
+
+TEST_F(Render, InterruptLeavesNothing) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ChildProcess child({WEIR_COMMAND, "render", volume_, "-o", out_ + "/a.png", "--spp", "100000"});
+    for (int i = 0; i < 500 && list_directory(out_).empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(list_directory(out_).size(), 1U) << "the temporary file of a running rendering";
+    child.send_signal(signal);
+    const CommandResult result = child.wait();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_EQ(result.err, "weir: interrupted; no image was written\n");
+    EXPECT_TRUE(list_directory(out_).empty());
+  }
+}
+
+// Whole numbers are exact in 8 bits: a quantised file is the same picture, in its macrocells and in every tap.
+TEST_F(Render, QuantisedFilesOfTheSameValuesGiveTheSamePicture) {
+  const std::string raw = directory_ / "c_70x60x50_uint8.raw";
+  ASSERT_EQ(run_weir({"sample", "cloud", "-o", raw}).exit_code, 0);
+  const auto image = [&](const std::string& mode, const std::string& filter) {
+    EXPECT_EQ(run_weir(arguments("a.exr", {"--mode", mode, "--filter", filter})).exit_code, 0);
+    return read_file(out_ + "/a.exr");
+  };
+  std::map<std::pair<std::string, std::string>, std::string> expected;
+  for (const std::string encoding : {"float", "fpn", "fp8", "fp16"}) {
+    const CommandResult converted =
+        run_weir({"convert", raw, "--lossless", "--encoding", encoding, "-o", volume_, "--overwrite"});
+    ASSERT_EQ(converted.exit_code, 0) << converted.err;
+    for (const std::string mode : {"path", "dvr", "iso", "mip"}) {
+      for (const std::string filter : {"trilinear", "stochastic", "nearest"}) {
+        std::string& of_float = expected[{mode, filter}];
+        if (encoding == "float") of_float = image(mode, filter);
+        EXPECT_TRUE(image(mode, filter) == of_float) << encoding << ' ' << mode << ' ' << filter;
+      }
+    }
+  }
+}
+
+TEST_F(Render, QuantisedFilesAtAHighRateGiveNearlyThePicture) {
+  const auto picture = [&](RenderMode mode) {
+    const NvdbFile file(volume_);
+    Scene scene;
+    scene.mode = mode;
+    const RenderScene prepared(file.grid(), scene, {.width = 60, .height = 45});
+    CpuRenderOptions options;
+    options.samples = 2;
+    return render_cpu(prepared.task(), options);
+  };
+  for (const RenderMode mode : {RenderMode::dvr, RenderMode::mip}) {
+    ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--lossless", "-o", volume_, "--overwrite"})
+                  .exit_code,
+              0);
+    const Image exact = picture(mode);
+    ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--rate", "1.6", "--encoding", "fpn", "-o",
+                        volume_, "--overwrite"})
+                  .exit_code,
+              0);
+    const Image near = picture(mode);
+    float worst = 0;
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+      const Float3 d = exact.pixels[i] - near.pixels[i];
+      worst = std::max({worst, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    }
+    EXPECT_GT(worst, 0.0F);
+    EXPECT_LT(worst, 0.004F);  // one step of an 8-bit picture
+  }
+}
+
+// The macrocells of the file are bounds of what any filter sees in them, tiles, kept leaves and all.
+TEST_F(Render, MajorantsFromTheFileBoundEveryLookup) {
+  for (const std::string rate : {"1.2", "1.7", "2.5"}) {
+    ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--rate", rate, "-o", volume_, "--overwrite"})
+                  .exit_code,
+              0);
+    const NvdbFile file(volume_);
+    ASSERT_FALSE(file.grid().macrocells().cells.empty());
+    for (const Filter filter : {Filter::nearest, Filter::trilinear, Filter::stochastic}) {
+      const RenderScene prepared(file.grid(), {}, {.filter = filter});
+      const auto& medium = prepared.task().medium;
+      Random random(1, 2, 3);
+      for (int i = 0; i < 200000; ++i) {
+        const Float3 p = medium.volume.extent() * Float3{random.uniform(), random.uniform(), random.uniform()};
+        const auto cell = [&](float at, std::int32_t shift) {
+          return static_cast<std::int64_t>((at + static_cast<float>(shift)) / medium.cells.edge);
+        };
+        const std::int64_t c = cell(p.x, medium.cells.shift.x) +
+                               medium.cells.count.x * (cell(p.y, medium.cells.shift.y) +
+                                                       medium.cells.count.y * cell(p.z, medium.cells.shift.z));
+        const float opacity = medium.transfer.at(medium.volume.sample(p, random)).a;
+        ASSERT_LE(medium.extinction(opacity), medium.majorant(c));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weir::render_test

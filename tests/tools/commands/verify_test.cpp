@@ -1,0 +1,145 @@
+// weir verify as a user runs it: an intact volume, and every kind of damage to it or
+// to its sidecar, by the line that it is reported with.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "format/layout/nanovdb_layout.h"
+#include "tests/tools/support/converted_volume.h"
+
+namespace weir::verify_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Verify : public ConvertedVolume {
+ protected:
+  CommandResult verify() const { return run_weir({"verify", volume_, "--progress", "never"}); }
+
+  // Exchanges the bytes at `offset`; expects exit code 3 and exactly these lines on stderr.
+  void damage(std::uint64_t offset, const std::string& bytes) const {
+    std::string file = read_file(volume_);
+    file.replace(offset, bytes.size(), bytes);
+    write_file(volume_, file);
+  }
+  void expect_failures(const std::vector<std::string>& lines) const {
+    const CommandResult result = verify();
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.out, "");
+    std::string expected;
+    for (const std::string& line : lines) expected += "weir: " + line + "\n";
+    EXPECT_EQ(result.err, expected);
+  }
+};
+
+template <typename T>
+std::string bytes_of(T value) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+TEST_F(Verify, IntactVolumeHoldsAllChecks) {
+  const CommandResult result = verify();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out, volume_ + ": all 25 checks hold\n");
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(fs::file_size(volume_), 450001U);
+}
+
+TEST_F(Verify, JsonListsEveryCheck) {
+  const CommandResult result = run_weir({"verify", volume_, "--json", "--progress", "never"});
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["ok"], true);
+  EXPECT_EQ(report["checks"].size(), 25U);
+  write_file(sidecar_path(volume_), "{}");
+  const CommandResult broken = run_weir({"verify", volume_, "--json", "--progress", "never"});
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_EQ(nlohmann::json::parse(broken.out)["ok"], false);
+}
+
+TEST_F(Verify, ByteOfThePaddingBreaksTheDigestAlone) {
+  const std::string digest = sidecar().file.digest;
+  std::uint64_t padding = 0;
+  {
+    const NvdbFile file = open();
+    padding = file.grid().grid_offset() + file.grid().data_bytes();
+    ASSERT_LT(padding, file.bytes().size());
+  }
+  damage(padding, "\x01");
+  const CommandResult result = verify();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err.substr(0, result.err.find(" found ")), "weir: " + volume_ + ": sidecar file.digest:");
+  EXPECT_NE(result.err.find(", expected " + digest + "\n"), std::string::npos);
+}
+
+TEST_F(Verify, ValueBeyondItsMacrocellIsFound) {
+  std::uint64_t leaf = 0;
+  {
+    const NvdbFile file = open();
+    file.grid().for_each_block([&](const GridBlock& block) {
+      if (block.leaf != nullptr && leaf == 0) leaf = static_cast<std::uint64_t>(block.leaf - file.bytes().data());
+    });
+  }
+  damage(leaf + nvdb::leaf::kValues, bytes_of(1e6F));
+  const std::string err = verify().err;
+  EXPECT_NE(err.find(volume_ + ": macrocells: found the block at (0, 0, 0) exceeds its cell, expected bounds of every "
+                               "decoded value\n"),
+            std::string::npos)
+      << err;
+  EXPECT_NE(err.find(volume_ + ": stored range: found 0 .. 249, expected 0 .. 1000000\n"), std::string::npos) << err;
+  EXPECT_NE(err.find(": sidecar value_range: found 0 .. 1000000, expected within "), std::string::npos) << err;
+}
+
+TEST_F(Verify, ByteOfTheHeadBreaksChecksumAndDigest) {
+  damage(nvdb::kPage + nvdb::grid::kName + 200, "x");
+  const CommandResult result = verify();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find(volume_ + ": head checksum: found "), std::string::npos);
+  EXPECT_NE(result.err.find(volume_ + ": sidecar file.digest: found "), std::string::npos);
+}
+
+TEST_F(Verify, StoredCountsAreHeldAgainstTheTree) {
+  const std::uint64_t tree = nvdb::kPage + nvdb::kTreeOffset;
+  const std::uint64_t active = open().grid().active_voxels();
+  damage(tree + nvdb::tree::kTileCount, bytes_of<std::uint32_t>(12345));
+  damage(tree + nvdb::tree::kVoxelCount, bytes_of<std::uint64_t>(7));
+  const std::string err = verify().err;
+  EXPECT_NE(err.find(": active tiles: found (12345, 0, 0), expected ("), std::string::npos) << err;
+  EXPECT_NE(err.find(": active voxels: found 7, expected " + std::to_string(active) + "\n"), std::string::npos) << err;
+}
+
+TEST_F(Verify, TruncatedVolumeIsAStructureFailure) {
+  fs::resize_file(volume_, 450000);
+  expect_failures(
+      {"structure: " + volume_ +
+       ": at byte 16: a grid of 445905 bytes at byte 4096 reaches beyond the file's 450000; is it complete?"});
+}
+
+TEST_F(Verify, MissingVolumeAndSidecar) {
+  fs::remove(sidecar_path(volume_));
+  expect_failures(
+      {"sidecar: " + volume_ +
+       ".json: cannot read the sidecar: No such file or directory; write it with weir convert, or look at the "
+       "volume alone with weir inspect"});
+  fs::remove(volume_);
+  EXPECT_NE(verify().err.find("structure: " + volume_ + ": cannot open: No such file or directory\n"),
+            std::string::npos);
+}
+
+TEST_F(Verify, SidecarOfAnotherVolume) {
+  const auto other =
+      run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "-o", directory_ / "w.nvdb", "--size", "500000"});
+  ASSERT_EQ(other.exit_code, 0);
+  fs::rename(directory_ / "w.nvdb.json", sidecar_path(volume_));
+  const std::string err = verify().err;
+  EXPECT_NE(err.find(volume_ + ": sidecar file.bytes: found 450001, expected 500000\n"), std::string::npos) << err;
+  EXPECT_NE(run_weir({"inspect", volume_}).out.find("belongs to another volume (size or head checksum differ)"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace weir::verify_test

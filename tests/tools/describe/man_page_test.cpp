@@ -1,0 +1,121 @@
+#include "tools/describe/man_page.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "format/base/text.h"
+#include "tests/support/run_command.h"
+#include "tests/tools/support/described_app.h"
+
+namespace weir::man_page_test {
+namespace {
+
+const std::string kExitStatus =
+    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\nbad or "
+    "unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, "
+    "permission\n.TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n.TP\n130\ninterrupted\n";
+
+TEST(ManPage, OfTheCommandItself) {
+  test::DescribedApp described;
+  const auto commands = describe_commands(described.app);
+  EXPECT_EQ(man_page_name(commands[0]), "weir");
+  EXPECT_EQ(man_page(commands[0], commands, "9.8.7"), R"(.TH "WEIR" 1 "" "weir 9.8.7" "User Commands"
+.SH NAME
+weir \- Lets water through
+.SH SYNOPSIS
+\fBweir\fR [\fIOPTION\fR]... \fICOMMAND\fR [\fIARGUMENT\fR]...
+.SH COMMANDS
+.TP
+\fBopen\fR
+Opens a gate: it's quick
+.TP
+\fBmeasure\fR
+Measures the level
+.SH OPTIONS
+.TP
+\fB\-h\fR, \fB\-\-help\fR
+Print this help message and exit
+.TP
+\fB\-\-version\fR
+Display program version information and exit
+)" + kExitStatus + R"(.SH SEE ALSO
+\fBweir\-open\fR(1),
+\fBweir\-measure\fR(1)
+)");
+}
+
+TEST(ManPage, OfASubcommand) {
+  test::DescribedApp described;
+  const auto commands = describe_commands(described.app);
+  EXPECT_EQ(man_page_name(commands[1]), "weir-open");
+  EXPECT_EQ(man_page(commands[1], commands, "9.8.7"), R"(.TH "WEIR\-OPEN" 1 "" "weir 9.8.7" "User Commands"
+.SH NAME
+weir\-open \- Opens a gate: it's quick
+.SH SYNOPSIS
+\fBweir open\fR \fB\-w\fR \fIMETRES\fR [\fIOPTION\fR]... \fIgate\fR...
+.SH ARGUMENTS
+.TP
+\fIgate\fR
+which, see below
+.SH OPTIONS
+.TP
+\fB\-h\fR, \fB\-\-help\fR
+Print this help message and exit
+.TP
+\fB\-w\fR, \fB\-\-width\fR \fIMETRES\fR
+of the gap \e in m
+.TP
+\fB\-\-pace\fR \fBslow\fR|\fBfast\fR
+how fast; default: slow
+.TP
+\fB\-\-count\fR \fIN\fR
+\&.of [times]
+.TP
+\fB\-\-quiet\fR
+says nothing
+.SS Place
+.TP
+\fB\-\-side\fR \fBleft\fR|\fBright\fR
+\&
+.SH NOTES
+.nf
+Gates:
+  .upper  'first'
+.fi
+)" + kExitStatus + R"(.SH SEE ALSO
+\fBweir\fR(1),
+\fBweir\-measure\fR(1)
+)");
+}
+
+// Of the real command line: a page for every command that --help lists, and none that the formatter complains about.
+TEST(ManPage, OfEveryCommand) {
+  TemporaryDirectory directory;
+  ASSERT_EQ(run_weir({"man", directory.path()}).exit_code, 0);
+  const std::vector<std::string> pages = list_directory(directory.path());
+  const std::string help = run_weir({"--help"}).out;
+  std::size_t listed = 0;
+  for (std::size_t at = help.find("Subcommands:"); (at = help.find("\n  ", at)) != std::string::npos; ++at) {
+    const std::string name = help.substr(at + 3, help.find(' ', at + 3) - at - 3);
+    if (name.empty()) continue;
+    ++listed;
+    EXPECT_NE(std::find(pages.begin(), pages.end(), cat("weir-", name, ".1")), pages.end()) << name;
+  }
+  EXPECT_EQ(pages.size(), listed + 1);
+  if (run_command({"sh", "-c", "command -v groff"}).exit_code != 0) GTEST_SKIP() << "groff is not installed";
+  for (const std::string& page : pages) {
+    const CommandResult read = run_command({"groff", "-man", "-ww", "-z", directory / page});
+    EXPECT_EQ(read.exit_code, 0);
+    EXPECT_EQ(read.err, "") << page;
+  }
+}
+
+TEST(ManPage, ADirectoryIsNeeded) {
+  const CommandResult result = run_weir({"man", "/proc/none"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, "weir: /proc/none/weir.1: cannot be written; name a directory that can\n");
+}
+
+}  // namespace
+}  // namespace weir::man_page_test

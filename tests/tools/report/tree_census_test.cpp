@@ -1,0 +1,30 @@
+#include "tools/report/tree_census.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/tools/support/converted_volume.h"
+
+namespace weir::tree_census_test {
+namespace {
+
+using TreeCensusTest = ConvertedVolume;
+
+TEST_F(TreeCensusTest, CountsWhatIsThere) {
+  const NvdbFile file = open();
+  const TreeCensus census = take_census(file.grid(), {});
+  EXPECT_EQ(census.leaves + census.active_tiles[0] + census.inactive_tiles[0], 4096U);  // one lower node
+  EXPECT_EQ(census.leaves_by_bits, (std::array<std::uint64_t, 6>{0, 0, 0, 0, 0, census.leaves}));
+  EXPECT_EQ(census.active_voxels, file.grid().active_voxels());
+  EXPECT_GT(census.inactive_tiles[0], 4096U - 5 * 4 * 3);
+  EXPECT_EQ(census.active_bbox, (Box{{0, 0, 0}, {40, 30, 20}}));
+  EXPECT_EQ(census.min, 0.0F);
+  EXPECT_EQ(census.max, file.grid().value_max());
+  EXPECT_EQ(census.nonfinite, 0U);
+  const auto counts = count_values(file.grid(), census.min, census.max, 10, {});
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}), census.active_voxels);
+}
+
+}  // namespace
+}  // namespace weir::tree_census_test

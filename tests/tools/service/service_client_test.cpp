@@ -1,0 +1,199 @@
+// weir jobs, status and retry as a user runs them, against a service that converts nothing.
+#include "tools/service/service_client.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <boost/asio/io_context.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "daemon/http/http_server.h"
+#include "format/base/text.h"
+#include "tests/daemon/support/fake_control.h"
+#include "tests/daemon/support/served.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::service_client_test {
+namespace {
+
+class ServiceCommands : public testing::Test {
+ protected:
+  ServiceCommands() {
+    for (int id = 1; id <= 3; ++id) {
+      JobView job;
+      job.id = id;
+      job.watch = "/scratch/run 1";
+      job.source = cat("/scratch/run 1/", id, ".raw");
+      job.state = id == 1 ? JobState::done : JobState::failed;
+      control_.all.push_back(job);
+    }
+    control_.now.state = "running";
+    control_.now.version = "0.1.0";
+  }
+
+  CommandResult weir(const Served& served, std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--address", served.address()});
+    return run_weir(arguments);
+  }
+
+  FakeControl control_;
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ServiceCommands, ListJobs) {
+  const Served served(control_);
+  const CommandResult all = weir(served, {"jobs"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_EQ(split(all.out, '\n').size(), 5U) << all.out;
+  const CommandResult failed =
+      weir(served, {"jobs", "--state", "failed", "--watch", "/scratch/run 1", "--limit", "1", "--json"});
+  EXPECT_EQ(failed.exit_code, 0) << failed.err;
+  const auto page = nlohmann::json::parse(failed.out);
+  EXPECT_EQ(page.at("total"), 2);
+  EXPECT_EQ(page.at("jobs").size(), 1U);
+  EXPECT_EQ(page.at("jobs")[0].at("id"), 2);
+  EXPECT_EQ(weir(served, {"jobs", "--state", "done", "--offset", "5"}).out, "no jobs beyond 1\n");
+}
+
+TEST_F(ServiceCommands, ShowTheStatus) {
+  const Served served(control_);
+  const CommandResult text = weir(served, {"status"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_NE(text.out.find("\njobs        0 waiting, 0 running, 1 done, 2 failed\n"), std::string::npos) << text.out;
+  const auto status = nlohmann::json::parse(weir(served, {"status", "--json"}).out);
+  EXPECT_EQ(status.at("state"), "running");
+}
+
+TEST_F(ServiceCommands, RetryJobs) {
+  Served served(control_);
+  const CommandResult one = weir(served, {"retry", "2", "1"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(one.out, "job 2 is tried again: /scratch/run 1/2.raw\njob 1 is tried again: /scratch/run 1/1.raw\n");
+  const CommandResult all = weir(served, {"retry", "--all-failed"});
+  EXPECT_EQ(all.out, "1 job is tried again\n");
+  const CommandResult json = weir(served, {"retry", "--all-failed", "--json"});
+  EXPECT_EQ(json.out, "{\"retried\":0}\n");
+  EXPECT_EQ(served.run([&] { return control_.asked; }),
+            (std::vector<std::string>{"retry 2", "retry 1", "retry all", "retry all"}));
+  const CommandResult again = weir(served, {"retry", "2"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(again.err, cat("weir: ", served.address(), ": job 2 is waiting: nothing to retry\n"));
+  EXPECT_EQ(weir(served, {"retry", "77"}).err, cat("weir: ", served.address(), ": there is no job 77\n"));
+}
+
+TEST_F(ServiceCommands, AskAtTheUnixSocket) {
+  const std::string socket = directory_ / "weir.sock";
+  const std::string config = directory_ / "weir.toml";
+  std::ofstream(config)
+      << "[service]\ncontrol_socket = \"weir.sock\"\n[[watch]]\ndirectory = \"in\"\noutput = \"out\"\n";
+  Served served(control_, "", {}, socket);
+  EXPECT_EQ(run_weir({"retry", "2", "--address", "unix:" + socket}).out,
+            "job 2 is tried again: /scratch/run 1/2.raw\n");
+  EXPECT_EQ(run_weir({"retry", "1", "--config", config}).out, "job 1 is tried again: /scratch/run 1/1.raw\n");
+  EXPECT_EQ(run_weir({"jobs", "--config", config, "--state", "failed"}).exit_code, 0);
+  const CommandResult refused = weir(served, {"retry", "3"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err, cat("weir: ", served.address(), ": this address only shows; ask at unix:", socket,
+                             " (--address, --config)\n"));
+  served.close();
+  const CommandResult gone = run_weir({"status", "--address", "unix:" + socket});
+  EXPECT_EQ(gone.exit_code, 5);
+  EXPECT_EQ(gone.err, cat("weir: unix:", socket,
+                          ": cannot connect: No such file or directory; is weir watch running there? "
+                          "name its address with --address or --config\n"));
+  EXPECT_EQ(run_weir({"status", "--address", "unix:/" + std::string(107, 'x')}).exit_code, 2);
+}
+
+TEST_F(ServiceCommands, WantToKnowWhatToRetry) {
+  const std::string message = "weir: give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed\n";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"retry"}, std::vector<std::string>{"retry", "1", "--all-failed"}}) {
+    const CommandResult result = run_weir(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, message);
+  }
+}
+
+TEST_F(ServiceCommands, SayWhereNobodyAnswers) {
+  std::string address;
+  {
+    const Served served(control_);
+    address = served.address();
+  }
+  const CommandResult result = run_weir({"status", "--address", address});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, cat("weir: ", address,
+                            ": cannot connect: Connection refused; is weir watch running there? name its address with "
+                            "--address or --config\n"));
+}
+
+TEST_F(ServiceCommands, RefuseWhatIsNoAddress) {
+  const CommandResult result = run_weir({"jobs", "--address", "8470"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "weir: \"8470\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
+}
+
+TEST_F(ServiceCommands, ShowTheirToken) {
+  const Served served(control_, "secret");
+  const CommandResult without = weir(served, {"status"});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_EQ(without.err, cat("weir: ", served.address(),
+                             ": the service wants its token; give it with --token-file or WEIR_TOKEN\n"));
+  write_file(directory_ / "token", "secret\n");
+  EXPECT_EQ(weir(served, {"status", "--token-file", directory_ / "token"}).exit_code, 0);
+  write_file(directory_ / "other", "other\n");
+  EXPECT_EQ(weir(served, {"status", "--token-file", directory_ / "other"}).exit_code, 2);
+  CommandOptions options;
+  options.environment = {"WEIR_TOKEN=secret"};
+  EXPECT_EQ(run_weir({"jobs", "--address", served.address()}, options).exit_code, 0);
+}
+
+TEST_F(ServiceCommands, FindTheServiceOfAConfiguration) {
+  const Served served(control_, "secret");
+  std::filesystem::create_directory(directory_ / "in");
+  const std::string watch = "[[watch]]\ndirectory = \"in\"\noutput = \"out\"\n";
+  write_file(directory_ / "a.toml", cat("[service]\nlisten = \"", served.address(), "\"\ntoken = \"secret\"\n", watch));
+  const CommandResult fixed = run_weir({"status", "--config", directory_ / "a.toml"});
+  EXPECT_EQ(fixed.exit_code, 0) << fixed.err;
+  const std::string any = "[service]\nlisten = \"127.0.0.1:0\"\ntoken = \"secret\"\n";
+  write_file(directory_ / "b.toml", cat(any, "port_file = \"port\"\n", watch));
+  write_file(directory_ / "port", cat(served.port(), '\n'));
+  const CommandResult from_file = run_weir({"status", "--config", directory_ / "b.toml"});
+  EXPECT_EQ(from_file.exit_code, 0) << from_file.err;
+  write_file(directory_ / "port", "");
+  EXPECT_EQ(run_weir({"status", "--config", directory_ / "b.toml"}).err,
+            cat("weir: ", directory_ / "port", ": \"\" is no port; is weir watch running?\n"));
+  write_file(directory_ / "c.toml", any + watch);
+  EXPECT_EQ(run_weir({"status", "--config", directory_ / "c.toml"}).err,
+            "weir: the configuration listens on any free port and has no port_file; give --address\n");
+}
+
+// Something else may listen there.
+TEST_F(ServiceCommands, KnowAnotherServersAnswer) {
+  boost::asio::io_context io;
+  HttpResponse response{200, "text/html", "<html>", {}};
+  const HttpServer other(io, {"127.0.0.1", 0}, {}, [&](const HttpRequest&) { return response; });
+  std::thread thread([&] { io.run(); });
+  const std::string address = cat("127.0.0.1:", other.port());
+  CommandResult result = run_weir({"status", "--address", address});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, cat("weir: ", address, ": the answer is not weir's\n"));
+  response.status = 404;
+  result = run_weir({"status", "--address", address});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, cat("weir: ", address, ": the answer is 404 and not weir's\n"));
+  response = {200, "application/json", "{\"state\":7}", {}};
+  result = run_weir({"status", "--address", address});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, cat("weir: ", address, ": the answer is not weir's\n"));
+  io.stop();
+  thread.join();
+}
+
+}  // namespace
+}  // namespace weir::service_client_test

@@ -1,0 +1,177 @@
+// weir play: a series of NanoVDB files as frames, PNG files or raw RGB for an encoder.
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <atomic>
+#include <cerrno>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "gpu/image/image_output.h"
+#include "gpu/render/playback.h"
+#include "tools/command.h"
+#include "tools/options/backend_choice.h"
+#include "tools/options/picture_options.h"
+#include "tools/options/volume_series.h"
+#include "tools/report/progress.h"
+
+namespace weir {
+
+namespace {
+
+struct PlayArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string raw;
+  PictureArguments picture;
+  ProgressOptions progress;
+  bool json = false;
+};
+
+void check_output(const PlayArguments& arguments) {
+  if (arguments.output.empty() == arguments.raw.empty()) throw usage_error("give one of -o DIR and --raw -");
+  if (!arguments.raw.empty() && arguments.raw != "-") {
+    throw usage_error(cat("--raw is \"", arguments.raw, "\", it must be -, frames on stdout; redirect it to a file"));
+  }
+  if (!arguments.raw.empty() && arguments.json)
+    throw usage_error("--json and --raw - both take stdout; leave one of them out");
+}
+
+std::string frame_path(const std::string& directory, std::size_t frame) {
+  std::ostringstream name;
+  name << "frame_" << std::setw(5) << std::setfill('0') << frame << ".png";
+  return (std::filesystem::path(directory) / name.str()).string();
+}
+
+void write_stdout(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw io_error("stdout", "write", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+// Where frames go. A directory is made and tried before the work.
+FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
+  if (!arguments.raw.empty()) {
+    return [](std::size_t, const Picture& picture) { write_stdout(encode_rgb24(picture.image, picture.tone)); };
+  }
+  files.make_directory(arguments.output);
+  { const ImageFile tried(files, frame_path(arguments.output, 0)); }
+  if (const std::string next = frame_path(arguments.output, frames); files.exists(next)) {
+    spdlog::warn("{}: is from a longer series; this one ends before it", next);
+  }
+  return [&arguments, &files](std::size_t frame, const Picture& picture) {
+    ImageFile(files, frame_path(arguments.output, frame)).commit(picture.image, picture.tone);
+  };
+}
+
+// One look for all steps: transfer function, background and framing must not follow the single step.
+void fix_look(PictureRequest& request, std::span<const std::string> files) {
+  const SeriesSummary series = summarise_series(files);
+  if (!series.difference.empty()) spdlog::warn("{}; the camera frames each step's own box", series.difference);
+  if (!request.scene.volume.range && series.range) {
+    request.scene.volume.range = {series.range->min, series.range->max};
+  }
+  request.options.background = series.background;
+  request.scene.camera.framing = Framing::volume;
+}
+
+nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& request, const PlaybackReport& report,
+                       std::string_view backend) {
+  const auto& range = request.scene.volume.range;
+  return {{"output", arguments.output},
+          {"frames", report.frames},
+          {"width", request.options.width},
+          {"height", request.options.height},
+          {"mode", render_mode_name(request.scene.mode)},
+          {"filter", arguments.picture.filter},
+          {"backend", backend},
+          {"samples", request.sampling.samples},
+          {"seed", request.options.seed},
+          {"range", range ? nlohmann::json(*range) : nlohmann::json()},
+          {"load", {{"way", report.load.way}, {"bytes", report.load.bytes}, {"note", report.load.note}}},
+          {"steps_per_s", report.sustained},
+          {"limit", report.limit()},
+          {"total_s", report.total_s},
+          {"load_s", report.load_s},
+          {"render_s", report.render_s},
+          {"write_s", report.write_s}};
+}
+
+void play_series(const PlayArguments& arguments) {
+  check_output(arguments);
+  PictureRequest request = parse_picture(arguments.picture);
+  request.sampling.cancel = &interrupt_flag();
+  const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend);
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  const FrameWriter write = open_output(arguments, *files, volumes.size());
+  fix_look(request, volumes);
+
+  Progress progress(arguments.progress);
+  progress.start(cat("play, ", render_mode_name(request.scene.mode)), request.pixel_samples() * volumes.size(),
+                 ProgressUnit::samples);
+  std::uint64_t before = 0;  // samples of the frames before this one, whose count starts at 0 again
+  std::uint64_t last = 0;
+  request.sampling.progress = [&](std::uint64_t done) {
+    if (done < last) before += request.pixel_samples();
+    last = done;
+    progress.update(before + done);
+  };
+  std::atomic<std::size_t> written{0};
+  PlaybackReport report;
+  try {
+    report = play(*backend, volumes, request.scene, request.options, request.sampling,
+                  [&](std::size_t frame, const Picture& picture) {
+                    write(frame, picture);
+                    ++written;
+                  });
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
+    throw Error(ErrorKind::interrupted, cat("interrupted; ", written, " of ", volumes.size(), " frames were written"));
+  }
+  progress.finish();
+  if (arguments.json) {
+    std::cout << to_json(arguments, request, report, backend->name()).dump(2) << '\n';
+  } else {
+    spdlog::info(
+        "{} frames of {} x {}, {:.2f} steps/s; load {:.2f} s, render {:.2f} s, write {:.2f} s: {} is the limit",
+        report.frames, request.options.width, request.options.height, report.sustained, report.load_s, report.render_s,
+        report.write_s, report.limit());
+  }
+}
+
+}  // namespace
+
+void add_play(CLI::App& app) {
+  auto arguments = std::make_shared<PlayArguments>();
+  CLI::App* command = app.add_subcommand("play", "Renders a series of NanoVDB files, a frame of each.");
+  command
+      ->add_option("input", arguments->inputs,
+                   "NanoVDB files, or patterns in quotes, 'out/*.nvdb'; step_9 comes before step_10")
+      ->type_name("OUT.nvdb")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "for frame_00000.png and so on")->type_name("DIR");
+  command->add_option("--raw", arguments->raw, "-: frames on stdout, 8-bit sRGB, 3 bytes a pixel, for an encoder")
+      ->type_name("-");
+  add_picture_options(*command, arguments->picture);
+  add_progress_options(*command, arguments->progress);
+  command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
+  add_log_level(*command);
+  command->callback([arguments] { play_series(*arguments); });
+}
+
+}  // namespace weir

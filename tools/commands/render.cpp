@@ -1,0 +1,125 @@
+// weir render: a picture of a NanoVDB file, or of the source it would be made from.
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "format/base/error.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/image/image_output.h"
+#include "ingest/source_registry.h"
+#include "tools/command.h"
+#include "tools/export/dense_input.h"
+#include "tools/options/backend_choice.h"
+#include "tools/options/input_options.h"
+#include "tools/options/picture_options.h"
+#include "tools/options/run_options.h"
+#include "tools/report/progress.h"
+
+namespace weir {
+
+namespace {
+
+struct RenderArguments {
+  std::string input;
+  std::string output;
+  std::string volume = "file";
+  InputArguments source;
+  PictureArguments picture;
+  ProgressOptions progress;
+  bool json = false;
+};
+
+std::unique_ptr<LoadedVolume> load_file(Backend& backend, const RenderArguments& arguments) {
+  if (const std::string option = given_input_option(arguments.source); !option.empty()) {
+    throw Error(ErrorKind::usage, cat(option, " says how to read a source; give --volume dense with it"));
+  }
+  return backend.load(std::make_shared<const NvdbFile>(arguments.input), 0, nullptr);
+}
+
+std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments& arguments, Progress& progress) {
+  const auto source = open_source(arguments.input, parse_input(arguments.source));
+  progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
+  StreamOptions options;
+  options.cancel = &interrupt_flag();
+  options.progress = [&](std::int64_t done, std::int64_t) {
+    progress.update(static_cast<std::uint64_t>(done) * sizeof(float));
+  };
+  return backend.load_dense(read_dense(*source, options), 0);
+}
+
+void render(const RenderArguments& arguments) {
+  PictureRequest request = parse_picture(arguments.picture);
+  request.sampling.cancel = &interrupt_flag();
+  const auto threads = limit_threads(0);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend);
+  Progress progress(arguments.progress);
+  const auto start = std::chrono::steady_clock::now();
+  const std::unique_ptr<LoadedVolume> volume =
+      arguments.volume == "dense" ? load_dense(*backend, arguments, progress) : load_file(*backend, arguments);
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  ImageFile image_file(*files, arguments.output);
+  const double load_s = seconds_since(start);
+
+  progress.start(cat("render, ", render_mode_name(request.scene.mode)), request.pixel_samples(), ProgressUnit::samples);
+  request.sampling.progress = [&](std::uint64_t done) { progress.update(done); };
+  const Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
+  progress.finish();
+  const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
+  const LoadSummary& loaded = volume->load_summary();
+
+  if (arguments.json) {
+    const nlohmann::json report{
+        {"image", arguments.output},
+        {"bytes", bytes},
+        {"width", request.options.width},
+        {"height", request.options.height},
+        {"mode", render_mode_name(request.scene.mode)},
+        {"filter", arguments.picture.filter},
+        {"volume", arguments.volume},
+        {"backend", backend->name()},
+        {"samples", request.sampling.samples},
+        {"seed", request.options.seed},
+        {"load", {{"way", loaded.way}, {"bytes", loaded.bytes}, {"transfer_s", loaded.seconds}, {"note", loaded.note}}},
+        {"load_s", load_s},
+        {"render_s", picture.render_s}};
+    std::cout << report.dump(2) << '\n';
+  } else {
+    spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, request.options.width,
+                 request.options.height, request.sampling.samples, picture.render_s);
+  }
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command = app.add_subcommand("render", "Renders a picture of a NanoVDB file, or of a source.");
+  command->add_option("input", arguments->input, "NanoVDB file, OUT.nvdb; with --volume dense any input of convert")
+      ->type_name("INPUT")
+      ->required();
+  command->add_option("-o,--output", arguments->output, ".png (sRGB) or .exr (linear)")
+      ->type_name("IMAGE.png")
+      ->required();
+  command
+      ->add_option("--volume", arguments->volume,
+                   "file: a NanoVDB file in place; dense: a source, all of its voxels in memory")
+      ->check(CLI::IsMember({"file", "dense"}))
+      ->capture_default_str();
+  add_picture_options(*command, arguments->picture);
+  add_input_options(*command, arguments->source);
+  add_progress_options(*command, arguments->progress);
+  command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
+  add_log_level(*command);
+  command->callback([arguments] { render(*arguments); });
+}
+
+}  // namespace weir

@@ -1,0 +1,233 @@
+// weir sample: a synthetic volume as a raw file.
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <future>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/process_memory.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
+#include "format/io/file_system.h"
+#include "format/output/partial_file.h"
+#include "ingest/raw/raw_name.h"
+#include "ingest/source/extent.h"
+#include "ingest/synthetic/pack_values.h"
+#include "ingest/synthetic/slabs.h"
+#include "ingest/synthetic/synthetic.h"
+#include "tools/command.h"
+#include "tools/options/input_options.h"
+#include "tools/options/run_options.h"
+
+namespace weir {
+namespace {
+
+/// Program, libraries, stacks and lattices: what is resident besides the slabs.
+constexpr std::uint64_t kFixedBytes = std::uint64_t{40} << 20U;
+/// Larger slabs are no faster and keep the writer waiting at the end.
+constexpr std::uint64_t kMostSlabBytes = std::uint64_t{96} << 20U;
+
+struct SampleArguments {
+  std::string kind;
+  std::string output;
+  std::string dims;
+  std::string type;
+  std::string endian;
+  std::uint64_t seed = 1;
+  bool overwrite = false;
+  bool json = false;
+  RunArguments run;
+};
+
+/// What the file will be, after options and name agreed.
+struct Shape {
+  Index3 extent;
+  ScalarType type = ScalarType::float32;
+  bool big_endian = false;
+};
+
+Error contradiction(const std::string& path, const std::string& option, const std::string& named) {
+  return {ErrorKind::usage, cat(path, ": ", option, " contradicts the file's name, which says ", named,
+                                "; drop the option or choose another name")};
+}
+
+// A name of the pattern NAME_XxYxZ_TYPE.raw is believed by whoever reads the file.
+Shape resolve_shape(const SampleArguments& arguments) {
+  const std::string& path = arguments.output;
+  InputArguments given;
+  given.dims = arguments.dims;
+  given.type = arguments.type;
+  given.endian = arguments.endian;
+  const SourceOptions options = parse_input(given);
+  const auto name = parse_raw_name(path);
+  if (!name && !options.extent) {
+    throw Error(ErrorKind::usage, cat(path, ": extent unknown; give --dims X,Y,Z or name it NAME_XxYxZ_TYPE.raw"));
+  }
+  if (name && options.extent && *options.extent != name->extent) {
+    throw contradiction(path, "--dims " + arguments.dims, extent_text(name->extent));
+  }
+  Shape shape{options.extent ? *options.extent : name->extent, options.type.value_or(ScalarType::float32),
+              options.big_endian.value_or(false)};
+  if (!name) return shape;
+  if (!name->type) {
+    throw Error(ErrorKind::usage,
+                cat(path, ": unknown type '", name->type_text, "' in the file's name; it must be one of ",
+                    scalar_names(), ", with be appended for big-endian"));
+  }
+  if (options.type && *options.type != *name->type)
+    throw contradiction(path, "--type " + arguments.type, name->type_text);
+  if (options.big_endian && *options.big_endian != name->big_endian) {
+    throw contradiction(path, "--endian " + arguments.endian, name->type_text);
+  }
+  return {shape.extent, *name->type, name->big_endian};
+}
+
+/// Voxels of a slab: two of floats, and two of packed bytes where the floats are not written themselves.
+std::int64_t slab_voxels(std::uint64_t memory, const ValuePacker& packer, ScalarType type) {
+  const std::uint64_t voxel_bytes = 4 + (packer.is_identity() ? 0 : scalar_bytes(type));
+  const std::uint64_t slab_bytes = std::min((memory - kFixedBytes) / 2, kMostSlabBytes);
+  return static_cast<std::int64_t>(slab_bytes / voxel_bytes);
+}
+
+/// Makes slab after slab; one is written while the next is made.
+class SlabWriter {
+ public:
+  SlabWriter(VolumeSource& source, const ValuePacker& packer, ScalarType type, File& file)
+      : source_(source), packer_(packer), value_bytes_(scalar_bytes(type)), file_(file) {}
+  ~SlabWriter() {
+    if (writing_.valid()) writing_.wait();
+  }
+  SlabWriter(const SlabWriter&) = delete;
+  SlabWriter& operator=(const SlabWriter&) = delete;
+
+  void write(const Box& slab) {
+    const auto voxels = static_cast<std::size_t>(slab.voxels());
+    Buffers& buffers = buffers_.at(next_);
+    next_ = 1 - next_;
+    buffers.values.resize(voxels);
+    source_.read(slab, buffers.values);
+    std::span<const std::byte> bytes = std::as_bytes(std::span(buffers.values));
+    if (!packer_.is_identity()) {
+      buffers.bytes.resize(voxels * value_bytes_);
+      packer_.pack(buffers.values, buffers.bytes);
+      bytes = buffers.bytes;
+    }
+    const auto offset = static_cast<std::uint64_t>(linear_index(slab.lo, source_.info().extent)) * value_bytes_;
+    finish();
+    writing_ = std::async(std::launch::async, [this, offset, bytes] { file_.write_at(offset, bytes); });
+  }
+  /// Waits for the last write and rethrows what it threw.
+  void finish() {
+    if (writing_.valid()) writing_.get();
+  }
+
+ private:
+  struct Buffers {
+    std::vector<float> values;
+    std::vector<std::byte> bytes;
+  };
+
+  VolumeSource& source_;
+  const ValuePacker& packer_;
+  std::size_t value_bytes_;
+  File& file_;
+  std::array<Buffers, 2> buffers_;
+  std::size_t next_ = 0;
+  std::future<void> writing_;
+};
+
+void sample(const SampleArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const Shape shape = resolve_shape(arguments);
+  const SyntheticKind& kind = find_synthetic_kind(arguments.kind);
+  const ValuePacker packer(kind, shape.type, shape.big_endian);
+  const std::uint64_t memory = parse_memory(arguments.run);
+  const auto source = open_synthetic(kind.name, {shape.extent, arguments.seed});
+  const std::int64_t voxels = volume(shape.extent);
+  const std::uint64_t value_bytes = scalar_bytes(shape.type);
+  const std::uint64_t bytes = static_cast<std::uint64_t>(voxels) * value_bytes;
+  const auto threads = limit_threads(arguments.run.threads);
+
+  const auto files = make_posix_file_system();
+  PartialFile output(*files, arguments.output, arguments.overwrite);
+  output.reserve(bytes);
+
+  Progress progress(arguments.run.progress);
+  progress.start(cat("sample ", kind.name), bytes);
+  {
+    SlabWriter writer(*source, packer, shape.type, output.file());
+    const std::int64_t most = slab_voxels(memory, packer, shape.type);
+    for (std::int64_t first = 0; first < voxels;) {
+      if (interrupt_flag()) {
+        throw Error(ErrorKind::interrupted, cat(arguments.output, ": interrupted; nothing was left behind"));
+      }
+      const Box slab = slab_at(shape.extent, first, most);
+      writer.write(slab);
+      first += slab.voxels();
+      progress.update(static_cast<std::uint64_t>(first) * value_bytes);
+    }
+    writer.finish();
+  }
+  output.commit();
+  progress.finish();
+
+  const double total_s = seconds_since(start);
+  if (arguments.json) {
+    const nlohmann::json report{{"output", arguments.output},
+                                {"kind", kind.name},
+                                {"extent", {shape.extent.x, shape.extent.y, shape.extent.z}},
+                                {"type", scalar_name(shape.type)},
+                                {"endian", shape.big_endian ? "big" : "little"},
+                                {"seed", arguments.seed},
+                                {"bytes", bytes},
+                                {"total_s", total_s},
+                                {"peak_rss_bytes", peak_resident_bytes()}};
+    std::cout << report.dump(2) << '\n';
+  } else {
+    spdlog::info("{}: {} {} {}, {}, {:.2f} s", arguments.output, kind.name, extent_text(shape.extent),
+                 scalar_name(shape.type), format_bytes(bytes), total_s);
+  }
+}
+
+std::string kind_list() {
+  std::string text = "Kinds:";
+  for (const SyntheticKind& kind : synthetic_kinds()) {
+    text += cat("\n  ", kind.name, std::string(16 - kind.name.size(), ' '), kind.description);
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_sample(CLI::App& app) {
+  auto arguments = std::make_shared<SampleArguments>();
+  CLI::App* command = app.add_subcommand("sample", "Writes a synthetic volume as a raw file.");
+  command->footer(kind_list);
+  command->add_option("kind", arguments->kind, "which volume, see below")->required()->type_name("KIND");
+  command->add_option("-o,--output", arguments->output, "raw file; NAME_XxYxZ_TYPE.raw says what is in it")
+      ->required()
+      ->type_name("FILE.raw");
+  command->add_option("--dims", arguments->dims, "voxels; default: the name's")->type_name("X,Y,Z");
+  command
+      ->add_option("--type", arguments->type,
+                   cat(scalar_names(), "; default: the name's, else float32; integers are scaled to their range"))
+      ->type_name("TYPE");
+  command->add_option("--endian", arguments->endian, "byte order; default: the name's, else little")
+      ->type_name("little|big");
+  command->add_option("--seed", arguments->seed, "of the kinds with randomness")->type_name("N")->capture_default_str();
+  command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
+  add_run_options(*command, arguments->run);
+  command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
+  add_log_level(*command);
+  command->callback([arguments] { sample(*arguments); });
+}
+
+}  // namespace weir

@@ -1,0 +1,298 @@
+// weir sweep: error, size and time against rate, with the paper's method and ZFP beside ours.
+#include <oneapi/tbb/global_control.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compressor/build_commit.h"
+#include "compressor/conversion.h"
+#include "compressor/select/budget.h"
+#include "format/base/error.h"
+#include "format/base/process_memory.h"
+#include "format/base/seconds_since.h"
+#include "format/base/text.h"
+#include "format/output/partial_file.h"
+#include "gpu/image/image_output.h"
+#include "ingest/source_registry.h"
+#include "tools/command.h"
+#include "tools/options/given_options.h"
+#include "tools/options/input_options.h"
+#include "tools/options/run_options.h"
+#include "tools/sweep/sweep_method.h"
+#include "tools/sweep/sweep_plot.h"
+#include "tools/sweep/sweep_report.h"
+#include "tools/sweep/zfp_codec.h"
+#include "tools/sweep/zfp_trial.h"
+
+namespace weir {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The command line as given; empty: not given.
+struct SweepArguments {
+  std::string input;
+  std::string rates = "20,10,8,5,4,2";
+  std::string methods = "auto,float,paper,zfp";
+  std::string output;
+  std::string non_finite;
+  InputArguments source;
+  RunArguments run;
+  bool keep = false;
+  bool overwrite = false;
+  bool json = false;
+};
+
+/// The directory of the results: made where it is missing, and removed again where nothing came to lie in it.
+class ResultDirectory {
+ public:
+  ResultDirectory(FileSystem& files, const std::string& path) : files_(files), path_(path), made_(!files.exists(path)) {
+    if (!made_ && !std::filesystem::is_directory(path)) {
+      throw usage_error(cat(path, ": is no directory; choose another one with -o"));
+    }
+    if (made_) files_.make_directory(path);
+  }
+  ~ResultDirectory() {
+    if (!made_) return;
+    try {
+      files_.remove_directory(path_);
+    } catch (const Error&) {  // not empty: the usual end
+    }
+  }
+  ResultDirectory(const ResultDirectory&) = delete;
+  ResultDirectory& operator=(const ResultDirectory&) = delete;
+
+  std::string operator/(const std::string& name) const { return (std::filesystem::path(path_) / name).string(); }
+  const std::string& path() const { return path_; }
+
+ private:
+  FileSystem& files_;
+  std::string path_;
+  bool made_;
+};
+
+std::string volume_name(const SweepMethod& method, double rate) { return cat(method.name, "_rate", rate, ".nvdb"); }
+
+// What would be refused after minutes of work is refused before it.
+void check_outputs(const ResultDirectory& directory, std::span<const SweepMethod> methods,
+                   std::span<const double> rates, const SweepArguments& a) {
+  std::vector<std::string> paths;
+  for (const char* name : {"sweep.csv", "sweep.json", "psnr_bits.png", "psnr_seconds.png"}) {
+    paths.push_back(directory / name);
+  }
+  for (const SweepMethod& method : methods) {
+    if (method.is_zfp()) continue;
+    for (const double rate : rates) {
+      paths.push_back(directory / volume_name(method, rate));
+      paths.push_back(sidecar_path(paths.back()));
+    }
+  }
+  std::error_code ignored;
+  for (const std::string& path : paths) {
+    if (std::filesystem::equivalent(a.input, path, ignored)) {
+      throw usage_error(cat(path, ": is the input; choose another directory with -o"));
+    }
+    if (std::filesystem::is_directory(path, ignored)) {
+      throw usage_error(cat(path, ": is a directory; choose another one with -o"));
+    }
+    if (!a.overwrite && std::filesystem::exists(path, ignored)) {
+      throw usage_error(cat(path, ": exists; choose another directory with -o or pass --overwrite"));
+    }
+  }
+}
+
+class Sweep {
+ public:
+  Sweep(VolumeSource& source, const ResultDirectory& directory, FileSystem& files, const SweepArguments& arguments,
+        std::map<std::string, std::string> given)
+      : source_(source),
+        directory_(directory),
+        files_(files),
+        arguments_(arguments),
+        given_(std::move(given)),
+        memory_(parse_memory(arguments.run)) {}
+
+  SweepRow run(const SweepMethod& method, double rate) {
+    SweepRow row;
+    row.method = method.name;
+    row.rate = rate;
+    row.bytes_asked = bytes_at_rate(static_cast<std::uint64_t>(volume(source_.info().extent)) * sizeof(float), rate);
+    Progress progress(arguments_.run.progress);
+    ConversionControl control;
+    control.cancel = &interrupt_flag();
+    control.pass_started = [&](const std::string& pass, std::uint64_t bytes) {
+      progress.start(cat(method.name, " at rate ", rate, ", ", pass), bytes);
+    };
+    control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
+    if (method.is_zfp()) {
+      run_zfp(control, row);
+    } else {
+      run_conversion(method, control, row);
+    }
+    progress.finish();
+    return row;
+  }
+
+ private:
+  void run_conversion(const SweepMethod& method, ConversionControl& control, SweepRow& row) {
+    ConversionOptions options = conversion_of(method, arguments_.non_finite);
+    options.output = directory_ / volume_name(method, row.rate);
+    options.overwrite = arguments_.overwrite;
+    options.budget = {Budget::Kind::rate, row.rate, 0};
+    options.memory = memory_;
+    options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
+    options.threads = static_cast<std::size_t>(arguments_.run.threads);
+    options.provenance = {WEIR_VERSION, build_commit(), given_};
+    options.provenance.options.insert(method.options.begin(), method.options.end());
+    options.provenance.options["rate"] = cat(row.rate);
+    // What a conversion says of its file belongs to the row; of the source, and of the disk, it is said once.
+    const std::string own = options.output + ": ";
+    const auto is_own = [&own](const std::string& line) { return line.compare(0, own.size(), own) == 0; };
+    control.notice = [&](const std::string& line) {
+      if (is_own(line)) {
+        row.note = line.substr(own.size());
+      } else if (said_.insert(line).second) {
+        spdlog::warn("{}", line);
+      }
+    };
+    const Clock::time_point start = Clock::now();
+    try {
+      const Sidecar made = convert_volume(source_, options, control, files_);
+      SweepResult result;
+      result.seconds = seconds_since(start);
+      result.encoding = made.grid.type;
+      result.bytes = made.file.bytes;
+      result.error = {made.error.mse,     made.error.rmse,    made.error.nmse,
+                      made.error.psnr_db, made.error.max_abs, made.error.lossless};
+      result.leaves_kept = made.selection.leaves_kept;
+      row.result = result;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget) throw;
+      const std::string line = error.what();
+      row.note = is_own(line) ? line.substr(own.size()) : line;
+      return;
+    }
+    if (!arguments_.keep) {
+      files_.remove(options.output);
+      files_.remove(sidecar_path(options.output));
+    }
+  }
+
+  void run_zfp(const ConversionControl& control, SweepRow& row) {
+    const auto block_bits = zfp_block_bits(source_.info().extent, row.bytes_asked);
+    if (!block_bits) {
+      row.note =
+          cat(row.bytes_asked, " bytes asked, ZFP takes ", zfp_stream_bytes(source_.info().extent, kLeastZfpBits),
+              " or more: ", kLeastZfpBits, " bits a block of 4^3 voxels");
+      return;
+    }
+    ZfpTrialOptions options;
+    options.block_bits = *block_bits;
+    options.memory = memory_;
+    options.directory = directory_.path();
+    const ZfpTrial trial = try_zfp(source_, options, control, files_);
+    if (trial.nonfinite > 0 || trial.nonfinite_decoded > 0) {
+      row.note = trial.nonfinite > 0
+                     ? cat("ZFP has no code for NaN and infinity, which ", trial.nonfinite, " voxels are")
+                     : cat("what ZFP gives back overflows float32 in ", trial.nonfinite_decoded, " voxels");
+      return;
+    }
+    row.result = SweepResult{"zfp", trial.bytes, trial.error, trial.seconds, std::nullopt};
+  }
+
+  VolumeSource& source_;
+  const ResultDirectory& directory_;
+  FileSystem& files_;
+  const SweepArguments& arguments_;
+  std::map<std::string, std::string> given_;
+  std::uint64_t memory_;
+  std::set<std::string> said_;
+};
+
+void write_text(FileSystem& files, const std::string& path, const std::string& text, bool overwrite) {
+  PartialFile file(files, path, overwrite);
+  file.file().write_at(0, std::as_bytes(std::span(text)));
+  file.commit();
+}
+
+// As it is: a chart's white is the screen's.
+constexpr ToneMapping kChartTone{1.0F, false};
+
+void sweep(const CLI::App& command, const SweepArguments& a) {
+  const Clock::time_point start = Clock::now();
+  const std::vector<double> rates = parse_rates(a.rates);
+  const std::vector<SweepMethod> methods = parse_sweep_methods(a.methods);
+  for (const SweepMethod& method : methods) conversion_of(method, a.non_finite);
+  SourceOptions source_options = parse_input(a.source);
+  source_options.memory = parse_memory(a.run);
+  source_options.spool_directory = a.output;
+  const auto threads = limit_threads(a.run.threads);
+  const auto files = make_posix_file_system();
+  const ResultDirectory directory(*files, a.output);
+  check_outputs(directory, methods, rates, a);
+  const std::unique_ptr<VolumeSource> source = open_source(a.input, source_options);
+
+  std::map<std::string, std::string> given = given_options(command);
+  for (const char* own : {"rates", "methods", "output", "keep"}) given.erase(own);
+  Sweep sweep(*source, directory, *files, a, given);
+  SweepReport report;
+  report.source = a.input;
+  report.extent = source->info().extent;
+  report.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  report.memory = source_options.memory;
+  for (const SweepMethod& method : methods) {
+    for (const double rate : rates) {
+      if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted; no results were written");
+      report.rows.push_back(sweep.run(method, rate));
+    }
+  }
+  report.total_s = seconds_since(start);
+  report.peak_rss_bytes = peak_resident_bytes();
+
+  ImageFile bits(*files, directory / "psnr_bits.png");
+  ImageFile seconds(*files, directory / "psnr_seconds.png");
+  write_text(*files, directory / "sweep.csv", csv_text(report), a.overwrite);
+  write_text(*files, directory / "sweep.json", json_text(report), a.overwrite);
+  bits.commit(psnr_plot(report, SweepAxis::bits_per_voxel), kChartTone);
+  seconds.commit(psnr_plot(report, SweepAxis::seconds), kChartTone);
+  std::cout << (a.json ? json_text(report) : table_text(report));
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app) {
+  auto a = std::make_shared<SweepArguments>();
+  CLI::App* command =
+      app.add_subcommand("sweep", "Measures error, size and time against rate, ZFP's and the paper's too");
+  command->add_option("input", a->input, "volume file, NAME_XxYxZ_TYPE.raw for instance")
+      ->type_name("INPUT")
+      ->required();
+  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, psnr_bits.png, psnr_seconds.png")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--rates", a->rates, "dense float32 bytes / file bytes, between commas")
+      ->type_name("R,R,...")
+      ->capture_default_str();
+  command->add_option("--methods", a->methods, cat("between commas, of ", sweep_method_names()))
+      ->type_name("METHOD,...")
+      ->capture_default_str();
+  command->add_option("--nonfinite", a->non_finite, "what becomes of NaN and infinite voxels; default error")
+      ->type_name("error|background|keep");
+  command->add_flag("--keep", a->keep, "keep the converted volumes, METHOD_rateRATE.nvdb, in the directory");
+  command->add_flag("--overwrite", a->overwrite, "replace existing results");
+  add_input_options(*command, a->source);
+  add_run_options(*command, a->run);
+  command->add_flag("--json", a->json, "print what is in sweep.json on stdout");
+  add_log_level(*command);
+  command->callback([command, a] { sweep(*command, *a); });
+}
+
+}  // namespace weir

@@ -1,0 +1,54 @@
+// weir watch: the daemon in the foreground, or what it would do.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "daemon/service.h"
+#include "format/base/error.h"
+#include "tools/command.h"
+#include "tools/describe/describe_config.h"
+#include "tools/options/convert_syntax.h"
+
+namespace weir {
+namespace {
+
+struct WatchArguments {
+  std::string config;
+  bool check = false;
+};
+
+void watch_directories(const CLI::App& command, const WatchArguments& a) {
+  const auto load = [&] {
+    DaemonConfig config = load_config(a.config, convert_syntax());
+    const CLI::Option* level = command.get_option("--log-level");
+    if (level->count() > 0) config.service.log_level = level->as<std::string>();
+    return config;
+  };
+  if (a.check) {
+    std::fputs(describe_config(load()).c_str(), stdout);
+    return;
+  }
+  std::signal(SIGHUP, SIG_IGN);  // until the service takes it for a reload: what it asks for is read below anyway
+  // The very program that runs now converts, also where another has been installed in its place since.
+  Service service(load, "/proc/self/exe", WEIR_VERSION);
+  if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
+  service.run();
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("watch", "Convert what appears in directories, as a configuration says");
+  const auto a = std::make_shared<WatchArguments>();
+  command->add_option("config", a->config, "what to watch; docs/operations.md has its keys")
+      ->type_name("CONFIG.toml")
+      ->required();
+  command->add_flag("--check", a->check, "only validate the configuration and print what it asks for");
+  add_log_level(*command);
+  command->callback([command, a] { watch_directories(*command, *a); });
+}
+
+}  // namespace weir

@@ -1,0 +1,13 @@
+// What a configuration of the daemon asks for, defaults included, for people.
+#pragma once
+
+#include <string>
+
+#include "daemon/config/config.h"
+
+namespace weir {
+
+/// A paragraph for the service and one for each watch; every line ends with a newline.
+std::string describe_config(const DaemonConfig& config);
+
+}  // namespace weir

@@ -1,0 +1,23 @@
+#include "tools/options/backend_choice.h"
+
+#include "format/base/error.h"
+#ifdef WEIR_HAVE_CUDA
+#include "gpu/cuda/render/cuda_backend.h"
+#include "gpu/cuda/runtime/check.h"
+#endif
+
+namespace weir {
+
+std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
+#ifdef WEIR_HAVE_CUDA
+  if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0))
+    return make_cuda_backend({.devices = choice.devices, .load = {}});
+#else
+  if (choice.name == "cuda") {
+    throw Error(ErrorKind::usage, "--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
+  }
+#endif
+  return make_cpu_backend(choice.threads);
+}
+
+}  // namespace weir

@@ -1,0 +1,158 @@
+#include "tools/report/histogram_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "format/base/text.h"
+#include "tools/plot/plot_axis.h"
+#include "tools/plot/plot_canvas.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kTextColumns = 64;
+constexpr int kTextRows = 10;
+constexpr std::size_t kLabelWidth = 9;
+constexpr std::size_t kDiscreteBins = 16;  // fewer filled ones say nothing about what lies between
+
+constexpr std::int32_t kWidth = 720;  // pixels
+constexpr std::int32_t kHeight = 360;
+constexpr std::int32_t kLeft = 48;
+constexpr std::int32_t kRight = 24;
+constexpr std::int32_t kTop = 24;
+constexpr std::int32_t kBottom = 40;
+constexpr int kMostSteps = 6;  // of the ticks along x
+constexpr Float3 kPaper{1, 1, 1};
+constexpr Float3 kInk{0.05F, 0.05F, 0.05F};
+constexpr Float3 kGridLine{0.78F, 0.78F, 0.78F};
+constexpr Float3 kBar{0.06F, 0.19F, 0.46F};
+constexpr Float3 kMark{0.75F, 0.16F, 0.02F};
+
+bool nothing_to_show(const Sidecar::Histogram& h) {
+  return !std::isfinite(h.min) || !std::isfinite(h.max) ||
+         std::none_of(h.counts.begin(), h.counts.end(), [](std::uint64_t count) { return count != 0; });
+}
+
+// Whole numbers of neighbouring bins merged, so that all columns are equally wide: as many as lie
+// between the values of discrete data, then as many as make at most `columns`.
+Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
+  std::size_t first = h.counts.size();
+  std::size_t stride = 0;
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < h.counts.size(); ++i) {
+    if (h.counts[i] == 0) continue;
+    first = std::min(first, i);
+    stride = std::gcd(stride, i - first);
+    ++filled;
+  }
+  if (filled < kDiscreteBins) stride = 1;
+  const std::size_t skipped = first % stride;  // empty bins below the first value
+  const std::size_t groups = (h.counts.size() - skipped + stride - 1) / stride;
+  const std::size_t per_column = stride * ((groups + columns - 1) / columns);
+  const double width = (h.max - h.min) / static_cast<double>(h.counts.size());
+  Sidecar::Histogram result;
+  result.counts.resize((h.counts.size() - skipped + per_column - 1) / per_column);
+  result.min = h.min + width * static_cast<double>(skipped);
+  result.max = per_column == 1 ? h.max : result.min + width * static_cast<double>(per_column * result.counts.size());
+  for (std::size_t i = first; i < h.counts.size(); ++i) result.counts[(i - skipped) / per_column] += h.counts[i];
+  return result;
+}
+
+// 0 for no voxel, above 0 for one, 1 for `most`.
+double log_height(std::uint64_t count, std::uint64_t most) {
+  return std::log10(1.0 + static_cast<double>(count)) / std::log10(1.0 + static_cast<double>(most));
+}
+
+std::string padded(const std::string& label) {
+  return std::string(kLabelWidth - std::min(label.size(), kLabelWidth), ' ') + label;
+}
+
+}  // namespace
+
+std::string histogram_text(const Sidecar::Histogram& histogram) {
+  if (nothing_to_show(histogram)) return "histogram: no finite values\n";
+  const Sidecar::Histogram shown = merged(histogram, kTextColumns);
+  const auto& bins = shown.counts;
+  const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
+  std::string plot;
+  for (int row = kTextRows; row > 0; --row) {
+    plot += padded(row == kTextRows ? cat(most) : row == 1 ? "1" : "") + " |";
+    for (const std::uint64_t count : bins) {
+      // One voxel shows: heights round up.
+      plot += std::ceil(log_height(count, most) * kTextRows) >= row ? '#' : ' ';
+    }
+    plot.erase(plot.find_last_not_of(' ') + 1);
+    plot += '\n';
+  }
+  plot += std::string(kLabelWidth, ' ') + " +" + std::string(bins.size(), '-') + '\n';
+  const std::string low = cat(shown.min);
+  const std::string high = cat(shown.max);
+  const std::size_t gap = bins.size() > low.size() + high.size() ? bins.size() - low.size() - high.size() : 1;
+  return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
+}
+
+Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background) {
+  PlotCanvas canvas(kWidth, kHeight, kPaper);
+  constexpr std::int32_t kFloor = kHeight - kBottom;
+  constexpr std::int32_t kBarsWidth = kWidth - kLeft - kRight;
+  constexpr std::int32_t kBarsHeight = kFloor - kTop;
+  if (nothing_to_show(histogram)) {
+    canvas.text(kLeft, kHeight / 2, "no finite values", kInk);
+    return canvas.image();
+  }
+  const Sidecar::Histogram shown = merged(histogram, static_cast<std::size_t>(kBarsWidth));
+  const auto& bins = shown.counts;
+  const std::uint64_t most = *std::max_element(bins.begin(), bins.end());
+  const auto height = [&](std::uint64_t count) {
+    return static_cast<std::int32_t>(std::lround(log_height(count, most) * kBarsHeight));
+  };
+  std::uint64_t decade = 1;
+  for (int exponent = 0; decade <= most; ++exponent, decade *= 10) {
+    const std::int32_t y = kFloor - height(decade);
+    canvas.fill(kLeft, y, kWidth - kRight, y + 1, kGridLine);
+    const std::string label = exponent < 4 ? cat(decade) : cat("1e", exponent);
+    canvas.text(kLeft - 6 - PlotCanvas::text_width(label), y - 3, label, kInk);
+    if (decade > most / 10) break;  // the next one might not fit 64 bits
+  }
+  const auto columns = static_cast<std::int32_t>(bins.size());
+  for (std::int32_t i = 0; i < columns; ++i) {
+    const std::uint64_t count = bins[static_cast<std::size_t>(i)];
+    if (count == 0) continue;
+    canvas.fill(kLeft + i * kBarsWidth / columns, kFloor - std::max(height(count), 1),
+                kLeft + (i + 1) * kBarsWidth / columns, kFloor, kBar);
+  }
+  canvas.fill(kLeft - 1, kTop, kLeft, kFloor, kInk);
+  canvas.fill(kLeft - 1, kFloor, kWidth - kRight, kFloor + 1, kInk);
+  canvas.text(kLeft - 6 - PlotCanvas::text_width("voxels"), kTop - 14, "voxels", kInk);
+  const double range = shown.max - shown.min;
+  const auto x_of = [&](double value) {
+    const double part = range > 0 ? (value - shown.min) / range : 0.5;
+    return kLeft + static_cast<std::int32_t>(std::lround(part * (kBarsWidth - 1)));
+  };
+  const auto tick = [&](double value, const std::string& label) {
+    const std::int32_t x = x_of(value);
+    canvas.fill(x, kFloor, x + 1, kFloor + 5, kInk);
+    const std::int32_t width = PlotCanvas::text_width(label);
+    canvas.text(std::clamp(x - width / 2, 0, kWidth - width), kFloor + 8, label, kInk);
+  };
+  if (range > 0 && std::isfinite(range)) {
+    const double step = tick_step(range, kMostSteps);
+    const double first = std::ceil(shown.min / step);
+    for (int i = 0; i < 8 && (first + i) * step <= shown.max; ++i) tick((first + i) * step, cat((first + i) * step));
+  } else {
+    tick(shown.min, cat(shown.min));
+  }
+  canvas.text(kWidth - kRight - PlotCanvas::text_width("value"), kHeight - 12, "value", kInk);
+  if (background && *background >= shown.min && *background <= shown.max) {
+    const std::int32_t x = x_of(*background);
+    canvas.fill(x, kTop - 4, x + 1, kFloor, kMark);
+    const std::string label = cat("background ", *background);
+    canvas.text(std::min(x + 4, kWidth - kRight - PlotCanvas::text_width(label)), kTop - 14, label, kMark);
+  }
+  return canvas.image();
+}
+
+}  // namespace weir

@@ -1,0 +1,20 @@
+// A histogram as a picture: on a terminal and as an image. Counts are shown on
+// a logarithmic scale, since the background alone often holds most voxels.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "format/sidecar/sidecar.h"
+#include "gpu/image/image.h"
+
+namespace weir {
+
+/// Bars of '#', at most 64 wide and 10 high, with axes; several lines, each ending in a newline. One
+/// line saying so where there is nothing to show.
+std::string histogram_text(const Sidecar::Histogram& histogram);
+
+/// 720 x 360 pixels with axes, decade lines, and a mark at `background` where it is given and inside.
+Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background);
+
+}  // namespace weir

@@ -1,0 +1,37 @@
+#include "tools/report/read_sidecar.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+// A histogram of 1,024 bins and two paths take some 50 KB; JSON takes up to 40 times its bytes in memory.
+constexpr std::uintmax_t kMaxBytes = 4U << 20U;
+
+}  // namespace
+
+Sidecar read_sidecar(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) {
+    throw Error(ErrorKind::input, cat(path, ": cannot read the sidecar: ", error.message(),
+                                      "; write it with weir convert, or look at the volume alone with weir inspect"));
+  }
+  if (bytes > kMaxBytes) {
+    throw Error(ErrorKind::input, cat(path, ": ", bytes, " bytes are no sidecar; write it again with weir convert"));
+  }
+  std::string text(bytes, '\0');
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(text.data(), static_cast<std::streamsize>(bytes))) {
+    throw Error(ErrorKind::input, path + ": cannot read the sidecar; check the permissions");
+  }
+  return parse_sidecar(text, path);
+}
+
+}  // namespace weir

@@ -1,0 +1,221 @@
+#include "tools/report/tree_census.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "format/leaf/leaf_decode.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kLeafBatch = 8192;  // leaves: some milliseconds of work
+
+std::size_t tile_level(std::int64_t dim) { return dim == kLeafDim ? 0 : dim == kLowerDim ? 1 : 2; }
+
+void include(Box& box, const Box& other) {
+  if (other.empty()) return;
+  box = box.empty() ? other : Box{min(box.lo, other.lo), max(box.hi, other.hi)};
+}
+
+Index3 voxel_of(unsigned n) { return {n >> 6U, n >> 3U & 7U, n & 7U}; }
+
+// Calls on_tile for every tile in this thread, and reduces leaves batch by batch on all threads.
+// `Tally` has add(const GridBlock& leaf, std::span<const float, 512> values) and merge(const Tally&).
+template <typename Tally, typename OnTile>
+Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgress& progress, const OnTile& on_tile,
+                    Trace* trace = nullptr) {
+  Tally total = zero;
+  std::vector<GridBlock> batch;
+  std::uint64_t done = 0;
+  const auto flush = [&] {
+    total.merge(tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, batch.size(), 256), zero,
+        [&](const tbb::blocked_range<std::size_t>& range, Tally part) {
+          std::array<float, kLeafVoxels> values{};
+          const TraceSpan span(trace, "decode", range.size() * sizeof values);
+          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            grid.decode_leaf(batch[i].leaf, values);
+            part.add(batch[i], values);
+          }
+          return part;
+        },
+        [](Tally left, const Tally& right) {
+          left.merge(right);
+          return left;
+        }));
+    done += batch.size();
+    batch.clear();
+    if (progress) progress(done);
+  };
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.leaf == nullptr) return on_tile(total, block);
+    batch.push_back(block);
+    if (batch.size() == kLeafBatch) flush();
+  });
+  flush();
+  return total;
+}
+
+class CensusTally {
+ public:
+  explicit CensusTally(const NvdbGrid& grid) : grid_(&grid), cells_(grid.macrocells()) {}
+
+  void add(const GridBlock& leaf, std::span<const float, 512> values) {
+    ++census.leaves;
+    ++census.leaves_by_bits[static_cast<std::size_t>(std::bit_width(grid_->leaf_bits(leaf.leaf)) - 1)];
+    const Box box{leaf.origin, leaf.origin + Index3{kLeafDim, kLeafDim, kLeafDim}};
+    const Box inside = intersect(box, grid_->index_bbox());
+    if (inside == box && all_active(leaf.leaf)) {
+      add_whole(leaf, box, values);
+    } else {
+      add_partial(leaf, inside, values);
+    }
+  }
+
+  void add_tile(const GridBlock& tile) {
+    ++(tile.active ? census.active_tiles : census.inactive_tiles)[tile_level(tile.dim)];
+    const Box box{tile.origin, tile.origin + Index3{tile.dim, tile.dim, tile.dim}};
+    if (tile.active) {
+      census.active_voxels += static_cast<std::uint64_t>(box.voxels());
+      add_value(tile.value, static_cast<std::uint64_t>(box.voxels()));
+      include(census.active_bbox, box);
+    }
+    const Box inside = intersect(box, grid_->index_bbox());
+    if (cells_.cells.empty() || inside.empty()) return;
+    const NodeLattice covered = make_lattice(inside, cells_.cell);
+    for (std::int64_t i = 0; i < covered.size(); ++i) {
+      check(tile.origin, cell_at(covered.first + covered.position(i) - cells_.lattice.first), tile.value);
+    }
+  }
+
+  void merge(const CensusTally& other) {
+    const TreeCensus& o = other.census;
+    census.leaves += o.leaves;
+    for (std::size_t i = 0; i < o.leaves_by_bits.size(); ++i) census.leaves_by_bits[i] += o.leaves_by_bits[i];
+    census.active_voxels += o.active_voxels;
+    census.nonfinite += o.nonfinite;
+    include(census.active_bbox, o.active_bbox);
+    census.min = std::min(census.min, o.min);
+    census.max = std::max(census.max, o.max);
+    if (!census.outside_macrocell) census.outside_macrocell = o.outside_macrocell;
+  }
+
+  TreeCensus census;
+
+ private:
+  static bool all_active(const std::byte* leaf) {
+    const std::byte* mask = leaf + nvdb::leaf::kValueMask;
+    return std::all_of(mask, mask + kLeafVoxels / 8, [](std::byte b) { return b == std::byte{255}; });
+  }
+
+  // The usual leaf, wholly inside and active: its extremes say all.
+  void add_whole(const GridBlock& leaf, const Box& box, std::span<const float, 512> values) {
+    float lo = std::numeric_limits<float>::infinity();
+    float hi = -lo;
+    float not_finite = 0;  // x * 0 is 0 for a finite x, else NaN
+    for (const float value : values) {
+      lo = value < lo ? value : lo;
+      hi = value > hi ? value : hi;
+      not_finite += value * 0.0F;
+    }
+    if (std::isnan(not_finite)) return add_partial(leaf, box, values);
+    census.active_voxels += values.size();
+    census.min = std::min(census.min, lo);
+    census.max = std::max(census.max, hi);
+    include(census.active_bbox, box);
+    if (cells_.cells.empty()) return;
+    const MinMax& cell = cell_of(leaf);
+    check(leaf.origin, cell, lo);
+    check(leaf.origin, cell, hi);
+  }
+
+  void add_partial(const GridBlock& leaf, const Box& inside, std::span<const float, 512> values) {
+    const MinMax* cell = cells_.cells.empty() || inside.empty() ? nullptr : &cell_of(leaf);
+    for (unsigned n = 0; n < values.size(); ++n) {
+      const Index3 i = leaf.origin + voxel_of(n);
+      if (leaf_active(leaf.leaf, n)) {
+        ++census.active_voxels;
+        add_value(values[n], 1);
+        include(census.active_bbox, {i, i + Index3{1, 1, 1}});
+      }
+      if (cell != nullptr && inside.contains(i)) check(leaf.origin, *cell, values[n]);
+    }
+  }
+
+  void add_value(float value, std::uint64_t voxels) {
+    if (!std::isfinite(value)) {
+      census.nonfinite += voxels;
+      return;
+    }
+    census.min = std::min(census.min, value);
+    census.max = std::max(census.max, value);
+  }
+
+  const MinMax& cell_at(const Index3& cell) const {
+    return cells_.cells[static_cast<std::size_t>(cells_.lattice.linear(cell))];
+  }
+
+  // NaN lies in no cell and needs none: it is no extinction.
+  void check(const Index3& block, const MinMax& cell, float value) {
+    if (std::isnan(value) || (value >= cell.min && value <= cell.max)) return;
+    if (!census.outside_macrocell) census.outside_macrocell = block;
+  }
+
+  const MinMax& cell_of(const GridBlock& leaf) const {
+    return cell_at(floor_div(leaf.origin, cells_.cell) - cells_.lattice.first);
+  }
+
+  const NvdbGrid* grid_;
+  MacrocellView cells_;
+};
+
+class HistogramTally {
+ public:
+  HistogramTally(float lo, float hi, std::size_t bins) : counts(bins), lo_(lo), hi_(hi) {}
+
+  void add(const GridBlock& leaf, std::span<const float, 512> values) {
+    for (unsigned n = 0; n < values.size(); ++n) {
+      if (leaf_active(leaf.leaf, n)) add_value(values[n], 1);
+    }
+  }
+  void add_value(float value, std::uint64_t voxels) {
+    if (!(value >= lo_ && value <= hi_)) return;
+    const double position = (static_cast<double>(value) - lo_) / (static_cast<double>(hi_) - lo_);
+    const auto bin = static_cast<std::size_t>(position * static_cast<double>(counts.size()));
+    counts[std::min(bin, counts.size() - 1)] += voxels;
+  }
+  void merge(const HistogramTally& other) {
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += other.counts[i];
+  }
+
+  std::vector<std::uint64_t> counts;
+
+ private:
+  float lo_;
+  float hi_;
+};
+
+}  // namespace
+
+TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace) {
+  return reduce_blocks(
+             grid, CensusTally(grid), progress, [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); },
+             trace)
+      .census;
+}
+
+std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
+                                        const CensusProgress& progress) {
+  return reduce_blocks(grid, HistogramTally(lo, hi, bins), progress,
+                       [](HistogramTally& total, const GridBlock& tile) {
+                         if (!tile.active) return;
+                         total.add_value(tile.value, static_cast<std::uint64_t>(tile.dim * tile.dim * tile.dim));
+                       })
+      .counts;
+}
+
+}  // namespace weir

@@ -1,0 +1,43 @@
+// What a grid really holds, counted by visiting every leaf and tile: the truth
+// that `verify` holds the stored figures against, and that `inspect` shows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "format/base/index.h"
+#include "format/base/trace.h"
+#include "format/nanovdb/nvdb_grid.h"
+
+namespace weir {
+
+struct TreeCensus {
+  std::uint64_t leaves = 0;
+  std::array<std::uint64_t, 6> leaves_by_bits{};       ///< of 1, 2, 4, 8, 16 and 32 bits a voxel
+  std::array<std::uint64_t, 3> active_tiles{};         ///< of 8^3, 128^3, 4096^3 voxels
+  std::array<std::uint64_t, 3> inactive_tiles{};       ///< the same; background outside the domain included
+  std::uint64_t active_voxels = 0;                     ///< in leaves and active tiles
+  std::uint64_t nonfinite = 0;                         ///< active voxels that are NaN or infinite
+  Box active_bbox;                                     ///< half open; {} without active voxels
+  float min = std::numeric_limits<float>::infinity();  ///< of the finite active values
+  float max = -std::numeric_limits<float>::infinity();
+  std::optional<Index3> outside_macrocell;  ///< a block in the domain with a value its macrocell does not hold
+};
+
+/// Called with the number of leaves done so far, from the calling thread; may throw to stop.
+using CensusProgress = std::function<void(std::uint64_t leaves)>;
+
+/// Decodes every leaf, on all threads of TBB. `trace` gets what each of them decodes, in float32 bytes. Throws as
+/// NvdbGrid::decode_leaf.
+TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace = nullptr);
+
+/// Counts of the active values in `bins` equal bins over [lo, hi], lo < hi; what lies outside or is
+/// NaN is not counted. Decodes every leaf, on all threads of TBB. Throws as NvdbGrid::decode_leaf.
+std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
+                                        const CensusProgress& progress);
+
+}  // namespace weir

@@ -1,0 +1,91 @@
+#include "tools/report/volume_verification.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/io/digest.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/sidecar.h"
+#include "tools/report/read_sidecar.h"
+
+namespace weir {
+namespace {
+
+void stop_if_cancelled(const VerificationWatch& watch) {
+  if (watch.cancel != nullptr && *watch.cancel) throw Error(ErrorKind::interrupted, "interrupted");
+}
+
+std::string parallel_digest(std::span<const std::byte> file, const VerificationWatch& watch) {
+  constexpr std::uint64_t kBatch = 32;  // pieces between two looks at the progress and the cancel flag
+  if (watch.pass_started) watch.pass_started("digest", file.size());
+  const TraceSpan pass(watch.trace, "digest", file.size());
+  std::vector<Digest> pieces(piece_count(file.size()));
+  for (std::uint64_t begin = 0; begin < pieces.size(); begin += kBatch) {
+    const std::uint64_t end = std::min<std::uint64_t>(begin + kBatch, pieces.size());
+    tbb::parallel_for(begin, end, [&](std::uint64_t i) {
+      const std::span<const std::byte> piece = file_piece(file, i);
+      const TraceSpan span(watch.trace, "hash", piece.size());
+      pieces[i] = piece_digest(piece);
+    });
+    if (watch.pass_advanced) watch.pass_advanced(end * kDigestPieceBytes);
+    stop_if_cancelled(watch);
+  }
+  return combine(pieces).hex();
+}
+
+TreeCensus watched_census(const NvdbGrid& grid, const VerificationWatch& watch) {
+  const auto leaves = static_cast<double>(std::max<std::uint64_t>(grid.node_counts()[0], 1));
+  const auto bytes = static_cast<double>(grid.data_bytes());
+  if (watch.pass_started) watch.pass_started("leaves", grid.data_bytes());
+  const TraceSpan pass(watch.trace, "leaves", grid.data_bytes());
+  const auto progress = [&](std::uint64_t done) {
+    if (watch.pass_advanced) {
+      watch.pass_advanced(static_cast<std::uint64_t>(bytes * static_cast<double>(done) / leaves));
+    }
+    stop_if_cancelled(watch);
+  };
+  return take_census(grid, progress, watch.trace);
+}
+
+// Failures that end the verification early become a check like any other.
+template <typename Run>
+auto checked(const std::string& name, std::vector<VolumeCheck>& checks, const Run& run)
+    -> std::optional<decltype(run())> {
+  try {
+    return run();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    checks.push_back({name, error.what(), "", false});
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch) {
+  std::vector<VolumeCheck> checks;
+  const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(sidecar_path(path)); });
+  const auto file = checked("structure", checks, [&] {
+    const TraceSpan span(watch.trace, "open");
+    return std::make_unique<NvdbFile>(path);
+  });
+  if (!file) return checks;
+  const NvdbGrid& grid = (*file)->grid();
+  const auto census = checked("structure", checks, [&] { return watched_census(grid, watch); });
+  if (!census) return checks;
+  checks.push_back({"structure", "valid", "a valid NanoVDB file", true});
+  for (VolumeCheck& check : check_structure(grid, *census)) checks.push_back(std::move(check));
+  if (!sidecar) return checks;
+  const std::string digest = parallel_digest(grid.bytes(), watch);
+  for (VolumeCheck& check : check_sidecar(grid, *census, digest, *sidecar)) checks.push_back(std::move(check));
+  return checks;
+}
+
+}  // namespace weir

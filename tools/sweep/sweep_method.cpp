@@ -1,0 +1,75 @@
+#include "tools/sweep/sweep_method.h"
+
+#include <algorithm>
+#include <array>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tools/options/conversion_options.h"
+
+namespace weir {
+namespace {
+
+constexpr std::array kNames{"auto", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp"};
+
+std::map<std::string, std::string> options_of(const std::string& name) {
+  if (name == "zfp") return {};
+  if (name == "paper") return {{"preset", "paper"}};
+  if (name == "paper32") return {{"preset", "paper"}, {"brick", "32"}};
+  return {{"encoding", name}};
+}
+
+}  // namespace
+
+std::string sweep_method_names() {
+  std::string text;
+  for (const char* name : kNames) text += cat(text.empty() ? "" : ", ", name);
+  return text;
+}
+
+std::vector<SweepMethod> parse_sweep_methods(std::string_view text) {
+  std::vector<SweepMethod> methods;
+  for (const std::string& name : split(text, ',')) {
+    if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
+      throw usage_error(cat("--methods names \"", name, "\", the ones there are are ", sweep_method_names()));
+    }
+    if (std::any_of(methods.begin(), methods.end(), [&](const SweepMethod& m) { return m.name == name; })) {
+      throw usage_error(cat("--methods names ", name, " twice; leave one of them out"));
+    }
+    methods.push_back({name, options_of(name)});
+  }
+  return methods;
+}
+
+ConversionOptions conversion_of(const SweepMethod& method, const std::string& non_finite) {
+  ConversionArguments arguments;
+  arguments.non_finite = non_finite;
+  const auto given = [&](const char* name) {
+    const auto found = method.options.find(name);
+    return found == method.options.end() ? std::string() : found->second;
+  };
+  arguments.encoding = given("encoding");
+  arguments.preset = given("preset");
+  arguments.brick = given("brick");
+  return parse_conversion(arguments);
+}
+
+std::vector<double> parse_rates(std::string_view text) {
+  std::vector<double> rates;
+  for (const std::string& part : split(text, ',')) {
+    const auto rate = parse_double(part);
+    // The limits of --rate: above 2^60 no volume has a byte left; below 2^-20 no disk holds the file.
+    if (!rate || !(*rate >= 0x1p-20 && *rate <= 0x1p60)) {
+      throw usage_error(cat("--rates holds \"", part,
+                            "\", it must be positive numbers such as 20,10,8: dense float32 bytes ", "/ file bytes"));
+    }
+    // As text, which is in the names of kept files.
+    if (std::any_of(rates.begin(), rates.end(), [&](double other) { return cat(other) == cat(*rate); })) {
+      throw usage_error(cat("--rates holds ", part, " twice; leave one of them out"));
+    }
+    rates.push_back(*rate);
+  }
+  return rates;
+}
+
+}  // namespace weir

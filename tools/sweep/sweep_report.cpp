@@ -1,0 +1,141 @@
+#include "tools/sweep/sweep_report.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+// The shortest text that reads back as the same double.
+std::string exact(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result;
+  for (const char c : text) result.append(c == '"' ? 2 : 1, c);
+  return cat('"', result, '"');
+}
+
+std::string joined(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) {
+    line += csv_field(field);
+    line += &field == &fields.back() ? '\n' : ',';
+  }
+  return line;
+}
+
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+std::string decibel_text(const Certificate& error) {
+  return error.lossless ? "lossless" : error.psnr_db ? fixed(*error.psnr_db, 2) : "-";
+}
+
+std::vector<std::string> table_fields(const SweepReport& report, const SweepRow& row) {
+  std::vector<std::string> fields{row.method, short_text(row.rate), cat(row.bytes_asked)};
+  if (row.result) {
+    const SweepResult& r = *row.result;
+    for (const std::string& field :
+         {cat(r.bytes), short_text(report.bits_per_voxel(r)), r.encoding, decibel_text(r.error),
+          short_text(r.error.mse), short_text(r.error.max_abs), short_text(r.seconds), short_text(report.gb_per_s(r)),
+          r.leaves_kept ? cat(*r.leaves_kept) : "-"}) {
+      fields.push_back(field);
+    }
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::string csv_text(const SweepReport& report) {
+  std::string text =
+      "method,encoding,rate,bytes_asked,bytes_got,bits_per_voxel,mse,nmse,psnr_db,max_abs,lossless,seconds,gb_per_s,"
+      "leaves_kept,note\n";
+  for (const SweepRow& row : report.rows) {
+    if (!row.result) {
+      text += joined(
+          {row.method, "", exact(row.rate), cat(row.bytes_asked), "", "", "", "", "", "", "", "", "", "", row.note});
+      continue;
+    }
+    const SweepResult& r = *row.result;
+    text += joined({row.method, r.encoding, exact(row.rate), cat(row.bytes_asked), cat(r.bytes),
+                    exact(report.bits_per_voxel(r)), exact(r.error.mse), exact(r.error.nmse),
+                    r.error.psnr_db ? exact(*r.error.psnr_db) : "", exact(r.error.max_abs),
+                    r.error.lossless ? "true" : "false", exact(r.seconds), exact(report.gb_per_s(r)),
+                    r.leaves_kept ? cat(*r.leaves_kept) : "", row.note});
+  }
+  return text;
+}
+
+std::string json_text(const SweepReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto optional = [](const auto& value) { return value ? Json(*value) : Json(); };
+  Json rows = Json::array();
+  for (const SweepRow& row : report.rows) {
+    Json json{{"method", row.method}, {"rate", row.rate}, {"bytes_asked", row.bytes_asked}};
+    if (row.result) {
+      const SweepResult& r = *row.result;
+      json["encoding"] = r.encoding;
+      json["bytes_got"] = r.bytes;
+      json["bits_per_voxel"] = report.bits_per_voxel(r);
+      json["mse"] = r.error.mse;
+      json["nmse"] = r.error.nmse;
+      json["psnr_db"] = optional(r.error.psnr_db);
+      json["max_abs"] = r.error.max_abs;
+      json["lossless"] = r.error.lossless;
+      json["seconds"] = r.seconds;
+      json["gb_per_s"] = report.gb_per_s(r);
+      json["leaves_kept"] = optional(r.leaves_kept);
+    } else {
+      for (const char* key : {"encoding", "bytes_got", "bits_per_voxel", "mse", "nmse", "psnr_db", "max_abs",
+                              "lossless", "seconds", "gb_per_s", "leaves_kept"}) {
+        json[key] = nullptr;
+      }
+    }
+    json["note"] = row.note;
+    rows.push_back(std::move(json));
+  }
+  const Json document{{"source", report.source},
+                      {"extent", {report.extent.x, report.extent.y, report.extent.z}},
+                      {"dense_float32_bytes", static_cast<std::uint64_t>(volume(report.extent)) * sizeof(float)},
+                      {"threads", report.threads},
+                      {"memory_bytes", report.memory},
+                      {"rows", std::move(rows)},
+                      {"total_s", report.total_s},
+                      {"peak_rss_bytes", report.peak_rss_bytes}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string table_text(const SweepReport& report) {
+  std::vector<std::vector<std::string>> lines{{"method", "rate", "bytes asked", "bytes got", "bits/voxel", "stored as",
+                                               "PSNR dB", "MSE", "max error", "seconds", "GB/s", "leaves"}};
+  for (const SweepRow& row : report.rows) lines.push_back(table_fields(report, row));
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  std::string text;
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    for (std::size_t i = 0; i < lines[n].size(); ++i) {
+      const std::string gap(widths[i] - lines[n][i].size(), ' ');
+      text += i == 0 ? cat(lines[n][i], gap) : cat("  ", gap, lines[n][i]);  // the name left, numbers right
+    }
+    if (n > 0 && !report.rows[n - 1].result) text += cat("  ", report.rows[n - 1].note);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace weir
