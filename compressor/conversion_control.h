@@ -1,15 +1,28 @@
-// What the steps of a conversion tell its caller, and where they stop when it
-// asks them to.
+// What a caller of a conversion can watch and stop, and how its steps tell him and
+// stop where he asks them to.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 
-#include "compressor/conversion.h"
 #include "format/base/error.h"
+#include "format/base/trace.h"
 #include "ingest/plan/block_stream.h"
 
 namespace weir {
+
+/// What a caller can watch and stop.
+struct ConversionControl {
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
+  std::function<void(std::uint64_t done_bytes)> pass_advanced;
+  std::function<void(const std::string& line)> notice;
+  std::function<void(std::uint64_t bytes)>
+      planned;             ///< of the file, before room is taken for it; again where it is replanned
+  Trace* trace = nullptr;  ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
+};
 
 /// For passes that `control`, which must outlive them, watches and stops.
 StreamOptions stream_options(const ConversionControl& control);

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_options.h"
 #include "compressor/survey/checkpoint.h"
 #include "ingest/source/volume_source.h"
 

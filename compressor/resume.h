@@ -5,7 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_control.h"
+#include "compressor/conversion_options.h"
 #include "compressor/resume/journal.h"
 #include "format/base/error.h"
 #include "format/io/file_system.h"

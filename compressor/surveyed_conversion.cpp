@@ -6,14 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_identity.h"
+#include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
-#include "compressor/leaf/certificate.h"
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
 #include "format/base/error.h"
@@ -22,7 +24,6 @@
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
-#include "format/nanovdb/macrocells.h"
 #include "ingest/files/file_state.h"
 
 namespace weir {
@@ -69,51 +70,6 @@ Digest digest_of_file(File& file, std::uint64_t bytes, Team& team) {
   return combine(pieces);
 }
 
-std::array<double, 2> range_of(const Survey& survey) {
-  return {static_cast<double>(survey.min), static_cast<double>(survey.max)};
-}
-
-Sidecar::Histogram histogram_of(const Survey& survey) {
-  const RangeHistogram& h = survey.histogram;
-  if (h.empty()) return {};
-  auto counts = h.counts();
-  const double max = h.first_edge() + static_cast<double>(counts.size()) * h.bin_width();
-  return {h.first_edge(), max, std::move(counts)};
-}
-
-Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
-  Sidecar sidecar;
-  sidecar.source.path = info.path;
-  sidecar.source.format = info.format;
-  sidecar.source.dataset = info.dataset;
-  sidecar.source.extent = info.extent;
-  sidecar.source.type = std::string(scalar_name(info.type));
-  sidecar.source.bytes = info.file_bytes;
-  sidecar.source.mtime = utc_text(info.mtime_ns);
-  sidecar.value_range = range_of(survey);
-  sidecar.nonfinite = {survey.non_finite, policy_name(options.non_finite)};
-  sidecar.source.index = info.index;
-  sidecar.source.axes = info.axis_labels;
-  sidecar.source.units = info.units;
-  sidecar.source.unit_si = info.unit_si;
-  sidecar.source.scale = info.mapping.scale;
-  sidecar.source.offset = info.mapping.offset;
-  sidecar.source.files_digest = info.files_digest;
-  sidecar.missing.count = survey.missing;
-  for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
-  sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
-  sidecar.histogram = histogram_of(survey);
-  sidecar.weir = options.provenance;
-  return sidecar;
-}
-
-Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors& leaves, std::uint64_t finite,
-                                       const Survey& survey) {
-  const Certificate c = make_certificate(tiles.squared + leaves.squared, std::max(tiles.max_abs, leaves.max_abs),
-                                         tiles.exact && leaves.exact, finite, survey.min, survey.max);
-  return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
-}
-
 FileRequest request_for(const ConversionOptions& options, const Survey& survey, float background, const Box& domain) {
   FileRequest request;
   request.encoding = options.encoding;
@@ -154,126 +110,157 @@ bool surveys_widths(const ConversionOptions& options) {
   return options.encoding != Encoding::float32 && options.metric == Metric::sse;
 }
 
-Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, const Survey& survey,
-                         SurveyStores& stores, Clock::time_point started) {
-  VolumeSource& source = job.source;
-  const ConversionOptions& options = job.options;
-  const ConversionControl& control = job.control;
-  OutputFiles& output = job.output;
-  WorkDirectory& work = job.work;
-  Journal* const journal = job.journal;
-  const std::optional<Visibility>& visibility = job.seen;
-  const SourceInfo& info = source.info();
-  const Box domain = info.domain();
-  const auto voxels = static_cast<std::uint64_t>(domain.voxels());
-  const StreamOptions stream = stream_options(control);
-  RowStore& rows = stores.rows;
-  std::optional<TraceSpan> span;
-  span.emplace(control.trace, "background");
-  if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
-  Background background;
-  Sidecar sidecar = describe_source(info, survey, options);
-  Team& team = rows.team();
-  const bool known = journal != nullptr && journal->state.background;
-  const auto find = [&] {
-    background =
-        known ? *journal->state.background : choose_background(options, survey, rows, source, reading.survey, stream);
-  };
-  const auto digest = [&] { sidecar.source.digest = source_digest(rows); };
-  if (team.alone()) {
-    tbb::parallel_invoke(find, digest);
-  } else {  // which meet in the same order everywhere
-    find();
-    team.lead(digest);
+namespace {
+
+/// The stages of a conversion whose volume is surveyed, in the order in which they are called.
+class SurveyedConversion {
+ public:
+  SurveyedConversion(const ConversionParts& parts, const ReadingPlan& reading, const Survey& survey,
+                     SurveyStores& stores, Clock::time_point started)
+      : parts_(parts),
+        options_(parts.options),
+        info_(parts.source.info()),
+        reading_(reading),
+        survey_(survey),
+        stores_(stores),
+        team_(stores.rows.team()),
+        stream_(stream_options(parts.control)),
+        started_(started),
+        sidecar_(describe_source(info_, survey, options_)) {}
+
+  Sidecar run() {
+    find_background();
+    FileRequest request = make_request();
+    sidecar_.timing.survey_s = seconds_since(started_);
+    const Clock::time_point encoding = Clock::now();
+    const EncodedFile encoded = encode(std::move(request));
+    // Most of the file goes to the device while the rest is made.
+    const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
+    write_inner_nodes(encoded);
+    describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
+    digest(encoded);
+    sidecar_.timing.encode_s = seconds_since(encoding);
+    commit(encoded);
+    return sidecar_;
   }
-  if (journal != nullptr) {
-    journal->state.background = background;
+
+ private:
+  // The background and the source's digest, at the same time.
+  void find_background() {
+    const TraceSpan span(parts_.control.trace, "background");
+    if (options_.non_finite == NonFinitePolicy::error) refuse_non_finite(survey_, info_);
+    Journal* const journal = parts_.journal;
+    const bool known = journal != nullptr && journal->state.background;
+    const auto find = [&] {
+      background_ = known ? *journal->state.background
+                          : choose_background(options_, survey_, stores_.rows, parts_.source, reading_.survey, stream_);
+    };
+    const auto digest = [&] { sidecar_.source.digest = source_digest(stores_.rows); };
+    if (team_.alone()) {
+      tbb::parallel_invoke(find, digest);
+    } else {  // which meet in the same order everywhere
+      find();
+      team_.lead(digest);
+    }
+    if (journal == nullptr) return;
+    journal->state.background = background_;
     // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
     if (journal->resumable()) journal->save();
   }
-  FileRequest request = request_for(options, survey, background.value, domain);
-  Shown shown;
-  if (visibility) {
-    shown = find_reaches(*stores.faces, *visibility, request.rule.fill, work, rows);
-    stores.faces.reset();
-    request.rule.visibility = &*visibility;
-  }
-  request.squared_error = allowed_error(options.budget, survey, visibility ? shown.finite : survey.finite);
-  sidecar.timing.survey_s = seconds_since(started);
 
-  // Selection and encoding.
-  span.reset();
-  const auto check = [&] { team.run([&] { check_cancel(control); }); };
-  check();
-  const Clock::time_point encoding = Clock::now();
-  const std::uint64_t dense_bytes = voxels * sizeof(float);
-  const EncodedFile encoded =
-      encode_file({source, reading.encode, reading.reading, rows, work, output, journal,
-                   options.scene ? visible_values(options.scene->scene) : "", stream,
-                   [&] { team.run([&] { start_pass(control, "encode", voxels); }); }, control.notice, control.planned},
-                  std::move(request));
-  const FilePlan& file = encoded.file;
-  const FileSize& size = file.size;
-  if (!size.notice.empty() && control.notice) control.notice(size.notice);
-  const TreeLayout& layout = file.plan.layout;
-  const GridType type = grid_type_of(file.encoding);
-  span.emplace(control.trace, "write tree");
-  // Most of the file goes to the device while the rest is made.
-  const std::jthread writeback([&output] { output.volume().start_writeback(); });
-  check();
-  GridHead head;
-  head.type = type;
-  head.breadth_first = type != GridType::fpn;
-  head.name = info.dataset.empty() || info.dataset.size() > 255 ? "density" : info.dataset;
-  head.voxel_size = info.spacing;
-  head.origin = info.origin;
-  std::uint32_t checksum = 0;
-  team.lead([&] {
-    checksum =
-        write_tree({*file.tree, rows, *file.choices, *encoded.records, file.fill, layout}, head, output.volume());
-  });
-  team.follow(checksum);
-  team.publish(output.volume());
-  check();
-
-  // Finish.
-  span.emplace(control.trace, "digest", size.bytes);
-  sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, domain};
-  sidecar.background = {static_cast<double>(background.value), background.method, background.share};
-  sidecar.budget.kind = size.kind;
-  if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
-  if (options.budget.by_error()) sidecar.budget.requested = options.budget.target;
-  if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
-  sidecar.budget.file_bytes = size.bytes;
-  sidecar.budget.dense_float32_bytes = dense_bytes;
-  sidecar.budget.rate = static_cast<double>(dense_bytes) / static_cast<double>(size.bytes);
-  sidecar.selection = {metric_name(options.metric),
-                       fill_name(options.fill),
-                       options.brick,
-                       static_cast<std::uint64_t>(file.tree->leaves.size()),
-                       layout.counts.leaves,
-                       file.plan.leaves_by_width};
-  sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
-  if (visibility) {
-    sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
-                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey),
-                       scene_digest(options.scene->scene)};
+  // What is asked of the file; where a scene weighs, with what it shows of each leaf.
+  FileRequest make_request() {
+    FileRequest request = request_for(options_, survey_, background_.value, info_.domain());
+    if (parts_.seen) {
+      shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.work, stores_.rows);
+      stores_.faces.reset();
+      request.rule.visibility = &*parts_.seen;
+    }
+    request.squared_error = allowed_error(options_.budget, survey_, parts_.seen ? shown_.finite : survey_.finite);
+    return request;
   }
-  sidecar.macrocells = {kMacrocell, make_lattice(domain, kMacrocell).count, kMacrocellApron};
-  sidecar.file = {size.bytes, layout.grid, checksum, digest_of_file(output.volume(), size.bytes, team).hex()};
-  sidecar.timing.encode_s = seconds_since(encoding);
-  sidecar.timing.total_s = seconds_since(started);
-  sidecar.timing.bytes_read = source.bytes_read();
-  team.sum<std::uint64_t>({&sidecar.timing.bytes_read, 1});
-  sidecar.timing.bytes_written = layout.content_end;
-  sidecar.timing.peak_rss_bytes = peak_resident_bytes();
-  span.emplace(control.trace, "commit", size.bytes);
-  const std::string text = to_json_text(sidecar);
-  std::vector<char> record(text.begin(), text.end());
-  team.follow(record);  // times are the leading rank's
-  check_source(source, team);
-  output.commit({record.begin(), record.end()});
-  return sidecar;
+
+  // Selection and leaves, as often as the budget takes.
+  EncodedFile encode(FileRequest request) {
+    check();
+    const auto voxels = static_cast<std::uint64_t>(info_.domain().voxels());
+    EncodedFile encoded =
+        encode_file({parts_.source, reading_.encode, reading_.reading, stores_.rows, parts_.work, parts_.output,
+                     parts_.journal, options_.scene ? visible_values(options_.scene->scene) : "", stream_,
+                     [&] { team_.run([&] { start_pass(parts_.control, "encode", voxels); }); }, parts_.control.notice,
+                     parts_.control.planned},
+                    std::move(request));
+    const std::string& notice = encoded.file.size.notice;
+    if (!notice.empty() && parts_.control.notice) parts_.control.notice(notice);
+    return encoded;
+  }
+
+  // All of the file but its leaves.
+  void write_inner_nodes(const EncodedFile& encoded) {
+    const TraceSpan span(parts_.control.trace, "write tree");
+    check();
+    const FilePlan& file = encoded.file;
+    const GridType type = grid_type_of(file.encoding);
+    head_.type = type;
+    head_.breadth_first = type != GridType::fpn;
+    head_.name = info_.dataset.empty() || info_.dataset.size() > 255 ? "density" : info_.dataset;
+    head_.voxel_size = info_.spacing;
+    head_.origin = info_.origin;
+    team_.lead([&] {
+      checksum_ = write_tree({*file.tree, stores_.rows, *file.choices, *encoded.records, file.fill, file.plan.layout},
+                             head_, parts_.output.volume());
+    });
+    team_.follow(checksum_);
+    team_.publish(parts_.output.volume());
+    check();
+  }
+
+  void digest(const EncodedFile& encoded) {
+    const std::uint64_t bytes = encoded.file.size.bytes;
+    const TraceSpan span(parts_.control.trace, "digest", bytes);
+    sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_,
+                     digest_of_file(parts_.output.volume(), bytes, team_).hex()};
+  }
+
+  void commit(const EncodedFile& encoded) {
+    sidecar_.timing.total_s = seconds_since(started_);
+    sidecar_.timing.bytes_read = parts_.source.bytes_read();
+    team_.sum<std::uint64_t>({&sidecar_.timing.bytes_read, 1});
+    sidecar_.timing.bytes_written = encoded.file.plan.layout.content_end;
+    sidecar_.timing.peak_rss_bytes = peak_resident_bytes();
+    const TraceSpan span(parts_.control.trace, "commit", encoded.file.size.bytes);
+    const std::string text = to_json_text(sidecar_);
+    std::vector<char> record(text.begin(), text.end());
+    team_.follow(record);  // times are the leading rank's
+    check_source(parts_.source, team_);
+    parts_.output.commit({record.begin(), record.end()});
+  }
+
+  void check() const {
+    team_.run([&] { check_cancel(parts_.control); });
+  }
+
+  const ConversionParts& parts_;
+  const ConversionOptions& options_;
+  const SourceInfo& info_;
+  const ReadingPlan& reading_;
+  const Survey& survey_;
+  SurveyStores& stores_;
+  Team& team_;
+  const StreamOptions stream_;
+  const Clock::time_point started_;
+  Sidecar sidecar_;
+  Background background_;
+  Shown shown_;
+  GridHead head_;
+  std::uint32_t checksum_ = 0;
+};
+
+}  // namespace
+
+Sidecar convert_surveyed(const ConversionParts& parts, const ReadingPlan& reading, const Survey& survey,
+                         SurveyStores& stores, Clock::time_point started) {
+  return SurveyedConversion(parts, reading, survey, stores, started).run();
 }
 
 }  // namespace weir

@@ -5,7 +5,8 @@
 #include <chrono>
 #include <optional>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_control.h"
+#include "compressor/conversion_options.h"
 #include "compressor/plan/reading_plan.h"
 #include "compressor/resume/journal.h"
 #include "compressor/resume/work_directory.h"
@@ -21,7 +22,7 @@
 namespace weir {
 
 /// What one conversion works with; all of it outlives its steps.
-struct ConversionJob {
+struct ConversionParts {
   VolumeSource& source;
   const ConversionOptions& options;
   const ConversionControl& control;
@@ -50,7 +51,7 @@ struct SurveyStores {
 
 /// Writes the volume that `survey` and `stores` tell of, and its sidecar, which it returns. `started` is when the
 /// survey was: for Sidecar::Timing.
-Sidecar convert_surveyed(const ConversionJob& job, const ReadingPlan& reading, const Survey& survey,
+Sidecar convert_surveyed(const ConversionParts& parts, const ReadingPlan& reading, const Survey& survey,
                          SurveyStores& stores, std::chrono::steady_clock::time_point started);
 
 }  // namespace weir

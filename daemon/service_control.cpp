@@ -193,7 +193,7 @@ WatchView ServiceControl::watch(const WatchedTree& tree, const std::map<std::str
   view.reason = status.reason;
   view.overflows = status.overflows;
   if (const auto found = counts.find(config.label); found != counts.end()) view.jobs = found->second;
-  view.done_per_min = 60 * runner_.converted(config.label).per_s;
+  view.done_per_min = 60 * runner_.figures().converted(config.label).per_s;
   const std::vector<Job> last = store_.jobs({JobState::done, config.label}, 0, 1);
   if (!last.empty()) view.last_done = view_of(last.front());
   return view;
@@ -207,15 +207,15 @@ StatusView ServiceControl::status() {
   view.state = state_.stopping ? "stopping" : view.reason.empty() ? "running" : "paused";
   view.started_at = started_at_;
   view.queue_age_s = seconds_of(store_.queue_age_ms().value_or(0));
-  view.bytes_per_s = runner_.bytes_per_s();
+  view.bytes_per_s = runner_.figures().bytes_per_s();
   view.jobs_at_once = static_cast<std::uint64_t>(state_.jobs);
   const std::map<std::string, JobCounts> counts = store_.counts();
   for (const auto& [label, of_watch] : counts) {
     for (std::size_t i = 0; i < kJobStates; ++i) view.jobs[i] += of_watch[i];
   }
-  view.done_total = runner_.figures().done;
-  view.bytes_in_total = runner_.figures().bytes_in;
-  view.bytes_out_total = runner_.figures().bytes_out;
+  view.done_total = runner_.figures().totals().done;
+  view.bytes_in_total = runner_.figures().totals().bytes_in;
+  view.bytes_out_total = runner_.figures().totals().bytes_out;
   view.running = running();
   for (const auto& tree : trees_) view.watches.push_back(watch(*tree, counts));
   add_rates(view);
@@ -236,10 +236,10 @@ void ServiceControl::add_rates(StatusView& status) const {
     arrived.per_s += rates.per_s;
     arrived.bytes_per_s += rates.bytes_per_s;
   }
-  const RecentRate::Rates converted = runner_.converted();
+  const RecentRate::Rates converted = runner_.figures().converted();
   status.arrived = {60 * arrived.per_s, arrived.bytes_per_s};
   status.converted = {60 * converted.per_s, converted.bytes_per_s};
-  const double shrinks_by = runner_.left().bytes_per_s - arrived.bytes_per_s;
+  const double shrinks_by = runner_.figures().left().bytes_per_s - arrived.bytes_per_s;
   if (status.waiting_bytes == 0) {
     status.queue_ends_in_s = 0;
   } else if (shrinks_by > 0 && status.state == "running") {
@@ -259,7 +259,8 @@ std::vector<DiskView> ServiceControl::disks() const {
 }
 
 MetricsView ServiceControl::metrics() {
-  return {runner_.figures().seconds, runner_.figures().errors, state_.reloads, state_.rejected_reloads};
+  return {runner_.figures().totals().seconds, runner_.figures().totals().errors, state_.reloads,
+          state_.rejected_reloads};
 }
 
 Readiness ServiceControl::readiness() {

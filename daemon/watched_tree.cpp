@@ -1,10 +1,12 @@
 #include "daemon/watched_tree.h"
+#include "daemon/config/config_names.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/choosing_watch.h"
 #include "daemon/watch/path_filter.h"
 #include "format/base/error.h"
 
@@ -19,7 +21,7 @@ constexpr milliseconds kRetry{1000};
 /// Until a file is looked at again that could not be looked at.
 constexpr std::chrono::seconds kUnreachable{5};
 /// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
-constexpr milliseconds kBatchTime{8};
+constexpr milliseconds kTransactionTime{8};
 constexpr std::size_t kLeastBatch = 20;
 constexpr std::size_t kMostBatch = 100;  // what is looked at next may take longer than what was before
 
@@ -146,8 +148,9 @@ void WatchedTree::work() {
 
 void WatchedTree::fit_batch(Clock::duration looking) {
   const std::size_t looked = looked_at_.size();
-  if (looked == 0 || (looking < kBatchTime && looked < batch_ / 2)) return;  // says little of how many there may be
-  const double fit = static_cast<double>(looked) * (std::chrono::duration<double>(kBatchTime) / looking);
+  if (looked == 0 || (looking < kTransactionTime && looked < batch_ / 2))
+    return;  // says little of how many there may be
+  const double fit = static_cast<double>(looked) * (std::chrono::duration<double>(kTransactionTime) / looking);
   batch_ = static_cast<std::size_t>(std::clamp(fit, double{kLeastBatch}, double{kMostBatch}));
 }
 

@@ -99,21 +99,14 @@ const SourceFormat& format_of(const std::string& path) {
 }
 
 std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options) {
-  auto source = place_source(options.stack ? open_stack(path, options) : open_file(path, options), options);
+  auto source =
+      place_source(options.stack ? open_stack(path, options, open_source) : open_file(path, options), options);
   const ScalarType type = source->info().type;
   if (options.missing && !holds(type, *options.missing)) {
     throw Error(ErrorKind::usage, cat(path, ": --missing is ", stored_value_text(*options.missing), ", and no ",
                                       scalar_name(type), " is; give a value of that type"));
   }
   return options.roi ? crop_source(std::move(source), *options.roi) : std::move(source);
-}
-
-std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout) {
-  DatasetInfo only;
-  only.extents = {info.extent.x, info.extent.y, info.extent.z};
-  only.type = scalar_name(info.type);
-  only.layout = std::move(layout);
-  return {only};
 }
 
 }  // namespace weir

@@ -1,11 +1,17 @@
 #!/usr/bin/env python3
-"""Checks what holds of every C++ file: tools/structure.py [ROOT]
+"""Checks what holds of the C++ files as a whole: tools/structure.py [--figures] [ROOT]
 
 - Includes run down: a folder uses itself and those that BELOW lists for it, and every file that is included is there.
+- There are no circles: neither of files, a header and its source taken as one, nor of rooms, the folders within those.
+- No two types have one qualified name (the one-definition rule), but those that are declared for one file alone.
 - A header begins with a comment that says what it is for, and has #pragma once; C headers have guards.
-- No file has more than MOST_LINES lines.
-Prints one line for each fault, PATH:LINE: WHAT, and exits with 1 where there is one.
+- No file has more than MOST_LINES lines, no folder more than MOST_FILES files, and of all files at most MOST_SMALL have
+  fewer than SMALL lines.
+Prints one line for each fault, PATH:LINE: WHAT, and exits with 1 where there is one. --figures prints, besides, what was
+counted.
 """
+import collections
+import os
 import pathlib
 import re
 import subprocess
@@ -23,11 +29,13 @@ BELOW = {
     "examples": ["format", "gpu"],
     "tests": ["format", "ingest", "compressor", "gpu", "daemon", "tools", "bindings"],
 }
-MOST_LINES = 600
+MOST_LINES = 400
+MOST_FILES = 40
+SMALL = 40
+MOST_SMALL = 0.4
 
 
-def faults(root, name, known):
-    text = (root / name).read_text(encoding="utf-8")
+def faults(name, text, known):
     lines = text.splitlines()
     folder = name.split("/")[0]
     if folder not in BELOW:
@@ -53,13 +61,120 @@ def faults(root, name, known):
         yield MOST_LINES + 1, f"has {len(lines)} lines, more than {MOST_LINES}; split it"
 
 
+def unit(name):
+    """A header and its source."""
+    return re.sub(r"\.(h|cpp|cu|cuh)$", "", name)
+
+
+def include_graph(texts):
+    uses = {unit(name): set() for name in texts}
+    for name, text in texts.items():
+        for included in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE):
+            if included in texts and unit(included) != unit(name):
+                uses[unit(name)].add(unit(included))
+    return uses
+
+
+def room_graph(uses):
+    """The same of folders; a folder that is parted into rooms uses these, and they do not use it."""
+    rooms = collections.defaultdict(set)
+    for one, others in uses.items():
+        for other in others:
+            here, there = os.path.dirname(one), os.path.dirname(other)
+            if here != there:
+                rooms[here].add(there)
+    return rooms
+
+
+def circles(uses):
+    """The strongly connected parts of more than one node (Tarjan's algorithm)."""
+    order, low, stack, found = {}, {}, [], []
+
+    def visit(node):
+        order[node] = low[node] = len(order)
+        stack.append(node)
+        for other in sorted(uses.get(node, ())):
+            if other not in order:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], order[other])
+        if low[node] == order[node]:
+            part = stack[stack.index(node):]
+            del stack[stack.index(node):]
+            if len(part) > 1:
+                found.append(sorted(part))
+
+    for node in sorted(uses):
+        if node not in order:
+            visit(node)
+    return found
+
+
+CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
+SCOPE = re.compile(r"(?:inline\s+)?namespace\s*([\w:]*)\s*\{"
+                   r"|(?:class|struct|union|enum(?:\s+class|\s+struct)?)\s+(?:alignas\([^)]*\)\s*)?([\w:]+)\s*(?:final\s*)?(?::[^;{}()]*)?\{|[{}]")
+
+
+def types(text):
+    """(qualified name, line) of each type that is defined in a named namespace, none within a function or a class."""
+    text = CODE.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
+    text = re.sub(r"^#.*$", lambda found: " " * len(found.group()), text, flags=re.MULTILINE)
+    scopes = []
+    for found in SCOPE.finditer(text):
+        if found.group() == "}":
+            if scopes:
+                scopes.pop()
+        elif found.group(1) is not None:
+            scopes.append(found.group(1) or "(unnamed)")
+        elif found.group(2) is not None:
+            name = found.group(2)
+            specialised = text[:found.start()].rstrip().endswith(">")
+            if scopes and all(scope and scope != "(unnamed)" for scope in scopes) and not specialised:
+                yield "::".join([*scopes, name]), text.count("\n", 0, found.start()) + 1
+            scopes.append("")
+        else:
+            scopes.append("")
+
+
+def defined_twice(texts):
+    places = collections.defaultdict(list)
+    for name, text in texts.items():
+        for qualified, line in types(text):
+            places[qualified].append((name, line))
+    for qualified, where in sorted(places.items()):
+        # Programs of their own, as examples and benchmarks are, share nothing with each other.
+        together = [(name, line) for name, line in where if not name.startswith(("examples/", "bench/"))]
+        if len({name for name, _ in together}) > 1:
+            yield *together[1], f"{qualified} is defined in {together[0][0]}:{together[0][1]}, too; rename one"
+
+
 def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
+    arguments = [a for a in sys.argv[1:] if a != "--figures"]
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent)
     listed = subprocess.run(["git", "ls-files", "-z", "*.h", "*.cpp", "*.cu", "*.cuh"], cwd=root, check=True, text=True,
                             stdout=subprocess.PIPE).stdout
-    names = [name for name in listed.split("\0") if name]
-    found = [f"{name}:{line}: {what}" for name in names for line, what in faults(root, name, set(names))]
-    print("\n".join(found) if found else f"{len(names)} files")
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in listed.split("\0") if name}
+    found = [f"{name}:{line}: {what}" for name, text in texts.items() for line, what in faults(name, text, set(texts))]
+    uses = include_graph(texts)
+    rooms = room_graph({one: others for one, others in uses.items() if not one.startswith("tests/")})
+    of_files, of_rooms = circles(uses), circles(rooms)
+    found += [f"{part[0]}: includes run in a circle: {', '.join(part)}" for part in [*of_files, *of_rooms]]
+    twice = list(defined_twice(texts))
+    found += [f"{name}:{line}: {what}" for name, line, what in twice]
+    folders = collections.Counter(os.path.dirname(name) for name in texts)
+    found += [f"{folder}/: has {count} files, more than {MOST_FILES}; part it" for folder, count in sorted(folders.items())
+              if count > MOST_FILES]
+    lines = {name: len(text.splitlines()) for name, text in texts.items()}
+    small = sum(count < SMALL for count in lines.values()) / max(len(lines), 1)
+    if small > MOST_SMALL and len(texts) > 100:
+        found.append(f".: {small:.0%} of the files have fewer than {SMALL} lines; merge those with one user")
+    print("\n".join(found) if found else f"{len(texts)} files")
+    if "--figures" in sys.argv:
+        largest, count = folders.most_common(1)[0]
+        print(f"folders {len(folders)}, the largest {largest} with {count} files; circles of files {len(of_files)}, of rooms "
+              f"{len(of_rooms)}; types defined twice {len(twice)}; files above 400 lines "
+              f"{sum(c > 400 for c in lines.values())}; below {SMALL} lines {small:.0%}")
     return 1 if found else 0
 
 

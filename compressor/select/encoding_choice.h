@@ -9,7 +9,7 @@
 #include <string>
 
 #include "compressor/resume/work_directory.h"
-#include "compressor/select/budget.h"
+#include "compressor/select/file_size.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/tree_plan.h"

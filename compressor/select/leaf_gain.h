@@ -9,16 +9,12 @@
 
 #include "compressor/leaf/encoding.h"
 #include "compressor/leaf/fill.h"
+#include "compressor/leaf/metric.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/survey/visibility.h"
 
 namespace weir {
-
-/// sse: squared error saved (rate-distortion). The others are the paper's distances from a brick's
-/// value range [lo, hi] to the background B: closest min(|lo - B|, |hi - B|), farthest the max,
-/// median |(lo + hi) / 2 - B| (Zellmann et al., EGPGV 2025).
-enum class Metric { sse, farthest, closest, median };
 
 /// From one way to keep a leaf to the next better one.
 struct LeafStep {

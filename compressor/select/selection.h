@@ -9,15 +9,14 @@
 // step in it has a higher one. The budget then buys in
 // the order of keys, so that any larger budget buys a superset: error never grows
 // with size. An error to be met instead of a size ends the same way, with the error
-// saved counted in place of the bytes. The cut is found by radix selection over the keys' bits, in passes
-// over the spilled rows; ties go by region index, then by gain, then by leaf
-// index. Memory is that of TreeRegions, for any number of leaves.
+// saved counted in place of the bytes. The steps: region_keys.h gives regions and upper nodes their keys, cut_search.h
+// finds the cut, and of what has the cut's own key as much is bought as fits: by region index, then by gain, then by
+// leaf index (step_keys.h). Memory is that of TreeRegions, for any number of leaves.
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 
+#include "compressor/select/cut_search.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
@@ -64,34 +63,8 @@ class Selection {
   const GainRule& rule() const { return rule_; }
 
  private:
-  void summarize_region(std::int64_t region, const RegionRows& rows, const std::vector<LeafGain>& gains);
-  double weigh_region(Region& region, const RegionRows& rows, float tile) const;
-  bool sees(const Region& region, float tile) const;
-  bool exceeds(double max_error, const Region& region, float tile) const;
-  void summarize_uppers();
-  /// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
-  struct Goal {
-    double unit = 0;  ///< squared error; 0: bytes count
-    // Whole numbers, so that sums do not depend on the order of the threads.
-    using Weight = unsigned __int128;
-    Weight limit = 0;
-
-    Weight weight(std::uint64_t bytes, double gain) const;
-    /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
-    /// brought down until the limit is reached.
-    bool admits(Weight bought, Weight weight) const { return unit == 0 ? bought + weight <= limit : bought < limit; }
-    /// Whether a whole class of keys can be bought without looking at its members.
-    bool admits_all(Weight bought, Weight weight) const {
-      return unit == 0 ? bought + weight <= limit : bought + weight < limit;
-    }
-  };
-
-  template <typename Visit>
-  void for_each_key(const Visit& visit) const;
-  void buy_for(const Goal& goal);
-  double find_threshold(const Goal& goal, Goal::Weight& above) const;
-  double sorted_threshold(const Goal& goal, Goal::Weight& above, const std::function<bool(double)>& matches) const;
-  void resolve_ties(const Goal& goal, Goal::Weight bought);
+  void buy_for(const PurchaseGoal& goal);
+  void resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought);
 
   GainRule rule_;
   const RowStore& rows_;

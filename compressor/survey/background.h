@@ -6,8 +6,9 @@
 #include <string>
 
 #include "compressor/survey/row_store.h"
-#include "compressor/survey/survey.h"
+#include "compressor/survey/survey_figures.h"
 #include "ingest/plan/block_plan.h"
+#include "ingest/plan/block_stream.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {

@@ -10,7 +10,7 @@
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/survey/row_store.h"
-#include "compressor/survey/survey.h"
+#include "compressor/survey/survey_figures.h"
 #include "compressor/survey/survey_tally.h"
 #include "format/base/trace.h"
 #include "ingest/plan/block_stream.h"

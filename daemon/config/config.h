@@ -1,6 +1,5 @@
 // What `weir watch CONFIG.toml` is asked to do: one service, any number of
-// watched directories. Loading checks everything that can be known without
-// looking at volumes, so that a reload with a mistake in it changes nothing.
+// watched directories.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/config/convert_syntax.h"
 #include "daemon/config/listen_address.h"
 #include "daemon/config/priority.h"
 
@@ -55,13 +53,6 @@ constexpr bool says_when_done(Completion completion) {
   return completion == Completion::rename || completion == Completion::marker;
 }
 
-std::string_view completion_name(Completion completion);  ///< "auto", "close", ...
-std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
-std::string_view priority_name(Priority priority);        ///< "newest", "oldest"
-std::string_view after_done_name(AfterDone source);       ///< "keep", "delete-after-verify"
-std::string_view follow_name(Follow follow);              ///< "inside", "anywhere"
-std::string_view io_class_name(IoClass io_class);         ///< "none", "best-effort", "idle"
-
 /// One [[watch]]. Directories are absolute and lexically normal, without a trailing slash.
 struct WatchConfig {
   std::string label;      ///< unique; names the watch in state, logs and metrics; default: its directory
@@ -96,10 +87,5 @@ struct DaemonConfig {
   ServiceConfig service;
   std::vector<WatchConfig> watches;
 };
-
-/// Reads and checks `path`. Relative paths in it are relative to its directory. Throws Error(input) with
-/// "PATH:LINE:COLUMN: ..." for an unknown key, a wrong value or a contradiction, Error(input) or Error(io)
-/// where a file cannot be read.
-DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert);
 
 }  // namespace weir

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "daemon/disks/disk_room.h"
-#include "daemon/jobs/available_memory.h"
 #include "daemon/jobs/output_cleaning.h"
+#include "daemon/jobs/process_usage.h"
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -20,26 +20,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::chrono::seconds kRates{600};
 /// How often a full disk, a state file that cannot be written and short memory are looked at again.
 constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
-
-std::string error_kind(int exit_code) {
-  switch (exit_code) {
-    case static_cast<int>(ErrorKind::usage):
-      return "usage";
-    case static_cast<int>(ErrorKind::input):
-      return "input";
-    case static_cast<int>(ErrorKind::budget):
-      return "budget";
-    case static_cast<int>(ErrorKind::io):
-      return "io";
-    default:
-      return exit_code > 128 ? "killed" : "internal";
-  }
-}
 
 std::string no_room_text(const std::string& directory, const DiskRoom& room) {
   return cat("no room in ", directory, ", where ", format_bytes(room.free), " are free; what needs more waits for it");
@@ -166,7 +150,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
       disk_full(run, report);
       break;
     case TaskEnd::source_changed:
-      ++figures_.errors["source-changed"];
+      figures_.attempt_failed("source-changed");
       [[fallthrough]];
     case TaskEnd::source_gone:
       log_.info(report.end == TaskEnd::source_gone ? "source-gone" : "source-changed",
@@ -219,7 +203,7 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
     store_.finish(id, result);
     deletion_.done(id);
   });
-  left_.add(run.job.identity.bytes, Clock::now());
+  figures_.left_queue(run.job.identity.bytes);
   std::uint64_t bytes_out = 0;
   for (const JobOutput& output : result.outputs) bytes_out += output.bytes;
   log_.info("done", {{"job", run.job.id},
@@ -229,20 +213,12 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
                      {"bytes", bytes_out},
                      {"converted", report.converted ? "yes" : "no, done already"}});
   if (!report.converted) return;
-  figures_.seconds.observe(result.seconds);
-  ++figures_.done;
-  figures_.bytes_in += run.job.identity.bytes;
-  figures_.bytes_out += result.bytes_written;
-  const Clock::time_point now = Clock::now();
-  last_minute_.add(run.job.identity.bytes, now);
-  for (const std::string& watch : {std::string(), run.job.watch}) {
-    converted_.try_emplace(watch, kRates, started_).first->second.add(run.job.identity.bytes, now);
-  }
-  disks_.written(fs::path(run.work->task().output).parent_path().string(), result.bytes_written, now);
+  figures_.converted(run.job.watch, run.job.identity.bytes, result);
+  disks_.written(fs::path(run.work->task().output).parent_path().string(), result.bytes_written, Clock::now());
 }
 
 void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
-  ++figures_.errors[error_kind(report.result.exit_code)];
+  figures_.attempt_failed(report.result.exit_code);
   log_.error("failed", {{"job", run.job.id},
                         {"source", run.job.source},
                         {"exit_code", report.result.exit_code},
@@ -250,7 +226,7 @@ void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
   record([this, id = run.job.id, bytes = run.job.identity.bytes, result = report.result] {
     store_.fail(id, result);
     const std::optional<Job> now = store_.job(id);
-    if (now && now->state != JobState::waiting) left_.add(bytes, Clock::now());
+    if (now && now->state != JobState::waiting) figures_.left_queue(bytes);
   });
 }
 
@@ -265,7 +241,7 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
     failed(run, never);
     return;
   }
-  ++figures_.errors["disk-full"];
+  figures_.attempt_failed("disk-full");
   full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
                   Clock::now());
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
@@ -412,13 +388,6 @@ void JobRunner::shut_down(milliseconds grace, std::function<void()> stopped) {
 void JobRunner::kill() {
   grace_timer_.cancel();
   for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
-}
-
-double JobRunner::bytes_per_s() const { return last_minute_.at(Clock::now()).bytes_per_s; }
-
-RecentRate::Rates JobRunner::converted(const std::string& watch) const {
-  const auto at = converted_.find(watch);
-  return at == converted_.end() ? RecentRate::Rates{} : at->second.at(Clock::now());
 }
 
 std::vector<OutputDisk> JobRunner::disks() const { return disks_.disks(Clock::now()); }

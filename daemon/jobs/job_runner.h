@@ -18,27 +18,15 @@
 #include "daemon/config/config.h"
 #include "daemon/disks/full_disks.h"
 #include "daemon/disks/output_disks.h"
-#include "daemon/disks/recent_rate.h"
 #include "daemon/jobs/conversion_job.h"
+#include "daemon/jobs/job_figures.h"
 #include "daemon/jobs/scheduler.h"
-#include "daemon/jobs/seconds_histogram.h"
 #include "daemon/jobs/source_deletion.h"
 #include "daemon/log/event_log.h"
 #include "daemon/store/job_store.h"
 #include "format/base/error.h"
 
 namespace weir {
-
-/// Since the start of the process.
-struct RunnerFigures {
-  SecondsHistogram seconds;  ///< of conversions that ended well
-  std::uint64_t done = 0;
-  std::uint64_t bytes_in = 0;   ///< of the sources of those
-  std::uint64_t bytes_out = 0;  ///< of their outputs
-  /// Failed attempts, by what was wrong; all of them from the start on, so that a rate can be taken of the first one.
-  std::map<std::string, std::uint64_t> errors{{"input", 0},    {"io", 0},     {"budget", 0},    {"usage", 0},
-                                              {"internal", 0}, {"killed", 0}, {"disk-full", 0}, {"source-changed", 0}};
-};
 
 /// A conversion that says nothing for so long is said to stand still.
 inline constexpr std::chrono::seconds kQuiet{60};
@@ -84,13 +72,7 @@ class JobRunner {
   void kill();
 
   const std::map<std::int64_t, RunningJob>& running() const { return running_; }
-  const RunnerFigures& figures() const { return figures_; }
-  /// Source bytes a second, over the last minute.
-  double bytes_per_s() const;
-  /// Of what was converted, over the last ten minutes; empty: of all watches.
-  RecentRate::Rates converted(const std::string& watch = "") const;
-  /// Of jobs that left the queue for good, whatever became of them, over the last ten minutes.
-  RecentRate::Rates left() const { return left_.at(std::chrono::steady_clock::now()); }
+  const JobFigures& figures() const { return figures_; }
   /// The file systems that the watches' outputs lie on.
   std::vector<OutputDisk> disks() const;
   /// Why jobs with outputs on `disk` wait, in words; empty: they do not.
@@ -128,11 +110,7 @@ class JobRunner {
   std::map<std::int64_t, RunningJob> running_;
   std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
   std::string store_fault_;
-  RunnerFigures figures_;
-  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-  RecentRate left_{std::chrono::seconds(600), started_};  ///< jobs that wait no more: done, failed or quarantined
-  RecentRate last_minute_{std::chrono::seconds(60), started_};
-  std::map<std::string, RecentRate> converted_;  ///< by watch; "": of all
+  JobFigures figures_;
   OutputDisks disks_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer grace_timer_;

@@ -17,19 +17,16 @@
 // full among them); the store stays usable and unchanged, and the call may be repeated.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "daemon/config/priority.h"
 #include "daemon/store/job.h"
-#include "daemon/store/job_order.h"
+#include "daemon/store/job_listing.h"
 #include "daemon/store/sqlite.h"
 
 namespace weir {
@@ -38,27 +35,8 @@ namespace weir {
 std::int64_t backoff_ms(int attempts);
 inline constexpr int kMaxAttempts = 5;
 
-/// Which jobs to list; empty: any.
-struct JobFilter {
-  std::optional<JobState> state;
-  std::string watch;
-  std::string text{};     ///< a part of the source's path or of the reason, letter case aside where it is ASCII
-  std::string problem{};  ///< of failed and quarantined ones: JobProblem::key
-};
-
-/// Failed and quarantined jobs of equal reasons (problem_key.h).
-struct JobProblem {
-  std::string key;
-  std::uint64_t count = 0;
-  Job newest;
-};
-
-using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
-
-class JobStore {
+class JobStore : public JobListing {
  public:
-  /// Milliseconds since the epoch.
-  using Clock = std::function<std::int64_t()>;
   static std::int64_t wall_clock_ms();
 
   /// Opens `path`, made if missing. Jobs that were running are waiting again, at no cost. A corrupt file is moved
@@ -123,46 +101,20 @@ class JobStore {
   /// cancelled stay.
   void forget_other_watches(const std::vector<Watched>& watches);
 
-  std::optional<Job> job(std::int64_t id) const;
-  std::optional<Job> find(const std::string& watch, const std::string& source) const;
-  /// In the order of `order`; where none is given, last changed first, and where only waiting ones are asked for, the
-  /// one longest in the queue first.
-  std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit,
-                        const std::optional<JobOrder>& order = {}) const;
-  std::uint64_t count(const JobFilter& filter) const;
-  struct Problem {
-    std::int64_t id = 0;
-    std::string watch;
-    std::string source;
-    bool operator==(const Problem&) const = default;
-  };
-  /// All failed and quarantined jobs, or those of one problem (JobProblem::key), by their IDs.
-  std::vector<Problem> with_problems(const std::string& problem) const;
-  /// The first `limit` of them, the one with the newest job first.
-  std::vector<JobProblem> problems(std::size_t limit) const;
-  /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
-  /// milliseconds or longer.
-  std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
-  /// By watch; watches without jobs are absent.
-  std::map<std::string, JobCounts> counts() const;
-  /// Source bytes of the jobs that wait, by watch; watches without such jobs are absent.
-  std::map<std::string, std::uint64_t> waiting_bytes() const;
-  /// The first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
-  std::vector<Job> candidates(const std::string& watch, Priority priority, std::size_t limit) const;
-  /// Milliseconds until a waiting job that is not due yet becomes so; nullopt: there is none.
-  std::optional<std::int64_t> next_due_ms() const;
-  /// Milliseconds since the job longest in the queue became complete; nullopt: none is waiting.
-  std::optional<std::int64_t> queue_age_ms() const;
-
  private:
+  struct Opened {
+    Database database;
+    std::string notice;
+  };
+  static Opened open(const std::string& path);
+  JobStore(Opened opened, Clock clock);
+
   std::int64_t now();
   bool move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason);
   bool end_attempt(std::int64_t id, const JobResult& result, JobState to, int attempts, std::int64_t delay_ms);
 
-  Clock clock_;
   std::int64_t latest_ = 0;  ///< what the clock said last
   std::string notice_;
-  Database database_;
 };
 
 }  // namespace weir

@@ -1,16 +1,14 @@
 // Tells what happens to the sources in a watched directory, for as long as it
-// lives: nothing that PathFilter refuses, and no source left out. By inotify where the
-// file system's changes pass through this machine, by looking again and again elsewhere.
+// lives: nothing that PathFilter refuses, and no source left out. choosing_watch.h
+// makes one.
 //
 // The directory may be missing, go away, come back or be replaced at any time. What cannot be
 // watched (a directory without permission, a link that leaves the tree) is said once, in one line, and
 // everything else goes on.
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "daemon/config/config.h"
@@ -43,17 +41,5 @@ class DirectoryWatch {
   /// What stood against inotify may be over (a limit was raised): the way to watch is chosen anew.
   virtual void choose_again() {}
 };
-
-class Inotify;
-using OpenInotify = std::function<std::unique_ptr<Inotify>()>;
-
-/// Watches config.directory from now on by config.watch. automatic: inotify where it sees everything
-/// (file_system_kind.h), else polling; inotify whose limits are reached becomes polling and a notice says so.
-/// Events of one file are merged within 20 ms, by polling within config.poll_interval_s.
-std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
-                                                     WatchListener listener);
-/// The same with another inotify than the system's, for tests.
-std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
-                                                     WatchListener listener, OpenInotify open_inotify);
 
 }  // namespace weir

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,5 +25,7 @@ class Inotify {
 
 /// The system's. Throws Error(io) where it gives no further queue.
 std::unique_ptr<Inotify> open_system_inotify();
+
+using OpenInotify = std::function<std::unique_ptr<Inotify>()>;
 
 }  // namespace weir

@@ -8,8 +8,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+
+#include "format/base/index.h"
 
 namespace weir {
 
@@ -26,5 +29,19 @@ std::string macrocell_name(const MacrocellName& shape);
 /// Inverse; nullopt where the text is not such a name, cell is no multiple of 8 in [8, 4096] or
 /// apron is not in [0, 8].
 std::optional<MacrocellName> parse_macrocell_name(std::string_view text);
+
+struct MinMax {
+  float min;
+  float max;
+};
+
+/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
+/// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).
+struct MacrocellView {
+  std::int64_t cell = 0;          ///< voxels along an edge
+  std::int64_t apron = 0;         ///< voxels
+  NodeLattice lattice;            ///< cells over the index bounding box
+  std::span<const MinMax> cells;  ///< lattice.size() entries, x fastest
+};
 
 }  // namespace weir

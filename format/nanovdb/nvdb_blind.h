@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "format/base/index.h"
+#include "format/nanovdb/macrocells.h"
 #include "format/nanovdb/nvdb_bytes.h"
-#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 

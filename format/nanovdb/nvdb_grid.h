@@ -14,14 +14,10 @@
 
 #include "format/base/index.h"
 #include "format/layout/nvdb_type.h"
+#include "format/nanovdb/macrocells.h"
 #include "format/nanovdb/nvdb_header.h"
 
 namespace weir {
-
-struct MinMax {
-  float min;
-  float max;
-};
 
 /// What covers a voxel: a leaf, or a value tile of 8, 128 or 4096 voxels, or nothing (background).
 struct GridBlock {
@@ -40,15 +36,6 @@ struct RootEntry {
   const std::byte* upper = nullptr;  ///< null: a tile
   bool active = false;               ///< tile state
   float value = 0;                   ///< tile value
-};
-
-/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
-/// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).
-struct MacrocellView {
-  std::int64_t cell = 0;          ///< voxels along an edge
-  std::int64_t apron = 0;         ///< voxels
-  NodeLattice lattice;            ///< cells over the index bounding box
-  std::span<const MinMax> cells;  ///< lattice.size() entries, x fastest
 };
 
 class NvdbGrid {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "gpu/math/vector3.h"
@@ -23,5 +25,8 @@ struct Image {
   }
   const Float3& at(std::int32_t x, std::int32_t y) const { return pixels[index(x, y)]; }
 };
+
+/// Called with a picture's size before memory is taken for its pixels; throws to refuse it.
+using ImageSizeCheck = std::function<void(std::int32_t width, std::int32_t height)>;
 
 }  // namespace weir

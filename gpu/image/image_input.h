@@ -1,16 +1,11 @@
 // Pictures in linear light from disk, told apart by their first bytes.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <string>
 
 #include "gpu/image/image.h"
 
 namespace weir {
-
-/// Called with a picture's size before memory is taken for its pixels; throws to refuse it.
-using ImageSizeCheck = std::function<void(std::int32_t width, std::int32_t height)>;
 
 /// RGB of an OpenEXR file (half or float channels R, G and B, or one channel for gray; scanlines or tiles)
 /// or a Radiance .hdr file, as stored, NaN and infinities included. Throws Error(input) where the file is

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "gpu/image/image_input.h"
+#include "gpu/image/image.h"
 
 namespace weir {
 

@@ -10,9 +10,9 @@
 
 #include "format/base/scalar_type.h"
 #include "ingest/files/input_file.h"
+#include "ingest/source/dataset_info.h"
 #include "ingest/source/source_options.h"
 #include "ingest/source/volume_source.h"
-#include "ingest/source_registry.h"
 
 namespace weir {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "ingest/source/dataset_info.h"
 #include "ingest/source/source_options.h"
 #include "ingest/source/volume_source.h"
-#include "ingest/source_registry.h"
 
 namespace weir {
 

@@ -15,7 +15,6 @@
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source/extent.h"
-#include "ingest/source_registry.h"
 
 namespace weir {
 namespace {
@@ -51,7 +50,8 @@ void check_alike(const std::string& path, const SourceInfo& info, const SourceIn
 
 class StackSource final : public VolumeSource {
  public:
-  StackSource(const std::string& pattern, const SourceOptions& options) : options_(options) {
+  StackSource(const std::string& pattern, const SourceOptions& options, OpenVolume open)
+      : open_volume_(std::move(open)), options_(options) {
     // These are the stack's.
     options_.stack = false;
     options_.spacing.reset();
@@ -108,7 +108,7 @@ class StackSource final : public VolumeSource {
   using OpenSlab = std::pair<std::size_t, std::shared_ptr<VolumeSource>>;
 
   void add(const std::string& path) {
-    const auto source = open_source(path, options_);
+    const auto source = open_volume_(path, options_);
     const SourceInfo& info = source->info();
     files_.add(path, info.files_digest);
     if (slabs_.empty()) {
@@ -164,7 +164,7 @@ class StackSource final : public VolumeSource {
       }
     }
     // Whoever reads from a file last closes it, and then its bytes are counted.
-    std::shared_ptr<VolumeSource> source(open_source(slabs_[i].path, options_).release(),
+    std::shared_ptr<VolumeSource> source(open_volume_(slabs_[i].path, options_).release(),
                                          [this](VolumeSource* closing) {
                                            const std::unique_ptr<VolumeSource> owned(closing);
                                            closed_bytes_read_ += owned->bytes_read();
@@ -178,6 +178,7 @@ class StackSource final : public VolumeSource {
     return source;
   }
 
+  OpenVolume open_volume_;
   SourceOptions options_;
   SourceInfo info_;
   SourceInfo first_;  ///< of the first file
@@ -192,8 +193,8 @@ class StackSource final : public VolumeSource {
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_stack(const std::string& pattern, const SourceOptions& options) {
-  return std::make_unique<StackSource>(pattern, options);
+std::unique_ptr<VolumeSource> open_stack(const std::string& pattern, const SourceOptions& options, OpenVolume open) {
+  return std::make_unique<StackSource>(pattern, options, std::move(open));
 }
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 // One volume from many files, each of them a slab of it along z.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,11 +10,14 @@
 
 namespace weir {
 
-/// Stacks the files that `pattern` names ('plane_%05d.raw') along z, by rising number, each opened in its
-/// own format with `options` (but for spacing, origin and roi, which are the stack's). Files are open only
+/// Opens one volume; open_source (source_registry.h) does.
+using OpenVolume = std::function<std::unique_ptr<VolumeSource>(const std::string& path, const SourceOptions& options)>;
+
+/// Stacks the files that `pattern` names ('plane_%05d.raw') along z, by rising number, each opened by `open`
+/// with `options` (but for spacing, origin and roi, which are the stack's). Files are open only
 /// while they are read, a few at a time.
 /// Throws Error(input) naming the file where a number between two others is missing, or where extent in x
 /// and y, type, scale or missing values differ from the first file's; what opening a file throws.
-std::unique_ptr<VolumeSource> open_stack(const std::string& pattern, const SourceOptions& options);
+std::unique_ptr<VolumeSource> open_stack(const std::string& pattern, const SourceOptions& options, OpenVolume open);
 
 }  // namespace weir

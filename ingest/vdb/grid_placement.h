@@ -4,7 +4,7 @@
 #include <array>
 
 #include "format/base/index.h"
-#include "ingest/source_registry.h"
+#include "ingest/source/dataset_info.h"
 #include "ingest/values/axis_placement.h"
 
 namespace weir {

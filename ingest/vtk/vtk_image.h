@@ -6,8 +6,8 @@
 #include <string>
 
 #include "format/base/index.h"
+#include "ingest/source/dataset_info.h"
 #include "ingest/source/volume_source.h"
-#include "ingest/source_registry.h"
 #include "ingest/values/axis_placement.h"
 
 namespace weir {

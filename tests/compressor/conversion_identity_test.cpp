@@ -16,7 +16,7 @@ SourceInfo source() {
   return info;
 }
 
-TEST(ConversionIdentity, ChangesWithAllThatDecidesTheBytes) {
+TEST(ConversionIdentity, ChangesWithEveryInputThatAffectsTheBytes) {
   const ConversionIdentity one = identify_conversion(source(), {});
   const std::vector<std::function<void(SourceInfo&)>> of_source{
       [](SourceInfo& s) { s.path = "b.raw"; },
@@ -67,14 +67,14 @@ TEST(ConversionIdentity, ChangesWithAllThatDecidesTheBytes) {
   }
 }
 
-TEST(ConversionIdentity, KnowsASourceByItsPlaceAndNotByItsName) {
+TEST(ConversionIdentity, RelativeAndAbsoluteSourcePathsAreTheSame) {
   SourceInfo absolute = source();
   absolute.path = std::filesystem::current_path() / "a.raw";
   EXPECT_EQ(identify_conversion(source(), {}), identify_conversion(absolute, {}));
   EXPECT_EQ(identify_conversion(source(), {}).at("source"), absolute.path);
 }
 
-TEST(ConversionIdentity, NamesAllOfASceneThatDecidesWhatIsSeen) {
+TEST(ConversionIdentity, SceneValuesCoverVisibilityAndNotTheCamera) {
   const auto with = [](const auto& change) {
     Scene scene;
     change(scene);
@@ -92,7 +92,7 @@ TEST(ConversionIdentity, NamesAllOfASceneThatDecidesWhatIsSeen) {
   EXPECT_EQ(scene_digest({}).size(), 32U);
 }
 
-TEST(ConversionIdentity, IsTheSameOnAnyMachineAndAtAnyPlace) {
+TEST(ConversionIdentity, IgnoresOptionsThatDoNotAffectTheBytes) {
   ConversionOptions other;
   other.output = "elsewhere.nvdb";
   other.overwrite = true;

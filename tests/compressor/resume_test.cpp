@@ -11,7 +11,7 @@
 namespace weir::test {
 namespace {
 
-TEST_F(ResumeOfHoles, RefusalLeavesNothing) {
+TEST_F(ResumeOfHoles, RefusedNonFiniteInputLeavesNoFiles) {
   MemoryFileSystem files;
   try {
     run(base(), files);
@@ -81,7 +81,7 @@ TEST_F(ResumeTest, SavesBesideTheWorkCanBeContinuedFrom) {
   }
 }
 
-TEST_F(ResumeTest, SmallVolumesPayNothingAndLeaveNothing) {
+TEST_F(ResumeTest, AutomaticResume_InterruptedSmallVolume_LeavesNoFiles) {
   ConversionOptions options = base();
   options.resume = Resume::automatic;
   MemoryFileSystem files;
@@ -109,7 +109,7 @@ TEST_F(ResumeTest, AChangedSourceStartsAnew) {
                                                "modified (ns) was \"0\", now \"1\""}));
 }
 
-TEST_F(ResumeTest, OffRemovesWhatWasLeft) {
+TEST_F(ResumeTest, ResumeOff_RemovesLeftoverFiles) {
   MemoryFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   ConversionOptions options = base();
@@ -119,7 +119,7 @@ TEST_F(ResumeTest, OffRemovesWhatWasLeft) {
 }
 
 // The survey is kept: it does not depend on the scene. What was encoded is not.
-TEST_F(ResumeTest, ASceneThatSaysSomethingElseIsEncodedAnew) {
+TEST_F(ResumeTest, ChangedScene_KeepsTheSurveyAndEncodesAgain) {
   ConversionOptions options = base();
   Scene scene;
   scene.volume.range = {-100, 110};
@@ -133,7 +133,7 @@ TEST_F(ResumeTest, ASceneThatSaysSomethingElseIsEncodedAnew) {
   EXPECT_TRUE(files.content("out.nvdb") == undisturbed(options).file);
 }
 
-TEST_F(ResumeTest, AnErrorTargetIsMetAnewForASceneThatSaysSomethingElse) {
+TEST_F(ResumeTest, ChangedScene_ErrorTarget_GivesTheUndisturbedBytes) {
   ConversionOptions options = base();
   options.budget = {Budget::Kind::psnr, 0, 0, 45};
   options.encoding = Encoding::fpn;
@@ -185,7 +185,7 @@ TEST_F(ResumeTest, DamagedStateStartsAnew) {
   EXPECT_EQ(after([](MemoryFileSystem& files) { files.remove(kHidden + "journal"); }), "");
 }
 
-TEST_F(ResumeTest, TooLittleMemoryKeepsWhatIsDone) {
+TEST_F(ResumeTest, TooLittleMemory_KeepsTheSavedState) {
   MemoryFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   const Names kept = files.names();

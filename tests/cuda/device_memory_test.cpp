@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kMuch = 1ULL << 30U;
 
 // A back end's pool keeps what is given back to it.
-TEST(FreeDeviceBytes, CountsWhatThePoolKeepsWhereItIsWanted) {
+TEST(FreeDeviceBytes, ReleasesThePoolsReserveWhenItIsWanted) {
   WEIR_NEEDS_DEVICE();
   const auto backend = make_cuda_backend({});
   constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();

@@ -155,7 +155,7 @@ TEST(DeviceTable, NanAndInfiniteValuesAreKept) {
   expect_every_voxel(TestGrid({{0, 0, 0}, {20, 11, 9}}, odd).grid());
 }
 
-TEST(DeviceMacrocells, GatheredBoundsAreTheHosts) {
+TEST(DeviceMacrocells, GatheredBoundsEqualThoseOfTheHost) {
   WEIR_NEEDS_DEVICE();
   TestGridOptions options;
   options.background = 0.25F;
@@ -171,7 +171,7 @@ TEST(DeviceMacrocells, GatheredBoundsAreTheHosts) {
   }
 }
 
-TEST(DeviceMacrocells, MajorantsAreTheHosts) {
+TEST(DeviceMacrocells, MajorantsEqualThoseOfTheHost) {
   WEIR_NEEDS_DEVICE();
   const TestGrid volume({{-21, -5, 3}, {70, 45, 27}}, wave);
   MacrocellGrid host(volume.grid(), 16);

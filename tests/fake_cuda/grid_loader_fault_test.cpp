@@ -96,7 +96,7 @@ TEST_F(GridLoaderFault, TheWayAskedForIsNotReplaced) {
                 ": cannot be brought to the device: not registered: the device does not register read-only memory");
 }
 
-TEST_F(GridLoaderFault, AFailureThatSticksIsNoRefusal) {
+TEST_F(GridLoaderFault, StickyErrorDoesNotFallBackToTheNextWay) {
   const NvdbFile grid_file = file();
   for (const char* function : {"cudaHostRegister", "cudaMemcpyAsync", "cudaEventRecord", "cudaEventSynchronize",
                                "cudaEventCreateWithFlags", "cudaHostUnregister", "cudaSetDevice"}) {
@@ -110,7 +110,7 @@ TEST_F(GridLoaderFault, AFailureThatSticksIsNoRefusal) {
 }
 
 // An illegal access of earlier work may come out of registration with a code that looks like a refusal.
-TEST_F(GridLoaderFault, AFailureOfEarlierWorkIsNotTakenForARefusal) {
+TEST_F(GridLoaderFault, EarlierAsynchronousErrorDoesNotFallBack) {
   const NvdbFile grid_file = file();
   runtime().fail("cudaHostRegister", 2, cudaErrorNotSupported, true);
   const std::string message = refusal(grid_file);

@@ -29,7 +29,7 @@ TEST(Series, CompressedNamesLoseBothSuffixes) {
   EXPECT_EQ(expand({"a.b.raw"})[0].stem, "a.b");
 }
 
-TEST(Series, APatternIsAllItsFiles) {
+TEST(Series, PatternExpandsToItsFilesInOrder) {
   const Scratch scratch;
   for (const char* name : {"run_8.raw", "run_9.raw", "run_10.raw"}) scratch.write(name, {});
   const auto steps = expand({scratch.path("run_%d.raw")});
@@ -73,7 +73,7 @@ TEST(Series, StepsMayNotShareAName) {
   EXPECT_EQ(series_outputs(steps, "").size(), 2U);
 }
 
-TEST(Series, NamesKnowThreeWords) {
+TEST(Series, OutputNamesTakeStemDatasetAndStep) {
   const SeriesStep step{"f.h5", "/fields/a b", {3}, "f", "03"};
   EXPECT_EQ(step_name("{stem}-{dataset}-{step}{step}.nvdb", step), "f-fields.a b-0303.nvdb");
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { step_name("{time}.nvdb", step); }),
@@ -82,7 +82,7 @@ TEST(Series, NamesKnowThreeWords) {
             "{stem in an output's name is not known; there are {stem}, {dataset} and {step}");
 }
 
-TEST(Series, RawFilesHaveNoDatasets) {
+TEST(Series, DatasetAndIndexPatternsAreRefusedForRawFiles) {
   const Scratch scratch;
   const std::string path = scratch.write("a_4x3x2_uint8.raw", std::vector<std::byte>(24));
   SourceOptions options;

@@ -14,7 +14,7 @@
 
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
-#include "compressor/select/budget.h"
+#include "compressor/select/file_size.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"

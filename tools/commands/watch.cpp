@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "daemon/config/config.h"
+#include "daemon/config/load_config.h"
 #include "daemon/service.h"
 #include "format/base/error.h"
 #include "tools/command.h"

@@ -1,4 +1,5 @@
 #include "tools/describe/describe_config.h"
+#include "daemon/config/config_names.h"
 
 #include <filesystem>
 #include <sstream>

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/config/config.h"
+#include "daemon/config/load_config.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "tools/options/convert_syntax.h"

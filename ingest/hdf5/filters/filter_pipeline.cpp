@@ -6,9 +6,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "ingest/hdf5/filters/filter_fletcher32.h"
-#include "ingest/hdf5/filters/filter_lzf.h"
-#include "ingest/hdf5/filters/filter_unshuffle.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 namespace weir {
 namespace {
@@ -56,7 +54,7 @@ std::optional<FilterPipeline> own_pipeline(hid_t creation_properties) {
 
 std::size_t most_stored_bytes(const FilterPipeline& pipeline, std::size_t chunk_bytes) {
   std::size_t bytes = chunk_bytes;
-  for (const Filter& filter : pipeline) {
+  for (const ChunkFilter& filter : pipeline) {
     if (filter.kind == FilterKind::fletcher32) bytes += kFletcher32Bytes;
     // HDF5 gives deflate 1.001 times the size and 12 bytes, and stores the chunk as it is where that is too little.
     if (filter.kind == FilterKind::deflate) bytes += bytes / 256 + 64;
@@ -65,7 +63,7 @@ std::size_t most_stored_bytes(const FilterPipeline& pipeline, std::size_t chunk_
 }
 
 bool needs_other_buffer(const FilterPipeline& pipeline) {
-  return std::ranges::any_of(pipeline, [](const Filter& filter) { return filter.kind != FilterKind::fletcher32; });
+  return std::ranges::any_of(pipeline, [](const ChunkFilter& filter) { return filter.kind != FilterKind::fletcher32; });
 }
 
 std::span<const std::byte> undo_filters(const FilterPipeline& pipeline, FilterMask left_out, std::size_t chunk_bytes,

@@ -10,19 +10,19 @@
 #include <span>
 #include <vector>
 
-#include "ingest/hdf5/filters/filter_inflate.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 namespace weir {
 
 enum class FilterKind { deflate, lzf, shuffle, fletcher32 };
 
-struct Filter {
+struct ChunkFilter {
   FilterKind kind = FilterKind::deflate;
   std::size_t value_bytes = 1;  ///< of shuffle
 };
 
 /// In the order they are applied on writing. At most one is deflate or lzf: all sizes in between are known then.
-using FilterPipeline = std::vector<Filter>;
+using FilterPipeline = std::vector<ChunkFilter>;
 
 /// Filters a chunk's mask says were left out: bit i for filter i.
 using FilterMask = std::uint32_t;

@@ -1,6 +1,5 @@
 #include "ingest/hdf5/meaning/axis_places.h"
 
-#include "format/base/text.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/openpmd.h"
 #include "ingest/hdf5/meaning/plain_placement.h"
@@ -15,14 +14,6 @@ std::vector<AxisPlace> axis_places(hid_t file, const Hdf5Object& object, std::sp
   place_by_scales(object.handle.get(), axes);
   place_by_attributes(object.handle.get(), groups, axes);
   return axes;
-}
-
-std::string axes_text(std::span<const AxisPlace> axes) {
-  std::string text;
-  for (const AxisPlace& axis : axes) {
-    text += cat(text.empty() ? "" : " x ", axis.label, axis.label.empty() ? "" : "=", axis.extent);
-  }
-  return text;
 }
 
 }  // namespace weir

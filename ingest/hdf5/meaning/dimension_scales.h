@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-#include "ingest/hdf5/meaning/axis_places.h"
+#include "ingest/hdf5/meaning/axis_place.h"
 
 namespace weir {
 

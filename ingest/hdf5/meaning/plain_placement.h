@@ -6,7 +6,7 @@
 #include <span>
 
 #include "ingest/hdf5/file/hdf5_handle.h"
-#include "ingest/hdf5/meaning/axis_places.h"
+#include "ingest/hdf5/meaning/axis_place.h"
 
 namespace weir {
 

@@ -1,5 +1,6 @@
 // Structs of an older and a newer header than the library's own.
 #include "bindings/c/versioned_struct.h"
+#include "tests/support/message_of_error.h"
 
 #include <gtest/gtest.h>
 
@@ -42,13 +43,7 @@ Known read(const Given& given) {
 
 template <typename Given>
 std::string refusal(const Given& given) {
-  try {
-    read(given);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "none";
+  return message_of_error(ErrorKind::usage, [&] { read(given); });
 }
 
 TEST(VersionedStruct, AnOlderProgramsStructIsReadAndNotExceeded) {

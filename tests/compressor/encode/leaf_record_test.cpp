@@ -45,7 +45,7 @@ TEST(LeafRecord, OutwardLayersFaceOutOfTheMacrocell) {
   }
 }
 
-TEST(LeafRecord, BoundsOfNothingAreWidenedByAnything) {
+TEST(LeafRecord, EmptyBoundsWidenToFiniteValuesOnly) {
   MinMax bounds = kNoBounds;
   widen(bounds, kNoBounds);
   EXPECT_GT(bounds.min, bounds.max);

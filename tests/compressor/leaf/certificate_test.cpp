@@ -36,7 +36,7 @@ TEST(Certificate, RangesBeyondFloatAndBelowNormalStayFinite) {
   EXPECT_TRUE(tiny.psnr_db);
 }
 
-TEST(Certificate, AnErrorWithoutARangeIsNotZeroErrorInUnitsOfTheRange) {
+TEST(Certificate, ErrorInAConstantVolume_HasInfiniteNmse) {
   const Certificate c = make_certificate(25 * 8, 5, false, 8, 5, 5);
   EXPECT_EQ(c.mse, 25);
   EXPECT_EQ(c.nmse, std::numeric_limits<double>::infinity());
@@ -44,14 +44,14 @@ TEST(Certificate, AnErrorWithoutARangeIsNotZeroErrorInUnitsOfTheRange) {
   EXPECT_EQ(make_certificate(0, 0, true, 8, 5, 5).nmse, 0);
 }
 
-TEST(Certificate, NothingFiniteHasNoError) {
+TEST(Certificate, NoFiniteValues_GiveZeroError) {
   const Certificate c = make_certificate(0, 0, true, 0, 0, 0);
   EXPECT_EQ(c.mse, 0);
   EXPECT_EQ(c.rmse, 0);
   EXPECT_FALSE(c.psnr_db);
 }
 
-TEST(CompensatedSum, LosesNothingToLargeTerms) {
+TEST(CompensatedSum, KeepsSmallTermsBesideLargeOnes) {
   CompensatedSum sum;
   sum.add(1e16);
   for (int i = 0; i < 1000; ++i) sum.add(1);

@@ -15,9 +15,9 @@ double sum_of(const std::vector<double>& terms) {
   return sum.value();
 }
 
-TEST(ExactSum, NothingIsZero) { EXPECT_EQ(ExactSum().value(), 0.0); }
+TEST(ExactSum, EmptySumIsZero) { EXPECT_EQ(ExactSum().value(), 0.0); }
 
-TEST(ExactSum, OneTermIsItself) {
+TEST(ExactSum, SumOfOneTermIsThatTerm) {
   for (const double term : {0.0, 1.0, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
                             std::numeric_limits<double>::min(), 4.6e77, std::numeric_limits<double>::max(), 0x1p-1022,
                             0x1.fffffffffffffp-1000, 0x1.fffffffffffffp31, 0x1.0000000000001p32}) {
@@ -52,7 +52,7 @@ TEST(ExactSum, OrderAndGroupingDoNotMatter) {
   EXPECT_EQ(left.value(), forwards);
 }
 
-TEST(ExactSum, CarriesTravelAllTheWay) {
+TEST(ExactSum, CarriesPropagateAcrossAllDigits) {
   ExactSum sum;
   sum.add(0x1p40 - 0x1p-12);
   sum.add(0x1p-12);

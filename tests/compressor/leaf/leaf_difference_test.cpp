@@ -28,7 +28,7 @@ TEST(LeafDifference, EqualLeavesDoNotDiffer) {
   EXPECT_EQ(d.range.max, 0.25F);
 }
 
-TEST(LeafDifference, EveryVoxelCounts) {
+TEST(LeafDifference, DifferenceInAnyVoxelIsCounted) {
   for (std::size_t i = 0; i < 512; ++i) {
     Pair leaf;
     leaf.source[i] = 3.0F;

@@ -73,7 +73,7 @@ TEST(LeafQuantiser, OneBitIsTheBestSplitInTwo) {
   EXPECT_NEAR(decoded_error(values, fit_quantiser(values, range_of(values), 1), 1), best, 1e-3 * best);
 }
 
-TEST(LeafQuantiser, ScaleChangesNothing) {
+TEST(LeafQuantiser, ScalingTheValuesScalesTheFit) {
   const auto values = noise(512, 3, 10, 4);
   for (const float scale : {0x1p-60F, 0x1p-100F, 0x1p+100F}) {
     std::vector<float> scaled = values;

@@ -131,7 +131,7 @@ TEST_P(LeafSummaryTest, GivesErrorsAboutAnyFillFromTheSums) {
 INSTANTIATE_TEST_SUITE_P(Values, LeafSummaryTest, testing::ValuesIn(value_sets()),
                          [](const auto& parameter) { return parameter.param.name; });
 
-TEST(LeafSummary, NothingFiniteIsZeroEverywhere) {
+TEST(LeafSummary, NoFiniteValues_GiveAZeroSummary) {
   for (const float v : {kNaN, kInf, -kInf}) {
     const LeafRow row = summarize_leaf(std::vector<float>(512, v), 17);
     EXPECT_EQ(row.finite, 0U);
@@ -181,7 +181,7 @@ TEST(LeafSummary, ZerosOfBothSignsAreNotUniformAndMeanZero) {
   EXPECT_EQ(bits_of(row.sample), bits_of(-0.0F));
 }
 
-TEST(LeafSummary, HundredMillionPlusAThousandth) {
+TEST(LeafSummary, SumsStayExactAroundOneHundredMillion) {
   // One ulp of 1e8 is 8: the signal of 1e-3 is gone in the source itself, and the sums stay exact.
   std::vector<float> values(512, 1e8F + 1e-3F);
   EXPECT_EQ(summarize_leaf(values, 0).mean, 1e8F);

@@ -68,14 +68,14 @@ TEST(QuantisedLeaf, WholeNumbersAreExactAtTheFirstWidthThatHoldsTheirRange) {
   }
 }
 
-TEST(QuantisedLeaf, ZerosOfBothSignsCostNoErrorButBits) {
+TEST(QuantisedLeaf, ZerosOfBothSigns_HaveZeroErrorButAreNotExact) {
   const QuantisedLeaf leaf = quantised(filled([](std::size_t i) { return i % 2 == 0 ? -0.0F : 0.0F; }), 4);
   EXPECT_FALSE(leaf.exact);
   EXPECT_EQ(leaf.squared_error, 0);
   EXPECT_EQ(leaf.max_abs, 0);
 }
 
-TEST(QuantisedLeaf, FiveHundredElevenEqualValuesAndAnotherAreExactAtOneBit) {
+TEST(QuantisedLeaf, OneValueUnlikeAllOthersIsExactAtOneBit) {
   for (const auto& [most, other] : {std::pair{1.0F, 1.0F + 0x1p-23F}, {0.0F, 1.0F}, {-3.0F, 1e6F}, {0.1F, 0.3F}}) {
     LeafValues values = filled([most = most](std::size_t) { return most; });
     values[77] = other;

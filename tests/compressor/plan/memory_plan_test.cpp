@@ -49,7 +49,7 @@ TEST(MemoryPlan, MoreMemoryNeverMeansSmallerShares) {
   }
 }
 
-TEST(MemoryPlan, TooLittleIsAnErrorWhoseAdviceIsEnough) {
+TEST(MemoryPlan, TooLittleIsRefusedWithASufficientMinimum) {
   for (const Box& domain : {Box{{0, 0, 0}, {1, 1, 1}}, kLarge, Box{{0, 0, 0}, {20000, 20000, 20000}}}) {
     for (const std::size_t threads : {1U, 64U}) {
       try {
@@ -69,7 +69,7 @@ TEST(MemoryPlan, TooLittleIsAnErrorWhoseAdviceIsEnough) {
   }
 }
 
-TEST(MemoryPlan, ACeilingForLargerBlocksHoldsThem) {
+TEST(MemoryPlan, CeilingForBlocks_HoldsBlocksOfThatSize) {
   const MemoryPlan plan = plan_memory(256 * kMiB, 30 * kMiB, 4, kLarge);
   for (const std::uint64_t block : {plan.block_bytes / 2, plan.block_bytes + 1, 512 * kMiB, 5000 * kMiB + 7}) {
     const std::uint64_t ceiling = ceiling_for_blocks(plan, 256 * kMiB, block);

@@ -160,7 +160,7 @@ TEST_F(LeafSpoolTest, PutsPartsOfLeavesTogether) {
   expect_reads_everything();
 }
 
-TEST_F(LeafSpoolTest, GivesBackWhatIsParkedUntilTheLeavesAreWritten) {
+TEST_F(LeafSpoolTest, ParkedBytesReadBackUntilTheLeavesAreWritten) {
   const std::vector<std::byte> parked(spool_.leaf_bytes(), std::byte{9});
   spool_.park(6, 17, parked);
   std::vector<std::byte> back(parked.size());
@@ -171,7 +171,7 @@ TEST_F(LeafSpoolTest, GivesBackWhatIsParkedUntilTheLeavesAreWritten) {
   expect_reads(kDomain);
 }
 
-TEST_F(LeafSpoolTest, ReadsOnlyTheRunsThatAreThere) {
+TEST_F(LeafSpoolTest, ReadsOnlyTheStoredLeavesOfABox) {
   write(kDomain);
   const auto source = open_spool(spool_, info_);
   std::vector<float> read(64);

@@ -10,7 +10,7 @@ namespace {
 
 using Ranges = std::vector<PlaneRange>;
 
-TEST(PlaneSet, RefusesWhatIsThereAndAddsNothingOfIt) {
+TEST(PlaneSet, OverlappingRangeIsRefusedAndNotAdded) {
   PlaneSet planes;
   EXPECT_EQ(planes.add({4, 7}), std::nullopt);
   EXPECT_EQ(planes.add({9, 12}), std::nullopt);
@@ -26,7 +26,7 @@ TEST(PlaneSet, RefusesWhatIsThereAndAddsNothingOfIt) {
   EXPECT_EQ(planes.missing(12), Ranges{});
 }
 
-TEST(PlaneSet, IsASetOfPlanes) {
+TEST(PlaneSet, RandomRangesAgreeWithASetOfPlanes) {
   std::mt19937 random(3);
   for (int run = 0; run < 200; ++run) {
     PlaneSet planes;
@@ -54,7 +54,7 @@ TEST(PlaneSet, IsASetOfPlanes) {
   }
 }
 
-TEST(PlaneSet, NamesPlanes) {
+TEST(PlaneSet, PlanesTextListsPlanesAndRanges) {
   EXPECT_EQ(planes_text({{7, 8}}), "plane 7");
   EXPECT_EQ(planes_text({{3, 6}}), "planes 3 to 5");
   EXPECT_EQ(planes_text({{3, 6}, {9, 10}}), "planes 3 to 5 and 9");

@@ -42,7 +42,7 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
 
 class PushedHardCase : public testing::TestWithParam<test::HardCase> {};
 
-TEST_P(PushedHardCase, EndsWithTheBytesOfItsConversion) {
+TEST_P(PushedHardCase, PushedFileEqualsTheConvertedFile) {
   MemoryVolume volume = GetParam().make();
   const std::int64_t planes = volume.info().extent.z;
   std::uint32_t seed = 0;
@@ -230,7 +230,7 @@ TEST(PushedVolume, CutsLongRows) {
 
 class RealPush : public testing::TestWithParam<std::string> {};
 
-TEST_P(RealPush, EndsWithTheBytesOfItsConversion) {
+TEST_P(RealPush, PushedFileEqualsTheConvertedFile) {
   struct Real {
     Index3 extent;
     ScalarType type;
@@ -288,7 +288,7 @@ class PushMisuse : public testing::Test {
   std::vector<float> values_ = std::vector<float>(static_cast<std::size_t>(volume(kExtent)), 1.5F);
 };
 
-TEST_F(PushMisuse, IsSaidInOneLineAndTakesNothing) {
+TEST_F(PushMisuse, InvalidCallsAreRefusedInOneLineAndChangeNothing) {
   PushedVolume pushed(info_, options_, {}, files_);
   const auto slab = [&](std::int64_t z0, std::int64_t nz, const void* data) {
     return message(ErrorKind::usage, [&] { pushed.slab(z0, nz, data); });
@@ -367,7 +367,7 @@ TEST_F(PushMisuse, LeavesNothingWhereTheEndFails) {
   EXPECT_EQ(message(ErrorKind::budget, [&] { pushed.slab(0, 1, values_.data()); }), first);
 }
 
-TEST_F(PushMisuse, RefusesWhatAConversionRefuses) {
+TEST_F(PushMisuse, RefusesNonFiniteValuesAsAConversionDoes) {
   values_[7 * 45 + 3] = std::numeric_limits<float>::quiet_NaN();
   PushedVolume pushed(info_, options_, {}, files_);
   pushed.slab(0, 20, values_.data());
@@ -382,7 +382,7 @@ TEST_F(PushMisuse, RefusesAnOutputThatIsThere) {
             "out.nvdb: exists; choose another output with -o or pass --overwrite");
 }
 
-TEST_F(PushMisuse, IsInterruptedForGood) {
+TEST_F(PushMisuse, CancelledPushStaysInterrupted) {
   std::atomic<bool> cancel{false};
   ConversionControl control;
   control.cancel = &cancel;

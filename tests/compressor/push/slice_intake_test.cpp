@@ -159,7 +159,7 @@ TEST_F(SliceIntakeTest, TakesSlabsFromManyThreads) {
   }
 }
 
-TEST_F(SliceIntakeTest, ParksTheSliceThatWasLeftAloneLongest) {
+TEST_F(SliceIntakeTest, ParksTheLeastRecentlyUsedSlices) {
   SliceIntake intake(plan(), 2, {4, 1}, keeper_.sink());
   intake.add(slab(0, 1));   // slices 0 and 1
   intake.add(slab(8, 1));   // 2 and 3
@@ -228,7 +228,7 @@ TEST_F(SliceIntakeTest, EndsWithTheFirstErrorOfItsSink) {
   }
 }
 
-TEST_F(SliceIntakeTest, SaysWhatElseEndedIt) {
+TEST_F(SliceIntakeTest, ReportsOtherExceptionsOfItsSink) {
   keeper_.before = [](const std::string&, std::int64_t) { throw std::bad_alloc(); };
   SliceIntake intake(plan(), 2, {12, 1}, keeper_.sink());
   const auto both = [&] {
@@ -238,7 +238,7 @@ TEST_F(SliceIntakeTest, SaysWhatElseEndedIt) {
   EXPECT_EQ(message_of(both), std::bad_alloc().what());
 }
 
-TEST_F(SliceIntakeTest, CanBeEndedFromOutside) {
+TEST_F(SliceIntakeTest, FailFromOutsideRefusesFurtherSlabs) {
   SliceIntake intake(plan(), 2, {12, 2}, keeper_.sink());
   intake.add(slab(0, 8));
   EXPECT_STREQ(intake.fail({ErrorKind::interrupted, "enough"}).what(), "enough");
@@ -246,7 +246,7 @@ TEST_F(SliceIntakeTest, CanBeEndedFromOutside) {
   EXPECT_EQ(message_of([&] { intake.add(slab(8, 1)); }), "enough");
 }
 
-TEST_F(SliceIntakeTest, CanBeGivenUp) {
+TEST_F(SliceIntakeTest, CanBeDestroyedUnfinished) {
   const SliceIntake never(plan(), 2, {12, 2}, keeper_.sink());
   SliceIntake intake(plan(), 2, {12, 2}, keeper_.sink());
   intake.add(slab(0, 20));

@@ -42,7 +42,7 @@ TEST(Journal, WithoutASaveLeavesNothing) {
   EXPECT_EQ(files.names(), Names{});
 }
 
-TEST(Journal, ASaveFollowsTheProtocol) {
+TEST(Journal, SaveMakesTheDocumentedSequenceOfCalls) {
   MemoryFileSystem memory;
   FaultyFileSystem files(memory, -1, 0);
   Journal journal(files, "o.nvdb", kIdentity, {});
@@ -73,7 +73,7 @@ TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
   }
 }
 
-TEST(Journal, TakesUpWhatWasSavedAndNothingElse) {
+TEST(Journal, RestoresOnlyTheSavedState) {
   MemoryFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {});
@@ -97,7 +97,7 @@ TEST(Journal, TakesUpWhatWasSavedAndNothingElse) {
   EXPECT_EQ(files.names(), Names{});
 }
 
-TEST(Journal, EncodedLeavesStandOnVolumeAndRecords) {
+TEST(Journal, EncodedLeaves_KeepTheVolumeAndRecordFiles) {
   MemoryFileSystem files;
   const Names all{"./.o.nvdb.work/journal", "./.o.nvdb.work/records", "./.o.nvdb.work/rows", "./.o.nvdb.work/volume"};
   {
@@ -126,7 +126,7 @@ TEST(Journal, EncodedLeavesStandOnVolumeAndRecords) {
   EXPECT_EQ(files.names(), saved_names());
 }
 
-TEST(Journal, SpillFilesGoWhereTheUserSays) {
+TEST(Journal, SpillFilesGoToTheChosenWorkDirectory) {
   MemoryFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
@@ -148,7 +148,7 @@ TEST(Journal, SpillFilesGoWhereTheUserSays) {
 }
 
 // Whoever moves or names it otherwise finds the files beside the journal, not those beside what is at its old place.
-TEST(Journal, StandsOnTheFilesBesideItWhereverItIs) {
+TEST(Journal, MovedOutput_ResumesFromTheFilesBesideIt) {
   const TemporaryDirectory directory;
   const auto files = make_posix_file_system();
   namespace fs = std::filesystem;
@@ -168,7 +168,7 @@ TEST(Journal, StandsOnTheFilesBesideItWhereverItIs) {
   EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
 }
 
-TEST(Journal, LeavesTheSpillFilesOfTheOutputAtItsOldPlace) {
+TEST(Journal, MovedOutput_KeepsTheSpillFilesOfANewOneAtItsOldPath) {
   const TemporaryDirectory directory;
   const auto files = make_posix_file_system();
   namespace fs = std::filesystem;

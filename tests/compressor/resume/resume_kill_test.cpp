@@ -45,7 +45,7 @@ TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
 }
 
 // The process lives on and says what is kept; all else is gone.
-TEST_F(ResumeKill, AFullDisk) {
+TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
   ConversionOptions options = base();
   options.encoding = Encoding::fpn;
   const Result expected = undisturbed(options);
@@ -84,7 +84,7 @@ TEST_F(ResumeKill, AFullDisk) {
 }
 
 // Where the outputs have their names and what they were made from is not removed yet.
-TEST_F(ResumeKill, ADoneConversionIsTidiedUp) {
+TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
   for (const bool overwrite : {false, true}) {
     // Whether it died at call number `at` after the volume got its name.
     const auto dies = [&](MemoryFileSystem& memory, int at) {
@@ -136,7 +136,7 @@ TEST_F(ResumeKill, Scene) {
   expect_same_bytes(options, 24);
 }
 
-TEST_F(ResumeKillOfHoles, ThePapersMethod) {
+TEST_F(ResumeKillOfHoles, PaperMethod_ResumesToTheSameBytes) {
   ConversionOptions options = base();
   options.paper_background = true;
   options.metric = Metric::farthest;

@@ -9,6 +9,7 @@
 
 #include "format/base/error.h"
 #include "tests/compressor/support/memory_file_system.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::work_directory_test {
 namespace {
@@ -43,13 +44,7 @@ class Directories final : public FileSystem {
 };
 
 std::string message_of(Directories& files, const std::string& output, const std::string& chosen) {
-  try {
-    const WorkDirectory work(files, output, chosen);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "";
+  return message_of_error(ErrorKind::usage, [&] { const WorkDirectory work(files, output, chosen); });
 }
 
 TEST(WorkDirectory, IsHiddenBesideTheOutputAndGoneAfterwards) {
@@ -66,7 +61,7 @@ TEST(WorkDirectory, IsHiddenBesideTheOutputAndGoneAfterwards) {
   EXPECT_EQ(files.existing, (std::vector<std::string>{"/data", "."}));
 }
 
-TEST(WorkDirectory, OneThatWasChosenStays) {
+TEST(WorkDirectory, ChosenDirectoryIsKept) {
   Directories files;
   files.existing = {"/data", "/scratch"};
   {

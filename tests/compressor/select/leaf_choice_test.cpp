@@ -21,7 +21,7 @@ TEST(LeafWidth, BytesAreThoseOfTheFormat) {
   for (unsigned log2 = 0; log2 < 6; ++log2) EXPECT_EQ(bits_log2_of(width_of(log2)), log2);
 }
 
-TEST(LeafPlaces, CountLikeALoop) {
+TEST(LeafPlaces, CountsAgreeWithALinearScan) {
   std::mt19937 random(3);
   for (const unsigned density : {1U, 2U, 64U, 4096U}) {
     LeafChoices choices;
@@ -47,7 +47,7 @@ TEST(LeafPlaces, CountLikeALoop) {
   }
 }
 
-TEST(ChoiceStore, GivesBackWhatWasWrittenAndTilesElsewhere) {
+TEST(ChoiceStore, ReadsBackChoicesAndTilesWhereUnwritten) {
   ChoiceStore store(test::MemoryFileSystem().create_unnamed("choices"), 5);
   LeafChoices choices;
   choices.set(0, LeafWidth::bits1);

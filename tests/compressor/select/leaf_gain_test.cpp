@@ -114,7 +114,7 @@ TEST(LeafGain, CornersAndKeptNonFiniteValuesAreRequired) {
   }
 }
 
-TEST(LeafGain, ExactTilesAreWorthNothingToAnyMetric) {
+TEST(LeafGain, ExactTilesHaveZeroGainInEveryMetric) {
   // The second brick of 16 holds one leaf that its tile reproduces, and three that it does not.
   MemoryVolume volume({{0, 0, 0}, {32, 16, 8}}, [](const Index3& i) {
     return i.x >= 16 && i.x < 24 && i.y < 8 ? 3.0F : static_cast<float>(i.x * i.y);
@@ -144,7 +144,7 @@ TEST(LeafGain, PositionsAndBricksFollowTheLowerNode) {
                 });
 }
 
-TEST(LeafGain, SseBuysSingleLeavesWhateverTheBrick) {
+TEST(LeafGain, SseGivesEachLeafItsOwnBrick) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 16}}, value_at);
   const Surveyed surveyed(volume);
   std::vector<std::uint32_t> bricks;

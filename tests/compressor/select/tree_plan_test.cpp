@@ -48,7 +48,7 @@ TEST(TreePlan, NumbersNodesAndLeavesInFileOrder) {
   EXPECT_EQ(counts.macrocells, 18U * 2 * 1);
 }
 
-TEST(TreePlan, UsesUpTheBudgetButForLessThanOneNodeAndLeaf) {
+TEST(TreePlan, UnusedBudgetIsLessThanOneNodeAndLeaf) {
   MemoryVolume volume({{0, 0, 0}, {300, 140, 40}}, value_at);
   const Surveyed surveyed(volume);
   Chooser chooser(surveyed, GainRule{});

@@ -132,7 +132,7 @@ TEST(Background, TheMiddleOfABinStaysInTheRange) {
   EXPECT_LE(found.value, 3e38F);
 }
 
-TEST(Background, NothingFiniteMeansNone) {
+TEST(Background, NoFiniteValues_GiveMethodNone) {
   MemoryVolume volume = volume_of(ScalarType::float32, [](const Index3&) { return kNaN; });
   for (const Background& found : {background_of(volume), paper_background_of(volume)}) {
     EXPECT_EQ(bits_of(found.value), bits_of(0.0F));
@@ -226,7 +226,7 @@ TEST(PaperBackground, OfZerosOfBothSignsIsPlusZero) {
   }
 }
 
-TEST(PaperBackground, HoldsWhereTheRangeOverflowsFloat) {
+TEST(PaperBackground, FollowsTheFormulaWhereTheRangeOverflowsFloat) {
   MemoryVolume volume = volume_of(ScalarType::float32, [](const Index3& i) {
     const float at = die(i, 10);
     return at < 1 ? -3e38F : at < 2 ? 3e38F : at < 9 ? 1e38F : 2e38F;

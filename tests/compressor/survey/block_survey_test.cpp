@@ -20,7 +20,7 @@ using test::MemoryVolume;
 using test::Surveyed;
 
 // Blocks in any order from three threads, by two surveys whose tallies are merged, as two processes do.
-TEST(BlockSurvey, SumsUpToTheSurveyOfTheVolume) {
+TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   MemoryVolume volume({{-13, 5, 120}, {40, 60, 171}}, [](const Index3& i) {
     if (i == Index3{20, 50, 130} || i == Index3{19, 50, 150}) return NAN;
     return static_cast<float>((i.x * i.x + i.y * i.z) % 1000);

@@ -87,7 +87,7 @@ TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
   EXPECT_TRUE(back->survey.tally.histogram.empty());
 }
 
-TEST(Checkpoint, OneThatIsNotWholeIsNone) {
+TEST(Checkpoint, DamagedCheckpointIsRejected) {
   const std::string text = to_text(sample());
   EXPECT_EQ(text.substr(0, 18), "weir checkpoint 3 ");
   for (std::size_t length = 0; length < text.size(); ++length) {

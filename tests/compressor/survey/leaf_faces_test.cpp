@@ -27,7 +27,7 @@ bool touches(std::int64_t i, std::int64_t extent, std::int64_t side) {
   return side == 0 || i == (side < 0 ? 0 : extent - 1);
 }
 
-TEST(LeafFaces, BoundWhatANeighbourTouches) {
+TEST(LeafFaces, BoundsCoverTheVoxelsTouchedFromANeighbour) {
   std::mt19937 random(3);
   for (const Index3& extent : {Index3{8, 8, 8}, Index3{1, 8, 5}, Index3{3, 1, 1}, Index3{1, 1, 1}}) {
     std::vector<float> values(static_cast<std::size_t>(volume(extent)));

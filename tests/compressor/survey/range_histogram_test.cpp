@@ -96,7 +96,7 @@ std::vector<Values> value_sets() {
 
 class RangeHistogramTest : public testing::TestWithParam<Values> {};
 
-TEST_P(RangeHistogramTest, IsTheDefinitionInOnePiece) {
+TEST_P(RangeHistogramTest, AllValuesAtOnceMatchTheDefinition) {
   RangeHistogram histogram;
   EXPECT_TRUE(histogram.empty());
   add(histogram, GetParam().values);
@@ -133,7 +133,7 @@ TEST_P(RangeHistogramTest, IsTheSameInAnyOrderAndPartition) {
   }
 }
 
-TEST_P(RangeHistogramTest, GoesOnAsItWasWhenRestored) {
+TEST_P(RangeHistogramTest, RestoredHistogramContinuesUnchanged) {
   const std::vector<float>& values = GetParam().values;
   const std::size_t half = values.size() / 2;
   RangeHistogram histogram;

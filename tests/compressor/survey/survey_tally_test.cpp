@@ -46,7 +46,7 @@ TEST(SurveyTally, MergesInAnyOrder) {
   }
 }
 
-TEST(SurveyTally, NothingChangesNothing) {
+TEST(SurveyTally, MergingAnEmptyTallyChangesNothing) {
   SurveyTally sum = tally(1, 2, 3);
   sum.merge({});
   EXPECT_EQ(sum.min, 1);

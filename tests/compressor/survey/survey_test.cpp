@@ -59,7 +59,7 @@ TEST(Survey, CountsFiniteValuesAndFindsTheFirstOther) {
   }
 }
 
-TEST(Survey, NothingFiniteHasAZeroRange) {
+TEST(Survey, NoFiniteValues_GiveAZeroRange) {
   MemoryVolume volume(kDomain, [](const Index3&) { return -kInf; });
   const Surveyed surveyed(volume);
   EXPECT_EQ(surveyed.survey.finite, 0U);

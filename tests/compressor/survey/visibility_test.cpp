@@ -58,7 +58,7 @@ TEST(Visibility, WeighsByTheSteepestChange) {
   EXPECT_GE(v.weight({0, 1023}), v.weight({511, 639})) << "never less for more values";
 }
 
-TEST(Visibility, APromiseCountsAllThatIsSeenAlike) {
+TEST(Visibility, WeighingAlikeGivesVisibleIntervalsWeightOne) {
   const Visibility v = visibility(ramp(), Visibility::Weighing::alike);
   EXPECT_EQ(v.weight({0, 511}), 0);
   EXPECT_EQ(v.weight({511, 600}), 1);
@@ -77,7 +77,7 @@ TEST(Visibility, AnIsoSurfaceLiesInIntervalsThatHoldItsValue) {
   EXPECT_EQ(v.weight({0.5F, 1}), 0);
 }
 
-TEST(Visibility, ARangeOfOneValueSplitsAtIt) {
+TEST(Visibility, RangeOfOneValueIsAStepAtThatValue) {
   Scene scene;
   scene.volume.range = {5, 5};
   scene.volume.opacity = {{0, 0}, {0.75, 0}, {1, 1}};
@@ -97,7 +97,7 @@ TEST(Visibility, FiltersReachOneVoxelIntoTheRegion) {
   EXPECT_TRUE(v.shows({-1, 1})) << "without opacities every value is seen";
 }
 
-TEST(Visibility, RefusesScenesThatDecideNothing) {
+TEST(Visibility, RefusesScenesWithoutVisibilitySettings) {
   EXPECT_EQ(message(Scene{}),
             "s.toml: nothing in it says what can be seen; give [volume] opacity and range, or region, or leave out "
             "--scene");

@@ -9,7 +9,7 @@
 namespace weir::region_share_test {
 namespace {
 
-TEST(RegionShare, RunsAreAFewBoxesInOrder) {
+TEST(RegionShare, RunsSplitIntoAtMostFiveBoxesInOrder) {
   const Index3 count{3, 4, 5};
   for (std::int64_t begin = 0; begin <= volume(count); ++begin) {
     for (std::int64_t end = begin; end <= volume(count); ++end) {
@@ -28,7 +28,7 @@ TEST(RegionShare, RunsAreAFewBoxesInOrder) {
                 {{1, 0, 0}, {3, 1, 1}}, {{0, 1, 0}, {3, 4, 1}}, {{0, 0, 1}, {3, 4, 2}}, {{0, 0, 2}, {3, 2, 3}}}));
 }
 
-TEST(RegionShare, EachLeafIsOneRanksAlone) {
+TEST(RegionShare, EachLeafHasExactlyOneOwner) {
   // A domain that begins inside a region and ends inside another, below and above zero.
   const NodeLattice leaves = make_lattice({{-140, 5, 100}, {130, 300, 390}}, kLeafDim);
   const Box all{{0, 0, 0}, leaves.count};

@@ -49,7 +49,7 @@ TEST(Team, SharesFollowEachOtherAndDifferByOneAtMost) {
   }
 }
 
-TEST(Team, AloneKeepsWhatItHas) {
+TEST(Team, SingleRankKeepsItsItems) {
   Team& team = no_team();
   EXPECT_TRUE(team.alone());
   EXPECT_TRUE(team.leads());
@@ -97,7 +97,7 @@ TEST(Team, SumsConcatenatesGathersAndFollows) {
   EXPECT_EQ(followed, (std::vector<int>{7, 7, 7}));
 }
 
-TEST(Team, TheLowestRanksErrorIsEveryones) {
+TEST(Team, ErrorOfTheLowestRankReachesEveryRank) {
   const auto errors = on_ranks<std::string>(4, [](Team& team) {
     return failure_of([&] {
       team.run([&] {

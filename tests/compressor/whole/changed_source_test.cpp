@@ -163,7 +163,7 @@ TEST_F(ChangedSourceTest, AppendedTo_EndsWithExit3) {
   EXPECT_EQ(pass, "survey") << "no encode pass is spent on it";
 }
 
-TEST_F(ChangedSourceTest, CutWhileItIsRead_IsToldAsAChangeAndNotAsDamage) {
+TEST_F(ChangedSourceTest, CutWhileItIsRead_IsReportedAsAChange) {
   HookedSource source(open_source(path_, shape()), [&](int read) {
     if (read == 0) fs::resize_file(path_, 100);
   });

@@ -144,7 +144,7 @@ TEST(ErrorTargets, ASmallerFileMissesThePsnr) {
   }
 }
 
-TEST(ErrorTargets, WhatAnEncodingCannotReachIsSaid) {
+TEST(ErrorTargets, UnreachableTargetIsRefusedWithAReason) {
   const auto source = open_synthetic("noise", {{64, 32, 32}, 5});
   MemoryVolume volume(*source);
   const auto refusal = [&](Budget::Kind kind, double target, Encoding encoding) -> std::string {
@@ -169,7 +169,7 @@ TEST(ErrorTargets, WhatAnEncodingCannotReachIsSaid) {
   EXPECT_EQ(refusal(Budget::Kind::max_error, 0, Encoding::automatic), "no error");
 }
 
-TEST(ErrorTargets, HoldForAFusedDecoderToo) {
+TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {
   // fma(code, quantum, minimum) may differ by an ulp: the bound leaves room for it.
   const auto source = open_synthetic("turbulence", {{64, 64, 64}, 9});
   MemoryVolume volume(*source);

@@ -14,6 +14,7 @@
 #include "format/base/error.h"
 #include "ingest/raw/raw_source.h"
 #include "tests/compressor/support/converted.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::non_finite_test {
@@ -22,13 +23,7 @@ namespace {
 using test::MemoryVolume;
 
 std::string refusal(VolumeSource& volume) {
-  try {
-    test::convert(volume, {});
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    return error.what();
-  }
-  return "no error";
+  return message_of_error(ErrorKind::input, [&] { test::convert(volume, {}); });
 }
 
 TEST(NonFinite, NaNOfTheBitsThatMarkMissingData_IsRefused) {
@@ -81,7 +76,7 @@ class Float64 : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(Float64, FiniteBeyondFloat32_IsSaidToBeThat) {
+TEST_F(Float64, FiniteBeyondFloat32_IsReportedAsSuch) {
   std::vector<double> values(512, 1.0);
   values[9] = 1e300;
   EXPECT_EQ(refusal_of(values),

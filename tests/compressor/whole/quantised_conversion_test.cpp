@@ -141,7 +141,7 @@ void expect_stock_statistics(const Converted& converted, const StockReader& read
 
 class QuantisedConversionTest : public testing::TestWithParam<HardCase> {};
 
-TEST_P(QuantisedConversionTest, HoldsWhatItSaysInTheBytesAsked) {
+TEST_P(QuantisedConversionTest, HoldsItsCertificateInTheBytesAsked) {
   MemoryVolume volume = GetParam().make();
   const Box domain = volume.info().domain();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {
@@ -189,7 +189,7 @@ TEST_P(QuantisedConversionTest, WithTheBackgroundInDroppedBlocks) {
 }
 
 // A larger file buys more of the same steps. Their gains are estimates, so that this is measured, not proven.
-TEST_P(QuantisedConversionTest, ErrorGrowsWithNoSize) {
+TEST_P(QuantisedConversionTest, LargerFileNeverHasALargerError) {
   MemoryVolume volume = GetParam().make();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {
     for (const Encoding encoding : kQuantised) {
@@ -238,7 +238,7 @@ TEST_P(QuantisedConversionTest, AutoIsAsGoodAsTheBetterOfFloatAndFpn) {
   }
 }
 
-TEST_P(QuantisedConversionTest, LosslessIsTheSmallerOfTheTwo) {
+TEST_P(QuantisedConversionTest, LosslessAutoIsTheSmallerOfFloatAndFpn) {
   MemoryVolume volume = GetParam().make();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {
     ConversionOptions options;

@@ -93,7 +93,7 @@ Seen seen_by_hand(const MemoryVolume& volume, const NvdbGrid& grid, const Scene&
 
 class SceneConversion : public testing::TestWithParam<Budget::Kind> {};
 
-TEST_P(SceneConversion, CertifiesWhatIsSeen) {
+TEST_P(SceneConversion, CertificateCoversTheVisibleVoxels) {
   MemoryVolume source = volume();
   const double target = GetParam() == Budget::Kind::psnr ? 50 : GetParam() == Budget::Kind::max_error ? 0.5 : 1.9;
   for (const bool region : {false, true}) {
@@ -120,7 +120,7 @@ TEST_P(SceneConversion, CertifiesWhatIsSeen) {
   }
 }
 
-TEST_P(SceneConversion, CostsNoMoreThanAllOfIt) {
+TEST_P(SceneConversion, FileIsSmallerThanWithoutTheScene) {
   if (GetParam() == Budget::Kind::rate) GTEST_SKIP() << "a rate is a size";
   MemoryVolume source = volume();
   const double target = GetParam() == Budget::Kind::psnr ? 50 : 0.5;
@@ -179,7 +179,7 @@ double lookup(const std::array<double, 3>& p, const auto& value) {
 }
 
 // Every lookup shows the opacity it showed before, and where it has one, the value: a picture does not change.
-TEST(ScenePictures, KeptExactlyThePictureDoesNotChange) {
+TEST(ScenePictures, LosslessVisibleBlocksLeaveThePictureUnchanged) {
   for (const bool holes : {false, true}) {
     MemoryVolume source(kDomain, [&](const Index3& i) {
       if (holes && i.x % 16 < 8 && i.y > 30) return std::numeric_limits<float>::quiet_NaN();
@@ -230,7 +230,7 @@ TEST(ScenePictures, AnIsoSurfaceKeepsTheBlocksItRunsThrough) {
   EXPECT_LT(seen.blocks, 90U);
 }
 
-TEST(ScenePictures, WhatNothingShowsIsTheSmallestTree) {
+TEST(ScenePictures, NothingVisible_GivesTheSmallestTree) {
   MemoryVolume source = volume();
   Scene scene = surface();
   scene.volume.range = {1000, 2000};
@@ -246,7 +246,7 @@ TEST(ScenePictures, WhatNothingShowsIsTheSmallestTree) {
   EXPECT_NE(padded.notices[0].find("what the scene shows takes no more than "), std::string::npos) << padded.notices[0];
 }
 
-TEST(ScenePictures, BackgroundFillThatCanBeSeenIsNotHidden) {
+TEST(ScenePictures, VisibleBackgroundFill_KeepsHiddenBlocksToo) {
   // The ground cannot be seen, but what a dropped block would read can.
   MemoryVolume source = volume();
   ConversionOptions options = options_for(surface(), Budget::Kind::lossless);
@@ -259,7 +259,7 @@ TEST(ScenePictures, BackgroundFillThatCanBeSeenIsNotHidden) {
   EXPECT_FALSE(convert(source, options).sidecar.error.lossless);
 }
 
-TEST(ScenePictures, SpendsASizeOnWhatCanBeSeen) {
+TEST(ScenePictures, SceneLowersTheVisibleErrorAtTheSameSize) {
   MemoryVolume source = volume();
   ConversionOptions with = options_for(surface(), Budget::Kind::rate, 1.85);
   const Converted weighed = convert(source, with);
@@ -271,7 +271,7 @@ TEST(ScenePictures, SpendsASizeOnWhatCanBeSeen) {
   EXPECT_LT(after.squared, 0.5L * before.squared);
 }
 
-TEST(ScenePictures, ThePapersMetricsHaveNothingToWeigh) {
+TEST(ScenePictures, SceneWithAPaperMetricIsRefused) {
   MemoryVolume source = volume();
   ConversionOptions options = options_for(surface(), Budget::Kind::rate);
   options.metric = Metric::farthest;

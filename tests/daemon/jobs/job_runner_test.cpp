@@ -81,14 +81,14 @@ TEST_F(JobRunnerTest, ConvertsWhatWaits) {
   EXPECT_EQ(state(one), JobState::done);
   EXPECT_EQ(state(two), JobState::done);
   EXPECT_EQ(state(bad), JobState::quarantined);
-  EXPECT_EQ(runner_.figures().done, 2U);
-  EXPECT_EQ(runner_.figures().bytes_in, 2U * 24 * 20 * 16);
-  std::map<std::string, std::uint64_t> errors = RunnerFigures{}.errors;
+  EXPECT_EQ(runner_.figures().totals().done, 2U);
+  EXPECT_EQ(runner_.figures().totals().bytes_in, 2U * 24 * 20 * 16);
+  std::map<std::string, std::uint64_t> errors = JobTotals{}.errors;
   EXPECT_EQ(errors.size(), 8U);
   errors["input"] = 1;
-  EXPECT_EQ(runner_.figures().errors, errors);
-  EXPECT_EQ(runner_.figures().seconds.count(), 2U);
-  EXPECT_GT(runner_.bytes_per_s(), 0);
+  EXPECT_EQ(runner_.figures().totals().errors, errors);
+  EXPECT_EQ(runner_.figures().totals().seconds.count(), 2U);
+  EXPECT_GT(runner_.figures().bytes_per_s(), 0);
   EXPECT_EQ(list_directory(directory_ / "out").size(), 4U);
   const std::string log = read_file(config_.service.log_file);
   for (const Job& job : {one, two}) {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/watch/directory_watch.h"
+#include "daemon/watch/choosing_watch.h"
 #include "daemon/watch/inotify.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"

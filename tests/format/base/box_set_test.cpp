@@ -11,7 +11,7 @@ namespace {
 
 using Boxes = std::vector<Box>;
 
-TEST(BoxSet, JoinsWhatContinuesTheLastBox) {
+TEST(BoxSet, MergesBoxesThatShareAWholeSide) {
   BoxSet set;
   EXPECT_TRUE(set.empty());
   // A lattice of 4 x 4 x 4 in blocks of 2 x 2 x 2, in their order.
@@ -27,7 +27,7 @@ TEST(BoxSet, JoinsWhatContinuesTheLastBox) {
   EXPECT_EQ(set.boxes(), (Boxes{{{0, 0, 0}, {4, 4, 4}}, {{0, 0, 4}, {2, 4, 5}}}));
 }
 
-TEST(BoxSet, SaysWhatIsMissing) {
+TEST(BoxSet, MissingFromGivesTheUncoveredBoxes) {
   BoxSet set;
   const Box all{{0, 0, 0}, {9, 8, 7}};
   EXPECT_EQ(set.missing_from(all), Boxes{all});
@@ -46,7 +46,7 @@ TEST(BoxSet, SaysWhatIsMissing) {
                                                               {{0, 0, 2}, {3, 3, 3}}}));
 }
 
-TEST(BoxSet, AgreesWithSinglePositions) {
+TEST(BoxSet, RandomBoxesAgreeWithASetOfPositions) {
   std::minstd_rand random(7);
   const auto below = [&](std::int64_t n) { return static_cast<std::int64_t>(random() % static_cast<unsigned>(n)); };
   const auto any_box = [&] {

@@ -7,7 +7,7 @@
 namespace weir::process_memory_test {
 namespace {
 
-TEST(ProcessMemory, FollowsWhatIsTaken) {
+TEST(ProcessMemory, ResidentBytesGrowWithAnAllocation) {
   const std::uint64_t before = resident_bytes();
   constexpr std::size_t kTaken = std::size_t{64} << 20U;
   const std::vector<char> taken(kTaken, 1);
@@ -16,7 +16,7 @@ TEST(ProcessMemory, FollowsWhatIsTaken) {
   EXPECT_GE(peak_resident_bytes(), resident_bytes());
 }
 
-TEST(ProcessMemory, SomethingIsLeft) {
+TEST(ProcessMemory, AvailableBytesArePlausible) {
   EXPECT_GT(available_bytes(), std::uint64_t{1} << 20U);
   EXPECT_LT(available_bytes(), std::uint64_t{1} << 50U);
 }

@@ -21,7 +21,7 @@ std::string refusal(const std::string& text, const std::string& key) {
   }
 }
 
-TEST(TomlReader, ReadsWhatIsThereAndLeavesTheRest) {
+TEST(TomlReader, ReadsPresentKeysAndKeepsValuesOfAbsentOnes) {
   const toml::table table = parse_toml("a = true\nb = ['x', '']\nc = 'text'\nd = 2\ne = [1, 2.5]\n", kPath);
   TomlReader reader(table, "the file", kPath);
   bool a = false;
@@ -46,7 +46,7 @@ TEST(TomlReader, ReadsWhatIsThereAndLeavesTheRest) {
   EXPECT_NO_THROW(reader.finish());
 }
 
-TEST(TomlReader, RefusesOtherTypesAtTheirPlace) {
+TEST(TomlReader, WrongTypeIsRefusedWithLineAndColumn) {
   EXPECT_EQ(refusal<bool>("\n  a = 1", "a"), "f.toml:2:7: a must be true or false");
   EXPECT_EQ(refusal<std::vector<std::string>>("a = 'x'", "a"), "f.toml:1:5: a must be an array of strings");
   EXPECT_EQ(refusal<std::vector<std::string>>("a = ['x', 2]", "a"), "f.toml:1:11: a must be an array of strings");
@@ -54,7 +54,7 @@ TEST(TomlReader, RefusesOtherTypesAtTheirPlace) {
   EXPECT_EQ(refusal<double>("a = 'x'", "a"), "f.toml:1:5: a must be a number");
 }
 
-TEST(TomlReader, NamesTheKeyNobodyAskedFor) {
+TEST(TomlReader, UnknownKeyIsRefusedByName) {
   const toml::table table = parse_toml("a = 1\nb = 2\n", kPath);
   TomlReader reader(table, "[t]", kPath);
   reader.find("a");

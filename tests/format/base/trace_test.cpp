@@ -80,7 +80,7 @@ TEST(Trace, SpansNestAndThreadsDoNotMix) {
   EXPECT_EQ(seen, (std::set<int>{1, 2, 3, 4}));
 }
 
-TEST(Trace, SaysWhatCannotBeWritten) {
+TEST(Trace, UnwritableFileIsReported) {
   try {
     const Trace trace("/nowhere/t.json");
     FAIL();

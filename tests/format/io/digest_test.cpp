@@ -32,7 +32,7 @@ TEST(Digest, OfLeafIsOfLittleEndianFloats) {
   EXPECT_EQ(leaf_digest(values), piece_digest(std::as_bytes(std::span(bytes))));
 }
 
-TEST(Digest, StreamEqualsCombineHoweverItIsFed) {
+TEST(Digest, StreamedDigestEqualsTheCombinedDigest) {
   std::vector<Digest> pieces;
   for (std::size_t i = 0; i < 100; ++i) pieces.push_back(piece_digest(pattern(i)));
   DigestStream one_by_one;
@@ -46,7 +46,7 @@ TEST(Digest, StreamEqualsCombineHoweverItIsFed) {
   EXPECT_EQ(DigestStream().digest(), piece_digest({}));
 }
 
-TEST(Digest, OfFileIsOverPiecesOf16MiB) {
+TEST(Digest, FileDigestCombinesPiecesOf16MiB) {
   EXPECT_EQ(piece_count(0), 0U);
   EXPECT_EQ(piece_count(1), 1U);
   EXPECT_EQ(piece_count(kDigestPieceBytes), 1U);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::file_mapping_test {
@@ -17,13 +18,7 @@ namespace {
 
 template <class Call>
 std::string refusal_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    return error.what();
-  }
-  return {};
+  return message_of_error(ErrorKind::input, [&] { call(); });
 }
 
 std::string refusal(const std::string& path) {
@@ -43,7 +38,7 @@ TEST(FileMapping, BytesOutliveMovesAndReleasedPages) {
   EXPECT_EQ(mapping.bytes()[0], std::byte{'b'});
 }
 
-TEST(FileMapping, SaysWhatCannotBeMapped) {
+TEST(FileMapping, RefusesMissingEmptyAndNonRegularFiles) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "empty").close();
   EXPECT_EQ(refusal(directory / "none"), directory / "none" + ": cannot open: No such file or directory");

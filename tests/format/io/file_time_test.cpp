@@ -14,7 +14,7 @@ TEST(FileTime, NanosecondsSince1970) {
   EXPECT_EQ(utc_text(nanoseconds_of(9223372036, 0)), "2262-04-11T23:47:16.000000000Z");
 }
 
-TEST(FileTime, BeyondWhat64BitsHold_IsTheNearestThatTheyDo) {
+TEST(FileTime, BeyondInt64Nanoseconds_IsClamped) {
   EXPECT_EQ(utc_text(nanoseconds_of(9223372036, 999999999)), "2262-04-11T23:47:16.854775807Z");
   EXPECT_EQ(utc_text(nanoseconds_of(32503680000, 5)), "2262-04-11T23:47:16.854775807Z");
   EXPECT_EQ(utc_text(nanoseconds_of(-32503680000, 5)), "1677-09-21T00:12:43.145224192Z");

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(LimitedFileSystem, BytesOfEveryFileCountBothWaysAndArriveAsTheyAre) {
+TEST(LimitedFileSystem, ReadsAndWritesAreThrottledAndBytesUnchanged) {
   const TokenBucket::Time start = TokenBucket::Time() + 1000h;
   TokenBucket::Time now = start;
   Bandwidth bandwidth(1000, nullptr, {[&] { return now; }, [&](auto time) { now += time; }});

@@ -31,7 +31,7 @@ std::string io_message(const Action& action) {
   return {};
 }
 
-TEST(MemoryFileSystem, HoldsWhatIsWrittenAndZerosBetween) {
+TEST(MemoryFileSystem, ReadsBackWrittenBytesAndZerosInGaps) {
   MemoryFileSystem files;
   const auto file = files.create("a");
   EXPECT_EQ(file->size(), 0U);
@@ -109,7 +109,7 @@ TEST(MemoryFileSystem, Names) {
   EXPECT_EQ(files.create("c")->size(), 0U);
 }
 
-TEST(MemoryFileSystem, TakesAnOutput) {
+TEST(MemoryFileSystem, CommitsAnOutputAndDropsAnUncommittedOne) {
   MemoryFileSystem files;
   {
     OutputFiles output(files, "v.nvdb", false);

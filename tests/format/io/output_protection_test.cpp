@@ -214,7 +214,7 @@ TEST_F(OutputProtection, WithoutHardLinks_EachFailureLeavesTheOldPair) {
   EXPECT_EQ(failures, 15) << "calls up to the second rename";
 }
 
-TEST_F(OutputProtection, NameThatLeavesNoRoomForThoseBesideIt_IsRefusedAtOnce) {
+TEST_F(OutputProtection, NameTooLongForTheFilesBesideIt_IsRefused) {
   const std::string fits = directory_ / (std::string(236, 'n') + ".nvdb");
   const OutputFiles longest(*real_, fits, false);
   EXPECT_TRUE(fs::exists(fits + ".partial"));

@@ -10,7 +10,7 @@
 namespace weir::tree_layout_test {
 namespace {
 
-TEST(TreeLayout, PartsFollowEachOther) {
+TEST(TreeLayout, PartsAreContiguousInFileOrder) {
   const TreeLayout layout = make_layout({3, 2, 5, 7, 7 * 2144, 11});
   EXPECT_EQ(layout.grid, 4096U);
   EXPECT_EQ(layout.uppers, 4096U + 672 + 64 + 64 + 3 * 32);
@@ -25,7 +25,7 @@ TEST(TreeLayout, PartsFollowEachOther) {
   EXPECT_EQ(layout.lower_offset(4), layout.leaves - 33856);
 }
 
-TEST(TreeLayout, EverythingLiesOn32Bytes) {
+TEST(TreeLayout, OffsetsAreAlignedTo32Bytes) {
   for (std::uint64_t cells = 1; cells < 20; ++cells) {
     const TreeLayout layout = make_layout({cells, 1, cells, cells, cells * 352, cells});
     for (const std::uint64_t offset :
@@ -69,7 +69,7 @@ TEST(TreeLayout, MoreLeavesOrTilesThanNanoVdbCounts_AreNoFile) {
   }
 }
 
-TEST(TreeLayout, PaddingIsAnyNumberOfBytesAtTheEnd) {
+TEST(TreeLayout, PaddingOfAnySizeIsAppended) {
   const TreeLayout layout = make_layout({1, 1, 1, 2, 2 * 2144, 1});
   for (const std::uint64_t more : {0U, 1U, 31U, 33U, 1'000'003U}) {
     const TreeLayout padded = padded_to(layout, layout.content_end + more);

@@ -57,7 +57,7 @@ TEST(LeafCodec, GathersTheVoxelsInsideAndFillsTheRest) {
   }
 }
 
-TEST(LeafCodec, StockReadsWhatWasEncoded) {
+TEST(LeafCodec, NanoVdbReadsAnEncodedLeaf) {
   for (const Box& inside : insides()) {
     LeafValues leaf;
     gather_leaf(block_values(inside), inside, kNode, inside, 5, leaf);
@@ -99,7 +99,7 @@ TEST(LeafCodec, KeepsEveryBit) {
   EXPECT_EQ(std::memcmp(image.bytes.data() + nvdb::leaf::kValues, leaf.data(), sizeof leaf), 0);
 }
 
-TEST(LeafCodec, LeavesSideBySideHaveTheStatisticsOfEachAlone) {
+TEST(LeafCodec, BatchedStatisticsEqualThoseOfSingleLeaves) {
   std::mt19937 random(10);
   for (std::size_t count = 0; count <= kLeafBatch; ++count) {
     std::vector<LeafValues> leaves(count);

@@ -8,7 +8,7 @@
 namespace weir::leaf_decode_test {
 namespace {
 
-TEST(LeafDecode, RoundsTwice) {
+TEST(LeafDecode, DequantizeDoesNotFuseMultiplyAndAdd) {
   // Found by search: the fused result differs in the last bit.
   std::uint32_t differing = 0;
   for (std::uint32_t code = 0; code < 65536; ++code) {

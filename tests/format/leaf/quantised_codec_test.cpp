@@ -51,7 +51,7 @@ void expect_stock_reads(GridType type, unsigned bits_log2, const Box& inside) {
   EXPECT_NEAR(leaf.stdDeviation(), statistics.deviation(), 0.502F * quantum);
 }
 
-TEST(QuantisedCodec, StockLeavesReadEveryWidth) {
+TEST(QuantisedCodec, NanoVdbReadsEveryCodeWidth) {
   for (const Box& inside : {kNode, Box{{-14, 9, 0}, {-8, 16, 3}}}) {
     expect_stock_reads<nanovdb::Fp4>(GridType::fp4, 2, inside);
     expect_stock_reads<nanovdb::Fp8>(GridType::fp8, 3, inside);
@@ -60,7 +60,7 @@ TEST(QuantisedCodec, StockLeavesReadEveryWidth) {
   }
 }
 
-TEST(QuantisedCodec, OneLevelHasStatisticsOfZero) {
+TEST(QuantisedCodec, ConstantLeafHasZeroDeviation) {
   const std::array<std::uint16_t, kLeafVoxels> codes{};
   LeafValues decoded;
   decoded.fill(5);

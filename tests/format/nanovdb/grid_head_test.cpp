@@ -32,7 +32,7 @@ GridHead sample_head() {
 
 TreeLayout sample_layout() { return padded_to(make_layout({2, 1, 1, 3, 3 * 2144, 8}), 600'001); }
 
-TEST(GridHead, StockFindsEveryFieldOfTheGrid) {
+TEST(GridHead, NanoVdbReadsEveryGridField) {
   const TreeLayout layout = sample_layout();
   std::vector<std::byte> file = encode_head(sample_head(), layout);
   ASSERT_EQ(file.size(), layout.uppers);
@@ -83,7 +83,7 @@ TEST(GridHead, StockFindsEveryFieldOfTheGrid) {
                                         reinterpret_cast<const std::byte*>(copy.data()) + layout.leaves - layout.grid));
 }
 
-TEST(GridHead, MetaDataSayTheSameAsTheGrid) {
+TEST(GridHead, FileMetaDataMatchesTheGrid) {
   const TreeLayout layout = sample_layout();
   const std::vector<std::byte> file = encode_head(sample_head(), layout);
   nanovdb::io::Segment segment;
@@ -107,7 +107,7 @@ TEST(GridHead, MetaDataSayTheSameAsTheGrid) {
   EXPECT_EQ(meta.codec, nanovdb::io::Codec::NONE);
 }
 
-TEST(GridHead, NamesHashAsStockHashesThem) {
+TEST(GridHead, NameHashMatchesNanoVdb) {
   for (const std::string& name : {std::string("a"), std::string("/fields/density"), std::string(255, 'z'),
                                   std::string("gr\xC3\xB6\xC3\x9F"
                                               "e"),
@@ -133,7 +133,7 @@ TEST(GridHead, NamesOfOneTo255Bytes) {
   }
 }
 
-TEST(GridHead, ChecksumIsStocks) {
+TEST(GridHead, HeadChecksumIsCrc32) {
   std::vector<std::byte> file = encode_head(sample_head(), sample_layout());
   const std::span grid = std::span(file).subspan(4096);
   const auto stored = load<std::uint32_t>(grid, nvdb::grid::kChecksum);

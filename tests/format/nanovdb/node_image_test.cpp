@@ -72,8 +72,8 @@ void expect_entries(NodeImage::Level level, std::int64_t side) {
   EXPECT_EQ(empty.node().data()->mTable[at(0, side - 1, 5)].value, 0.25F);
 }
 
-TEST(NodeImage, LowerIsStocksLower) { expect_entries<nanovdb::NanoLower<float>>(NodeImage::Level::lower, 16); }
-TEST(NodeImage, UpperIsStocksUpper) { expect_entries<nanovdb::NanoUpper<float>>(NodeImage::Level::upper, 32); }
+TEST(NodeImage, LowerNodeMatchesNanoVdb) { expect_entries<nanovdb::NanoLower<float>>(NodeImage::Level::lower, 16); }
+TEST(NodeImage, UpperNodeMatchesNanoVdb) { expect_entries<nanovdb::NanoUpper<float>>(NodeImage::Level::upper, 32); }
 
 }  // namespace
 }  // namespace weir::node_image_test

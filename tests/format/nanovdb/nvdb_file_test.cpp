@@ -26,7 +26,7 @@ std::string message_at(const std::string& path) {
 
 std::string own_path() { return testing::TempDir() + "weir_nvdb_file_" + std::to_string(::getpid()) + ".nvdb"; }
 
-TEST(NvdbFile, SaysWhatIsNoFile) {
+TEST(NvdbFile, RefusesMissingEmptyAndForeignFiles) {
   EXPECT_EQ(message_at("/nonexistent/a.nvdb"), "/nonexistent/a.nvdb: cannot open: No such file or directory");
   EXPECT_EQ(message_at("/tmp"), "/tmp: not a regular file; give a .nvdb file");
   const std::string path = own_path();
@@ -44,7 +44,7 @@ TEST(NvdbFile, APipeIsRefusedAndNotWaitedFor) {
   std::remove(path.c_str());
 }
 
-TEST(NvdbFile, MapsAndMoves) {
+TEST(NvdbFile, MovedFileKeepsItsGrid) {
   const std::string path = own_path();
   const test::StockNvdb sample(GridType::fpn);
   const auto bytes = sample.file();

@@ -51,7 +51,7 @@ TEST_P(StockFile, ReadsTheSameValuesAndStatesAsTheStockAccessor) {
   }
 }
 
-TEST_P(StockFile, HasTheStockHead) {
+TEST_P(StockFile, ReadsEveryHeadFieldOfAStockFile) {
   const StockNvdb stock(GetParam());
   const auto file = stock.file();
   const NvdbGrid grid = NvdbGrid::open(file, "sample.nvdb");

@@ -36,7 +36,7 @@ TEST(NvdbHeader, KeepsTheMatrixOfTheMap) {
   EXPECT_EQ(header.world_origin, (std::array<double, 3>{10, 20, 30}));
 }
 
-TEST(NvdbHeader, SaysWhatFollowsASegment) {
+TEST(NvdbHeader, BytesAfterTheLastSegmentAreRefused) {
   auto bytes = test::StockNvdb(GridType::fp4).file();
   const std::size_t end = bytes.size();
   bytes.resize(end + 16, std::byte{'x'});
@@ -49,7 +49,7 @@ TEST(NvdbHeader, SaysWhatFollowsASegment) {
   }
 }
 
-TEST(NvdbHeader, AGridThatIsCutIsTheLastOne) {
+TEST(NvdbHeader, GridBeyondTheFileEndIsTheLastOneListed) {
   auto bytes = test::StockNvdb(GridType::float32).file();
   const std::uint64_t huge = ~std::uint64_t{0} - 7;
   std::memcpy(bytes.data() + 24, &huge, sizeof huge);  // the grid's bytes in the file

@@ -7,7 +7,7 @@
 namespace weir::range_max_test {
 namespace {
 
-TEST(RangeMax, IsTheLargestOfEveryStretch) {
+TEST(RangeMax, EqualsTheMaximumOfEveryRange) {
   std::mt19937 random(7);
   for (const std::size_t count : {1U, 2U, 3U, 8U, 13U, 64U, 65U}) {
     std::vector<float> values(count);

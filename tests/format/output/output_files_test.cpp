@@ -60,7 +60,7 @@ TEST_F(OutputFilesTest, WritesBothFilesAndNothingElse) {
   EXPECT_EQ(listing(), written_);
 }
 
-TEST_F(OutputFilesTest, ProtocolIsTheDocumentedOne) {
+TEST_F(OutputFilesTest, MakesTheDocumentedSequenceOfCalls) {
   FaultyFileSystem files(*real_, -1, 0);
   EXPECT_EQ(write_output(files, false), "");
   const std::vector<std::string> expected{"create", "preallocate", "write",      "sync",       "create",
@@ -140,7 +140,7 @@ TEST_F(OutputFilesTest, ReplacesASidecarThatAKilledCommitLeft) {
   EXPECT_EQ(listing(), written_);
 }
 
-TEST_F(OutputFilesTest, KeepsASidecarThatNoCommitLeft) {
+TEST_F(OutputFilesTest, ForeignSidecarIsKeptAndTheOutputRefused) {
   put("out.nvdb.json", "kept");
   try {
     OutputFiles output_files(*real_, output(), false);
@@ -151,7 +151,7 @@ TEST_F(OutputFilesTest, KeepsASidecarThatNoCommitLeft) {
   EXPECT_EQ(listing(), (Listing{{"out.nvdb.json", "kept"}}));
 }
 
-TEST_F(OutputFilesTest, ALivingCommitKeepsItsSidecar) {
+TEST_F(OutputFilesTest, SecondWriterKeepsTheSidecarOfARunningCommit) {
   const OutputFiles first(*real_, output(), false);
   put("out.nvdb.json", "placed");  // as between its two renames
   EXPECT_EQ(write_output(*real_, false), output() +
@@ -160,7 +160,7 @@ TEST_F(OutputFilesTest, ALivingCommitKeepsItsSidecar) {
   EXPECT_EQ(listing().at("out.nvdb.json"), "placed");
 }
 
-TEST_F(OutputFilesTest, DoesNotReplaceWhatAppearedMeanwhile) {
+TEST_F(OutputFilesTest, KeepsAFileThatAppearedBeforeTheCommit) {
   OutputFiles output_files(*real_, output(), false);
   put("out.nvdb", "somebody else's");
   try {
@@ -174,7 +174,7 @@ TEST_F(OutputFilesTest, DoesNotReplaceWhatAppearedMeanwhile) {
   EXPECT_EQ(listing().count("out.nvdb.json"), 0U);
 }
 
-TEST_F(OutputFilesTest, TwoWritersOfOneOutputDoNotMeet) {
+TEST_F(OutputFilesTest, SecondWriterOfTheSameOutputIsRefused) {
   const OutputFiles first(*real_, output(), false);
   try {
     const OutputFiles second(*real_, output(), false);
@@ -193,7 +193,7 @@ TEST_F(OutputFilesTest, TakesOverThePartialFileOfADeadProcess) {
   EXPECT_EQ(listing(), written_);
 }
 
-TEST_F(OutputFilesTest, AVolumeInAnotherPlaceIsLeftThereUntilItIsCommitted) {
+TEST_F(OutputFilesTest, VolumeAtAnotherPathIsMovedOnCommitOnly) {
   const std::string other = directory_ / "half";
   const auto write = [&](bool commits) {
     OutputFiles output_files(*real_, output(), false);

@@ -52,7 +52,7 @@ class PartialFileTest : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(PartialFileTest, ProtocolIsTheDocumentedOne) {
+TEST_F(PartialFileTest, MakesTheDocumentedSequenceOfCalls) {
   FaultyFileSystem files(*real_, -1, 0);
   EXPECT_EQ(write_output(files, false), "");
   EXPECT_EQ(files.calls(),
@@ -87,7 +87,7 @@ TEST_F(PartialFileTest, UncommittedFilesDisappear) {
   EXPECT_EQ(listing(), Listing{});
 }
 
-TEST_F(PartialFileTest, DoesNotReplaceWhatAppearedMeanwhile) {
+TEST_F(PartialFileTest, KeepsAFileThatAppearedBeforeTheCommit) {
   {
     PartialFile partial(*real_, output(), false);
     put("out.raw", "mine");

@@ -134,7 +134,7 @@ TEST(Scene, EnvironmentErrors) {
             "s.toml:3:14: background is \"white\", it must be a colour, or \"environment\" where one is given");
 }
 
-TEST(Scene, UnknownKeysSayWhereAndWhatThereIs) {
+TEST(Scene, UnknownKeyErrorGivesThePlaceAndTheKnownKeys) {
   EXPECT_EQ(message("mode = \"iso\"\n\n  colour = 1\n"),
             "s.toml:3:3: unknown key \"colour\" in the scene; there are camera, light, lighting, mode, volume");
   EXPECT_EQ(message("[lighting]\nsun = 1"),
@@ -193,7 +193,7 @@ TEST(RenderModeName, RoundTrip) {
   EXPECT_FALSE(parse_render_mode("PATH"));
 }
 
-TEST(Scene, RegionIsWholeVoxels) {
+TEST(Scene, RegionTakesWholeVoxelsOnly) {
   const Scene scene = parse_scene("[volume]\nregion = [[-8, 16], [0, 1], [3, 400]]", "s.toml");
   ASSERT_TRUE(scene.volume.region);
   EXPECT_EQ(*scene.volume.region, (Box{{-8, 0, 3}, {16, 1, 400}}));

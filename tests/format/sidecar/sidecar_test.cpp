@@ -85,7 +85,7 @@ TEST(Sidecar, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.weir.options, sample().weir.options);
 }
 
-TEST(Sidecar, WritesOneLineAKeyInTheOrderOfTheContract) {
+TEST(Sidecar, WritesOneKeyPerLineInTheDocumentedOrder) {
   std::istringstream lines(to_json_text(sample()));
   std::string keys;
   for (std::string line; std::getline(lines, line);) {
@@ -168,7 +168,7 @@ TEST(Sidecar, DeepNesting_IsRefusedBeforeItTakesMemory) {
             "weir convert");
 }
 
-TEST(Sidecar, KeysThatOlderOnesLackMayBeMissing) {
+TEST(Sidecar, KeysAbsentFromOlderSidecarsAreOptional) {
   const std::string older = edited([](auto& d) {
     d["source"].erase("files_digest");
     d["visible"].erase("scene_digest");

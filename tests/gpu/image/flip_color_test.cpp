@@ -20,7 +20,7 @@ TEST(FlipColor, BlackAndWhiteHaveNoColor) {
   expect_near(hunt_lab({1, 1, 1}), {100, 0, 0}, 1e-4F);
 }
 
-TEST(FlipColor, OpponentThereAndBack) {
+TEST(FlipColor, OpponentSpaceRoundTrips) {
   for (const Float3& rgb : {Float3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2F, 0.01F, 0.7F}, {1.5F, -0.5F, 3}}) {
     expect_near(linear_from_opponent(opponent_from_linear(rgb)), rgb, 2e-6F);
   }

@@ -43,7 +43,7 @@ struct Expected {
   std::array<double, 3> pixels;  ///< the first, the one at size / 2 + width / 3, the last
 };
 
-TEST(Flip, AsTheAuthorsImplementation) {
+TEST(Flip, MatchesTheReferenceImplementation) {
   const std::vector<Expected> expected{
       {"noise on a gradient",
        0.1341546,
@@ -153,7 +153,7 @@ TEST(Flip, AsTheAuthorsImplementation) {
   }
 }
 
-TEST(Flip, NothingBetweenAPictureAndItself) {
+TEST(Flip, IdenticalPicturesHaveZeroError) {
   for (const test::FlipPair& pair : test::flip_pairs()) {
     const Image image = image_of(pair.test, pair.width, pair.height);
     EXPECT_EQ(flip_errors(image, image, pair.pixels_per_degree), std::vector<float>(image.pixels.size(), 0.0F))
@@ -177,7 +177,7 @@ TEST(Flip, TheSameForAnyNumberOfThreads) {
 }
 
 // A picture turned on its side gives the errors turned on their side: no axis is another's stand-in.
-TEST(Flip, TurnsWithThePicture) {
+TEST(Flip, TransposedPicturesGiveTransposedErrors) {
   const test::FlipPair pair = test::flip_pairs().front();
   test::FlipPair turned{"turned", pair.height, pair.width, pair.pixels_per_degree, pair.reference, pair.test};
   const auto at = [](std::int32_t x, std::int32_t y, std::int32_t width) {
@@ -198,7 +198,7 @@ TEST(Flip, TurnsWithThePicture) {
   }
 }
 
-TEST(Flip, OnlyWhatADisplayShowsCounts) {
+TEST(Flip, ValuesBeyondTheDisplayRangeAreClamped) {
   Image dark(20, 20);
   Image bright = dark;
   for (std::size_t i = 0; i < bright.pixels.size(); ++i) {

@@ -55,7 +55,7 @@ TEST_F(ImageInput, HdrByItsFirstBytes) {
   EXPECT_EQ(read.at(0, 0), (Float3{0.25F, 0.125F, 0.0625F}));
 }
 
-TEST_F(ImageInput, TheSizeIsAskedFirst) {
+TEST_F(ImageInput, SizeIsCheckedBeforeThePixelsAreRead) {
   const std::string path = write("a.exr", Image(6, 3));
   try {
     read_image(path, [](std::int32_t width, std::int32_t height) {

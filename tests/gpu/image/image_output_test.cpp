@@ -111,7 +111,7 @@ TEST_F(ImageOutput, CommitReplaces) {
   EXPECT_GT(fs::file_size(path("a.png")), 60U);
 }
 
-TEST_F(ImageOutput, LongNamesLeaveNothingElse) {
+TEST_F(ImageOutput, LongestNameLeavesNoOtherFile) {
   const std::string longest = std::string(251, 'n') + ".png";
   {
     ImageFile file(*files_, path(longest));

@@ -49,7 +49,7 @@ class PngInput : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(PngInput, EveryByteAsItWasWritten) {
+TEST_F(PngInput, EveryByteValueReadsBackExactly) {
   Image image(16, 16);
   for (std::size_t i = 0; i < 256; ++i) {
     const auto value = [](std::size_t byte) { return linear_from_srgb(static_cast<float>(byte) / 255.0F); };

@@ -70,7 +70,7 @@ TEST(RadianceHdr, Extremes) {
   EXPECT_EQ(image.at(1, 0).x, 0x1p-128F);
 }
 
-TEST(RadianceHdr, TellsItsFiles) {
+TEST(RadianceHdr, IsRecognisedByItsSignature) {
   const auto is_hdr = [](const std::string& text) { return is_radiance_hdr(std::as_bytes(std::span(text))); };
   EXPECT_TRUE(is_hdr("#?RADIANCE\n"));
   EXPECT_TRUE(is_hdr("#?RGBE\n"));

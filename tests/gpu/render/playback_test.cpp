@@ -117,7 +117,7 @@ TEST_F(Playback, FramesInOrderFromTwoVolumes) {
   EXPECT_EQ(backend_.alive, 0);
 }
 
-TEST_F(Playback, NothingAndOne) {
+TEST_F(Playback, PlaysNoFileAndOneFile) {
   EXPECT_EQ(run().frames, 0U);
   make(1);
   const PlaybackReport report = run();
@@ -149,7 +149,7 @@ TEST_F(Playback, TheLimitIsTheLongestStage) {
   EXPECT_EQ(report.limit(), "write");
 }
 
-TEST_F(Playback, AMissingFileComesAfterTheFramesBefore) {
+TEST_F(Playback, MissingFile_FailsAfterTheFramesBefore) {
   make(4);
   write_time_ = std::chrono::milliseconds(20);
   files_[2] = directory_ / "none";
@@ -158,7 +158,7 @@ TEST_F(Playback, AMissingFileComesAfterTheFramesBefore) {
   EXPECT_EQ(backend_.alive, 0);
 }
 
-TEST_F(Playback, SoDoesARenderingThatFails) {
+TEST_F(Playback, FailedRendering_FailsAfterTheFramesBefore) {
   make(4);
   write_time_ = std::chrono::milliseconds(20);
   backend_.fails_at = 2;
@@ -167,14 +167,14 @@ TEST_F(Playback, SoDoesARenderingThatFails) {
   EXPECT_EQ(backend_.alive, 0);
 }
 
-TEST_F(Playback, AFrameThatCannotBeWrittenEndsIt) {
+TEST_F(Playback, FailedWrite_StopsThePlayback) {
   make(5);
   write_fails_at_ = 1;
   EXPECT_EQ(error(), "disk full");
   EXPECT_EQ(frames_, (Frames{{0, 0}}));
 }
 
-TEST_F(Playback, SoDoesTheLastOne) {
+TEST_F(Playback, FailedWriteOfTheLastFrame_IsReported) {
   make(2);
   write_fails_at_ = 1;
   EXPECT_EQ(error(), "disk full");

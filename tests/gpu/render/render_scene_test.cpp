@@ -34,7 +34,7 @@ TEST(RenderScene, DefaultIsoLiesBetweenBackgroundAndFarthestValue) {
   EXPECT_NEAR(RenderScene(other.grid(), {}, {}).task().iso, 35 - 0.35F * 35, 1e-4F);
 }
 
-TEST(RenderScene, SceneReachesTheTask) {
+TEST(RenderScene, SceneAndOptionsAreCopiedToTheTask) {
   const TestGrid grid({{0, 0, 0}, {41, 20, 10}}, ramp);
   Scene scene;
   scene.mode = RenderMode::iso;
@@ -74,7 +74,7 @@ TEST(RenderScene, SceneReachesTheTask) {
   EXPECT_EQ(prepared.tone().exposure, 3.0F);
 }
 
-TEST(RenderScene, FrameTheVolumeOrWhatItShows) {
+TEST(RenderScene, FramesTheVolumeOrItsContent) {
   const TestGrid grid({{0, 0, 0}, {160, 160, 160}},
                       [](const Index3& i) { return i.x < 8 && i.y < 8 && i.z < 8 ? 1.0F : 0.0F; });
   Scene scene;

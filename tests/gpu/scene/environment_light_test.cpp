@@ -200,7 +200,7 @@ TEST(EnvironmentLight, TheCameraSeesItOnlyWhenAsked) {
 }
 
 // A wall that faces the camera, lit by the mean of the light over its hemisphere.
-TEST(EnvironmentLight, SurfacesTakeTheMean) {
+TEST(EnvironmentLight, SurfacesReflectTheMeanOfTheirHemisphere) {
   const Environment environment(test::surroundings(64,
                                                    [](int x, int) {
                                                      return x < 32 || x >= 96 ? Float3{1, 1, 1} : Float3{};

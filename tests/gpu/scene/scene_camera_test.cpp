@@ -50,7 +50,7 @@ TEST(MakeCamera, AzimuthZeroIsOnTheXAxis) {
   expect_near(normalised(above.right, {}), {-1, 0, 0});
 }
 
-TEST(MakeCamera, OtherUps) {
+TEST(MakeCamera, OtherUpVectorsGiveAnUprightCamera) {
   for (const Double3 up : {Double3{0, 1, 0}, Double3{1, 0, 0}, Double3{0, 0, -2}, Double3{1, 1, 1}}) {
     SceneCamera scene;
     scene.up = up;

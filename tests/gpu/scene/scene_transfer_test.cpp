@@ -26,7 +26,7 @@ TEST(MakeTransferFunction, SignedDataShowsBothSides) {
   EXPECT_EQ(transfer.at(0.1F).a, 0.0F);
 }
 
-TEST(MakeTransferFunction, ConstantVolumeIsAFog) {
+TEST(MakeTransferFunction, ConstantVolumeIsHalfOpaque) {
   const TransferFunction transfer = make_transfer_function({}, {3, 3}, 3, "gray");
   EXPECT_EQ(transfer.at(3).a, 0.5F);
 }

@@ -87,7 +87,7 @@ TEST(TransferFunction, MaximumIsABoundForRandomTables) {
   }
 }
 
-TEST(TransferFunction, RefusesNonsense) {
+TEST(TransferFunction, RefusesInvalidTablesAndRanges) {
   EXPECT_THROW(TransferFunction({{}}, 0, 1), Error);
   EXPECT_THROW(TransferFunction({{}, {}}, 1, 0), Error);
   EXPECT_THROW(TransferFunction({{}, {}}, 0, kInfinity), Error);

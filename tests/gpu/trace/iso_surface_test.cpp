@@ -46,14 +46,14 @@ TEST(FindIso, FromInside) {
   EXPECT_NEAR(find_iso(*medium, medium->ray({32, 32, 32}, {0, 0, -1}), 32, 20.0F / 64, 0.5F), 20.0F, 1e-3F);
 }
 
-TEST(FindIso, NotANumberIsOnNeitherSide) {
+TEST(FindIso, NoSurfaceIsFoundAcrossNaN) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   TestMedium medium({64, 16, 16}, 16, 1, 1.0F,
                     [nan](const Float3& p) { return p.x < 30 ? 0.0F : (p.x < 34 ? nan : 1.0F); });
   EXPECT_EQ(find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 0.5F), -1.0F);
 }
 
-TEST(FindIso, StepBelowThePrecisionEnds) {
+TEST(FindIso, StepBelowFloatPrecisionTerminates) {
   TestMedium medium({64, 16, 16}, 16, 1, 1.0F, [](const Float3&) { return 0.0F; });
   EXPECT_EQ(find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 1e-30F), -1.0F);
 }

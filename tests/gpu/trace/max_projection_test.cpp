@@ -38,7 +38,7 @@ TEST(MaxAlong, NotANumberDoesNotCount) {
   EXPECT_EQ(max_along(*none, none->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 0), -kInfinity);
 }
 
-TEST(ProjectMax, LiesOverTheBackground) {
+TEST(ProjectMax, IsBlendedOverTheBackground) {
   Lighting lighting;
   lighting.sky_behind = false;
   lighting.background = {0.5F, 0.5F, 0.5F};

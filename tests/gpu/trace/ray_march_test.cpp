@@ -61,7 +61,7 @@ TEST(March, MissesSeeTheBackground) {
 }
 
 // A wall at x = 32 whose normal faces the camera reflects what on_surface says.
-TEST(March, ShadingFacesTheCamera) {
+TEST(March, SurfaceFacingTheCameraReflectsTheAmbientLight) {
   Lighting lighting = dark();
   lighting.zenith = lighting.horizon = lighting.ground = {0.5F, 0.5F, 0.5F};
   TestMedium medium({64, 16, 16}, 16, 1e6F, 1.0F, [](const Float3& p) { return p.x >= 32 ? 1.0F : 0.0F; });

@@ -55,7 +55,7 @@ TEST(DeltaTrack, TransmittanceOfARampWithTightMajorants) {
 }
 
 // A voxel twice as long in x is crossed in twice the length.
-TEST(DeltaTrack, LengthIsPhysical) {
+TEST(DeltaTrack, StretchedVoxelsLengthenThePath) {
   TestMedium medium({32, 32, 32}, 16, 0.05F, 1.0F, kHalf);
   medium->stretch = {2, 1, 1};
   Ray ray = medium->ray({-5, 8, 8}, {1, 0, 0});
@@ -107,7 +107,7 @@ TEST(DeltaTrack, HugeExtinctionStopsAtOnce) {
 }
 
 // A majorant of 1e30 over vacuum: tentative collisions without end must end.
-TEST(DeltaTrack, HopelessMajorantIsBounded) {
+TEST(DeltaTrack, HugeMajorantOverVacuumTerminates) {
   TestMedium medium({64, 64, 64}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
   const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
   Random random(1, 2, 3);

@@ -91,7 +91,7 @@ TEST_F(SamplerOnNoise, PositionsOutsideAreClamped) {
   }
 }
 
-TEST_F(SamplerOnNoise, NotANumberIsSomewhereInside) {
+TEST_F(SamplerOnNoise, NaNPositionReadsAVoxelInside) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Filter filter : {Filter::nearest, Filter::trilinear, Filter::stochastic}) {
     Random random(1, 2, 3);

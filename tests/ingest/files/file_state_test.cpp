@@ -66,7 +66,7 @@ TEST_F(FileStateTest, WrittenWithTheSameSize_IsSaidWithBothTimes) {
             "2020-01-02T00:00:00.000000000Z");
 }
 
-TEST_F(FileStateTest, WrittenAndItsTimeSetBack_IsSeenByTheStatus) {
+TEST_F(FileStateTest, WrittenAndItsTimeSetBack_IsSeenByTheChangeTime) {
   look();
   const auto time = fs::last_write_time(path_);
   while (look_at_file(path_).ctime_ns == before_[0].ctime_ns) {  // clocks tick every few ms
@@ -84,7 +84,7 @@ TEST_F(FileStateTest, ReplacedByARename_IsAnotherFile) {
   EXPECT_EQ(found(), "another file has taken its place");
 }
 
-TEST_F(FileStateTest, RemovedAndAppeared_AreSaid) {
+TEST_F(FileStateTest, RemovedOrAppearedFile_IsReported) {
   look();
   fs::remove(path_);
   EXPECT_EQ(found(), "it is not there any more");

@@ -33,7 +33,7 @@ class FileStatesTest : public testing::Test {
   std::string b_ = directory_ / "b";
 };
 
-TEST_F(FileStatesTest, OneFileNeedsNone) {
+TEST_F(FileStatesTest, SingleFileHasNoDigest) {
   FileStates states;
   EXPECT_EQ(states.digest(), "");
   states.add(a_);
@@ -45,7 +45,7 @@ TEST_F(FileStatesTest, OneFileNeedsNone) {
   EXPECT_EQ(header.digest().size(), 32U) << "which names another one";
 }
 
-TEST_F(FileStatesTest, DependsOnAllThatIsKnownOfEachFile) {
+TEST_F(FileStatesTest, DigestDependsOnTheStateOfEachFile) {
   const std::string before = digest();
   EXPECT_EQ(digest(), before);
   EXPECT_NE(digest("0123"), before);
@@ -75,7 +75,7 @@ TEST_F(FileStatesTest, DependsOnNameAndOrderButNotOnTheDirectory) {
   EXPECT_EQ(seen_otherwise.digest(), digest());
 }
 
-TEST_F(FileStatesTest, AMissingFileIsAStateToo) {
+TEST_F(FileStatesTest, MissingFileChangesTheDigest) {
   const std::string before = digest();
   fs::remove(b_);
   const std::string missing = digest();

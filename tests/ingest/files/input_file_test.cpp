@@ -53,7 +53,7 @@ std::string open_refusal(const std::string& path, ErrorKind kind = ErrorKind::in
   return message_of_error(kind, [&] { InputFile(path, mode); });
 }
 
-TEST(InputFile, RefusesWhatIsNoFile) {
+TEST(InputFile, RefusesMissingEmptyAndNonRegularFiles) {
   const Scratch scratch;
   EXPECT_EQ(open_refusal(scratch.path("none.raw")),
             scratch.path("none.raw") + ": cannot open for reading: No such file or directory");
@@ -64,7 +64,7 @@ TEST(InputFile, RefusesWhatIsNoFile) {
             scratch.path("pipe.raw") + ": is not a regular file; copy its content to one");
 }
 
-TEST(InputFile, RefusesWhatMayNotBeRead) {
+TEST(InputFile, RefusesFilesWithoutReadPermission) {
   const Scratch scratch;
   const std::string path = scratch.write("locked.raw", pattern(100));
   ASSERT_EQ(::chmod(path.c_str(), 0), 0);
@@ -140,7 +140,7 @@ class InputFileCache : public ::testing::Test {
   std::string path_;
 };
 
-TEST_F(InputFileCache, AutomaticLooksWhatIsCached) {
+TEST_F(InputFileCache, AutomaticReadsCachedPagesThroughTheCache) {
   const InputFile file(path_, DirectIo::automatic);
   if (file.path_for(0, kBytes) != ReadPath::direct) GTEST_SKIP() << "skipped: no direct I/O at " << path_;
   touch(100, 50);
@@ -182,7 +182,7 @@ TEST_F(InputFileCache, DirectReadsLeaveTheCacheAsItWas) {
   EXPECT_EQ(count_cached(path_, kBytes), 50U);
 }
 
-TEST_F(InputFileCache, ADeviceThatRefusesWhenReadIsReadThroughTheCache) {
+TEST_F(InputFileCache, RefusedDirectReadFallsBackToTheCache) {
   // Memory off the device's alignment is refused as a device of wider alignment would.
   const PageBuffer memory(kBytes + 3 * kDirectAlignment);
   const auto staging = memory.bytes().subspan(1, kBytes + 2 * kDirectAlignment);

@@ -60,7 +60,7 @@ with h5py.File("a.h5", "w") as f:
             "its type is compound of 2 members; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64");
 }
 
-TEST_F(Hdf5Listing, CopesWithThousandsAndWithCircles) {
+TEST_F(Hdf5Listing, ListsThousandsOfGroupsAndCyclicLinks) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w", libver="latest") as f:
     v = np.zeros((2, 2, 2), "u1")

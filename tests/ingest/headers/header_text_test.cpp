@@ -41,7 +41,7 @@ TEST(HeaderText, ParsesNumbers) {
   EXPECT_EQ(parse_doubles("1,5"), std::nullopt);
 }
 
-TEST(HeaderText, QuotesOnOneLine) {
+TEST(HeaderText, QuotedTextIsPrintableAndShort) {
   EXPECT_EQ(in_quotes("a b"), "'a b'");
   EXPECT_EQ(in_quotes(std::string_view("a\nb\0c\xFF", 6)), "'a?b?c?'");
   EXPECT_EQ(in_quotes(std::string(61, 'x')), "'" + std::string(60, 'x') + "...'");

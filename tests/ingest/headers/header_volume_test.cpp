@@ -71,7 +71,7 @@ TEST_F(HeaderVolumeTest, IndexMustFitTheAxes) {
   EXPECT_EQ(refusal(ErrorKind::usage, options), path + ": holds one array without a name; leave --dataset out");
 }
 
-TEST_F(HeaderVolumeTest, AxesOfOnePositionNeedNoIndexAndMissingOnesAreOne) {
+TEST_F(HeaderVolumeTest, SingletonAxesNeedNoIndexAndMissingAxesAreOne) {
   volume_.extents = {4, 3, 2, 1, 1};
   EXPECT_EQ(values(), as_floats(ramp(24)));
   volume_.extents = {24};
@@ -155,7 +155,7 @@ TEST_F(HeaderVolumeTest, UnpacksOneOfSeveralVolumes) {
   }
 }
 
-TEST_F(HeaderVolumeTest, PackedBytesMustBeThere) {
+TEST_F(HeaderVolumeTest, FileShorterThanItsPackedBytesIsRefused) {
   const auto packed = deflated(stored(ramp(24), true), Wrapper::zlib);
   use(write_headed(scratch_, "array.hvz", "header", packed));
   volume_.extents = {4, 3, 2};
@@ -174,7 +174,7 @@ TEST_F(HeaderVolumeTest, PackedBytesMustBeThere) {
                                            "data are impossible; the header is damaged");
 }
 
-TEST_F(HeaderVolumeTest, MapsValuesAndAddsWhatIsMissing) {
+TEST_F(HeaderVolumeTest, MapsValuesAndAddsTheMissingValueOption) {
   volume_.extents = {4, 3, 2};
   volume_.info.mapping = {.scale = 0.5, .offset = -1, .missing = {std::int64_t{2}}};
   SourceOptions options;
@@ -187,7 +187,7 @@ TEST_F(HeaderVolumeTest, MapsValuesAndAddsWhatIsMissing) {
   EXPECT_EQ(read[23], 10.5F);
 }
 
-TEST_F(HeaderVolumeTest, ListsWhatThereIs) {
+TEST_F(HeaderVolumeTest, ListsTypeExtentsAndAttributes) {
   volume_.info.units = "HU";
   volume_.info.mapping.scale = 2;
   volume_.info.spacing = {0.5, 1, 2};

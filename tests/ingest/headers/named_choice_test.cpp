@@ -15,7 +15,7 @@ TEST(NamedChoice, TakesTheNameOrTheOnlyOneThatCanBeConverted) {
   EXPECT_EQ(choose_volume("a.vdb", "array", std::span(there).first(2), ""), 1U);
 }
 
-TEST(NamedChoice, SaysWhatThereIs) {
+TEST(NamedChoice, RefusalListsTheNamesThereAre) {
   EXPECT_EQ(refusal(ErrorKind::input, {}, "b"), "a.vdb: holds no array");
   EXPECT_EQ(refusal(ErrorKind::input, {{"a", ""}, {"b", ""}}, "c"), "a.vdb: has no array 'c'; it has 'a', 'b'");
   EXPECT_EQ(refusal(ErrorKind::usage, {{"a", ""}, {"b", ""}, {"c", "text"}}, ""),

@@ -5,7 +5,7 @@
 namespace weir::number_pattern_test {
 namespace {
 
-TEST(NumberPattern, NamesAndMatchesEachOther) {
+TEST(NumberPattern, NameAndMatchAreInverse) {
   const auto padded = NumberPattern::parse("plane_%05d.raw");
   ASSERT_TRUE(padded);
   EXPECT_EQ(padded->name(42), "plane_00042.raw");

@@ -21,7 +21,7 @@ std::string with(const std::string& entries, const std::string& data_file = "LOC
   return kMinimal + entries + "ElementDataFile = " + data_file + "\n";
 }
 
-TEST(MetaImageHeader, ParsesTheLeast) {
+TEST(MetaImageHeader, ParsesAMinimalHeader) {
   const MetaImageHeader header = parse(with("") + "\x01\x02");
   EXPECT_EQ(header.header_bytes, with("").size());
   EXPECT_EQ(header.type, ScalarType::uint8);
@@ -33,7 +33,7 @@ TEST(MetaImageHeader, ParsesTheLeast) {
   EXPECT_EQ(header.slope, 1);
 }
 
-TEST(MetaImageHeader, ParsesAllThatIsUsed) {
+TEST(MetaImageHeader, ParsesEveryFieldThatIsUsed) {
   const MetaImageHeader header = parse(
       "ObjectType = Image\r\nNDims = 3\r\nBinaryData = True\r\nBinaryDataByteOrderMSB = True\r\n"
       "CompressedData = True\r\nCompressedDataSize = 77\r\nTransformMatrix = 1 0 0 0 -1 0 0 0 1\r\n"
@@ -55,7 +55,7 @@ TEST(MetaImageHeader, ParsesAllThatIsUsed) {
   EXPECT_EQ(header.data_file, "a b.zraw");
 }
 
-TEST(MetaImageHeader, KnowsOtherNamesOfTheSame) {
+TEST(MetaImageHeader, AcceptsAlternativeKeyNames) {
   EXPECT_EQ(parse(with("ElementSize = 1 2 3\n")).spacing, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(parse(with("Origin = 1 2 3\n")).origin, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(parse(with("Position = 1 2 3\n")).origin, (std::vector<double>{1, 2, 3}));
@@ -65,12 +65,12 @@ TEST(MetaImageHeader, KnowsOtherNamesOfTheSame) {
   EXPECT_EQ(parse(with("", "Local")).data_file, "");
 }
 
-TEST(MetaImageHeader, TheLineOfTheDataFileMayEndTheFile) {
+TEST(MetaImageHeader, DataFileLineNeedsNoLineEnd) {
   EXPECT_EQ(parse(kMinimal + "ElementDataFile = a.raw").data_file, "a.raw");
   EXPECT_EQ(parse(kMinimal + "ElementDataFile = a.raw").header_bytes, kMinimal.size() + 23);
 }
 
-TEST(MetaImageHeader, RefusesWhatIsWrong) {
+TEST(MetaImageHeader, RefusesInvalidHeaders) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "its header has no ElementDataFile, with which it must end; the file is cut"},
       {kMinimal, "its header has no ElementDataFile, with which it must end; the file is cut"},
@@ -112,7 +112,7 @@ TEST(MetaImageHeader, RefusesWhatIsWrong) {
   for (const auto& [text, message] : cases) EXPECT_EQ(refusal(text), "a.mha: " + message) << text;
 }
 
-TEST(MetaImageHeader, MustEndWithinItsBounds) {
+TEST(MetaImageHeader, HeaderBeyondTheSizeLimitIsRefused) {
   EXPECT_EQ(refusal("Comment = " + std::string(kHeaderLimit, 'x'), false),
             "a.mha: its header does not end within 1048576 bytes");
 }

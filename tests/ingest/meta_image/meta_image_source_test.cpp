@@ -74,7 +74,7 @@ TEST(MetaImageSource, TakesPlaceAndIntensity) {
   EXPECT_EQ(read_volume(*source)[23], 10.5F);
 }
 
-TEST(MetaImageSource, SpacingIsThatOfTheHeaderWhereverTheAxesPoint) {
+TEST(MetaImageSource, SpacingIgnoresTheAxisDirections) {
   const Scratch scratch;
   // 36.87 degrees about z, rounded as writers do.
   const std::string path = write_headed(

@@ -17,7 +17,7 @@ std::string refusal(const NiftiBytes& header) {
   return message_of_error(ErrorKind::input, [&] { parse(header); });
 }
 
-TEST(NiftiHeader, ParsesTheLeastOfBothVersionsAndByteOrders) {
+TEST(NiftiHeader, ParsesMinimalHeadersOfBothVersionsAndByteOrders) {
   for (const int version : {1, 2}) {
     for (const bool big : {false, true}) {
       const NiftiHeader header = parse(NiftiBytes(version, big));
@@ -52,7 +52,7 @@ TEST(NiftiHeader, TakesSpacingScaleAndUnit) {
   }
 }
 
-TEST(NiftiHeader, WhatIsNoLengthIsOneAndWhatIsNoScaleIsNone) {
+TEST(NiftiHeader, InvalidSpacingIsOneAndInvalidScaleIsIgnored) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const NiftiHeader header = parse(NiftiBytes(1).set_all<float>(76, {1, 0, nan, 3}).set<float>(112, nan));
   EXPECT_EQ(header.spacing, (Vector3{1, 1, 3}));
@@ -99,7 +99,7 @@ TEST(NiftiHeader, TheQformTurnsAndFlips) {
   EXPECT_NEAR(parse(bytes).steps[2][2], 4, 1e-6);
 }
 
-TEST(NiftiHeader, KnowsItsTypesAndNamesOthers) {
+TEST(NiftiHeader, ParsesSupportedTypesAndNamesOthers) {
   const std::vector<std::pair<std::int16_t, ScalarType>> types{
       {2, ScalarType::uint8},    {4, ScalarType::int16},    {8, ScalarType::int32},    {16, ScalarType::float32},
       {64, ScalarType::float64}, {256, ScalarType::int8},   {512, ScalarType::uint16}, {768, ScalarType::uint32},
@@ -122,7 +122,7 @@ TEST(NiftiHeader, PairsHaveValuesAnywhere) {
   EXPECT_TRUE(parse(NiftiBytes(2).set_text(4, "ni2").set<std::int64_t>(168, 16)).pair);
 }
 
-TEST(NiftiHeader, RefusesWhatIsWrong) {
+TEST(NiftiHeader, RefusesInvalidHeaders) {
   EXPECT_EQ(refusal(NiftiBytes(1).set_text(344, "abc")),
             "a.nii: magic at byte 344 is 'abc?'; it must be n+1 or ni1; Analyze 7.5 files, which have none, cannot be "
             "read");

@@ -30,7 +30,7 @@ std::string replaced(std::string text, const std::string& name, const std::strin
   return text;
 }
 
-TEST(NrrdHeader, ParsesTheLeast) {
+TEST(NrrdHeader, ParsesAMinimalHeader) {
   const NrrdHeader header = parse(kMinimal + "\n\x01\x02");
   EXPECT_EQ(header.header_bytes, kMinimal.size() + 1);
   EXPECT_EQ(header.type, ScalarType::uint8);
@@ -43,7 +43,7 @@ TEST(NrrdHeader, ParsesTheLeast) {
   EXPECT_TRUE(header.directions.empty());
 }
 
-TEST(NrrdHeader, ParsesAllThatPlaces) {
+TEST(NrrdHeader, ParsesThePlacementFields) {
   const std::string text =
       "NRRD0005\r\n"
       "# made by hand\r\n"
@@ -91,7 +91,7 @@ TEST(NrrdHeader, ParsesFieldsOfTheAxes) {
   EXPECT_EQ(header.centerings, (std::vector<std::string>{"cell", "???", "node"}));
 }
 
-TEST(NrrdHeader, KnowsEveryNameOfATypeAndNoOther) {
+TEST(NrrdHeader, AcceptsEveryTypeNameAndNoOther) {
   const std::vector<std::pair<ScalarType, std::vector<std::string>>> names{
       {ScalarType::int8, {"signed char", "int8", "int8_t"}},
       {ScalarType::uint8, {"uchar", "unsigned char", "uint8", "uint8_t"}},
@@ -130,7 +130,7 @@ TEST(NrrdHeader, RefusesListsOfFiles) {
             "of a list with --stack");
 }
 
-TEST(NrrdHeader, RefusesWhatIsWrong) {
+TEST(NrrdHeader, RefusesInvalidHeaders) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "does not begin with NRRD000"},
       {"nrrd0001\n", "does not begin with NRRD000"},
@@ -172,7 +172,7 @@ TEST(NrrdHeader, RefusesWhatIsWrong) {
             "a.nrrd: line 6: byteskip is '-1'; it must be 0 or more, or -1 for raw values at the file's end");
 }
 
-TEST(NrrdHeader, MustEndWithinItsBounds) {
+TEST(NrrdHeader, HeaderBeyondTheSizeLimitIsRefused) {
   const std::string endless = "NRRD0001\n# " + std::string(kHeaderLimit, 'x');
   EXPECT_EQ(refusal(endless, false), "a.nrrd: its header does not end within 1048576 bytes");
   EXPECT_EQ(refusal(kMinimal, false), "a.nrrd: its header does not end within 1048576 bytes");

@@ -73,7 +73,7 @@ TEST(NrrdSource, TakesPlaceLabelsAndUnits) {
   EXPECT_EQ(source->info().units, "K");
 }
 
-TEST(NrrdSource, SpacingsAndAxisRangesPlaceToo) {
+TEST(NrrdSource, SpacingsAndAxisRangesGiveThePlacement) {
   const Scratch scratch;
   const auto info = [&](const std::string& fields) {
     return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {})->info();
@@ -101,7 +101,7 @@ TEST(NrrdSource, KeepsTheOrderOfFlippedAxesAndSaysSo) {
                 "orientation", "axes along -x, -y, +z of the file's world; voxels keep the file's order"}));
 }
 
-TEST(NrrdSource, AFirstAxisOfOneValueIsNone) {
+TEST(NrrdSource, FourthAxisOfOneValueIsDropped) {
   const Scratch scratch;
   const std::string sizes = "NRRD0004\ntype: uint8\nencoding: raw\n";
   for (const std::string rest :
@@ -185,7 +185,7 @@ TEST(NrrdSource, AFileCutAtAnyByteIsRefused) {
   }
 }
 
-TEST(NrrdSource, HostileHeadersCostNothing) {
+TEST(NrrdSource, OversizedHeadersAndBombsAreRefused) {
   const Scratch scratch;
   std::string path = write_headed(scratch, "wide.nrrd",
                                   "NRRD0004\ntype: uint8\nencoding: gzip\ndimension: 3\n"

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
 
-TEST(BlockAxis, BlocksEndWithChunksWhereLeavesDo) {
+TEST(BlockAxis, UnitAlignsBlocksWithLeavesAndChunks) {
   EXPECT_EQ(BlockAxis(0, 1000, 0, 0).unit, 1);
   EXPECT_EQ(BlockAxis(0, 1000, 1, 0).unit, 1);
   EXPECT_EQ(BlockAxis(0, 1000, 64, 0).unit, 8);

@@ -137,7 +137,7 @@ TEST(BlockPlan, TinyBudgets) {
   }
 }
 
-TEST(BlockPlan, NotEvenALeaf) {
+TEST(BlockPlan, RefusesABudgetBelowOneLeaf) {
   EXPECT_EQ(message_of_error(ErrorKind::usage,
                              [] {
                                plan_blocks(at_origin({100, 50, 40}), {}, 2047);
@@ -190,7 +190,7 @@ TEST(BlockPlan, WholeChunks) {
   EXPECT_EQ(planes.amplification, 1.0);
 }
 
-TEST(BlockPlan, ChunksRatherThanLongRows) {
+TEST(BlockPlan, CutsRowsAtChunkEdgesToKeepChunksWhole) {
   // A row of chunks does not fit, one column of them does: x is cut at chunk edges.
   const BlockPlan plan = checked_plan(at_origin({4096, 4096, 4096}), {4, {128, 256, 256}, {}}, 64 * kMiB);
   EXPECT_EQ(plan.leaves, (Index3{32, 32, 32}));
@@ -204,7 +204,7 @@ TEST(BlockPlan, AmplificationOfChunksThatDoNotFit) {
   EXPECT_EQ(plan.amplification, 16.0);
 }
 
-TEST(BlockPlan, PlanesOfWhichEightDoNotFit) {
+TEST(BlockPlan, PlaneChunksBeyondTheBudgetAreCutIntoStrips) {
   // Eight planes of 4096^2 take 512 MiB: strips of them, as wide as fits, cut as few times as that allows.
   const Box domain = at_origin({4096, 4096, 1000});
   const AccessShape planes{4, {4096, 4096, 1}, {}};
@@ -215,7 +215,7 @@ TEST(BlockPlan, PlanesOfWhichEightDoNotFit) {
   EXPECT_EQ(checked_plan(domain, planes, 512 * kMiB).amplification, 1.0);
 }
 
-TEST(BlockPlan, ChunksThatNoBlockOfLeavesEndsWith) {
+TEST(BlockPlan, ChunksOffLeafEdgesAreReadMoreThanOnce) {
   // 75 and 8 meet at 600 voxels only, and such a block takes 824 MiB.
   const Box domain = at_origin({1200, 1200, 1200});
   const AccessShape chunks{4, {75, 75, 75}, {}};
@@ -225,7 +225,7 @@ TEST(BlockPlan, ChunksThatNoBlockOfLeavesEndsWith) {
   EXPECT_DOUBLE_EQ(plan.amplification, 19.0 / 16 * 20 / 16);
 }
 
-TEST(BlockPlan, BytesThatDecodeEveryChunkOnce) {
+TEST(BlockPlan, GivesTheBytesThatDecodeEveryChunkOnce) {
   const Box domain = at_origin({4096, 4096, 1000});
   const AccessShape planes{4, {4096, 4096, 1}, {}};
   const std::uint64_t enough = bytes_for_whole_chunks(domain, planes);

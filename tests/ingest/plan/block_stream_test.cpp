@@ -103,7 +103,7 @@ TEST(BlockStream, ReadsTheNextBlockDuringTheWork) {
   EXPECT_EQ(source.reads, 8U);
 }
 
-TEST(BlockStream, NoBoxesNoWork) {
+TEST(BlockStream, NoBoxes_ReadsNothing) {
   CountingSource source({5, 3, 8});
   const auto loss = stream_blocks(source, {}, {}, [](const Block&) { FAIL(); });
   EXPECT_EQ(loss.inexact, 0U);
@@ -121,7 +121,7 @@ TEST(BlockStream, OneBoxNeedsOneBuffer) {
   EXPECT_EQ(source.buffers.size(), 1U);
 }
 
-TEST(BlockStream, SourceErrorEndsBothAfterTheGoodBlocks) {
+TEST(BlockStream, SourceErrorStopsAfterTheBlocksReadBefore) {
   for (const std::size_t fail_at : {0U, 1U, 5U, 19U}) {
     CountingSource source({5, 3, 20});
     source.fail_at = fail_at;
@@ -146,7 +146,7 @@ TEST(BlockStream, WorkErrorEndsBoth) {
   }
 }
 
-TEST(BlockStream, BothSidesFail) {
+TEST(BlockStream, BothSidesFail_ThrowsTheErrorOfTheWork) {
   CountingSource source({5, 3, 20});
   source.fail_at = 4;
   EXPECT_THROW(stream_blocks(source, slabs(20), {},
@@ -204,7 +204,7 @@ TEST(BlockStream, CancelFromAnotherThread) {
   EXPECT_EQ(worked, 101U);
 }
 
-TEST(BlockStream, RestsAfterEachBlockAndKnowsItsLoss) {
+TEST(BlockStream, CallsAtRestAfterEachBlockAndGivesItsLoss) {
   CountingSource source({5, 3, 40});
   StreamOptions options;
   std::size_t worked = 0;
@@ -221,7 +221,7 @@ TEST(BlockStream, RestsAfterEachBlockAndKnowsItsLoss) {
   EXPECT_EQ(rests, 40U);
 }
 
-TEST(BlockStream, WhoeverIsAskedLastKnowsThatItIsTheEnd) {
+TEST(BlockStream, CancelDuringAtRest_CallsAtRestOnceMore) {
   CountingSource source({5, 3, 40});
   std::atomic<bool> cancel{false};
   std::vector<std::size_t> rests;
@@ -239,7 +239,7 @@ TEST(BlockStream, WhoeverIsAskedLastKnowsThatItIsTheEnd) {
 }
 
 // Groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
-TEST(BlockStream, InPlaceRestsBetweenGroupsAndCancelsThere) {
+TEST(BlockStream, InPlace_CallsAtRestAndCancelsBetweenGroups) {
   class Empty final : public VolumeSource {
    public:
     const SourceInfo& info() const override { return info_; }

@@ -32,7 +32,7 @@ TEST(ForPieces, OneThreadIsTheCallingOne) {
   EXPECT_EQ(next, 9);
 }
 
-TEST(ForPieces, AnExceptionStopsTheRestAndComesBack) {
+TEST(ForPieces, ExceptionStopsTheRestAndIsRethrown) {
   for (const std::size_t threads : {1U, 4U}) {
     std::atomic<int> calls{0};
     EXPECT_THROW(for_pieces(1'000'000, threads,

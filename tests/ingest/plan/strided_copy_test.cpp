@@ -74,7 +74,7 @@ TEST(StridedCopy, CopiesAnyPartOfAnyLayout) {
   expect_copies<std::uint64_t>();
 }
 
-TEST(StridedCopy, RepeatsWhatHasNoStride) {
+TEST(StridedCopy, ZeroStrideRepeatsTheValue) {
   const std::uint32_t value = 0xABCDEF01U;
   std::vector<std::uint32_t> copied(24);
   copy_voxels({{{0, 0, 0}, {4, 3, 2}}, reinterpret_cast<const std::byte*>(&value), {0, 0, 0}, 4},

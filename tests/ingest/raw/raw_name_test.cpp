@@ -54,7 +54,7 @@ TEST(RawName, ImpossibleExtentsAreReadAsWritten) {
             (Index3{kMax, 1, kMin}));
 }
 
-TEST(RawName, OtherNamesSayNothing) {
+TEST(RawName, UnrecognisedNamesGiveNothing) {
   for (const char* path :
        {"", "raw", ".raw", "a.raw", "a_uint8.raw", "4x4x4_uint8.raw", "_4x4x4_uint8.raw", "a_4x4_uint8.raw",
         "a_4x4x4x4_uint8.raw", "a_4x4x_uint8.raw", "a_4x 4x4_uint8.raw", "a_+4x4x4_uint8.raw", "a_4X4X4_uint8.raw",

@@ -72,7 +72,7 @@ TEST(RawSource, AllTypesInBothByteOrders) {
   expect_type<double>("float64");
 }
 
-TEST(RawSource, InfoSaysWhatIsKnown) {
+TEST(RawSource, InfoDescribesTheFile) {
   const Scratch scratch;
   const std::string path = scratch.write_values("v.raw", ramp<std::int16_t>(), 10);
   SourceOptions options = options_of(kExtent, ScalarType::int16);
@@ -156,7 +156,7 @@ TEST(RawSource, LossIsCountedOverTheBox) {
   EXPECT_EQ(part.inexact + part.overflow, 0U);
 }
 
-TEST(RawSource, OptionsAgreeWithTheName) {
+TEST(RawSource, OptionsThatContradictTheNameAreRefused) {
   const Scratch scratch;
   const std::string path = scratch.write_values("v_7x5x9_float32be.raw", ramp<float>());
   SourceOptions options = options_of(kExtent, ScalarType::float32);
@@ -231,7 +231,7 @@ TEST(RawSource, ImpossibleExtents) {
             named + ": extent 0x5x9 has 0 voxels along x; each axis must be 1 to 2147483647");
 }
 
-TEST(RawSource, WhatIsNotKnownIsAskedFor) {
+TEST(RawSource, UnknownExtentOrTypeIsAskedFor) {
   const Scratch scratch;
   const std::string path = scratch.write_values("v.raw", ramp<std::uint8_t>());
   EXPECT_EQ(refusal(ErrorKind::usage, path),
@@ -248,7 +248,7 @@ TEST(RawSource, WhatIsNotKnownIsAskedFor) {
   EXPECT_EQ(open_raw(named, options)->info().type, ScalarType::uint8);
 }
 
-TEST(RawSource, BoxesOutsideAreAFaultOfTheCaller) {
+TEST(RawSource, BoxesOutsideTheVolumeAreAnInternalError) {
   const Scratch scratch;
   const auto source = open_raw(scratch.write_values("v_7x5x9_uint8.raw", ramp<std::uint8_t>()), {});
   std::vector<float> values(1);

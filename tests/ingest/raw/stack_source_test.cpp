@@ -44,7 +44,7 @@ std::vector<float> read(VolumeSource& source, const Box& box) {
   return values;
 }
 
-TEST(StackSource, IsTheVolumeItsFilesMake) {
+TEST(StackSource, ReadsItsFilesAsOneVolume) {
   const auto all = ramp();
   const std::vector<float> expected(all.begin(), all.end());
   for (const std::int64_t planes : {1, 4, 8, 20, 40}) {

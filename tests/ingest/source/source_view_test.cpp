@@ -21,7 +21,7 @@ std::unique_ptr<VolumeSource> open_ramp(const Scratch& scratch) {
   return place_source(open_raw(scratch.write_values("v_10x8x6_uint16.raw", values), options), options);
 }
 
-TEST(SourceView, KeepsIndicesAndWorld) {
+TEST(SourceView, RegionKeepsIndicesAndOrigin) {
   const Scratch scratch;
   const auto source = crop_source(open_ramp(scratch), {{3, 2, 1}, {9, 8, 4}});
   const SourceInfo& info = source->info();
@@ -74,7 +74,7 @@ TEST(SourceView, ReadsNothingOutsideTheRegion) {
             scratch.path("v_10x8x6_uint16.raw") + ": read of box 0:1,0:1,0:1 outside the region 3:9,2:8,1:4");
 }
 
-TEST(SourceView, RefusesAnImpossiblePlace) {
+TEST(SourceView, RefusesInvalidSpacingAndOrigin) {
   const Scratch scratch;
   const std::string path = scratch.path("v_10x8x6_uint16.raw");
   const auto refusal = [&](const SourceOptions& options) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-TEST(StoredValue, KeepsWholeNumbersWhole) {
+TEST(StoredValue, ParsesWholeNumbersAsIntegers) {
   EXPECT_EQ(parse_stored_value("-9999"), StoredValue{std::int64_t{-9999}});
   EXPECT_EQ(parse_stored_value("-9223372036854775808"), StoredValue{std::numeric_limits<std::int64_t>::min()});
   EXPECT_EQ(parse_stored_value("9223372036854775807"), StoredValue{std::numeric_limits<std::int64_t>::max()});
@@ -29,7 +29,7 @@ TEST(StoredValue, TextReadsBackAsTheSameValue) {
   }
 }
 
-TEST(StoredValue, TypesHoldWhatTheyCan) {
+TEST(StoredValue, HoldsTellsWhetherATypeCanStoreAValue) {
   EXPECT_TRUE(holds(ScalarType::uint8, StoredValue{std::int64_t{255}}));
   EXPECT_FALSE(holds(ScalarType::uint8, StoredValue{std::int64_t{256}}));
   EXPECT_FALSE(holds(ScalarType::uint8, StoredValue{std::int64_t{-1}}));
@@ -55,7 +55,7 @@ TEST(StoredValue, MissingIsAQuietNaNOfItsOwn) {
   EXPECT_NE(kMissingBits & 0x00400000U, 0U);  // quiet: arithmetic may not trap on it
 }
 
-TEST(ValueMapping, IsTheIdentityUnlessSomethingIsSaid) {
+TEST(ValueMapping, DefaultMappingIsTheIdentity) {
   EXPECT_TRUE(ValueMapping{}.identity());
   EXPECT_FALSE((ValueMapping{2, 0, {}}).identity());
   EXPECT_FALSE((ValueMapping{1, 1, {}}).identity());

@@ -36,7 +36,7 @@ class SpoolInflated : public ::testing::Test {
   PackedRange packed_;
 };
 
-TEST_F(SpoolInflated, KeepsWhatIsWanted) {
+TEST_F(SpoolInflated, KeepsOnlyTheRequestedRange) {
   const auto content = noise(std::size_t{5} << 19U);
   const std::string path = pack(content, 13);
   const std::vector<UnpackedRange> ranges{{0, content.size(), content.size()},
@@ -66,7 +66,7 @@ TEST_F(SpoolInflated, TheStreamMustBeAsLongAsItsHeaderSays) {
             path + ": unpacks to 100 bytes, and its header asks for 101; one of the two is damaged");
 }
 
-TEST_F(SpoolInflated, RoomThatTheStreamCannotFillIsNotAskedFor) {
+TEST_F(SpoolInflated, SizeBeyondWhatTheStreamCanHoldIsRefused) {
   const std::string path = pack(noise(100), 0);
   const std::uint64_t much = std::uint64_t{1} << 60U;
   EXPECT_EQ(message_of_error(ErrorKind::input,

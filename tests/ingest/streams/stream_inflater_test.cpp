@@ -75,7 +75,7 @@ TEST(StreamInflater, NamesTheOffsetOfDamage) {
             "data.gz: damaged compressed data (incorrect header check), at byte 2 of them, 0 unpacked");
 }
 
-TEST(StreamInflater, RefusesWhatFollowsTheEnd) {
+TEST(StreamInflater, RefusesBytesAfterTheStream) {
   auto packed = deflated(content(40), Wrapper::zlib);
   const std::size_t size = packed.size();
   packed.push_back(std::byte{0});
@@ -84,7 +84,7 @@ TEST(StreamInflater, RefusesWhatFollowsTheEnd) {
                 " of them, 40 unpacked");
 }
 
-TEST(StreamInflater, LetsTheSinkStopABomb) {
+TEST(StreamInflater, SinkErrorStopsADecompressionBomb) {
   const auto bomb = deflated(std::vector<std::byte>(std::size_t{64} << 20U), Wrapper::gzip);
   std::size_t seen = 0;
   StreamInflater inflater("bomb.gz");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir {
@@ -39,18 +40,5 @@ class Scratch {
  private:
   TemporaryDirectory directory_;
 };
-
-/// Runs `action`, which must throw an Error of `kind`, and returns its message.
-template <typename Action>
-std::string message_of_error(ErrorKind kind, const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return {};
-}
 
 }  // namespace weir

@@ -129,7 +129,7 @@ TEST(Gradient, LinearInTheSumOfTheIndices) {
   EXPECT_EQ(v.at(1, 2, 3), 0.1F);
 }
 
-TEST(Huge, FromOneEndOfFloatToTheOther) {
+TEST(Huge, SpansTheRangeOfFloat) {
   const Volume v = make_volume("huge", {9, 9, 9});
   EXPECT_EQ(v.at(0, 0, 0), -3e38F);
   EXPECT_EQ(v.at(8, 8, 8), 3e38F);
@@ -162,7 +162,7 @@ TEST(NegativeZero, BothZerosAndNothingElse) {
   EXPECT_NEAR(static_cast<double>(negative), 131072.0, 1500.0);
 }
 
-TEST(Denormal, EveryValueIsOne) {
+TEST(Denormal, EveryValueIsSubnormal) {
   const Volume v = make_volume("denormal", {32, 32, 32});
   for (const float f : v.values) ASSERT_EQ(std::fpclassify(f), FP_SUBNORMAL);
   EXPECT_LE(*std::max_element(v.values.begin(), v.values.end()), 4096 * std::numeric_limits<float>::denorm_min());
@@ -206,7 +206,7 @@ TEST(Ties, FourModesEquallyFrequentAndARest) {
   EXPECT_EQ(v.at(6, 4, 2), 0.0F);
 }
 
-TEST(Background, ExactOutsideTheBallBothSignsAroundItInside) {
+TEST(Background, ConstantOutsideTheBallAndBothSignsInside) {
   const Volume v = make_volume("background", {64, 64, 64});
   EXPECT_NEAR(v.share(0.25F), 1.0 - 4.0 / 3.0 * 3.14159265 * 0.4 * 0.4 * 0.4, 0.01);
   EXPECT_EQ(v.at(0, 0, 0), 0.25F);
@@ -218,7 +218,7 @@ TEST(Background, ExactOutsideTheBallBothSignsAroundItInside) {
   EXPECT_GT(*std::max_element(zero.values.begin(), zero.values.end()), 0.2F);
 }
 
-TEST(HotVoxel, ExactlyOne) {
+TEST(HotVoxel, OneVoxelIsOneAndTheRestZero) {
   const Volume v = make_volume("hot-voxel", {100, 70, 50});
   EXPECT_EQ(v.count(1.0F), 1);
   EXPECT_EQ(v.count(0.0F), 100 * 70 * 50 - 1);
@@ -244,7 +244,7 @@ TEST(Checkerboard, EveryNeighbourDiffers) {
   EXPECT_EQ(v.count(1.0F), 30);
 }
 
-TEST(NearlyConstant, OneOddVoxelInEveryLeafPartialOnesToo) {
+TEST(NearlyConstant, EveryLeafHasOneOddVoxel) {
   const Volume v = make_volume("nearly-constant", {33, 20, 9});
   const NodeLattice leaves = make_lattice({{0, 0, 0}, v.extent}, kLeafDim);
   std::vector<int> odd(static_cast<std::size_t>(leaves.size()));

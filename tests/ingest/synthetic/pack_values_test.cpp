@@ -48,7 +48,7 @@ TEST(ValuePacker, KindsWithoutRangeBecomeZero) {
   EXPECT_EQ(pack<std::uint8_t>("negative-zero", ScalarType::uint8, {-0.0F, 0.0F}), (std::vector<std::uint8_t>{0, 0}));
 }
 
-TEST(ValuePacker, IntegersAreTakenAtTheirWord) {
+TEST(ValuePacker, IntegerKindsKeepTheirValues) {
   EXPECT_EQ(pack<std::int32_t>("big-integer", ScalarType::int32, {16777218.0F}), (std::vector<std::int32_t>{16777218}));
   EXPECT_EQ(pack<std::uint32_t>("offset", ScalarType::uint32, {100000008.0F}), (std::vector<std::uint32_t>{100000008}));
 }

@@ -88,7 +88,7 @@ TEST(SplineNoise, CoarsestPeriodFollowsTheLongestAxis) {
   EXPECT_EQ(coarsest({1 << 20, 8, 8}), 10U);
 }
 
-TEST(Hash, NeighboursShareNothing) {
+TEST(Hash, NeighboursDifferInHalfOfTheirBits) {
   // Every output bit flips for about half of the steps to a neighbour.
   for (unsigned bit = 0; bit < 64; ++bit) {
     int flips = 0;
@@ -100,7 +100,7 @@ TEST(Hash, NeighboursShareNothing) {
   }
 }
 
-TEST(Hash, UnitFloatReachesNeitherEnd) {
+TEST(Hash, UnitFloatStartsAtZeroAndStaysBelowOne) {
   EXPECT_EQ(unit_float(0), 0.0F);
   EXPECT_EQ(unit_float(~std::uint64_t{0}), 1.0F - 0x1p-24F);
 }

@@ -14,6 +14,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::synthetic_test {
 namespace {
@@ -36,13 +37,7 @@ std::string digest(const std::vector<float>& values) {
 }
 
 std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "no error";
+  return message_of_error(ErrorKind::usage, [&] { call(); });
 }
 
 class EveryKind : public testing::TestWithParam<std::string> {};
@@ -137,7 +132,7 @@ TEST(Synthetic, SeedChangesTheRandomKindsOnly) {
   EXPECT_EQ(unchanged, "sphere gradient constant zero nan some-nan huge ties plateau checkerboard ");
 }
 
-TEST(Synthetic, InfoSaysWhatItIs) {
+TEST(Synthetic, InfoDescribesTheVolume) {
   const auto source = open_synthetic("cloud", {{10, 20, 30}, 1});
   EXPECT_EQ(source->info().path, "synthetic:cloud");
   EXPECT_EQ(source->info().format, "synthetic");

@@ -184,7 +184,7 @@ TEST(ArraySource, LossAndMissingAreThoseOfARawFile) {
   }
 }
 
-TEST(ArraySource, RefusesWhatIsNoArray) {
+TEST(ArraySource, RefusesInvalidArrays) {
   const std::vector<float> values(24);
   const DenseArray good = packed(values, {4, 3, 2}, ScalarType::float32);
   const auto refusal = [&](ErrorKind kind, const auto& change) {
@@ -216,7 +216,7 @@ TEST(ArraySource, RefusesWhatIsNoArray) {
             "memory: the missing value is -1, and no uint8 is; give a value of that type");
 }
 
-TEST(ArraySource, BoxesOutsideAreAFaultOfTheCaller) {
+TEST(ArraySource, BoxesOutsideTheVolumeAreAnInternalError) {
   const std::vector<float> values(24);
   const auto source = open_array(packed(values, {4, 3, 2}, ScalarType::float32));
   std::vector<float> one(1);

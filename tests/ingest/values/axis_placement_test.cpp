@@ -8,7 +8,7 @@
 namespace weir::axis_placement_test {
 namespace {
 
-TEST(AxisPlacement, KeepsAxesOfTheWorld) {
+TEST(AxisPlacement, AxesAlongTheWorldKeepSpacingAndOrigin) {
   const std::vector<Vector3> steps{{0.5, 0, 0}, {0, 0.25, 0}, {0, 0, 3}};
   const AxisPlacement placement = place_axes(steps, {-1, 2, 7});
   EXPECT_EQ(placement.spacing, (Vector3{0.5, 0.25, 3}));
@@ -16,7 +16,7 @@ TEST(AxisPlacement, KeepsAxesOfTheWorld) {
   EXPECT_EQ(placement.orientation, "");
 }
 
-TEST(AxisPlacement, OrdersTheOriginByTheAxesAndSaysSo) {
+TEST(AxisPlacement, PermutedAxesReorderTheOriginWithANote) {
   const std::vector<Vector3> steps{{0, 0, 2}, {-3, 0, 0}, {0, 4, 0}};
   const AxisPlacement placement = place_axes(steps, {10, 20, 30});
   EXPECT_EQ(placement.spacing, (Vector3{2, 3, 4}));
@@ -24,13 +24,13 @@ TEST(AxisPlacement, OrdersTheOriginByTheAxesAndSaysSo) {
   EXPECT_EQ(placement.orientation, "axes along +z, -x, +y of the file's world; voxels keep the file's order");
 }
 
-TEST(AxisPlacement, TakesRoundingForNothing) {
+TEST(AxisPlacement, IgnoresRoundingErrors) {
   const std::vector<Vector3> steps{{2, 1e-7, 0}, {0, 2, -1e-7}, {0, 0, 2}};
   EXPECT_EQ(place_axes(steps, {}).orientation, "");
   EXPECT_EQ(place_axes(steps, {}).spacing, (Vector3{2, 2, 2}));
 }
 
-TEST(AxisPlacement, MeasuresObliqueAxes) {
+TEST(AxisPlacement, ObliqueAxesGiveStepLengthsAsSpacing) {
   const std::vector<Vector3> steps{{3, 4, 0}, {-4, 3, 0}, {0, 0, 2}};
   const AxisPlacement placement = place_axes(steps, {1, 2, 3});
   EXPECT_EQ(placement.spacing, (Vector3{5, 5, 2}));
@@ -38,12 +38,12 @@ TEST(AxisPlacement, MeasuresObliqueAxes) {
   EXPECT_EQ(placement.orientation, "axes oblique to the file's world, ignored: spacing is the length of a step");
 }
 
-TEST(AxisPlacement, TwoAxesAlongOneOfTheWorldAreOblique) {
+TEST(AxisPlacement, ParallelAxesCountAsOblique) {
   const std::vector<Vector3> steps{{1, 0, 0}, {2, 0, 0}, {0, 0, 1}};
   EXPECT_TRUE(place_axes(steps, {}).orientation.starts_with("axes oblique"));
 }
 
-TEST(AxisPlacement, AxesWithoutAStepTakeWhatIsLeft) {
+TEST(AxisPlacement, AxesWithoutAStepTakeTheRemainingWorldAxes) {
   EXPECT_EQ(place_axes({}, {1, 2, 3}).origin, (Vector3{1, 2, 3}));
   const std::vector<Vector3> steps{{0, 2, 0}, {0, 0, 3}};
   const AxisPlacement placement = place_axes(steps, {1, 2, 3});
@@ -53,7 +53,7 @@ TEST(AxisPlacement, AxesWithoutAStepTakeWhatIsLeft) {
   EXPECT_EQ(place_axes(plane, {}).orientation, "");
 }
 
-TEST(AxisPlacement, StepsOfNoLengthAreLeftToTheReader) {
+TEST(AxisPlacement, ZeroAndNaNStepsArePassedOn) {
   const std::vector<Vector3> steps{{0, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}};
   const AxisPlacement placement = place_axes(steps, {});
   EXPECT_EQ(placement.spacing[0], 0);

@@ -176,7 +176,7 @@ TEST(ConvertValues, CountsInEveryPlaceOfEveryLength) {
   }
 }
 
-TEST(ConvertValues, NothingFromNothing) {
+TEST(ConvertValues, EmptyInputHasNoLoss) {
   for (const bool big : {false, true}) {
     expect_lossless(convert_values({}, ScalarType::float32, big, {}));
     expect_lossless(convert_values({}, ScalarType::float64, big, {}));

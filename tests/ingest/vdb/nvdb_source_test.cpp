@@ -103,7 +103,7 @@ TEST(NvdbSource, ListsPlaceAndMemory) {
   EXPECT_EQ(list[0].attributes.at(2).second, "10,20,30");
 }
 
-TEST(NvdbSource, SaysWhatIsWrongWithTheOnlyGrid) {
+TEST(NvdbSource, UnreadableFilesAreRefusedWithAReason) {
   const Scratch scratch;
   auto bytes = StockNvdb(GridType::float32).file();
   bytes[14] = std::byte{1};

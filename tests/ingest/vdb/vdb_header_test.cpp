@@ -38,7 +38,7 @@ std::string with(std::string bytes, std::size_t at, std::uint32_t value) {
   return bytes.replace(at, 4, reinterpret_cast<const char*>(&value), 4);
 }
 
-TEST(VdbHeader, SaysWhatOpenVdbWrote) {
+TEST(VdbHeader, ParsesAHeaderWrittenByOpenVdb) {
   const VdbHeader header = parse(two_grids());
   EXPECT_EQ(header.version, 224U);
   EXPECT_EQ(header.library_major, 10U);
@@ -76,7 +76,7 @@ TEST(VdbHeader, RefusesOtherVersionsAndImpossibleSizes) {
   EXPECT_EQ(refusal("BDV"), "a.vdb: does not begin as an OpenVDB file does");
 }
 
-TEST(VdbHeader, RefusesGridsThatLieBeforeThemselves) {
+TEST(VdbHeader, RefusesGridsPlacedBeforeTheirDescriptor) {
   std::string bytes = two_grids();
   const std::size_t name = bytes.find("Tree_float_5_4_3_HalfFloat");
   ASSERT_NE(name, std::string::npos);

@@ -226,7 +226,7 @@ TEST(VdbSource, InstancesShareATreeAndHaveTheirOwnTransform) {
   expect_same(*source, first);
 }
 
-TEST(VdbSource, ListsWhatThereIs) {
+TEST(VdbSource, ListsGridsWithTypeLayoutAndObstacle) {
   const Scratch scratch;
   OpenVdbGrid density(GridKind::float32, "density");
   density.fill({{-66, -21, -90}, {-60, -20, -88}}).place({0.5, 0.5, 0.5}, {1, 2, 3}).save_as_half();

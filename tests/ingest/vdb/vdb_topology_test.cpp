@@ -89,7 +89,7 @@ struct Damage {
   const char* message;
 };
 
-TEST(VdbTopology, RefusesWhatOpenVdbWouldTrust) {
+TEST(VdbTopology, RefusesInvalidTopology) {
   const std::vector<Damage> damages{
       {Compression::none, kBufferCount, 2, 4,
        "a tree of 2 buffers, and 1 can be read; write the file again with "
@@ -116,7 +116,7 @@ TEST(VdbTopology, RefusesWhatOpenVdbWouldTrust) {
   }
 }
 
-TEST(VdbTopology, BloscChunksMustBeAsLongAsTheySay) {
+TEST(VdbTopology, BloscChunksOfTheWrongLengthAreRefused) {
   const std::string message = message_of_error(ErrorKind::input, [&] {
     walk(one_leaf(), Compression::blosc, [](std::string& bytes, std::uint64_t tree) {
       put(bytes, tree + kUpperValues + 1 + 8 + 12, std::uint32_t{0x7FFFFFFF});

@@ -29,11 +29,11 @@ TEST(EncodedBytes, DecodesThePublishedVectors) {
   EXPECT_EQ(decoded("+/+/", 3), "\xFB\xFF\xBF");
 }
 
-TEST(EncodedBytes, PaddedTextsBehindEachOtherAreOne) { EXPECT_EQ(decoded(" Zg==\n\tZm8=Z m9v ", 6), "ffofoo"); }
+TEST(EncodedBytes, ConcatenatedPaddedTextsDecodeAsOne) { EXPECT_EQ(decoded(" Zg==\n\tZm8=Z m9v ", 6), "ffofoo"); }
 
-TEST(EncodedBytes, BytesAsTheyAre) { EXPECT_EQ(decoded("=<\n", 3, false), "=<\n"); }
+TEST(EncodedBytes, RawBytesPassUnchanged) { EXPECT_EQ(decoded("=<\n", 3, false), "=<\n"); }
 
-TEST(EncodedBytes, RefusesOtherTexts) {
+TEST(EncodedBytes, RefusesInvalidText) {
   EXPECT_EQ(refusal("Zm9", 3), "a: its base64 text ends too early; the file is cut or damaged");
   EXPECT_EQ(refusal("Zm9v", 4), "a: its base64 text ends too early; the file is cut or damaged");
   EXPECT_EQ(refusal("Zm9v</DataArray>", 6),

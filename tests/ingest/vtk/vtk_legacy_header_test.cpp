@@ -19,7 +19,7 @@ std::string refusal(const std::string& text) {
 const std::string kHead = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET STRUCTURED_POINTS\n";
 const std::string kImage = kHead + "DIMENSIONS 2 2 1\nPOINT_DATA 4\n";
 
-TEST(VtkLegacyHeader, SaysWhatTheFileSays) {
+TEST(VtkLegacyHeader, ParsesPlacementAndArrays) {
   const VtkLegacyHeader header = parse(kHead +
                                        "DIMENSIONS 2 2 1\nSPACING 1 2 3\nORIGIN 4 5 6\nPOINT_DATA 4\n"
                                        "SCALARS a unsigned_char 1\nLOOKUP_TABLE default\nabcd\n"
@@ -36,7 +36,7 @@ TEST(VtkLegacyHeader, SaysWhatTheFileSays) {
   EXPECT_EQ(header.arrays[1].type, ScalarType::int8);
 }
 
-TEST(VtkLegacyHeader, RefusesWhatIsNotRead) {
+TEST(VtkLegacyHeader, RefusesUnsupportedFiles) {
   EXPECT_EQ(refusal("x"), "a.vtk: before byte 1: the file does not begin with '# vtk DataFile Version'");
   EXPECT_EQ(refusal("# vtk DataFile Version 2.0\n\nHEX\n"),
             "a.vtk: before byte 32: 'hex'; BINARY or ASCII belongs there");
@@ -48,7 +48,7 @@ TEST(VtkLegacyHeader, RefusesWhatIsNotRead) {
             "a.vtk: before byte 66: the file has no DIMENSIONS before its values; it is cut or damaged");
 }
 
-TEST(VtkLegacyHeader, RefusesWhatDoesNotFit) {
+TEST(VtkLegacyHeader, RefusesInconsistentHeaders) {
   const auto refuse = [](const std::string& more) {
     const std::string message = refusal(kImage + more);
     return message.substr(message.find(": ", message.find("byte")) + 2);

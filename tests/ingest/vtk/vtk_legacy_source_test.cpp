@@ -84,7 +84,7 @@ TEST(VtkLegacySource, ReadsTextAndPlace) {
   EXPECT_EQ(read_volume(*source), ramp());
 }
 
-TEST(VtkLegacySource, FindsEveryArrayBehindAllOthers) {
+TEST(VtkLegacySource, FindsArraysAfterEveryOtherSection) {
   const Scratch scratch;
   const auto bytes = [](std::size_t count) { return std::string(count, '\n'); };  // lines that are none
   const std::string values = chars(stored(telling_values<std::int16_t>(24), true));

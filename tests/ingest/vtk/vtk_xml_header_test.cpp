@@ -57,7 +57,7 @@ TEST(VtkXmlSkeleton, HasLimits) {
             "a.vti: at byte 14: appended data begin with another character than '_'; this is no VTK image file");
 }
 
-TEST(VtkXmlHeader, SaysWhatTheFileSays) {
+TEST(VtkXmlHeader, ParsesPlacementAndStorage) {
   const VtkXmlHeader header =
       parse(vti({true, true, 1}, kArray, "", " Origin=\"1 2 3\" Spacing=\"4 5 6\" Direction=\"0 1 0 1 0 0 0 0 1\""));
   EXPECT_TRUE(header.big_endian);
@@ -72,7 +72,7 @@ TEST(VtkXmlHeader, SaysWhatTheFileSays) {
   EXPECT_EQ(header.arrays[0].end - header.arrays[0].begin, 5U);
 }
 
-TEST(VtkXmlHeader, RefusesWhatIsNotRead) {
+TEST(VtkXmlHeader, RefusesUnsupportedFiles) {
   EXPECT_EQ(refusal(replaced(kWhole, "\"ImageData\"", "\"RectilinearGrid\"")),
             "a.vti: type of VTKFile is 'RectilinearGrid'; ImageData can be read; resample other grids to an image");
   EXPECT_EQ(refusal(replaced(kWhole, "LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\"")),

@@ -133,7 +133,7 @@ TEST(VtkXmlSource, TakesPlaceFirstIndexAndDirection) {
                 "finite, the spacing not 0");
 }
 
-TEST(VtkXmlSource, ReadsCellsInTheirMiddle) {
+TEST(VtkXmlSource, CellValuesArePlacedAtCellCentres) {
   const Scratch scratch;
   const std::string cells =
       "<CellData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2 3 4 5 6</DataArray></CellData>";
@@ -170,7 +170,7 @@ TEST(VtkXmlSource, ChoosesByNameOrByTheFilesMark) {
   EXPECT_EQ(read_volume(*open_source(path, naming("CellData/a")))[5], 6.0F);
 }
 
-TEST(VtkXmlSource, ListsWhatThereIs) {
+TEST(VtkXmlSource, ListsTypeLayoutAndAttributes) {
   const Scratch scratch;
   const std::string path = write_headed(
       scratch, "a.vti", file_of(stored(telling_values<float>(24), true), "Float32", {true, false, 8}, Form::raw));
@@ -200,7 +200,7 @@ TEST(VtkXmlSource, AFileCutAtAnyByteIsRefused) {
   }
 }
 
-TEST(VtkXmlSource, SizesThatLieAreRefused) {
+TEST(VtkXmlSource, WrongBlockSizesAreRefused) {
   const Scratch scratch;
   const std::string path = scratch.path("a.vti");
   const auto refuse = [&](const VtiStorage& storage, const std::vector<std::uint64_t>& sizes,
@@ -238,7 +238,7 @@ TEST(VtkXmlSource, SizesThatLieAreRefused) {
   EXPECT_TRUE(refuse(packed, {2, 16, 8, 20, 20}, damaged).starts_with(path + ": array 'a': block 0: damaged"));
 }
 
-TEST(VtkXmlSource, FewBytesReserveNoDisk) {
+TEST(VtkXmlSource, ExtentBeyondTheFileSizeIsRefused) {
   const Scratch scratch;
   std::string text = vti({}, point_array("type=\"Float64\" Name=\"a\" format=\"ascii\"", "1 2 3"));
   for (const std::string from : {"WholeExtent=\"0 3 0 2 0 1\"", "Piece Extent=\"0 3 0 2 0 1\""}) {
@@ -264,7 +264,7 @@ TEST(VtkXmlSource, Base64OfOtherCharactersIsRefused) {
   EXPECT_EQ(refuse(good.substr(0, 32)), ": array 'a': its base64 text ends too early; the file is cut or damaged");
 }
 
-TEST(VtkXmlSource, ReadsWhatOtherWritersEncodeApart) {
+TEST(VtkXmlSource, ReadsSizesAndValuesEncodedSeparately) {
   const Scratch scratch;
   const VtiData data = vti_data(stored(ramp()), {});
   const std::string path = write_headed(scratch, "a.vti",

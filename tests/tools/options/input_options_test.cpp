@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::input_options_test {
 namespace {
@@ -19,13 +20,7 @@ SourceOptions parse(const std::string& command_line) {
 }
 
 std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "no error";
+  return message_of_error(ErrorKind::usage, [&] { call(); });
 }
 
 TEST(InputOptions, NothingGivenIsNothingSaid) {

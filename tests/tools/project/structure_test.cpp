@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "format/base/text.h"
 #include "tests/support/python.h"
 #include "tests/support/run_command.h"
 
@@ -21,7 +22,17 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
   add("format/up.h", "// Includes what stands above it.\n#pragma once\n#include \"daemon/service.h\"\n");
   add("format/bare.h", "\n");
   add("daemon/service.h", "// A service.\n#pragma once\n#include \"format/fine.h\"\n#include \"format/gone.h\"\n");
-  add("gpu/long.cpp", std::string(601, '\n'));
+  add("gpu/long.cpp", std::string(401, '\n'));
+  add("ingest/one.h", "// Uses the other.\n#pragma once\n#include \"ingest/other.h\"\n");
+  add("ingest/other.h", "// Is used.\n#pragma once\nnamespace weir {\nstruct Extent {};\n}\n");
+  add("ingest/other.cpp", "#include \"ingest/other.h\"\n#include \"ingest/one.h\"\n");
+  add("tools/plot/axis.h", "// Uses a room that uses this one.\n#pragma once\n#include \"tools/report/text.h\"\n");
+  add("tools/plot/line.h", "// Is used by it.\n#pragma once\n");
+  add("tools/report/text.h", "// Uses it.\n#pragma once\n#include \"tools/plot/line.h\"\n");
+  add("gpu/extent.cpp",
+      "namespace weir {\nnamespace {\nstruct Own {};\n}\nclass Extent final {\n  struct Part {};\n};\n}\n");
+  add("gpu/own.cpp", "namespace weir {\nnamespace {\nstruct Own {};\n}\n}\n");
+  for (int i = 0; i <= 40; ++i) add(cat("tests/many/", i, ".cpp"), "\n");
   add("attic/a.cpp", "\n");
   CommandOptions there;
   there.directory = directory.path();
@@ -35,7 +46,12 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
             "format/bare.h:1: begins without a comment that says what it is for\n"
             "format/bare.h:1: has no #pragma once\n"
             "format/up.h:3: format/ is below daemon/ and may not include \"daemon/service.h\"\n"
-            "gpu/long.cpp:601: has 601 lines, more than 600; split it\n");
+            "gpu/long.cpp:401: has 401 lines, more than 400; split it\n"
+            "ingest/one: includes run in a circle: ingest/one, ingest/other\n"
+            "daemon: includes run in a circle: daemon, format\n"
+            "tools/plot: includes run in a circle: tools/plot, tools/report\n"
+            "ingest/other.h:4: weir::Extent is defined in gpu/extent.cpp:5, too; rename one\n"
+            "tests/many/: has 41 files, more than 40; part it\n");
 }
 
 }  // namespace

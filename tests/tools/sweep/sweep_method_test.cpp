@@ -3,19 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::sweep_method_test {
 namespace {
 
 template <typename Parse>
 std::string refusal(const Parse& parse) {
-  try {
-    parse();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "";
+  return message_of_error(ErrorKind::usage, [&] { parse(); });
 }
 
 TEST(SweepMethod, RatesInTheOrderGiven) {

@@ -22,7 +22,7 @@ class Hdf5File : public ::testing::Test {
   Scratch scratch_;
 };
 
-TEST_F(Hdf5File, SaysHowFarACutFileGoes) {
+TEST_F(Hdf5File, TruncatedFileIsReportedWithBothSizes) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f: f["v"] = values("f4")
 )");
@@ -82,7 +82,7 @@ for name in "ab":
   EXPECT_TRUE(packed.starts_with(scratch_.path("b.h5") + ": /packed: chunk at ")) << packed;
 }
 
-TEST_F(Hdf5File, IsAskedByItsSignatureAndThenByItsName) {
+TEST_F(Hdf5File, IsRecognisedBySignatureThenByName) {
   const auto named = [&](const std::string& name, const std::string& text) {
     scratch_.write(name, std::as_bytes(std::span(text)));
     return refused(name);
@@ -103,7 +103,7 @@ TEST_F(Hdf5File, IsAskedByItsSignatureAndThenByItsName) {
   EXPECT_EQ(format_of(scratch_.write("a_2x2x2_uint8.raw", std::vector<std::byte>(8))).name, "raw");
 }
 
-TEST_F(Hdf5File, IsReadBesideAWriterThatLetsReadersIn) {
+TEST_F(Hdf5File, FileOpenForWritingIsReadOnlyInSwmrMode) {
   write_by_h5py(scratch_, R"(
 v = values("f4", (4, 6, 8)); expect("v", v)
 with h5py.File("a.h5", "w", libver="latest") as f:
@@ -143,7 +143,7 @@ sys.stdin.readline()
   }
 }
 
-TEST_F(Hdf5File, AWriterThatDiedIsNamed) {
+TEST_F(Hdf5File, FileLeftOpenByADeadWriterIsRefused) {
   write_by_h5py(scratch_, R"(
 f = h5py.File("a.h5", "w", libver="latest")
 f["v"] = values("f4")

@@ -1,4 +1,4 @@
-#include "ingest/hdf5/filters/filter_fletcher32.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
   return bytes;
 }
 
-TEST(Fletcher32, ByHand) {
+TEST(Fletcher32, MatchesSumsComputedByHand) {
   EXPECT_EQ(fletcher32({}), 0U);
   EXPECT_EQ(fletcher32(bytes_of({0, 0, 0, 0})), 0U);
   // Words 0x0102 and 0x0304: sums 0x0406 and 0x0102 + 0x0406.
@@ -26,7 +26,7 @@ TEST(Fletcher32, ByHand) {
   EXPECT_EQ(fletcher32(bytes_of({0xFF, 0xFF, 0, 1})), 0x00010001U);
 }
 
-TEST(Fletcher32, LongInputsOverflowNothing) {
+TEST(Fletcher32, LongInputsDoNotOverflow) {
   // n words of 65535 are 0 in ones' complement, but not the zero of no words.
   EXPECT_EQ(fletcher32(std::vector<std::byte>(std::size_t{1} << 20U, std::byte{0xFF})), 0xFFFFFFFFU);
   // n words of 1: sums n and n (n + 1) / 2 modulo 65535.
@@ -36,7 +36,7 @@ TEST(Fletcher32, LongInputsOverflowNothing) {
   EXPECT_EQ(fletcher32(ones), (kWords * (kWords + 1) / 2 % 65535) << 16U | kWords % 65535);
 }
 
-TEST(Fletcher32, ChecksWhatFollowsTheBytes) {
+TEST(Fletcher32, VerifiesTheTrailingChecksum) {
   std::vector<std::byte> bytes = bytes_of({1, 2, 3, 4, 0x06, 0x04, 0x08, 0x05});
   EXPECT_EQ(check_fletcher32(bytes).size(), 4U);
   EXPECT_EQ(check_fletcher32(bytes).data(), bytes.data());

@@ -1,4 +1,4 @@
-#include "ingest/hdf5/filters/filter_inflate.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 #include <vector>
 
@@ -23,7 +23,7 @@ std::vector<std::byte> counted(std::size_t size) {
   return bytes;
 }
 
-TEST(ChunkInflater, OneStreamAfterAnotherAlsoAfterADamagedOne) {
+TEST(ChunkInflater, InflatesAgainAfterADamagedStream) {
   ChunkInflater inflater;
   for (const std::size_t size : {1U, 100U, 4096U, 1000000U}) {
     const std::vector<std::byte> expected = counted(size);
@@ -52,7 +52,7 @@ std::string message_for(std::span<const std::byte> stream, std::size_t size) {
   return message;
 }
 
-TEST(ChunkInflater, RefusesWhatDoesNotFillTheBytesExactly) {
+TEST(ChunkInflater, RefusesStreamsOfTheWrongLength) {
   // 64 MiB of zeros in 64 KiB: a bomb where 4096 bytes are right.
   const std::vector<std::byte> bomb = deflated(std::vector<std::byte>(std::size_t{64} << 20U));
   EXPECT_LT(bomb.size(), 70'000U);

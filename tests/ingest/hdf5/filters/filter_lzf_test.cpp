@@ -1,4 +1,4 @@
-#include "ingest/hdf5/filters/filter_lzf.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 #include <string>
 #include <string_view>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ingest/hdf5/filters/filter_fletcher32.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 #include "tests/ingest/support/scratch.h"
 #include "tests/support/sanitized.h"
 
@@ -19,7 +19,7 @@ std::optional<FilterPipeline> pipeline_after(const std::function<void(hid_t)>& s
   return pipeline;
 }
 
-TEST(FilterPipeline, OwnFiltersInTheirOrder) {
+TEST(FilterPipeline, SupportedFiltersAreListedInOrder) {
   const LeaksOfLibraries of_plugins;  // the library looks for the filter
   EXPECT_TRUE(pipeline_after([](hid_t) {}).value().empty());
   const auto all = pipeline_after([](hid_t p) {
@@ -39,7 +39,7 @@ TEST(FilterPipeline, OwnFiltersInTheirOrder) {
   EXPECT_EQ(lzf->at(0).kind, FilterKind::lzf);
 }
 
-TEST(FilterPipeline, OthersAreLeftToTheLibrary) {
+TEST(FilterPipeline, UnsupportedFiltersAreLeftToTheLibrary) {
   const LeaksOfLibraries of_plugins;  // the library looks for the filter
   EXPECT_FALSE(pipeline_after([](hid_t p) { H5Pset_nbit(p); }));
   EXPECT_FALSE(pipeline_after([](hid_t p) { H5Pset_scaleoffset(p, H5Z_SO_INT, 0); }));
@@ -64,7 +64,7 @@ TEST(FilterPipeline, OthersAreLeftToTheLibrary) {
   EXPECT_FALSE(own_pipeline(H5I_INVALID_HID));
 }
 
-TEST(FilterPipeline, SizesOnTheWay) {
+TEST(FilterPipeline, GivesTheStoredSizeBoundAndBufferNeed) {
   const FilterPipeline none;
   EXPECT_EQ(most_stored_bytes(none, 1000), 1000U);
   EXPECT_FALSE(needs_other_buffer(none));
@@ -100,7 +100,7 @@ TEST(FilterPipeline, TheMaskLeavesFiltersOut) {
   EXPECT_EQ(undone(pipeline, 0b011, 4, checked), planes);
 }
 
-TEST(FilterPipeline, TheChunkMustComeOutWhole) {
+TEST(FilterPipeline, ChunksOfTheWrongSizeAreRefused) {
   const FilterPipeline pipeline{{FilterKind::shuffle, 2}, {FilterKind::fletcher32}};
   const auto message = [&](FilterMask left_out, const std::vector<std::byte>& stored) {
     return message_of_error(ErrorKind::input, [&] { undone(pipeline, left_out, 8, stored); });

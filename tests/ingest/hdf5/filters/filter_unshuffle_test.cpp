@@ -1,4 +1,4 @@
-#include "ingest/hdf5/filters/filter_unshuffle.h"
+#include "ingest/hdf5/filters/undo_filters.h"
 
 #include <gtest/gtest.h>
 

@@ -50,13 +50,13 @@ TEST(DimensionScales, FallingOnesAreMirrored) {
   EXPECT_EQ(axis.note, "coordinates fall from 1000 to 500: mirrored along this axis");
 }
 
-TEST(DimensionScales, OneCoordinateIsAnOrigin) {
+TEST(DimensionScales, SingleCoordinateGivesAnOriginOnly) {
   const AxisPlace axis = placed({7});
   EXPECT_EQ(axis.spacing, std::nullopt);
   EXPECT_EQ(axis.origin, 7);
 }
 
-TEST(DimensionScales, NoneOrNotFiniteSayNothing) {
+TEST(DimensionScales, MissingOrNonFiniteCoordinatesAreIgnored) {
   for (const std::vector<double>& coordinates :
        {std::vector<double>{}, {std::nan("")}, {0, std::numeric_limits<double>::infinity()}}) {
     const AxisPlace axis = placed(coordinates);

@@ -182,7 +182,7 @@ n.close()
             scratch_.path("a.nc") + ": /list: its attribute add_offset is not one finite number" + unknown);
 }
 
-TEST_F(Hdf5Placement, OptionsComeOnTopOfTheFile) {
+TEST_F(Hdf5Placement, OptionsAddToTheAttributesOfTheFile) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
     d = f.create_dataset("v", data=np.arange(8, dtype="i4").reshape(2, 2, 2))
@@ -224,7 +224,7 @@ with h5py.File("a.h5", "w") as f:
 
 // Every name weir looks for, in every shape and type there is: no crash, and the volume opens or is refused in one
 // line.
-TEST_F(Hdf5Placement, AttributesOfAnyTypeAreSurvived) {
+TEST_F(Hdf5Placement, AttributesOfAnyTypeCauseNoCrash) {
   write_by_h5py(scratch_, R"(
 names = ["_FillValue", "missing_value", "scale_factor", "add_offset", "units", "Units", "unitSI", "position", "value", "shape",
          "gridSpacing", "gridGlobalOffset", "gridUnitSI", "axisLabels", "dataOrder", "DIMENSION_LIST", "CLASS", "NAME",

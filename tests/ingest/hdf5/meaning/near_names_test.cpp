@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/near_names.h"
+#include "ingest/hdf5/meaning/hdf5_lookup.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-TEST(NearNames, FindsOtherCasePathsAndSlips) {
+TEST(NearNames, FindsNamesOfOtherCasePathOrSpelling) {
   const Names names{"/a/Density", "/b/density", "/b/temperature", "/x", "/y", "/velocity_x", "/velocity_y"};
   EXPECT_EQ(near_names("density", names, 8), (Names{"/a/Density", "/b/density"}));
   EXPECT_EQ(near_names("/c/DENSITY", names, 1), (Names{"/a/Density"}));

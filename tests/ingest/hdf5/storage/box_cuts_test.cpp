@@ -1,4 +1,4 @@
-#include "ingest/hdf5/storage/box_cuts.h"
+#include "ingest/hdf5/storage/stored_boxes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace weir::box_cuts_test {
 namespace {
 
-TEST(BoxCuts, PartsAreTheBoxOnce) {
+TEST(BoxCuts, PartsCoverTheBoxExactlyOnce) {
   for (const Box& box : {Box{{0, 0, 0}, {10, 9, 8}}, Box{{3, 5, 7}, {10, 9, 8}}, Box{{9, 8, 7}, {10, 9, 8}}}) {
     for (const Index3& unit : {Index3{1, 1, 1}, Index3{4, 3, 2}, Index3{16, 16, 16}}) {
       for (const Index3& corner : {Index3{0, 0, 0}, Index3{1, 2, 1}}) {
@@ -33,7 +33,7 @@ TEST(BoxCuts, PartsAreTheBoxOnce) {
   }
 }
 
-TEST(BoxCuts, NoUnitIsCut) {
+TEST(BoxCuts, CutsLieOnUnitEdges) {
   const BoxCuts cuts({{1, 1, 1}, {30, 30, 30}}, {8, 4, 2}, {2, 1, 0}, 200);
   for (std::int64_t i = 0; i < cuts.size(); ++i) {
     const Box part = cuts.part(i);

@@ -71,7 +71,7 @@ std::ostream& operator<<(std::ostream& out, const FilterCase& c) { return out <<
 
 class ChunkReaderFilters : public testing::TestWithParam<FilterCase> {};
 
-TEST_P(ChunkReaderFilters, AnyBoxIsWhatWasWritten) {
+TEST_P(ChunkReaderFilters, AnyBoxReadsBackWhatWasWritten) {
   const Scratch scratch;
   const Index3 extent{37, 29, 23};  // chunks overhang in every axis
   for (const H5F_libver_t oldest : {H5F_LIBVER_V18, H5F_LIBVER_V110}) {
@@ -165,7 +165,7 @@ TEST(ChunkReader, SeveralReadsAtATime) {
   }
 }
 
-TEST(ChunkReader, LeadingAxesAlsoInsideAChunk) {
+TEST(ChunkReader, ReadsLeadingAxesInsideAChunk) {
   const Scratch scratch;
   const ChunkedFile file(scratch.path("f.h5"),
                          {{5, 3, 6, 7, 8}, {2, 3, 4, 4, 4}, {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}});
@@ -309,7 +309,7 @@ TEST(ChunkReader, RefusesWrongSizesAndChecksums) {
             "run.h5: d: chunk at 0, 0, 0: holds 2047 bytes, not 2048; the file is damaged");
 }
 
-TEST(ChunkReader, AFileThatIsCutShortIsNoCrash) {
+TEST(ChunkReader, TruncatedFileIsReportedAsDamaged) {
   const Scratch scratch;
   ChunkedFile file(scratch.path("f.h5"), {{64, 32, 32}, {16, 16, 16}, {H5Z_FILTER_DEFLATE}});
   file.write(H5T_NATIVE_FLOAT, field(file.elements()));

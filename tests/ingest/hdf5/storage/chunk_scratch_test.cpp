@@ -34,7 +34,7 @@ TEST(ChunkScratch, AChunkBeyondHalfTheMemoryIsRefused) {
             "at least 17MiB");
 }
 
-TEST(ChunkScratch, NoMoreAreLentThanThereAre) {
+TEST(ChunkScratch, NeverLendsMoreThanThePoolHolds) {
   ScratchPool pool = pool_for(kGzip, 17 * kMiB);
   ASSERT_EQ(pool.size(), 1U);
   std::atomic<int> holders{0};

@@ -79,7 +79,7 @@ TEST(ChunkStore, OverhangingChunksMayHaveGoneThroughNoFilter) {
   EXPECT_EQ(edge.bytes, 128U);
 }
 
-TEST(ChunkStore, CornersAreNamedInTheFilesOrder) {
+TEST(ChunkStore, CornerTextKeepsTheAxisOrderOfTheFile) {
   EXPECT_EQ(corner_text(Corner{0, 128, 64}), "0, 128, 64");
   EXPECT_EQ(corner_text(Corner{7}), "7");
 }

@@ -9,7 +9,7 @@
 namespace weir::external_files_test {
 namespace {
 
-TEST(ExternalFiles, AreReadAndTheirLackIsAnError) {
+TEST(ExternalFiles, AreReadAndMissingOnesAreAnError) {
   if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   const Scratch scratch;
   write_by_h5py(scratch, R"(
@@ -35,7 +35,7 @@ with h5py.File("a.h5", "w") as f:
                                   scratch.path("a.h5") + " or set HDF5_EXTFILE_PREFIX");
 }
 
-TEST(SideFiles, AreLookedForInThePrefixBesideAndHere) {
+TEST(SideFiles, AreSearchedInPrefixParentAndWorkingDirectory) {
   ASSERT_EQ(::setenv("WEIR_TEST_PREFIX", "/pre", 1), 0);
   const auto places = [](const char* name, const char* parent) {
     return side_file_places(name, parent, "WEIR_TEST_PREFIX");

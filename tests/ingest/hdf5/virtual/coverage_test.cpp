@@ -8,7 +8,9 @@ namespace {
 using Element = std::vector<hsize_t>;
 constexpr auto kCovered = std::nullopt;
 
-TEST(Coverage, NothingCoversNothing) { EXPECT_EQ(first_uncovered({{3, 4}, {5, 6}}, {}), (Element{3, 4})); }
+TEST(Coverage, WithoutBoxesTheFirstElementIsUncovered) {
+  EXPECT_EQ(first_uncovered({{3, 4}, {5, 6}}, {}), (Element{3, 4}));
+}
 
 TEST(Coverage, OneBoxCoversItselfAndWhatIsInside) {
   const std::vector<AxisBox> one{{{1, 1, 1}, {4, 5, 6}}};
@@ -31,7 +33,7 @@ TEST(Coverage, TheHoleOfAFrameIsFound) {
   EXPECT_EQ(first_uncovered({{0, 0}, {5, 1}}, frame), kCovered);
 }
 
-TEST(Coverage, EveryElementOfARandomCoverIsToldRightly) {
+TEST(Coverage, RandomBoxesAgreeWithCountedElements) {
   // Deterministic boxes of a 4^3 lattice, against the count of each element.
   unsigned state = 1;
   const auto next = [&](unsigned below) { return (state = state * 1103515245U + 12345U) / 65536U % below; };
@@ -60,7 +62,7 @@ TEST(Coverage, EveryElementOfARandomCoverIsToldRightly) {
   }
 }
 
-TEST(Coverage, ThousandsOfPlanesTakeNoTime) {
+TEST(Coverage, TwentyThousandPlanesAreCheckedQuickly) {
   std::vector<AxisBox> planes;
   for (hsize_t z = 0; z < 20000; ++z) planes.push_back({{z, 0, 0}, {z + 1, 2048, 2048}});
   EXPECT_EQ(first_uncovered({{0, 0, 0}, {20000, 2048, 2048}}, planes), kCovered);

@@ -89,7 +89,7 @@ expect("17", v[17]); expect("joined", v.reshape(120, 5, 7))
                 scratch_.path("all.h5") + " or set HDF5_VDS_PREFIX");
 }
 
-TEST_F(VirtualDataset, FollowsMappingsWithoutEnd) {
+TEST_F(VirtualDataset, ReadsMappingsOfUnlimitedExtent) {
   write_by_h5py(scratch_, R"(
 v = values("f4", (6, 7, 9)); expect("v", v); expect("four", v[:4])
 with h5py.File("grown.h5", "w", libver="latest") as f: f.create_dataset("d", data=v, maxshape=(None, 7, 9), chunks=(2, 7, 9))
@@ -195,7 +195,7 @@ with h5py.File("all.h5", "w") as f: f.create_virtual_dataset("v", layout)
                 ": cannot open for reading: No such file or directory");
 }
 
-TEST(VirtualSourceName, NumbersBlocks) {
+TEST(VirtualSourceName, PercentBIsReplacedByTheBlockNumber) {
   EXPECT_EQ(virtual_source_name("a.h5", 3), "a.h5");
   EXPECT_EQ(virtual_source_name("a%b-%b.h5", 12), "a12-12.h5");
   EXPECT_EQ(virtual_source_name("%%b", 1), "%b");

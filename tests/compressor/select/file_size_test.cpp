@@ -1,4 +1,4 @@
-#include "compressor/select/budget.h"
+#include "compressor/select/file_size.h"
 
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ TEST(Budget, MoreThanLosslessIsPaddingWithANotice) {
   EXPECT_EQ(more.notice, "out.nvdb: lossless takes 5000 bytes; the other 1 of the 5001 asked are padding");
 }
 
-TEST(Budget, LosslessIsWhatLosslessTakes) {
+TEST(Budget, LosslessTakesExactlyTheLosslessSize) {
   const FileSize size = file_size_for({Budget::Kind::lossless, 8, 0}, 9000, sizes(1000, 5000), "out.nvdb");
   EXPECT_EQ(size.bytes, 5000U);
   EXPECT_EQ(size.kind, "lossless");

@@ -1,4 +1,4 @@
-#include "daemon/watch/directory_watch.h"
+#include "daemon/watch/choosing_watch.h"
 
 #include <boost/asio/post.hpp>
 #include <utility>

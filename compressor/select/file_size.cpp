@@ -1,4 +1,4 @@
-#include "compressor/select/budget.h"
+#include "compressor/select/file_size.h"
 
 #include <array>
 #include <charconv>

@@ -1,0 +1,56 @@
+// How a volume is converted: budget, method, policy, and what of the machine it
+// may take.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "compressor/leaf/encoding.h"
+#include "compressor/leaf/fill.h"
+#include "compressor/leaf/metric.h"
+#include "compressor/select/budget.h"
+#include "format/sidecar/scene.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/plan/block_plan.h"
+
+namespace weir {
+
+/// A scene and where it came from.
+struct SceneFile {
+  Scene scene;
+  std::string path;
+};
+
+/// Whether an interrupted conversion can be continued. automatic: where the volume has a GiB of float32 or more, and
+/// the output does not lie on a memory file system.
+enum class Resume { automatic, on, off };
+
+struct ConversionOptions {
+  std::string output;      ///< path of the .nvdb
+  bool overwrite = false;  ///< replace an existing output
+  Budget budget;
+  Encoding encoding = Encoding::float32;  ///< automatic: the better of float32 and fpn at the asked size
+  Metric metric = Metric::sse;            ///< what the budget is spent on
+  FillMode fill = FillMode::mean;
+  std::int64_t brick = 8;           ///< voxels; granularity of the paper's metrics: 8, 16 or 32
+  std::optional<SceneFile> scene;   ///< decides what matters; for Metric::sse
+  std::optional<float> background;  ///< found in the data where absent
+  bool paper_background = false;    ///< the paper's histogram; one more pass over most types
+  NonFinitePolicy non_finite = NonFinitePolicy::error;
+  std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process
+  std::size_t threads = 0;     ///< workers, 0: one for each processor, as far as `memory` holds them
+  std::size_t processors = 0;  ///< that there are for it, 0: all of the machine's
+  std::string work_dir;        ///< for spill files; empty: a hidden directory beside the output
+  Resume resume = Resume::automatic;
+  double save_interval_s = 5;  ///< between two points that it can be continued from; 0: after every block, for tests
+  Sidecar::Weir provenance;    ///< recorded as it is
+};
+
+/// Names as on the command line and in the sidecar.
+std::string metric_name(Metric metric);
+std::string fill_name(FillMode fill);
+std::string policy_name(NonFinitePolicy policy);
+
+}  // namespace weir

@@ -1,0 +1,91 @@
+#include "compressor/describe_conversion.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "compressor/conversion_identity.h"
+#include "format/layout/nvdb_type.h"
+#include "format/nanovdb/macrocells.h"
+
+namespace weir {
+namespace {
+
+std::array<double, 2> range_of(const Survey& survey) {
+  return {static_cast<double>(survey.min), static_cast<double>(survey.max)};
+}
+
+Sidecar::Histogram histogram_of(const Survey& survey) {
+  const RangeHistogram& h = survey.histogram;
+  if (h.empty()) return {};
+  auto counts = h.counts();
+  const double max = h.first_edge() + static_cast<double>(counts.size()) * h.bin_width();
+  return {h.first_edge(), max, std::move(counts)};
+}
+
+Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors& leaves, std::uint64_t finite,
+                                       const Survey& survey) {
+  const Certificate c = make_certificate(tiles.squared + leaves.squared, std::max(tiles.max_abs, leaves.max_abs),
+                                         tiles.exact && leaves.exact, finite, survey.min, survey.max);
+  return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
+}
+
+}  // namespace
+
+Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
+  Sidecar sidecar;
+  sidecar.source.path = info.path;
+  sidecar.source.format = info.format;
+  sidecar.source.dataset = info.dataset;
+  sidecar.source.extent = info.extent;
+  sidecar.source.type = std::string(scalar_name(info.type));
+  sidecar.source.bytes = info.file_bytes;
+  sidecar.source.mtime = utc_text(info.mtime_ns);
+  sidecar.value_range = range_of(survey);
+  sidecar.nonfinite = {survey.non_finite, policy_name(options.non_finite)};
+  sidecar.source.index = info.index;
+  sidecar.source.axes = info.axis_labels;
+  sidecar.source.units = info.units;
+  sidecar.source.unit_si = info.unit_si;
+  sidecar.source.scale = info.mapping.scale;
+  sidecar.source.offset = info.mapping.offset;
+  sidecar.source.files_digest = info.files_digest;
+  sidecar.missing.count = survey.missing;
+  for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
+  sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
+  sidecar.histogram = histogram_of(survey);
+  sidecar.weir = options.provenance;
+  return sidecar;
+}
+
+void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& survey, const ConversionOptions& options,
+                   const Background& background, const GridHead& head, const EncodedFile& encoded, const Shown& shown) {
+  const FilePlan& file = encoded.file;
+  const FileSize& size = file.size;
+  const TreeLayout& layout = file.plan.layout;
+  const std::uint64_t dense_bytes = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float);
+  sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, info.domain()};
+  sidecar.background = {static_cast<double>(background.value), background.method, background.share};
+  sidecar.budget.kind = size.kind;
+  if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
+  if (options.budget.by_error()) sidecar.budget.requested = options.budget.target;
+  if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
+  sidecar.budget.file_bytes = size.bytes;
+  sidecar.budget.dense_float32_bytes = dense_bytes;
+  sidecar.budget.rate = static_cast<double>(dense_bytes) / static_cast<double>(size.bytes);
+  sidecar.selection = {metric_name(options.metric),
+                       fill_name(options.fill),
+                       options.brick,
+                       static_cast<std::uint64_t>(file.tree->leaves.size()),
+                       layout.counts.leaves,
+                       file.plan.leaves_by_width};
+  sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
+  if (options.scene) {
+    sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
+                       describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey),
+                       scene_digest(options.scene->scene)};
+  }
+  sidecar.macrocells = {kMacrocell, make_lattice(info.domain(), kMacrocell).count, kMacrocellApron};
+}
+
+}  // namespace weir

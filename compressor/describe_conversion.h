@@ -1,0 +1,26 @@
+// The certificate of a conversion: what its sidecar says of the source, of the file
+// and of the error between the two.
+#pragma once
+
+#include <cstdint>
+
+#include "compressor/conversion_options.h"
+#include "compressor/encode/encode_attempts.h"
+#include "compressor/leaf/certificate.h"
+#include "compressor/select/leaf_reach.h"
+#include "compressor/survey/background.h"
+#include "compressor/survey/survey_figures.h"
+#include "format/nanovdb/grid_head.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// A sidecar with all that is known once the volume is surveyed, but for the source's digest.
+Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options);
+
+/// Adds grid, background, budget, selection, errors and macrocells of the encoded file. `shown` is for options.scene.
+void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& survey, const ConversionOptions& options,
+                   const Background& background, const GridHead& head, const EncodedFile& encoded, const Shown& shown);
+
+}  // namespace weir

@@ -1,0 +1,53 @@
+// Where the budget ends in the order of keys: the cut between what is bought and
+// what is not, found by radix selection over the keys' bits in passes over the
+// spilled rows.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "compressor/select/leaf_gain.h"
+#include "compressor/select/region_rows.h"
+#include "compressor/select/tree_regions.h"
+
+namespace weir {
+
+/// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
+struct PurchaseGoal {
+  double unit = 0;  ///< squared error; 0: bytes count
+  // Whole numbers, so that sums do not depend on the order of the threads.
+  using Weight = unsigned __int128;
+  Weight limit = 0;
+
+  Weight weight(std::uint64_t bytes, double gain) const;
+  /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
+  /// brought down until the limit is reached.
+  bool admits(Weight bought, Weight weight) const { return unit == 0 ? bought + weight <= limit : bought < limit; }
+  /// Whether a whole class of keys can be bought without looking at its members.
+  bool admits_all(Weight bought, Weight weight) const {
+    return unit == 0 ? bought + weight <= limit : bought + weight < limit;
+  }
+};
+
+class CutSearch {
+ public:
+  /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object.
+  CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree)
+      : rule_(rule), rows_(rows), tree_(tree) {}
+
+  /// The smallest key of which all that is above it can be bought for `goal`; `above` is what that comes to. 0:
+  /// everything can be bought.
+  double find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above) const;
+
+ private:
+  template <typename Visit>
+  void for_each_key(const Visit& visit) const;
+  double sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above,
+                          const std::function<bool(double)>& matches) const;
+
+  const GainRule& rule_;
+  const RowStore& rows_;
+  const TreeRegions& tree_;
+};
+
+}  // namespace weir

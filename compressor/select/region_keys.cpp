@@ -1,0 +1,143 @@
+#include "compressor/select/region_keys.h"
+
+#include <algorithm>
+
+#include "compressor/select/step_keys.h"
+#include "format/layout/nanovdb_layout.h"
+
+namespace weir {
+namespace {
+
+constexpr auto kLowerCost = static_cast<double>(nvdb::kLowerBytes);
+constexpr auto kUpperCost = static_cast<double>(nvdb::kUpperBytes);
+
+// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves.
+double hull_step(double opening_gain, std::vector<LeafStep>& steps) {
+  // Equal keys in any order: the best ratio is at the end of a run of them.
+  std::sort(steps.begin(), steps.end(), [](const LeafStep& a, const LeafStep& b) { return a.key > b.key; });
+  double saved = opening_gain;
+  double cost = kLowerCost;
+  double best = saved / cost;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    saved += steps[i].gain;
+    cost += static_cast<double>(steps[i].bytes);
+    if (i + 1 == steps.size() || steps[i + 1].key != steps[i].key) best = std::max(best, saved / cost);
+  }
+  return best;
+}
+
+}  // namespace
+
+void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains) {
+  Region& region = tree_.regions[static_cast<std::size_t>(index)];
+  TileSumsBuilder builder;
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    builder.add_mean(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.min, row.max);
+  });
+  builder.close_mean(rule_.fill.background);
+  // A region of one value keeps its very bits: a mean of -0.0 would be +0.0.
+  const LeafRow& first = rows.at(rows.leaf_box().lo);
+  if (first.uniform() && builder.sums.min == builder.sums.max) builder.sums.mean = first.mean;
+  const float tile = tile_value(rule_.fill, builder.sums);
+  bool exact = true;
+  double dropped_leaves = 0;  // squared error once the region is open and before any leaf is kept
+  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+    builder.add_squares(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.sse);
+    exact = exact && rule_.fill.exact(row, tree_.leaves.voxels(leaf).voxels(), tile);
+    dropped_leaves += row.sse_about(rule_.fill.leaf_value(row));
+  });
+  region.sums = builder.sums;
+  region.sums.exact = exact;
+  region.tile_error = region.sums.sse_about(tile);
+  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile);
+  region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
+
+  std::vector<LeafStep> steps;
+  bool required = false;
+  double highest = 0;
+  for (const LeafGain& leaf : gains) {
+    required = required || leaf.required;
+    highest = std::max(highest, leaf.steps[0].gain);
+    steps.insert(steps.end(), leaf.steps.begin(), leaf.steps.begin() + leaf.step_count);
+  }
+  if (required || (rule_.max_error && exceeds(*rule_.max_error, region, tile))) {
+    region.key = kRequiredKey;
+  } else if (exact || rule_.max_error || !sees(region, tile)) {
+    region.key = 0;
+  } else if (rule_.metric == Metric::sse) {
+    region.key = std::max(kLastKey, hull_step(region.opening_gain, steps));
+  } else {
+    region.key = std::max(kLastKey, highest);
+  }
+}
+
+// The weighted errors of a region: sets that of its one tile, returns that of its leaves' tiles.
+double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float tile) const {
+  region.tile_error = 0;
+  double dropped_leaves = 0;
+  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+    const MinMax& reach = rows.reach(leaf);
+    widen(region.reach, reach);
+    region.tile_error += rule_.tile_weight(reach, tile) * row.sse_about(tile);
+    const float leaf_tile = rule_.fill.leaf_value(row);
+    dropped_leaves += rule_.tile_weight(reach, leaf_tile) * row.sse_about(leaf_tile);
+  });
+  return dropped_leaves;
+}
+
+// Whether anything of a region that reads `tile` can be seen.
+bool RegionKeys::sees(const Region& region, float tile) const {
+  return rule_.visibility == nullptr || rule_.tile_weight(region.reach, tile) > 0;
+}
+
+bool RegionKeys::exceeds(double max_error, const Region& region, float tile) const {
+  return sees(region, tile) && region.sums.max_abs_about(tile) > max_error;
+}
+
+void RegionKeys::summarize_uppers() {
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(tree_.uppers.size()); ++i) {
+    Upper& upper = tree_.uppers[static_cast<std::size_t>(i)];
+    TileSumsBuilder builder;
+    const auto sums_of = [&](std::int64_t r) -> const TileSums& {
+      return tree_.regions[static_cast<std::size_t>(r)].sums;
+    };
+    const TileSums* first = nullptr;
+    tree_.for_each_region_of(i, [&](std::int64_t r) {
+      const TileSums& sums = sums_of(r);
+      first = first == nullptr ? &sums : first;
+      builder.add_mean(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.min, sums.max);
+    });
+    builder.close_mean(rule_.fill.background);
+    if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;
+    const float tile = tile_value(rule_.fill, builder.sums);
+    bool exact = true;
+    double tiles = 0;     // squared error with one tile per region
+    double weighted = 0;  // and with one for all, where a scene weighs
+    bool seen = false;
+    bool exceeded = false;
+    tree_.for_each_region_of(i, [&](std::int64_t r) {
+      const Region& region = tree_.regions[static_cast<std::size_t>(r)];
+      const TileSums& sums = region.sums;
+      const float region_tile = tile_value(rule_.fill, sums);
+      builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
+      exact = exact && sums.exact && key_bits(static_cast<double>(region_tile)) == key_bits(static_cast<double>(tile));
+      tiles += rule_.visibility == nullptr ? sums.sse_about(region_tile) : region.tile_error;
+      upper.key = std::max(upper.key, region.key);
+      seen = seen || sees(region, tile);
+      exceeded = exceeded || (rule_.max_error && exceeds(*rule_.max_error, region, tile));
+      if (rule_.visibility != nullptr) weighted += rule_.tile_weight(region.reach, tile) * sums.sse_about(tile);
+    });
+    upper.sums = builder.sums;
+    upper.sums.exact = exact;
+    upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
+    if (exact || !seen) continue;
+    if (rule_.max_error) {
+      if (exceeded) upper.key = kRequiredKey;
+      continue;
+    }
+    upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
+    upper.key = std::max({upper.key, kLastKey, rule_.metric == Metric::sse ? upper.opening_gain / kUpperCost : 0.0});
+  }
+}
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// The sums and keys of the inner levels of the tree: what a 128^3 region or a 4096^3
+// block is worth as a node, from the rows and gains of its leaves.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compressor/select/leaf_gain.h"
+#include "compressor/select/region_rows.h"
+#include "compressor/select/tree_regions.h"
+
+namespace weir {
+
+/// Fills the entries of `tree`, which with the rule must outlive the object.
+class RegionKeys {
+ public:
+  RegionKeys(const GainRule& rule, TreeRegions& tree) : rule_(rule), tree_(tree) {}
+
+  /// Sums, tile error, opening gain and key of the region, whose leaves have those rows and gains. Thread-safe for
+  /// different regions.
+  void summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains);
+  /// The same of all upper nodes, from their regions.
+  void summarize_uppers();
+
+ private:
+  double weigh_region(Region& region, const RegionRows& rows, float tile) const;
+  bool sees(const Region& region, float tile) const;
+  bool exceeds(double max_error, const Region& region, float tile) const;
+
+  const GainRule& rule_;
+  TreeRegions& tree_;
+};
+
+}  // namespace weir

@@ -1,0 +1,276 @@
+#include "daemon/config/load_config.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "daemon/config/config_names.h"
+#include "daemon/config/watch_conflicts.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/base/toml_reader.h"
+#include "ingest/series.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One table of the file, in the daemon's own types.
+class ConfigReader {
+ public:
+  ConfigReader(const toml::table& table, std::string name, const std::string& path)
+      : toml(table, std::move(name), path), directory_(fs::path(path).parent_path()) {}
+
+  template <typename T, std::size_t N, typename V>
+  void choose(std::string_view key, V& value, const Choices<T, N>& choices) {
+    std::string text;
+    if (!toml.read(key, text)) return;
+    std::string names;
+    for (const auto& [name, choice] : choices) {
+      if (name == text) {
+        value = V(choice);
+        return;
+      }
+      names += cat(names.empty() ? "" : ", ", name);
+    }
+    refuse(key, cat(key, " is \"", text, "\", it must be one of ", names));
+  }
+
+  /// A whole number of bytes or a text such as "1GiB".
+  void read_bytes(std::string_view key, std::uint64_t& value) {
+    const toml::node* node = toml.find(key);
+    if (node == nullptr) return;
+    const auto* text = node->as_string();
+    const auto* number = node->as_integer();
+    const auto bytes = text != nullptr     ? parse_bytes(text->get())
+                       : number != nullptr ? parse_bytes(std::to_string(number->get()))
+                                           : std::nullopt;
+    if (!bytes) toml.fail(*node, cat(key, " must be a size such as 1073741824, \"64MiB\" or \"1.5GB\""));
+    value = *bytes;
+  }
+
+  /// Absolute and normal, without a slash at its end.
+  bool read_path(std::string_view key, std::string& value) {
+    std::string text;
+    if (!toml.read(key, text)) return false;
+    if (text.empty()) refuse(key, cat(key, " is empty, it must be a path"));
+    fs::path path = (directory_ / text).lexically_normal();
+    if (!path.has_filename()) path = path.parent_path();
+    value = path.string();
+    return true;
+  }
+
+  [[noreturn]] void refuse(std::string_view key, const std::string& message) { toml.fail(*toml.find(key), message); }
+
+  TomlReader toml;
+
+ private:
+  fs::path directory_;
+};
+
+std::string read_whole(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text;
+  std::array<char, 4096> piece{};
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).what());
+  return text;
+}
+
+/// The text of the file without white space at its end. What everybody may read is no secret.
+std::string read_token_file(ConfigReader& reader, const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    reader.refuse("token_file", io_error(path, "read the token", errno).what());
+  }
+  if ((status.st_mode & S_IROTH) != 0) {
+    reader.refuse("token_file", cat(path, ": can be read by everybody; chmod o-r it"));
+  }
+  const std::string text = read_whole(path);
+  return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+}
+
+void read_token(ConfigReader& reader, ServiceConfig& service) {
+  std::string path;
+  const bool from_file = reader.read_path("token_file", path);
+  const char* key = from_file ? "token_file" : "token";
+  if (reader.toml.read("token", service.token) && from_file) {
+    reader.refuse("token_file", "token and token_file exclude each other; give one");
+  }
+  if (from_file) service.token = read_token_file(reader, path);
+  if (!from_file && reader.toml.find("token") == nullptr) return;
+  if (service.token.empty()) reader.refuse(key, "the token is empty; openssl rand -hex 32 makes one");
+  for (const char c : service.token) {  // it has to fit into a header line
+    if (c <= ' ' || c > '~')
+      reader.refuse(key, "the token must be ASCII without spaces; openssl rand -hex 32 makes one");
+  }
+}
+
+void read_control_socket(ConfigReader& reader, ServiceConfig& service) {
+  if (!reader.read_path("control_socket", service.control_socket)) return;
+  const std::size_t bytes = service.control_socket.size();
+  if (bytes > kLongestSocketPath) {
+    reader.refuse("control_socket", cat("control_socket is a path of ", bytes, " bytes, ", service.control_socket,
+                                        "; the system takes ", kLongestSocketPath, " at most"));
+  }
+}
+
+void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& service) {
+  std::string address;
+  if (reader.toml.read("listen", address)) {
+    try {
+      service.listen = parse_listen_address(address);
+    } catch (const Error& error) {
+      reader.refuse("listen", error.what());
+    }
+    if (service.listen.is_unix()) reader.refuse("listen", "listen is HOST:PORT; a Unix socket is control_socket");
+  }
+  read_token(reader, service);
+  if (!is_loopback(service.listen.host) && service.token.empty()) {
+    reader.toml.fail(*table.get("listen"), cat("listen is ", service.listen.text(),
+                                               ", which other machines may reach; add a token or token_file"));
+  }
+}
+
+ServiceConfig read_service(const toml::table& table, const std::string& path, const ConvertSyntax& convert) {
+  ServiceConfig service;
+  service.state = (fs::path(path).parent_path() / "weir.db").string();
+  ConfigReader reader(table, "[service]", path);
+  reader.read_path("state", service.state);
+  read_listen(reader, table, service);
+  reader.read_path("port_file", service.port_file);
+  read_control_socket(reader, service);
+  reader.read_bytes("memory", service.memory);
+  reader.toml.read("jobs", service.jobs, {1, 1024});
+  reader.toml.read("threads", service.threads, {0, 4096});
+  reader.toml.read("nice", service.nice, {0, 19});
+  reader.choose("io_class", service.io_class, kIoClasses);
+  reader.read_bytes("bandwidth", service.bandwidth);
+  reader.read_path("work_dir", service.work_dir);
+  reader.toml.read("grace", service.grace_s, {0, 86400});
+  reader.toml.read("history", service.history_days, {0, 36500});
+  reader.read_path("log", service.log_file);
+  reader.choose("log_level", service.log_level, kLogLevels);
+  reader.read_bytes("log_size", service.log_size);
+  reader.toml.read("log_files", service.log_files, {1, 1000});
+  reader.toml.finish();
+  if (job_memory(service) < convert.least_memory) {
+    const toml::node* place = table.get("memory") != nullptr ? table.get("memory") : table.get("jobs");
+    const std::uint64_t least = kDaemonMemory + static_cast<std::uint64_t>(service.jobs) * convert.least_memory;
+    reader.toml.fail(place != nullptr ? *place : table, cat("memory is ", format_bytes(service.memory),
+                                                            ", too little for the daemon and jobs = ", service.jobs,
+                                                            "; it must be at least ", format_bytes(least)));
+  }
+  for (const std::string* file : {&service.log_file, &service.port_file, &service.control_socket}) {
+    if (*file == service.state) {
+      reader.toml.fail(table, cat("two of state, log, port_file and control_socket are one file, ", *file));
+    }
+  }
+  if (service.state == path) reader.refuse("state", cat("state is this file, ", path));
+  return service;
+}
+
+void check_patterns(ConfigReader& reader, std::string_view key, const std::vector<std::string>& patterns) {
+  for (const std::string& pattern : patterns) {
+    if (pattern.empty()) reader.refuse(key, cat(key, " has an empty pattern"));
+  }
+}
+
+void check_name(ConfigReader& reader, const std::string& name) {
+  try {
+    step_name(name, {});
+  } catch (const Error& error) {
+    reader.refuse("name", error.what());
+  }
+  if (name.find('/') != std::string::npos) {
+    reader.refuse("name", cat("name is \"", name, "\", it must not have a slash; directories are named by output"));
+  }
+  if (name.find("{stem}") == std::string::npos) {
+    reader.refuse("name", cat("name is \"", name, "\", which gives all sources one output; put {stem} in it"));
+  }
+  if (!name.ends_with(".nvdb")) reader.refuse("name", cat("name is \"", name, "\", it must end with .nvdb"));
+}
+
+WatchConfig read_watch(const toml::table& table, const std::string& path, const ConvertSyntax& convert) {
+  WatchConfig watch;
+  ConfigReader reader(table, "[[watch]]", path);
+  if (!reader.read_path("directory", watch.directory)) reader.toml.fail(table, "[[watch]] needs a directory");
+  if (!reader.read_path("output", watch.output)) reader.toml.fail(table, "[[watch]] needs an output, a directory");
+  watch.label = watch.directory;
+  if (reader.toml.read("label", watch.label) && watch.label.empty()) reader.refuse("label", "label is empty");
+  reader.toml.read("recursive", watch.recursive);
+  if (reader.toml.read("name", watch.name)) check_name(reader, watch.name);
+  reader.toml.read("include", watch.include);
+  reader.toml.read("exclude", watch.exclude);
+  check_patterns(reader, "include", watch.include);
+  check_patterns(reader, "exclude", watch.exclude);
+  reader.choose("complete", watch.complete, kCompletions);
+  if (reader.toml.read("marker", watch.marker) &&
+      (watch.marker.empty() || watch.marker.find('/') != std::string::npos)) {
+    reader.refuse("marker", cat("marker is \"", watch.marker, "\", it must be a suffix such as .done"));
+  }
+  reader.toml.read("settle", watch.settle_s, {0.01, 86400});
+  reader.choose("watch", watch.watch, kWatchMethods);
+  reader.toml.read("poll_interval", watch.poll_interval_s, {0.01, 86400});
+  if (watch.watch == WatchMethod::poll && watch.complete == Completion::close) {
+    reader.refuse("complete", "complete is close, which polling never sees; use stable, size or marker");
+  }
+  reader.choose("priority", watch.priority, kPriorities);
+  reader.choose("source", watch.source, kAfterDone);
+  reader.toml.read("delete_after", watch.delete_after_s, {0, 31'536'000});
+  reader.choose("follow", watch.follow, kFollow);
+  reader.toml.read("thumbnails", watch.thumbnails);
+  watch.convert_options = read_convert_options(reader.toml, table, convert);
+  reader.toml.finish();
+  return watch;
+}
+
+/// Fills WatchConfig::excluded_paths.
+void exclude_own_files(DaemonConfig& config) {
+  const ServiceConfig& service = config.service;
+  std::vector<std::string> own{config.path,       service.work_dir, service.log_file,
+                               service.port_file, service.state,    service.control_socket};
+  for (const char* journal : {"-wal", "-shm", "-journal"}) own.push_back(service.state + journal);
+  for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
+  std::sort(own.begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
+  for (WatchConfig& watch : config.watches) {
+    for (const std::string& path : own) {
+      if (!path.empty() && is_within(path, watch.directory)) watch.excluded_paths.push_back(path);
+    }
+  }
+}
+
+}  // namespace
+
+DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert) {
+  DaemonConfig config;
+  config.path = fs::absolute(path).lexically_normal().string();
+  const toml::table document = parse_toml(read_whole(config.path), config.path);
+  TomlReader reader(document, "the configuration", config.path);
+  const toml::node* service = reader.find("service");
+  if (service != nullptr && !service->is_table()) reader.fail(*service, "service must be a table: [service]");
+  const toml::table defaults;
+  config.service = read_service(service != nullptr ? *service->as_table() : defaults, config.path, convert);
+  const toml::node* watches = reader.find("watch");
+  reader.finish();
+  if (watches == nullptr) reader.fail(document, "there is no [[watch]]; add one for each directory to watch");
+  if (!watches->is_array_of_tables()) reader.fail(*watches, "watch must be an array of tables: [[watch]]");
+  const toml::array& tables = *watches->as_array();
+  for (const toml::node& table : tables) config.watches.push_back(read_watch(*table.as_table(), config.path, convert));
+  if (const auto conflict = find_conflict(config.watches)) {
+    const toml::table& table = *tables.get(conflict->watch)->as_table();
+    const toml::node* node = table.get(conflict->key);
+    reader.fail(node != nullptr ? *node : table, conflict->message);
+  }
+  exclude_own_files(config);
+  return config;
+}
+
+}  // namespace weir

@@ -1,0 +1,175 @@
+// Which volume of an HDF5 file is meant, and what is said where none is.
+#include "ingest/hdf5/hdf5_source.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "ingest/hdf5/file/hdf5_lock.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
+#include "tests/support/sanitized.h"
+
+namespace weir::hdf5_choice_test {
+namespace {
+
+class Hdf5Choice : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  }
+  std::string refused(const std::string& file, const SourceOptions& options, ErrorKind kind = ErrorKind::input) {
+    std::string message = message_of_error(kind, [&] { open_source(scratch_.path(file), options); });
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Hdf5Choice, TakesLeadingAxesByIndex) {
+  write_by_h5py(scratch_, R"(
+v = values("i4", (3, 2) + SHAPE)
+for i in range(3):
+    for j in range(2): expect("%d%d" % (i, j), v[i, j])
+with h5py.File("a.h5", "w") as f:
+    f["plain"] = v
+    f.create_dataset("packed", data=v, chunks=(2, 1, 3, 3, 3), compression="gzip")
+    f.create_dataset("szip", data=v, chunks=(2, 2, 3, 7, 3), compression="szip")
+    f["ones"] = v[1:2, 1:2]
+    f.create_dataset("later", data=v[0], maxshape=(None,) + SHAPE)
+)");
+  for (const char* name : {"plain", "packed", "szip"}) {
+    for (const std::int64_t i : {0, 1, 2}) {
+      for (const std::int64_t j : {0, 1}) {
+        expect_reads(scratch_, "a.h5", dataset_options(name, {i, j}), std::to_string(i) + std::to_string(j));
+      }
+    }
+  }
+  expect_reads(scratch_, "a.h5", dataset_options("ones"), "11");
+  expect_reads(scratch_, "a.h5", dataset_options("ones", {0, 0}), "11");
+  expect_reads(scratch_, "a.h5", dataset_options("later", {1}), "01");
+  const std::string where = scratch_.path("a.h5") + ": /plain: its axes are 3 x 2 x 5 x 7 x 9";
+  const std::string remedy = "; give --index with 2 positions: axis 0 in 0..2, axis 1 in 0..1";
+  EXPECT_EQ(refused("a.h5", dataset_options("plain"), ErrorKind::usage), where + ", and a volume has three" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {1}), ErrorKind::usage),
+            where + ", and --index has 1 position" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {1, 2}), ErrorKind::usage),
+            where + ", and --index has 2" + remedy);
+  EXPECT_EQ(refused("a.h5", dataset_options("plain", {-1, 0}), ErrorKind::usage),
+            where + ", and --index has -1" + remedy);
+}
+
+TEST_F(Hdf5Choice, OnlyVolumeIsTheDefault) {
+  write_by_h5py(scratch_, R"(
+v = values("f4"); expect("v", v)
+with h5py.File("one.h5", "w") as f:
+    f["time"] = 1.0
+    f["lat"] = np.zeros((3, 4))
+    f["deep/er/v"] = v
+with h5py.File("steps.h5", "w") as f:
+    f["v"] = v
+    f["steps"] = np.stack([v, v])
+with h5py.File("two.h5", "w") as f:
+    f["a"] = v
+    f["b"] = v
+with h5py.File("none.h5", "w") as f:
+    f["time"] = 1.0
+    f["lat"] = np.zeros((3, 4))
+with h5py.File("flat.h5", "w") as f: f["lat"] = np.zeros((3, 4))
+with h5py.File("empty.h5", "w") as f: f.create_group("g")
+)");
+  expect_reads(scratch_, "one.h5", {}, "v");
+  expect_reads(scratch_, "steps.h5", {}, "v");
+  expect_reads(scratch_, "steps.h5", dataset_options("", {1}), "v");
+  EXPECT_EQ(refused("two.h5", {}, ErrorKind::usage),
+            scratch_.path("two.h5") + ": holds 2 volumes; choose one with --dataset: /a (5 x 7 x 9), /b (5 x 7 x 9)");
+  EXPECT_EQ(refused("none.h5", {}), scratch_.path("none.h5") +
+                                        ": none of its 2 datasets is a volume (/lat: 2 axes (3 x 4); a volume has "
+                                        "three); weir inspect lists them");
+  EXPECT_EQ(refused("flat.h5", {}), scratch_.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
+  EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset");
+}
+
+TEST_F(Hdf5Choice, MissingDatasetErrorSuggestsOtherNames) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name in ["fields/density", "fields/Temperature", "v"]: f[name] = np.zeros((2, 2, 2))
+    f.create_group("bare")
+    f["type"] = np.dtype("f4")
+)");
+  const std::string path = scratch_.path("a.h5");
+  EXPECT_EQ(refused("a.h5", dataset_options("fields/desnity")),
+            path + ": no dataset /fields/desnity; alike are /fields/density; weir inspect lists all");
+  EXPECT_EQ(refused("a.h5", dataset_options("/temperature")),
+            path + ": no dataset /temperature; alike are /fields/Temperature; weir inspect lists all");
+  EXPECT_EQ(refused("a.h5", dataset_options("/x/y/z")),
+            path + ": no dataset /x/y/z; the file holds /v, /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("fields/")),
+            path + ": /fields is a group; give one of its datasets: /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("/bare")), path + ": /bare is a group, and holds no dataset");
+  EXPECT_EQ(refused("a.h5", dataset_options("v/w")),
+            path + ": no dataset /v/w; the file holds /v, /fields/Temperature, /fields/density");
+  EXPECT_EQ(refused("a.h5", dataset_options("type")), path + ": /type: a named type, no dataset");
+}
+
+TEST_F(Hdf5Choice, RefusesDatasetsThatAreNoNumericVolume) {
+  write_by_h5py(scratch_, R"(
+S = (2, 2, 2)
+with h5py.File("a.h5", "w") as f:
+    f["compound"] = np.zeros(S, [("a", "f4"), ("b", "i4")])
+    f["complex"] = np.zeros(S, "c8")
+    f["text"] = np.zeros(S, "S5")
+    f.create_dataset("vtext", S, dtype=h5py.string_dtype())
+    f["bool"] = np.zeros(S, bool)
+    f.create_dataset("enum", S, dtype=h5py.enum_dtype({"A": 0, "B": 1, "C": 2}, basetype="i2"))
+    f.create_dataset("ref", S, dtype=h5py.ref_dtype)
+    f["opaque"] = np.zeros(S, "V3")
+    f["long double"] = np.zeros(S, "g")
+    f.create_dataset("array", S, dtype=np.dtype(("f4", (3,))))
+    f.create_dataset("list", S, dtype=h5py.vlen_dtype("f4"))
+    def odd(name, type): h5py.h5d.create(f.id, name, type, h5py.h5s.create_simple(S)).write(h5py.h5s.ALL, h5py.h5s.ALL, np.zeros(S, "i4"), type)
+    t = h5py.h5t.STD_I32LE.copy(); t.set_precision(20); odd(b"i20", t)
+    odd(b"bits", h5py.h5t.STD_B16LE)
+    t = h5py.h5t.IEEE_F32LE.copy(); t.set_fields(15, 7, 8, 0, 7); t.set_size(2); t.set_ebias(127); odd(b"bfloat16", t)
+    f["scalar"] = 1.0
+    f["line"] = np.zeros(4)
+    f.create_dataset("null", dtype="f4", data=h5py.Empty("f4"))
+    f.create_dataset("empty", (0, 3, 4), maxshape=(None, 3, 4))
+    f.create_dataset("unwritten", S)
+    f.create_dataset("unwritten chunks", S, chunks=S)
+)");
+  const auto said = [&](const std::string& name) {
+    const std::string start = scratch_.path("a.h5") + ": /" + name + ": ";
+    const std::string message = refused("a.h5", dataset_options(name));
+    EXPECT_TRUE(message.starts_with(start)) << message;
+    return message.substr(std::min(start.size(), message.size()));
+  };
+  const auto typed = [](const std::string& type) {
+    return "its type is " + type + "; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64";
+  };
+  EXPECT_EQ(said("compound"), typed("compound of 2 members"));
+  EXPECT_EQ(said("complex"), typed("compound of 2 members"));
+  EXPECT_EQ(said("text"), typed("text of 5 bytes"));
+  EXPECT_EQ(said("vtext"), typed("text of any length"));
+  EXPECT_EQ(said("bool"), typed("boolean") + ", so store it as uint8");
+  EXPECT_EQ(said("enum"), typed("enumeration of 3 names") + ", so store it as uint8");
+  EXPECT_EQ(said("ref"), typed("reference"));
+  EXPECT_EQ(said("opaque"), typed("opaque of 3 bytes"));
+  EXPECT_EQ(said("long double"), typed("float of 80 bits in 16 bytes"));
+  EXPECT_EQ(said("array"), typed("array of float32"));
+  EXPECT_EQ(said("list"), typed("list of any length"));
+  EXPECT_EQ(said("i20"), typed("integer of 20 bits in 4 bytes"));
+  EXPECT_EQ(said("bits"), typed("bit field of 16 bits in 2 bytes"));
+  EXPECT_EQ(said("bfloat16"), typed("float of 16 bits in 2 bytes, not IEEE 754"));
+  EXPECT_EQ(said("scalar"), "a single value; a volume has three axes");
+  EXPECT_EQ(said("line"), "1 axis (4); a volume has three");
+  EXPECT_EQ(said("null"), "a single value; a volume has three axes");
+  EXPECT_EQ(said("empty"), "empty: 0 x 3 x 4");
+  EXPECT_EQ(said("unwritten"), "no value was ever written to it");
+  EXPECT_EQ(said("unwritten chunks"), "no value was ever written to it");
+}
+
+}  // namespace
+}  // namespace weir::hdf5_choice_test
