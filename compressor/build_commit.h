@@ -6,7 +6,7 @@
 namespace weir {
 
 /// The first 12 digits of its hash; empty where it was built outside a git checkout. In a file of its own, so that a
-/// new commit compiles nothing else again.
+/// new commit recompiles nothing else.
 std::string build_commit();
 
 }  // namespace weir

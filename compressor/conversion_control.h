@@ -1,5 +1,4 @@
-// What a caller of a conversion can watch and stop, and how its steps tell him and
-// stop where he asks them to.
+// What a caller of a conversion can watch and stop, and how the conversion's steps report progress and stop on request.
 #pragma once
 
 #include <atomic>
@@ -27,7 +26,7 @@ struct ConversionControl {
 /// For passes that `control`, which must outlive them, watches and stops.
 StreamOptions stream_options(const ConversionControl& control);
 
-/// What a conversion that was asked to stop ends with, wherever it noticed.
+/// The error of a conversion that was asked to stop, in whichever step.
 Error interrupted_error();
 
 /// Throws interrupted_error() where `control` says so.

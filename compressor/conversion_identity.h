@@ -1,5 +1,4 @@
-// What decides the bytes of a conversion, as text: by it an interrupted one is
-// known again.
+// What decides the bytes of a conversion, as text, to recognise an interrupted one.
 #pragma once
 
 #include <map>

@@ -1,5 +1,4 @@
-// How a volume is converted: budget, method, policy, and what of the machine it
-// may take.
+// How a volume is converted: budget, method, policy, and how much of the machine it may use.
 #pragma once
 
 #include <cstddef>

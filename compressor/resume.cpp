@@ -3,7 +3,7 @@
 #include "compressor/conversion_identity.h"
 #include "compressor/resume/work_directory.h"
 #include "format/base/text.h"
-#include "format/output/commit_traces.h"
+#include "format/output/commit_leftovers.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {

@@ -1,4 +1,4 @@
-// Which conversions can be continued, and what is said about it.
+// Which conversions can be continued, and what is said about it. resume/journal.h has what is kept of them, and when.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace weir {
 
-/// The journal of a conversion, with what an interrupted one left in it. Null where `options` or the volume's size say
-/// that an interruption is to lose everything; then what was left goes too, with a notice. Throws Error(usage) for
-/// Resume::on where the output's file system keeps nothing.
+/// The journal of a conversion, with what an interrupted one left in it. Null where `options` or the volume's size rule
+/// out continuing; then what was left is removed, with a notice. Throws Error(usage) for Resume::on where the output's
+/// file system keeps nothing.
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files);
 
@@ -24,15 +24,15 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
 /// False where there is nothing. Throws Error(io) where another process has the lock.
 bool clear_leftovers(FileSystem& files, const std::string& output);
 
-/// What a conversion left of itself that was killed when its output was in place already. Takes the lock for it;
-/// another process that holds it is Error(io).
+/// Removes what is left of a conversion that was killed after its output was in place. Takes the lock for it; throws
+/// Error(io) where another process holds it.
 void clear_after_commit(FileSystem& files, const std::string& output);
 
 /// "OUT.nvdb: continues a conversion that was interrupted, survey 100 %, encode 37 % done".
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves);
 
-/// Saves what is done after `error`, or discards it where the same conversion would end the same way. Returns the error
-/// to report.
+/// After `error`, saves what is done, or discards it where the same conversion would fail the same way. Returns the
+/// error to report.
 Error ended_with(const Error& error, Journal& journal);
 
 }  // namespace weir

@@ -54,7 +54,7 @@ class WatchedTree {
   /// Of the sources that came since the first look at the directory, over the last ten minutes.
   RecentRate::Rates arrivals() const { return arrivals_.at(std::chrono::steady_clock::now()); }
 
-  /// As if the file had just been found: its job was asked to be tried again, or its content is not what it was.
+  /// Takes the file as just found: a retry of its job was requested, or its content has changed.
   void look_again(const std::string& path);
   /// The service was told to read its configuration again, and this watch stays as it is.
   void reloaded() { watch_->choose_again(); }

@@ -1,6 +1,6 @@
-/* weir's C interface: dense volumes to NanoVDB files of exactly the size that is asked for, out of memory, out of a
- * file or out of a running simulation, and such files to values. C99; also for C++, and for Fortran by iso_c_binding
- * (examples/push/weir.f90).
+/* weir's C interface. It converts dense volumes, from memory, from a file or from a running simulation, to NanoVDB
+ * files of exactly the size that is asked for, and reads the values of such files. C99; also for C++, and for Fortran
+ * by iso_c_binding (examples/push/weir.f90).
  *
  * Errors: every call that can fail returns a weir_status, and describes a failure in *error where error is not NULL.
  * The message is one line: what, where, the value found, what to do; where it names an option of the command ("choose
@@ -8,14 +8,14 @@
  * set. There is no global state and no last error; no C++ exception leaves the library, and none may leave a callback.
  *
  * Threads: a call may be made by any thread at any time, and calls with different handles by several threads at once.
- * What one handle allows is said at its type. Conversions work with threads of their own (oneTBB's); while several run
- * in one process, all keep to the smallest number of threads that one of them was given.
+ * The comment of a handle's type says what that handle allows. Conversions use threads of their own (oneTBB's); while
+ * several run in one process, all use the smallest number of threads that one of them was given.
  *
  * Structs: set every struct up by its _init function, with its sizeof, then change members; a member of 0 or NULL is
- * always its default. A program built with an older weir.h runs with a newer library and, as long as it sets nothing
- * that the library does not know, the other way round. Strings end with a zero, paths are as the system takes them.
- * A pointer that is not said to be optional must not be NULL: that is WEIR_ERROR_USAGE, and so is a value out of its
- * range. Handles are not checked otherwise. Every _free and _close takes NULL.
+ * always its default. A program built with an older weir.h runs with a newer library. One built with a newer weir.h
+ * runs with an older library as long as it sets nothing that the library does not know. Strings end with a zero, paths
+ * are as the system takes them. A pointer that is not said to be optional must not be NULL: that is WEIR_ERROR_USAGE,
+ * and so is a value out of its range. Handles are not checked otherwise. Every _free and _close takes NULL.
  *
  * Indices and extents are of voxels, in the order x, y, z, x fastest in files and packed arrays. */
 #ifndef WEIR_H
@@ -37,7 +37,7 @@ extern "C" {
 
 /* ---- Status ---------------------------------------------------------------------------------------------------- */
 
-/* What came of a call: the exit codes of the command weir. */
+/* The result of a call: the exit codes of the command weir. */
 typedef int32_t weir_status;
 enum {
   WEIR_OK = 0,
@@ -55,7 +55,7 @@ typedef struct weir_error {
   char message[WEIR_MESSAGE_BYTES]; /* ends with a zero, cut where it is longer; "" after a success */
 } weir_error;
 
-/* "0.1.0". The string is the library's. */
+/* "0.1.0". The library owns the string. */
 WEIR_API const char* weir_version(void);
 
 /* ---- Volumes --------------------------------------------------------------------------------------------------- */
@@ -75,7 +75,7 @@ enum {
   WEIR_FLOAT64 = 11
 };
 
-/* What a volume is, but for its values. */
+/* A volume's description, without its values. */
 typedef struct weir_volume {
   size_t struct_size;
   int64_t extent[3];   /* voxels, each 1 to 2^31 - 1; required */
@@ -99,7 +99,7 @@ enum {
   WEIR_BUDGET_MAX_ERROR = 4, /* as few bytes as keep each voxel within budget >= 0, in the values' unit */
   WEIR_BUDGET_LOSSLESS = 5   /* as many bytes as every bit of every voxel needs */
 };
-/* How leaves are stored. Also of files that are open, where AUTO does not occur. */
+/* How leaves are stored. For an open file it is never AUTO. */
 enum {
   WEIR_ENCODING_AUTO = 0,  /* float32 or FPN, whichever has less error at that size */
   WEIR_ENCODING_FLOAT = 1, /* 32 bits a voxel */
@@ -112,7 +112,7 @@ enum {
 enum { WEIR_METRIC_SSE = 0, WEIR_METRIC_FARTHEST = 1, WEIR_METRIC_CLOSEST = 2, WEIR_METRIC_MEDIAN = 3 };
 /* What dropped blocks read. */
 enum { WEIR_FILL_MEAN = 0, WEIR_FILL_BACKGROUND = 1 };
-/* What becomes of NaN and infinite voxels: WEIR_ERROR_INPUT, the background, or they stay. */
+/* What happens to NaN and infinite voxels: WEIR_ERROR_INPUT, replaced by the background, or kept. */
 enum { WEIR_NONFINITE_ERROR = 0, WEIR_NONFINITE_BACKGROUND = 1, WEIR_NONFINITE_KEEP = 2 };
 
 typedef struct weir_convert_options {
@@ -144,23 +144,23 @@ WEIR_API weir_status weir_convert_options_init(weir_convert_options* options, si
 
 /* ---- Convert: values in memory, or a file, to a NanoVDB file --------------------------------------------------- */
 
-/* Converts the array at `data`, voxel (0, 0, 0) of `volume`, at any alignment and not changed during the call. Voxel
- * (x, y, z) is at data + x stride[0] + y stride[1] + z stride[2] bytes; strides may be negative or 0. stride NULL:
- * packed, x fastest (C's a[z][y][x], Fortran's a(x, y, z)). options NULL: the defaults. Writes `output` and its
- * sidecar, output.json, both or neither, with the bytes that weir convert gives for the same values. */
+/* Converts an array. `data` points to voxel (0, 0, 0) of `volume`, at any alignment; the array must not change during
+ * the call. Voxel (x, y, z) is at data + x stride[0] + y stride[1] + z stride[2] bytes; strides may be negative or 0.
+ * stride NULL: packed, x fastest (C's a[z][y][x], Fortran's a(x, y, z)). options NULL: the defaults. Writes `output`
+ * and its sidecar, output.json, both or neither, with the bytes that weir convert gives for the same values. */
 WEIR_API weir_status weir_convert(const weir_volume* volume, const void* data, const int64_t stride[3],
                                   const weir_convert_options* options, const char* output, weir_error* error);
 
-/* A NanoVDB file in memory. Read by any threads. */
+/* A NanoVDB file in memory. Any threads may read it. */
 typedef struct weir_buffer weir_buffer;
 
 /* The same without a file. Besides options->memory the process holds the result and, in place of temporary files, about
- * 3 % of the volume's float32 bytes, with an encoding other than FLOAT up to the result's size more; work_dir must be
- * NULL. *buffer is the caller's, for weir_buffer_free. */
+ * 3 % of the volume's float32 bytes; with an encoding other than FLOAT, up to the result's size more. work_dir must be
+ * NULL. The caller frees *buffer by weir_buffer_free. */
 WEIR_API weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, const int64_t stride[3],
                                             const weir_convert_options* options, weir_buffer** buffer,
                                             weir_error* error);
-/* The file's bytes, aligned to a page, so that a reader may use the grid in place. Until weir_buffer_free. */
+/* The file's bytes, aligned to a page, so that a reader may use the grid in place. Valid until weir_buffer_free. */
 WEIR_API const void* weir_buffer_data(const weir_buffer* buffer);
 WEIR_API uint64_t weir_buffer_size(const weir_buffer* buffer);       /* bytes */
 WEIR_API const char* weir_buffer_sidecar(const weir_buffer* buffer); /* JSON text, as it would be beside the file */
@@ -194,25 +194,25 @@ WEIR_API weir_status weir_convert_file(const char* input, const weir_input_optio
 
 /* ---- Push: a volume out of a running simulation ---------------------------------------------------------------- */
 
-/* A volume that is handed over in slabs, and whose values are gone after each call. Any threads may push slabs at once;
- * the other calls are for one thread, before and after all of them. */
+/* A volume that is handed over in slabs; the values of a slab need not exist after its call. Any threads may push slabs
+ * at once; one thread makes the other calls, before and after all slabs. */
 typedef struct weir_push weir_push;
 
 /* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end. Values
- * wait in options->memory bytes and in the work directory, compactly, where they do not fit. *push is the caller's, for
- * weir_push_free. */
+ * are kept in options->memory bytes and, where they do not fit, compactly in the work directory. The caller frees *push
+ * by weir_push_free. */
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed
- * after the call. Each plane once, in any order. After WEIR_ERROR_USAGE (planes that are not there, or were given)
- * nothing was taken and the push goes on; any other failure is the push's end, and its status that of every later call.
- * A full disk is such a failure: the call does not wait for room on it. */
+ * after the call. Give each plane once, in any order. After WEIR_ERROR_USAGE (planes outside the volume, or given
+ * before) nothing was taken and the push can go on; any other failure ends the push, and every later call returns its
+ * status. A full disk is such a failure: the call does not wait for room on it. */
 WEIR_API weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* data, const int64_t stride[3],
                                     weir_error* error);
-/* Writes the file, of the bytes that weir_convert gives for the same values, and its sidecar. WEIR_ERROR_USAGE where
- * planes are missing, which can still be given, and where it was written already. */
+/* Writes the file, with the bytes that weir_convert gives for the same values, and its sidecar. WEIR_ERROR_USAGE where
+ * planes are missing (they can still be given), or where the file was written already. */
 WEIR_API weir_status weir_push_end(weir_push* push, weir_error* error);
-/* Ends a push that was not ended without an output, and frees it. */
+/* Frees a push. One that weir_push_end has not completed leaves no output. */
 WEIR_API void weir_push_free(weir_push* push);
 
 /* ---- Load: a NanoVDB file to values ---------------------------------------------------------------------------- */
@@ -221,12 +221,12 @@ WEIR_API void weir_push_free(weir_push* push);
  * weir_close may be made by any threads at once. */
 typedef struct weir_grid weir_grid;
 
-/* Maps the file and checks it whole, but for the values: no later call leaves it, whatever its bytes are. The file must
- * not be cut while it is open: looking at pages that are gone ends a process by SIGBUS. weir replaces files, it changes
- * none. *grid is the caller's, for weir_close. */
+/* Maps the file and checks all of it but the values: no later call reads outside it, whatever its bytes are. The file
+ * must not be truncated while it is open: reading pages that are gone ends a process by SIGBUS. weir itself replaces
+ * files and never changes them in place. The caller closes *grid by weir_close. */
 WEIR_API weir_status weir_open(const char* path, weir_grid** grid, weir_error* error);
-/* The same of `bytes` bytes in memory, which are not copied: they must stay as they are until weir_close. `sidecar` is
- * JSON text or NULL. */
+/* The same for `bytes` bytes in memory, which are not copied and must not change until weir_close. `sidecar` is JSON
+ * text or NULL. */
 WEIR_API weir_status weir_open_memory(const void* data, uint64_t bytes, const char* sidecar, weir_grid** grid,
                                       weir_error* error);
 WEIR_API void weir_close(weir_grid* grid);
@@ -262,13 +262,13 @@ WEIR_API weir_status weir_get_info(const weir_grid* grid, weir_grid_info* info, 
 WEIR_API const char* weir_grid_name(const weir_grid* grid);
 WEIR_API const char* weir_grid_sidecar(const weir_grid* grid); /* JSON text; NULL where certified is 0 */
 /* The grid itself, data_bytes of it, as NanoVDB's own code takes it: aligned to 32 bytes in files that weir wrote and
- * in buffers. grid_offset bytes before it begins the file. Until weir_close. */
+ * in buffers. The file begins grid_offset bytes before it. Valid until weir_close. */
 WEIR_API const void* weir_grid_data(const weir_grid* grid);
 
-/* The value of voxel `index`, any, as NanoVDB's own accessors give it: outside the domain the background, but what they
- * hold where the last 8^3 blocks reach beyond its edge. */
+/* The value of voxel `index`, as NanoVDB's own accessors give it. Any index is allowed: outside the domain the value is
+ * the background, except where the last 8^3 blocks reach beyond the domain's edge and hold a value. */
 WEIR_API weir_status weir_value(const weir_grid* grid, const int64_t index[3], float* value, weir_error* error);
-/* The same of the voxels from `min` to before `max`, x fastest, into `values`, which has `count` floats, exactly as
+/* The same for the voxels from `min` to before `max`, x fastest, into `values`, which has `count` floats, exactly as
  * many as there are voxels. Uses the calling thread alone. */
 WEIR_API weir_status weir_read_box(const weir_grid* grid, const int64_t min[3], const int64_t max[3], float* values,
                                    size_t count, weir_error* error);

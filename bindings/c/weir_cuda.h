@@ -12,18 +12,18 @@ extern "C" {
 /* A grid in the memory of a device. One call at a time; kernels may read it as long as no call loads into it. */
 typedef struct weir_cuda_grid weir_cuda_grid;
 
-/* Brings `grid`, which weir_open has opened (not weir_open_memory: WEIR_ERROR_USAGE), to the calling thread's current
- * device, by the fastest way that the system allows, behind what `stream` (a cudaStream_t, NULL: the default one) has
- * to do; all is there when it returns. *loaded is NULL, and becomes the caller's, for weir_cuda_free; or it is an
- * earlier load on the same device, whose memory is used again: two of them play a series of files, one loading while
- * the other is rendered. After a failure an earlier load holds no grid. WEIR_ERROR_IO where there is no device, or no
- * room on it; WEIR_ERROR_INPUT where the file was changed meanwhile. */
+/* Copies `grid`, which weir_open has opened (one of weir_open_memory: WEIR_ERROR_USAGE), to the calling thread's
+ * current device, by the fastest way that the system allows, after the work queued in `stream` (a cudaStream_t, NULL:
+ * the default one); the copy is complete when the call returns. *loaded is NULL for a new load, which the caller frees
+ * by weir_cuda_free; or it is an earlier load on the same device, whose memory is reused: two of them play a series of
+ * files, one loading while the other is rendered. After a failure an earlier load holds no grid. WEIR_ERROR_IO where
+ * there is no device, or no room on it; WEIR_ERROR_INPUT where the file was changed meanwhile. */
 WEIR_API weir_status weir_cuda_load(const weir_grid* grid, void* stream, weir_cuda_grid** loaded, weir_error* error);
 /* The device's address of the grid, a multiple of 256, as weir_grid_data is the host's; NULL where there is none. */
 WEIR_API const void* weir_cuda_data(const weir_cuda_grid* loaded);
 WEIR_API uint64_t weir_cuda_bytes(const weir_cuda_grid* loaded); /* weir_grid_info's data_bytes */
 WEIR_API double weir_cuda_seconds(const weir_cuda_grid* loaded); /* that loading took */
-/* With the same device current. */
+/* The device of the load must be current. */
 WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
 
 #ifdef __cplusplus

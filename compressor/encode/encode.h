@@ -34,10 +34,9 @@ struct EncodeTarget {
   Trace* trace = nullptr;
 };
 
-/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, says
-/// for which positions of the leaf lattice that has been done already, by any plan, is brought up to date when `pauses`
-/// ask for it, and in the end is the whole lattice. Throws Error(input) where the values of a leaf are not those that
-/// the survey saw.
+/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, holds
+/// the positions of the leaf lattice that are done already, by any plan; it is updated when `pauses` ask for it, and is
+/// the whole lattice in the end. Throws Error(input) where the values of a leaf are not those that the survey saw.
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
                    const StreamOptions& options, Reading reading = Reading::ahead, BoxSet* done = nullptr,
                    const Pauses& pauses = {});

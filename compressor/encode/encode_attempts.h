@@ -1,5 +1,5 @@
-// From a surveyed volume to a file whose leaves are written: once for a size, as
-// often as an error target takes.
+// Encodes a surveyed volume into a file whose leaves are written: once for a size, as often as needed for an error
+// target.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,5 @@
-// What the encode pass leaves of each kept leaf for the nodes above it: its
-// statistics in double, and the bounds of its outer layers, which reach into the
-// aprons of neighbouring macrocells. Spilled by leaf ordinal.
+// What the encode pass records of each kept leaf for the nodes above it: its statistics in double, and the bounds of
+// its outer layers, which reach into the aprons of neighbouring macrocells. Spilled by leaf ordinal.
 #pragma once
 
 #include <array>

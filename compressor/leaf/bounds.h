@@ -1,4 +1,4 @@
-// Bounds of values that grow as values are met.
+// Bounds of values, which widen as values are added.
 #pragma once
 
 #include <limits>

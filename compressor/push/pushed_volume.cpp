@@ -100,22 +100,27 @@ class PushedVolume::State {
         seen_(visibility_of(options, info_.domain())),
         files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_.segment_regions, files),
         slices_(plan_slices(info_.domain(), scalar_bytes(info_.type), room_bytes())),
-        floats_([this] { return PageBuffer(slice_voxels() * sizeof(float)); }),
-        intake_(slices_, scalar_bytes(info_.type), room(workers), sink()) {}
+        floats_([this] { return PageBuffer(slice_voxels() * sizeof(float)); }) {
+    // Its workers use all of the above: they start when that is there, and end before it goes.
+    intake_.emplace(slices_, scalar_bytes(info_.type), room(workers), sink());
+  }
+  ~State() { intake_.reset(); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
   void slab(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
     check_going_on();
     const Taking taking(*this, z0, nz, data);
     const Box domain = info_.domain();
     const Box box{{domain.lo.x, domain.lo.y, domain.lo.z + z0}, {domain.hi.x, domain.hi.y, domain.lo.z + z0 + nz}};
-    intake_.add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
+    intake_->add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
   }
 
   Sidecar end() {
     const auto started = std::chrono::steady_clock::now();
     check_going_on();
     begin_end();
-    intake_.finish();
+    intake_->finish();
     const Release release{files_};
     try {
       return convert(started);
@@ -205,7 +210,7 @@ class PushedVolume::State {
   }
 
   void check_going_on() {
-    intake_.check();
+    intake_->check();
     {
       const std::lock_guard lock(mutex_);
       if (failure_) throw Error(*failure_);
@@ -214,7 +219,7 @@ class PushedVolume::State {
     try {
       check_cancel(control_);
     } catch (const Error& interrupted) {
-      throw intake_.fail(interrupted);
+      throw intake_->fail(interrupted);
     }
   }
 
@@ -272,7 +277,7 @@ class PushedVolume::State {
   std::int64_t slabs_in_progress_ = 0;
   bool ended_ = false;
   std::optional<Error> failure_;  // of the end
-  SliceIntake intake_;            // last: its workers use the above
+  std::optional<SliceIntake> intake_;
 };
 
 PushedVolume::PushedVolume(SourceInfo info, const ConversionOptions& options, const ConversionControl& control,

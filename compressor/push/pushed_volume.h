@@ -1,6 +1,5 @@
-// A volume that is handed over from inside a simulation, slab by slab, and whose
-// values are gone once each call returns; in the end, the same file as a
-// conversion of it.
+// Converts a volume that a simulation hands over slab by slab, and whose values need not exist once each call returns.
+// The file is the same as that of any other conversion of the volume.
 //
 // A slab is copied into slices (ingest/plan/block_plan.h) of one leaf layer each.
 // Beside the simulation, a thread surveys the slices that are complete and spools
@@ -34,7 +33,7 @@ class PushedVolume {
   /// same reasons.
   PushedVolume(SourceInfo info, const ConversionOptions& options, const ConversionControl& control, FileSystem& files,
                std::size_t workers = 1);
-  /// Without an end, nothing is left.
+  /// Leaves nothing where `end` was not called.
   ~PushedVolume();
   PushedVolume(const PushedVolume&) = delete;
   PushedVolume& operator=(const PushedVolume&) = delete;

@@ -1,7 +1,6 @@
-// Where slabs of a volume become slices: boxes of one layer of leaves, gathered in
-// a bounded number of buffers while slabs come in any order from any thread, and
-// handed to workers of its own once they are complete. Where all buffers hold
-// slices that are not, the one that was added to least recently is parked.
+// Gathers slabs of a volume, which come in any order from any thread, into slices: boxes of one layer of leaves, in a
+// bounded number of buffers. Complete slices go to workers of its own. Where all buffers hold incomplete slices, the
+// one that was added to least recently is parked.
 #pragma once
 
 #include <condition_variable>
@@ -47,7 +46,7 @@ class SliceIntake {
  public:
   /// `plan` cuts the volume into slices, one leaf deep, of values of `value_bytes`.
   SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink);
-  /// Stops the workers once they have ended what they are at.
+  /// Stops the workers once they have finished their present slices.
   ~SliceIntake();
   SliceIntake(const SliceIntake&) = delete;
   SliceIntake& operator=(const SliceIntake&) = delete;
@@ -63,7 +62,8 @@ class SliceIntake {
   /// Throws what ended the workers, where something did.
   void check();
 
-  /// Ends the intake with `error`, as an exception of the sink does, unless it has ended; returns with what it ended.
+  /// Ends the intake with `error`, as an exception of the sink does, unless it has ended already; returns the error
+  /// that ended it.
   Error fail(const Error& error);
 
  private:

@@ -1,5 +1,4 @@
-// A spooled volume as a source: it reads as the file would that the values were
-// never in.
+// A spooled volume as a source, which reads like a file that holds the same values.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// What makes a conversion outlive its process: the files it stands on have names,
-// and a journal says how far they can be trusted.
+// Lets a conversion continue after its process has ended: the files it depends on have names, and a journal says how
+// far they can be trusted.
 //
 // In the hidden directory beside the output: `journal`, a Checkpoint, and
 // `volume`, the unfinished OUT.nvdb. In the spill directory, which is the same
@@ -43,12 +43,12 @@ class Journal {
   /// Takes up what an interrupted conversion of that identity left at `output`, in `state`. What another one left, or
   /// what is not whole, is removed, with a notice.
   Journal(FileSystem& files, const std::string& output, ConversionIdentity identity, JournalOptions options);
-  /// Removes everything that no saved checkpoint stands on.
+  /// Removes everything that no saved checkpoint depends on.
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// How far the conversion is; to be changed by it, and saved.
+  /// How far the conversion is; the conversion changes and saves it.
   Checkpoint state;
 
   const std::string& directory() const { return directory_; }

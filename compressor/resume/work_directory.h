@@ -1,6 +1,6 @@
 // Where spill files go: a hidden directory beside the output, made for one
-// conversion, or the directory the user names. Spill files have no names, so
-// that nothing of them outlives the process; those that are to are the journal's.
+// conversion, or the directory the user names. Spill files have no names, so that nothing of them outlives the process;
+// files that are to outlive it belong to the journal.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace weir {
 /// ".OUT.nvdb.work" beside OUT.nvdb.
 std::string hidden_directory_of(const std::string& output);
 
-/// Removes the directory at `path`, unless it holds somebody's files, which are not ours to remove.
+/// Removes the directory at `path`, unless it holds files that are not weir's.
 void remove_if_empty(FileSystem& files, const std::string& path) noexcept;
 
 class WorkDirectory {

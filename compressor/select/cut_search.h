@@ -35,8 +35,8 @@ class CutSearch {
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree)
       : rule_(rule), rows_(rows), tree_(tree) {}
 
-  /// The smallest key of which all that is above it can be bought for `goal`; `above` is what that comes to. 0:
-  /// everything can be bought.
+  /// The smallest key for which everything above it can be bought for `goal`; `above` is the sum of that. 0: everything
+  /// can be bought.
   double find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above) const;
 
  private:

@@ -1,6 +1,5 @@
-// The reach of a leaf: the interval of values that a filtered lookup can give
-// which touches one of its voxels. Whether anything of the leaf can be seen is a
-// question to its reach.
+// The reach of a leaf: the interval of values that a filtered lookup that touches one of its voxels can give. The reach
+// decides whether anything of the leaf can be seen.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// Of what is bought whatever the budget.
+/// The key of what is bought whatever the budget.
 inline constexpr double kRequiredKey = std::numeric_limits<double>::infinity();
 /// Saves nothing that can be measured, but without it not every bit is kept: bought last.
 inline constexpr double kLastKey = std::numeric_limits<double>::denorm_min();

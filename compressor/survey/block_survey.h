@@ -1,5 +1,5 @@
-// The survey of blocks that come in any order, from several threads: where a
-// pass over the volume, a simulation, or several processes hand them over.
+// Surveys blocks that a pass over the volume, a simulation or several processes hand over, in any order and from
+// several threads.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>

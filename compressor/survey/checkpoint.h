@@ -1,5 +1,4 @@
-// How far a conversion has come: what, together with the files it names, is
-// enough to go on from there and end with the same bytes.
+// How far a conversion has come: with the files it names, enough to continue from there and give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +45,7 @@ std::string to_text(const Checkpoint& checkpoint);
 std::string tally_text(const SurveyTally& tally);
 SurveyTally parse_tally(std::string_view text);
 
-/// Nothing where `text` is not a whole one of this version.
+/// nullopt where `text` is not a whole checkpoint of this version.
 std::optional<Checkpoint> parse_checkpoint(std::string_view text);
 
 }  // namespace weir

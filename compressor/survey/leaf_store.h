@@ -1,5 +1,5 @@
 // One fixed-size record per leaf of a lattice, in a spill file in linear order (x
-// fastest), so that 10^12 voxels are a matter of disk.
+// fastest), so that 10^12 voxels take disk, not memory.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ class RangeHistogram {
   /// Counts of the covered bins.
   std::vector<std::uint64_t> counts() const;
 
-  /// All there is to it: of restored(h.exponent(), h.base(), h.counts()) and h nobody can tell which is which.
+  /// The whole state: restored(h.exponent(), h.base(), h.counts()) behaves exactly as h.
   int exponent() const { return exponent_; }  ///< bins are 2^exponent wide
   double base() const { return base_; }       ///< first_edge() in bin widths, an integer
   static RangeHistogram restored(int exponent, double base, std::span<const std::uint64_t> counts);

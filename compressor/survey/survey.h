@@ -20,8 +20,8 @@ namespace weir {
 /// number of threads, nor on the way of reading. `widths` asks for what each
 /// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `faces`, where
 /// given, gets the outer layers of each leaf (leaf_reach.h). `state`, where given, says what of all this is done
-/// already, by any plan, is brought up to date when `pauses` ask for it, and in the end is of the whole volume. Each
-/// rank of the rows' team reads its own part.
+/// already, by any plan; it is updated when `pauses` ask for it, and covers the whole volume in the end. Each rank of
+/// the rows' team reads its own part.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr,
                      SurveyState* state = nullptr, const Pauses& pauses = {});

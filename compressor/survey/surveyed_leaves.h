@@ -1,5 +1,5 @@
-// What the survey says of the leaves that the encode pass comes to. Their digests are held against what it reads: of a
-// source that changed in between, one would certify the other's values.
+// What the survey recorded of the leaves that the encode pass reads. Their digests are compared with what it reads: if
+// the source changed in between, the certificate would be of other values than the file.
 #pragma once
 
 #include <span>

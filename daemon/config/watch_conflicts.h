@@ -1,4 +1,4 @@
-// Two watches, or a watch and itself, that cannot both have what they ask for.
+// Conflicts between two watches, or within one.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // The file systems that outputs are written to: how full they are, and how fast
-// they fill. A thread of its own looks at them every few seconds, for a file server
-// that hangs would keep whoever asks it waiting.
+// they fill. A thread of its own looks at them every few seconds, since a call to a file server that hangs does not
+// return.
 #pragma once
 
 #include <chrono>

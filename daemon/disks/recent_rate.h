@@ -1,5 +1,4 @@
-// How many of something, and of how many bytes, there were lately: a rate that
-// needs the same little memory however many there are.
+// The recent rate of something, in numbers and in bytes, in constant memory.
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@ class RecentRate {
     double per_s = 0;
     double bytes_per_s = 0;
   };
-  /// To the part of the window that a slot is.
+  /// Exact to one slot, a kSlots-th of the window.
   Rates at(Time now) const;
 
  private:

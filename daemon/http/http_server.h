@@ -23,7 +23,7 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// The port that was had; 0 of a Unix socket.
+  /// The port it listens on; 0 for a Unix socket.
   std::uint16_t port() const;
   std::size_t connections() const;
 

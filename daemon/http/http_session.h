@@ -34,7 +34,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void close();
 
   Phase phase() const { return phase_; }
-  /// Since when it has got no further than to its next request: since it was accepted, or its last answer was taken.
+  /// Since when it waits for its next request: since it was accepted, or its last answer was taken.
   Clock::time_point waiting_since() const { return waiting_since_; }
   /// Whether the client is this machine.
   bool local() const { return local_; }

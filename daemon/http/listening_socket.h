@@ -29,7 +29,7 @@ class ListeningSocket {
   ListeningSocket& operator=(const ListeningSocket&) = delete;
 
   Acceptor& acceptor() { return acceptor_; }
-  /// The port that was had; 0 of a Unix socket.
+  /// The port it listens on; 0 for a Unix socket.
   std::uint16_t port() const;
   /// Listens no more. The path of a Unix socket is removed, unless another file is there now.
   void close();

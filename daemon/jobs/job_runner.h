@@ -28,7 +28,7 @@
 
 namespace weir {
 
-/// A conversion that says nothing for so long is said to stand still.
+/// A conversion that reports nothing for so long is reported as stalled.
 inline constexpr std::chrono::seconds kQuiet{60};
 
 struct RunningJob {
@@ -47,15 +47,15 @@ class JobRunner {
   JobRunner(boost::asio::io_context& io, JobStore& store, const EventLog& log, std::string program,
             LookAgain look_again);
 
-  /// From now on as `config` says; running jobs end as they began. What is not over of watches that are no more is
-  /// forgotten: it is found again where one comes back.
+  /// Takes `config` from now on; running jobs finish as they began. Jobs that are not over are forgotten where their
+  /// watch is gone, and found again where it comes back.
   void configure(const DaemonConfig& config);
   /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
   void wake();
 
   void pause();
   void resume();
-  /// What nothing starts for, in words; empty: nothing stands against it.
+  /// Why nothing starts, in words; empty: nothing prevents it.
   std::string hold() const;
   bool paused() const { return scheduler_.paused(); }
   /// Why the state file cannot be written; empty: it can.
@@ -68,7 +68,7 @@ class JobRunner {
   /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
   /// and waits for the next start of the service.
   void shut_down(std::chrono::milliseconds grace, std::function<void()> stopped);
-  /// shut_down's grace is over now, and nobody is asked.
+  /// Ends shut_down's grace at once, without asking the jobs to end.
   void kill();
 
   const std::map<std::int64_t, RunningJob>& running() const { return running_; }

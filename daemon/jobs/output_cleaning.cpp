@@ -21,6 +21,7 @@
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
 #include "format/io/file_system.h"
+#include "format/output/commit_leftovers.h"
 
 namespace weir {
 namespace {
@@ -176,11 +177,14 @@ class Cleaner {
     if (error) leave(path, error.message());
   }
 
-  // The old record of an overwritten volume: see the numbered steps in format/output/output_files.cpp.
+  // The sidecar of the volume that was to be replaced: see the numbered steps in format/output/output_files.cpp. It
+  // comes back where its volume is still there, also in place of the one that the killed commit put beside it.
   void restore(const fs::path& path) {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
+    const std::string volume = fs::path(record).replace_extension().string();
+    const bool of_volume = !describes(*files, record.string(), volume) && describes(*files, path.string(), volume);
     std::error_code error;
-    if (fs::exists(record, error)) {
+    if (fs::exists(record, error) && !of_volume) {
       remove(path);
     } else {
       fs::rename(path, record, error);

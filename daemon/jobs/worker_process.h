@@ -1,7 +1,6 @@
 // A child process of the daemon that does one piece of work: in a process group
 // of its own (a key pressed at a terminal is for the daemon), with the priority it
-// was given, with no descriptor of the daemon's open, and dead as soon as the
-// daemon is, whatever ends that.
+// was given, with no descriptor of the daemon's open, and killed as soon as the daemon ends, for whatever reason.
 //
 // One thread, that of the io_context, which must also be the thread that the
 // daemon lives on: the kernel kills the child when the thread that started it ends.

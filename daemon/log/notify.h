@@ -12,7 +12,7 @@ namespace weir {
 
 class ServiceNotifier {
  public:
-  /// Reads and removes $NOTIFY_SOCKET, $WATCHDOG_USEC and $WATCHDOG_PID, so that children do not answer in the
+  /// Reads and removes $NOTIFY_SOCKET, $WATCHDOG_USEC and $WATCHDOG_PID, so that child processes do not notify in the
   /// daemon's name.
   static ServiceNotifier from_environment();
   /// `socket`: a path, or a name in the abstract space with '@' in front; empty: nobody asked.

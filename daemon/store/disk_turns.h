@@ -1,6 +1,5 @@
-// Work of the event loop that waits for the disk of the state file, one piece at
-// a time: whoever asks for something meanwhile is answered after one piece, not
-// after one of everybody's. Lives on the io_context's thread.
+// Runs work that waits for the state file's disk on the event loop, one piece at a time: a request that comes meanwhile
+// is answered after one piece, not after all that are queued. Lives on the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -1,5 +1,4 @@
-// Watches a directory by inotify where the file system's changes pass through
-// this machine, by looking again and again elsewhere.
+// Watches a directory by inotify where the file system's changes pass through this machine, elsewhere by polling.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -65,7 +65,7 @@ struct CompletionAnswer {
   std::string reason;                             ///< of waiting, in words; of broken, one line without the path
 };
 
-/// One file's way to being complete. Made when the first event of the file arrives, and fed all of them; small
+/// Follows one file until it is complete. Made when the first event of the file arrives, and given all of them; small
 /// (and may be dropped when it is complete, broken or gone: the next event makes a new one).
 class FileCompletion {
  public:

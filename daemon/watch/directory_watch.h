@@ -1,6 +1,5 @@
-// Tells what happens to the sources in a watched directory, for as long as it
-// lives: nothing that PathFilter refuses, and no source left out. choosing_watch.h
-// makes one.
+// Reports what happens to the sources in a watched directory, for as long as it lives: every source, and nothing that
+// PathFilter refuses. choosing_watch.h makes one.
 //
 // The directory may be missing, go away, come back or be replaced at any time. What cannot be
 // watched (a directory without permission, a link that leaves the tree) is said once, in one line, and
@@ -38,7 +37,7 @@ class DirectoryWatch {
   /// Whether the directory is there, as of the last look.
   virtual bool up() const = 0;
   virtual WatchFigures figures() const = 0;
-  /// What stood against inotify may be over (a limit was raised): the way to watch is chosen anew.
+  /// What prevented inotify may be over (a limit was raised): chooses the way to watch again.
   virtual void choose_again() {}
 };
 

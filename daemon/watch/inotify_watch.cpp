@@ -49,7 +49,7 @@ InotifyWatch::InotifyWatch(boost::asio::io_context& io, SourceTable& table, Open
   after(root_timer_, milliseconds(0), &InotifyWatch::look_at_root);
 }
 
-InotifyWatch::~InotifyWatch() { stop(); }
+InotifyWatch::~InotifyWatch() { close(State::absent); }
 
 void InotifyWatch::after(boost::asio::steady_timer& timer, milliseconds delay, void (InotifyWatch::*next)()) {
   timer.expires_after(delay);
@@ -60,15 +60,15 @@ void InotifyWatch::after(boost::asio::steady_timer& timer, milliseconds delay, v
 }
 
 void InotifyWatch::fail(std::string reason) {
-  if (!failure_.empty()) return;
+  if (state_ == State::failed) return;
   failure_ = std::move(reason);
-  stop();
+  close(State::failed);
   after(root_timer_, milliseconds(0), &InotifyWatch::report_failure);
 }
 
 void InotifyWatch::report_failure() { give_up_(failure_); }
 
-void InotifyWatch::stop() {
+void InotifyWatch::close(State next) {
   batch_timer_.cancel();
   look_timer_.cancel();
   if (stream_.is_open()) stream_.release();  // cancels its wait; inotify_ closes it
@@ -77,11 +77,12 @@ void InotifyWatch::stop() {
   watches_.clear();
   changes_.clear();
   look_.clear();
-  looking_ = looking_at_all_ = begin_anew_ = false;
+  looking_ = false;
+  state_ = next;
 }
 
 void InotifyWatch::start() {
-  stop();
+  close(State::absent);
   try {
     inotify_ = open_();
   } catch (const Error& error) {
@@ -95,27 +96,27 @@ void InotifyWatch::start() {
 void InotifyWatch::look_at_root() {
   switch (table_.look_at_root()) {
     case SourceTable::Root::missing:
-      stop();
+      close(State::absent);
       break;
     case SourceTable::Root::another:
       start();
       break;
     case SourceTable::Root::same:
-      if (inotify_ == nullptr) {  // another watch had been there before
+      if (state_ == State::absent) {  // another watch had been there before
         start();
-      } else if (!looking_ && !begin_anew_ && (!watches_.contains({}) || look_is_due())) {
+      } else if (state_ == State::watching && !looking_ && (!watches_.contains({}) || look_is_due())) {
         look_at_all(true);
       }
       break;
   }
-  if (failure_.empty()) after(root_timer_, kRootInterval, &InotifyWatch::look_at_root);
+  if (state_ != State::failed) after(root_timer_, kRootInterval, &InotifyWatch::look_at_root);
 }
 
 bool InotifyWatch::look_is_due() const { return std::chrono::steady_clock::now() - looked_at_all_ > kLookInterval; }
 
 void InotifyWatch::look_at_all(bool events_tell) {
   table_.begin_look(events_tell);
-  looking_at_all_ = true;
+  state_ = State::scanning;
   look_.add({});
   look_on();
 }
@@ -127,16 +128,17 @@ void InotifyWatch::look_on() {
 
 void InotifyWatch::step() {
   const bool more = look_.step();
-  if (inotify_ == nullptr) return;  // it failed on the way
+  if (!is_open()) return;  // it failed on the way
   if (more) return after(look_timer_, milliseconds(0), &InotifyWatch::step);
   looking_ = false;
-  if (!std::exchange(looking_at_all_, false)) return;
+  if (state_ != State::scanning) return;
+  state_ = State::watching;
   table_.end_look();
   looked_at_all_ = std::chrono::steady_clock::now();
 }
 
 void InotifyWatch::enter(const std::string& directory) {
-  if (inotify_ == nullptr) return;
+  if (!is_open()) return;
   const std::string path = table_.absolute(directory);
   const int watch = inotify_->add(path);
   if (watch < 0) {
@@ -182,7 +184,7 @@ void InotifyWatch::await_events() {
 
 void InotifyWatch::read_events() {
   alignas(inotify_event) std::array<std::byte, kBufferBytes> buffer;
-  for (std::size_t reads = 0; reads < kReadsPerBatch && inotify_ != nullptr; ++reads) {
+  for (std::size_t reads = 0; reads < kReadsPerBatch && is_open(); ++reads) {
     std::size_t bytes = 0;
     try {
       bytes = inotify_->read(buffer);
@@ -190,7 +192,7 @@ void InotifyWatch::read_events() {
       return fail(error.what());
     }
     if (bytes == 0) break;
-    for (std::size_t at = 0; at < bytes && inotify_ != nullptr;) {
+    for (std::size_t at = 0; at < bytes && is_open();) {
       inotify_event event{};
       std::memcpy(&event, buffer.data() + at, sizeof event);
       const char* name = reinterpret_cast<const char*>(buffer.data() + at + sizeof event);
@@ -199,14 +201,14 @@ void InotifyWatch::read_events() {
     }
   }
   deliver();
-  if (inotify_ == nullptr) return;
-  if (begin_anew_) return after(batch_timer_, kAfterOverflow, &InotifyWatch::start);
+  if (!is_open()) return;
+  if (state_ == State::lost) return after(batch_timer_, kAfterOverflow, &InotifyWatch::start);
   after(batch_timer_, kBatchTime, &InotifyWatch::await_events);
 }
 
 void InotifyWatch::take(const inotify_event& event, std::string_view name) {
   if ((event.mask & IN_Q_OVERFLOW) != 0) {
-    if (!std::exchange(begin_anew_, true)) table_.overflowed();
+    if (std::exchange(state_, State::lost) != State::lost) table_.overflowed();
     return;
   }
   const auto at = directories_.find(event.wd);
@@ -216,7 +218,7 @@ void InotifyWatch::take(const inotify_event& event, std::string_view name) {
     if (directory.empty()) {  // the root's own end is seen by looking at it
       after(root_timer_, milliseconds(0), &InotifyWatch::look_at_root);
     } else if ((event.mask & IN_UNMOUNT) != 0) {
-      begin_anew_ = true;  // what was below the mount is to be watched now: begin anew
+      state_ = State::lost;  // what was below the mount is to be watched now: begin anew
     }
     if ((event.mask & IN_IGNORED) != 0) {
       if (const auto own = watches_.find(directory); own != watches_.end() && own->second == event.wd) {

@@ -6,6 +6,25 @@
 //      its parents is no event of its own.
 //   4. Every five minutes everything is looked at all the same, for what inotify does not tell: a
 //      mount below the directory, the target of a link that changed.
+//
+// States, and what leads from one to another:
+//
+//   state      the queue  what it means
+//   absent     closed     the directory is not there
+//   scanning   open       the whole tree is being listed
+//   watching   open       all that is there is known, events tell of the rest
+//   lost       open       events were lost; a moment later all begins anew
+//   failed     closed     inotify cannot do it, which is reported once; nothing follows
+//
+//   event                                      from                to
+//   the directory is there, or is another one  any but failed      scanning, with a new queue (failed where it is
+//   refused) the directory is missing                   any but failed      absent the listing has ended scanning
+//   watching five minutes, or the root's watch is gone  watching            scanning, with the same queue the queue
+//   overflowed, a mount below ended  scanning, watching  lost 0.1 s later                                lost scanning,
+//   with a new queue a watch is refused, the queue fails        any but absent      failed
+//
+// Beside that, in any state with an open queue, single directories and files are looked at (TreeLook) that events tell
+// of.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -50,8 +69,11 @@ class InotifyWatch final : public DirectoryWatch {
  private:
   using Change = std::pair<FileEventKind, std::string>;
 
+  enum class State { absent, scanning, watching, lost, failed };
+
+  bool is_open() const { return state_ == State::scanning || state_ == State::watching || state_ == State::lost; }
   void start();
-  void stop();
+  void close(State next);
   void fail(std::string reason);
   void report_failure();
   void look_at_root();
@@ -72,16 +94,15 @@ class InotifyWatch final : public DirectoryWatch {
   SourceTable& table_;
   OpenInotify open_;
   GiveUp give_up_;
-  std::string failure_;  ///< empty: none
+  State state_ = State::absent;
+  std::string failure_;  ///< why it failed
   std::unique_ptr<Inotify> inotify_;
   boost::asio::posix::stream_descriptor stream_;
   std::unordered_map<int, std::string> directories_;  ///< by watch; relative paths
   std::map<std::string, int> watches_;                ///< by directory
   std::vector<Change> changes_;                       ///< of this batch, to be delivered
-  bool begin_anew_ = false;                           ///< events were lost
   TreeLook look_;
-  bool looking_ = false;
-  bool looking_at_all_ = false;
+  bool looking_ = false;  ///< look_timer_ waits for the next step of look_
   std::chrono::steady_clock::time_point looked_at_all_{};
   boost::asio::steady_timer root_timer_;
   boost::asio::steady_timer look_timer_;

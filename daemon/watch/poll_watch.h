@@ -1,5 +1,4 @@
-// Watching by looking at everything again and again: where changes are made by
-// other machines, and where inotify's limits are reached.
+// Watching by polling: where other machines make changes, and where inotify's limits are reached.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

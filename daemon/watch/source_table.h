@@ -1,6 +1,5 @@
 // The sources that are known in a watched directory, and the reports of what
-// changes: the part that watching by inotify and by looking have in common, and
-// that one leaves to the other.
+// changes: the part that inotify and polling share, and that one hands to the other.
 #pragma once
 
 #include <sys/types.h>
@@ -37,9 +36,9 @@ class SourceTable {
   /// filter's paths are looked up anew.
   Root look_at_root();
 
-  /// A look at everything begins; what no saw() and happened() speaks of until end_look is looked for once more and
-  /// then reported as removed. `events_tell`: files that events came of are left to events, as after end_look;
-  /// else those from before begin_look are reported once more, for events may have been lost.
+  /// Begins a look at everything; what neither saw() nor happened() names before end_look is looked for once more and
+  /// then reported as removed. `events_tell`: files that events came of are left to events, as after end_look; else
+  /// those from before begin_look are reported once more, for events may have been lost.
   void begin_look(bool events_tell);
   void end_look();
   /// A look shows that the file is there; reported as found where it was not known to be so.

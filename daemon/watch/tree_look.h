@@ -27,7 +27,7 @@ class TreeLook {
   void add(const std::string& directory) { waiting_.push_back(directory); }
   /// Look at the file or link `path` now, if the table wants it.
   void look_at(const std::string& path);
-  /// `directory` has another name now, or none: what is still to be looked at in it is not.
+  /// `directory` was renamed or removed: drops what was still to be looked at in it.
   void leave(const std::string& directory);
   void clear();
   /// Looks at some entries, for about a millisecond on a local disk. False when there is nothing more to look at.

@@ -1,6 +1,5 @@
-// Positions of a lattice that something has been done for, as a few disjoint
-// boxes: work that goes box by box in the order of a plan fills three of them at
-// most, and another plan can ask what is left.
+// The positions of a lattice that are done, as a few disjoint boxes: work that goes box by box in the order of a plan
+// fills three of them at most, and another plan can ask what is left.
 #pragma once
 
 #include <cstdint>

@@ -10,9 +10,9 @@
 
 namespace weir {
 
-/// Tokens, one a byte, come in at a fixed rate until the bucket is full. Who moves bytes takes as many, more than
-/// there are if need be, and the next one waits until that debt is paid: so pieces of any size keep to the rate in
-/// the long run, and at no time is more ahead of it than the bucket holds and one piece.
+/// Tokens, one a byte, come in at a fixed rate until the bucket is full. Moving bytes takes as many tokens,
+/// more than there are if need be, and the next call waits until that debt is paid. So pieces of any size keep to the
+/// rate in the long run, and are never ahead of it by more than the bucket holds and one piece.
 class TokenBucket {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -40,13 +40,13 @@ struct BandwidthClock {
 
 class Bandwidth {
  public:
-  /// bytes_per_s above 0; a tenth of a second's bytes may be moved at once. Once `cancel`, if any, is set, nobody
-  /// waits: whoever stops then has to bring what it began to an end, and to save it.
+  /// bytes_per_s above 0; a tenth of a second's bytes may be moved at once. Once `cancel`, if any, is set, no call
+  /// waits, so that work that stops can finish and save what it began.
   Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel, BandwidthClock clock);
   Bandwidth(std::uint64_t bytes_per_s, const std::atomic<bool>* cancel);
 
-  /// `bytes` were read, or are about to be written: returns when that keeps to the limit. Any thread may call it; they
-  /// share the limit.
+  /// Call it after reading or before writing `bytes`: returns when that keeps to the limit. Any thread may call it;
+  /// they share the limit.
   void spend(std::uint64_t bytes);
 
  private:

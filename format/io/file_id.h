@@ -18,7 +18,7 @@ struct FileId {
 /// By way of symbolic links; nullopt where there is none.
 std::optional<FileId> file_id(const std::string& path);
 
-/// Throws Error(usage) where one of `inputs` is what stands at `output` or at a name of weir's own beside it, and so
+/// Throws Error(usage) where one of `inputs` is the file at `output` or at one of weir's own names beside it, and so
 /// would be replaced or removed.
 void require_not_input(std::span<const FileId> inputs, const std::string& output);
 

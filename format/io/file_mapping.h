@@ -28,8 +28,8 @@ class FileMapping {
   /// Of the file as it was opened, whatever has the path now.
   int descriptor() const { return file_.get(); }
 
-  /// Gives the pages looked at so far back, for mapped ones count as the process's memory; they stay in the page
-  /// cache and are mapped again when they are looked at.
+  /// Releases the pages read so far, since mapped pages count as the process's memory; they stay in the page cache and
+  /// are mapped again when they are read.
   void release_pages() const;
   /// True where a sample of the pages of [offset, offset + bytes) is in the page cache, or the system does not tell.
   bool cached(std::uint64_t offset, std::uint64_t bytes) const;
@@ -41,7 +41,7 @@ class FileMapping {
   /// The file's bytes from `offset` on, by pread. Throws Error(input) where it ends before or cannot be read.
   void read(std::uint64_t offset, std::span<std::byte> into) const;
   /// Throws Error(input) where the file's size or time of change is not that at opening. A change through another
-  /// mapping may be told late.
+  /// mapping may be noticed late.
   void check_unchanged() const;
 
  private:

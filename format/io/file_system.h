@@ -29,10 +29,10 @@ class File {
   virtual void start_writeback() = 0;
   virtual void sync() = 0;
   virtual std::uint64_t size() = 0;
-  /// The system's, for as long as this file is open; -1 where there is none.
+  /// The system's descriptor, valid while this file is open; -1 where there is none.
   virtual int descriptor() const { return -1; }
-  /// Whether no other process writes it by way of a FileSystem: it is locked, or did not exist before. False where it
-  /// did, on a file system without locks.
+  /// Whether no other process writes it through a FileSystem: it is locked, or did not exist before. False for a file
+  /// that existed before, on a file system without locks.
   virtual bool exclusive() const { return true; }
 };
 
@@ -41,8 +41,8 @@ class FileSystem {
  public:
   virtual ~FileSystem() = default;
   /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it; a lock
-  /// held by another process is Error(io) "is being written by another process". What stands there and is no
-  /// regular file with this one name, a symbolic link for instance, is somebody's: Error(usage).
+  /// held by another process is Error(io) "is being written by another process". Anything there but a regular file with
+  /// this one name, a symbolic link for instance, is not weir's: Error(usage).
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
   /// The same, but what the file holds stays, and it may have further names.
   virtual std::unique_ptr<File> open(const std::string& path) = 0;
@@ -58,8 +58,8 @@ class FileSystem {
   virtual void remove_directory(const std::string& path) = 0;  ///< empty or missing
   virtual void sync_directory(const std::string& path) = 0;
   virtual bool exists(const std::string& path) = 0;
-  /// Whether nothing is lost but a regular file when something is renamed to `path`: it is missing or is one, by way
-  /// of symbolic links, too.
+  /// Whether a rename to `path` would replace nothing but a regular file: `path` is missing or is one, symbolic links
+  /// followed.
   virtual bool is_replaceable(const std::string&) { return true; }
   virtual bool is_memory(const std::string& directory) = 0;  ///< tmpfs or ramfs
   virtual std::uint64_t free_bytes(const std::string& directory) = 0;

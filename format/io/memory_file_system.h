@@ -1,4 +1,4 @@
-// Files that are memory of this process: for a conversion whose result a program wants in its hands, and not on a disk.
+// Files in the memory of this process, for a conversion whose result is to stay in memory and not go to a disk.
 #pragma once
 
 #include <cstddef>

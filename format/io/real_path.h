@@ -1,4 +1,4 @@
-// Where a path leads, whether something is there, and what lies below what.
+// Where a path leads, whether something exists there, and whether it lies below another path.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ std::filesystem::path real_path(const std::string& path);
 /// Whether `path` is `directory` or lies below it, by their components: both are absolute and normal.
 bool lies_below(const std::filesystem::path& path, const std::filesystem::path& directory);
 
-/// Whether there is something at `path`, links followed; false, too, where that cannot be known, as of a name that is
-/// too long: what is done with the path next says why.
+/// Whether something exists at `path`, links followed; false, too, where that cannot be known, as for a name that is
+/// too long: the next use of the path reports why.
 bool is_there(const std::string& path);
 
 }  // namespace weir

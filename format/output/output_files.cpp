@@ -7,7 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/output/commit_traces.h"
+#include "format/output/commit_leftovers.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {

@@ -18,7 +18,7 @@ class OutputFiles {
   /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
   /// false, where its name is too long for the names beside it, or where something else than a regular file would be
   /// replaced. A sidecar that a killed commit left without its volume is no output, and is removed; one that it put
-  /// beside the volume from before makes room for that volume's own.
+  /// beside the previous volume is replaced by that volume's own.
   OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
   /// Removes what was not committed.
   ~OutputFiles();
@@ -28,8 +28,8 @@ class OutputFiles {
   /// Directory of the output, "." where the path has none.
   const std::string& directory() const { return directory_; }
 
-  /// The volume's bytes are those of `file`, on the same file system, and not of OUT.nvdb.partial, which stays the
-  /// lock until this object ends. A failure leaves `file`, which is its owner's to remove.
+  /// Takes the volume's bytes from `file`, on the same file system, and not from OUT.nvdb.partial, which stays the lock
+  /// until this object ends. A failure leaves `file`, which its owner must remove.
   void write_to(std::shared_ptr<File> file);
 
   /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.

@@ -1,5 +1,4 @@
-// One output file from its first byte to its name: it is complete or absent.
-// What belongs to it is FILE.partial until `commit`.
+// One output file that is complete or absent: its bytes are in FILE.partial until `commit`.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,5 @@
-// Opacity over the values as a scene gives it, in the table that everything which
-// asks whether a value can be seen shares: the renderer and, with a scene, the
-// compressor.
+// Opacity over the values as a scene gives it, in one table that the renderer and, with a scene, the compressor share
+// to decide whether a value can be seen.
 #pragma once
 
 #include <algorithm>

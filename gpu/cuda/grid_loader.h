@@ -29,8 +29,8 @@ inline constexpr unsigned kThreadsForRing = 8;
 std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads);
 
 struct LoadOptions {
-  /// Only this way, and Error(io) with the reason where it is refused; else direct_storage where the system has it and
-  /// the file is not in the page cache, then load_paths.
+  /// Where set, only this way is tried, and its refusal is Error(io) with the reason. Otherwise direct_storage where
+  /// the system has it and the file is not in the page cache, then load_paths.
   std::optional<LoadPath> only = std::nullopt;
   std::vector<LoadPath> order = {};           ///< to try instead of those of load_paths; empty: those
   std::uint64_t chunk_bytes = 128ULL << 20U;  ///< of the file page-locked, or read, at a time by each thread
@@ -50,7 +50,7 @@ class DeviceGrid {
   /// NvdbGrid::data_bytes(): without the padding at the tail.
   std::uint64_t bytes() const { return report_.bytes; }
   const LoadReport& report() const { return report_; }
-  /// The memory for another load, which ends this grid.
+  /// Gives the memory to another load, which ends this grid.
   DeviceBuffer take_buffer() && {
     data_ = nullptr;
     host_.reset();
@@ -71,8 +71,8 @@ class DeviceGrid {
   std::optional<ZeroCopyRange> host_;  ///< with zero_copy
 };
 
-/// Brings the first grid of `file` to the current device, into `buffer` where that is large enough, behind what
-/// `stream` has to do; all is there when it returns. On a throw `buffer` is still the caller's. With
+/// Copies the first grid of `file` to the current device, into `buffer` where that is large enough, after the work
+/// queued in `stream`; the copy is complete when it returns. On a throw the caller still owns `buffer`. With
 /// options.zero_copy `file` must outlive the grid.
 ///
 /// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and

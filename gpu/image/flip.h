@@ -14,10 +14,10 @@ inline constexpr double kFlipPixelsPerDegree = 67.0206433;
 inline constexpr double kFlipMinPixelsPerDegree = 1;
 inline constexpr double kFlipMaxPixelsPerDegree = 1000;
 
-/// Of every pixel the difference from 0 (none that one sees) to 1 (the largest there is), rows from the top. What a
-/// display shows counts: linear RGB is cut to [0, 1], NaN is black. Symmetric in the two pictures. The work is that of
-/// separable filters, some 0.3 pixels_per_degree + 1 taps wide. Does not depend on the number of threads.
-/// Throws Error(usage) where the sizes differ, there is no pixel, or pixels_per_degree is outside its range.
+/// The difference at every pixel, from 0 (none visible) to 1 (the largest possible), rows from the top. Colours count
+/// as a display shows them: linear RGB is cut to [0, 1], NaN is black. Symmetric in the two pictures. The work is that
+/// of separable filters, some 0.3 pixels_per_degree + 1 taps wide. Does not depend on the number of threads. Throws
+/// Error(usage) where the sizes differ, there is no pixel, or pixels_per_degree is outside its range.
 std::vector<float> flip_errors(const Image& reference, const Image& test, double pixels_per_degree);
 
 /// The errors of all pixels in a few numbers. A weighted percentile is the error up to which the smaller errors

@@ -17,13 +17,13 @@ namespace weir {
 
 /// How a volume came in.
 struct LoadSummary {
-  std::string way;          ///< "mapped"; of the device a load_path_name
+  std::string way;          ///< "mapped"; for a device, a load_path_name
   std::uint64_t bytes = 0;  ///< of the grid, tail padding left out
   double seconds = 0;       ///< of the transfer alone
   std::string note;         ///< why a faster way was refused; empty: none was
 };
 
-/// A volume that its back end can render; it stays until the object goes.
+/// A volume that its back end can render, loaded for as long as the object lives.
 class LoadedVolume {
  public:
   virtual ~LoadedVolume() = default;
@@ -42,10 +42,11 @@ class Backend {
   virtual ~Backend() = default;
   virtual std::string_view name() const = 0;
   /// `file` stays mapped as long as the volume needs it. `cell`: voxels along a macrocell's edge, at least; 0: what is
-  /// fastest here. `reuse` (may be null), a volume of this back end that nobody needs any more, lends its memory.
+  /// fastest here. The memory of `reuse` (may be null), a volume of this back end that is no longer needed, is used
+  /// again.
   virtual std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
                                              std::unique_ptr<LoadedVolume> reuse) = 0;
-  /// A volume that is held voxel by voxel; `volume` stays as long as it is needed.
+  /// Loads a dense volume; `volume` is kept as long as it is needed.
   virtual std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) = 0;
   /// `volume` must be this back end's. May run while another volume is loaded from another thread. Throws
   /// Error(interrupted) where `cancel` was set, and as RenderSetup.

@@ -16,7 +16,7 @@ namespace weir {
 struct PlaybackReport {
   std::size_t frames = 0;
   double total_s = 0;  ///< from the first load to the last frame written
-  double load_s = 0;   ///< what each stage worked, beside the others
+  double load_s = 0;   ///< how long each stage worked; stages overlap
   double render_s = 0;
   double write_s = 0;
   double sustained = 0;  ///< frames per second from the first one written to the last; of all where there is one

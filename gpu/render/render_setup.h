@@ -1,5 +1,5 @@
-// One picture of one volume but for the volume itself: camera, light, transfer
-// function and majorants as a scene asks for them, whatever holds the voxels.
+// All that one picture of a volume needs but the voxels: camera, light, transfer function and majorants as a scene asks
+// for them.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct RenderOptions {
   std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
   /// Instead of the volume's own, so that all steps of a series look alike.
   std::optional<float> background = std::nullopt;
-  /// The scene's; null: loaded from where the scene says. Who renders the scene again hands it over.
+  /// The scene's; null: loaded from where the scene says. Give it to render the scene again without loading it.
   std::shared_ptr<const Environment> environment = nullptr;
 };
 
@@ -58,7 +58,7 @@ class RenderSetup {
     task.medium.cell_opacity = majorants().data();
     return task;
   }
-  /// The same without majorants, for who finds them elsewhere.
+  /// The same without majorants, for callers that compute them elsewhere.
   template <class Volume>
   RenderTask<Volume> bare_task(const Volume& volume) const {
     RenderTask<Volume> task;

@@ -32,7 +32,7 @@ struct RenderTask : RenderFrame {
 };
 
 /// Radiance of sample `sample` of pixel (x, y), y down; linear RGB, finite. Depends on the arguments
-/// alone. `mode` is the task's, for who knows it when compiling.
+/// alone. `mode` is the task's, for callers that know it at compile time.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, RenderMode mode, std::int32_t x, std::int32_t y,
                                       std::uint32_t sample) {

@@ -1,4 +1,4 @@
-// How much of a picture to render, and how to be told of it and stopped.
+// How much of a picture to render, how progress is reported, and how to stop.
 #pragma once
 
 #include <atomic>

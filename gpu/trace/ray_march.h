@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// Transmittance below which a ray has seen enough: an eighth of a step of 8-bit output.
+/// Transmittance below which a ray ends: an eighth of a step of 8-bit output.
 inline constexpr float kOpaque = 1.0F / 2048.0F;
 /// Contribution to a pixel below which a sample is not worth the six lookups of a gradient.
 inline constexpr float kUnshaded = 1.0F / 4096.0F;

@@ -1,6 +1,5 @@
-// A volume as it was before it became sparse: every voxel a float32 in memory,
-// filtered and bounded as the voxels of a file are. The baseline that pictures
-// and speeds of files are compared with.
+// A dense volume: every voxel a float32 in memory, filtered and bounded like the voxels of a file. It is the baseline
+// for pictures and speeds of files.
 #pragma once
 
 #include <cstdint>

@@ -32,8 +32,8 @@ FileState state_of(const std::string& path, const struct stat& status);
 /// Of what `path` leads to now.
 FileState look_at_file(const std::string& path);
 
-/// Stands in every message about a source that changed, and in no other: by it the service knows that another attempt
-/// may succeed.
+/// Part of every message about a source that changed, and of no other: it tells the service that another attempt may
+/// succeed.
 inline constexpr std::string_view kChangedWhileRead = "changed while it was read";
 
 inline constexpr std::string_view kConvertAgain = "; convert it again once nothing writes to it";  ///< its end
@@ -46,8 +46,8 @@ Error changed_error(const std::string& path, const std::string& what);
 std::optional<std::string> file_outside(std::span<const FileState> files, const std::string& directory);
 
 /// Whether the status of `file` is not older than the content of `record`, which was written after it: then the file
-/// was replaced (cp -p, rsync -t), or rewritten and its time set back. As a file system that counts whole seconds tells
-/// (FAT counts two), rather once too often.
+/// was replaced (cp -p, rsync -t), or rewritten and its time set back. On a file system that counts whole seconds (FAT
+/// counts two) it is true rather once too often.
 bool touched_since(const FileState& file, const FileState& record);
 
 /// Looks at the files again. Throws changed_error of the first that is not as it was in `files`.

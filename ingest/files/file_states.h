@@ -1,5 +1,5 @@
-// Which files a volume lies in, and as of when: where there are several, their
-// bytes together and the newest time do not tell whether one of them has changed.
+// The files that a volume lies in, with their states: where there are several, their total size and newest time do not
+// tell whether one of them has changed.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ class FileStates {
  public:
   /// The file at `path` as it is now: name without its directory, size, times of modification and of status change. So
   /// a file that was replaced by one of the same size and time is another. `named` is the digest of the states of those
-  /// that it names, if any. To be called before the file is opened, so that a change meanwhile is seen later; a missing
-  /// one is for the opening to refuse.
+  /// that it names, if any. Call it before the file is opened, so that a change in between is seen later; opening
+  /// refuses a missing file.
   void add(const std::string& path, const std::string& named = {}) { add(look_at_file(path), named); }
   void add(const FileState& file, const std::string& named = {});
 

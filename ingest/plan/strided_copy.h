@@ -1,4 +1,4 @@
-// Voxels out of an array of any layout into one without gaps.
+// Copies voxels from an array of any layout into one without gaps.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace weir {
 
-/// Where the voxels of `box` are in somebody's memory.
+/// Where the voxels of `box` are in the caller's memory.
 struct StridedVoxels {
   Box box;                             ///< index space
   const std::byte* first;              ///< voxel box.lo, at any alignment

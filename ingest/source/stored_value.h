@@ -39,9 +39,9 @@ struct ValueMapping {
 };
 
 /// What a missing voxel reads as: a quiet NaN that no arithmetic makes, told from the NaN a simulation
-/// writes. Its place is taken by the background unless non-finite voxels are kept. It stands for that in volumes whose
-/// mapping names missing values only: decode_values gives stored NaN of these bits others there, and elsewhere it is a
-/// NaN as any.
+/// writes. The background takes its place unless non-finite voxels are kept. It means that only in volumes whose
+/// mapping names missing values: there decode_values gives stored NaN of these bits other bits; elsewhere it is an
+/// ordinary NaN.
 inline constexpr std::uint32_t kMissingBits = 0x7FE0DA7AU;
 inline float missing_value() { return std::bit_cast<float>(kMissingBits); }
 inline bool is_missing(float value) { return std::bit_cast<std::uint32_t>(value) == kMissingBits; }

@@ -1,5 +1,5 @@
-// How volumes come in. One implementation per file format; all of them hand out
-// boxes of float32 values, x fastest, and never hold more than they were handed.
+// Sources of volumes. One implementation per file format; all of them hand out boxes of float32 values, x fastest, and
+// never hold more than they were handed.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct ConversionLoss {
   }
 };
 
-/// How a source likes to be read; input to the block plan.
+/// How a source is best read; input to the block plan.
 struct AccessShape {
   std::size_t bytes_per_voxel = 4;  ///< in the file
   Index3 chunk{0, 0, 0};            ///< chunk extent in voxels, zero where rows are contiguous

@@ -21,9 +21,9 @@ struct RawLayout {
 };
 
 /// A source of `info`, whose values lie in `file` by `layout`; fills info.type, mapping, file_bytes,
-/// mtime_ns and files where they are zero or empty. The extent's bytes must fit the file: what does not fit is an
-/// Error(internal), for the caller has the words for it. Needs up to kStagingBytes (ingest/plan/staging.h)
-/// besides the callers' buffers.
+/// mtime_ns and files where they are zero or empty. The extent's bytes must fit the file: otherwise Error(internal),
+/// since the caller reports that with a better message. Needs up to kStagingBytes (ingest/plan/staging.h) besides the
+/// callers' buffers.
 std::unique_ptr<VolumeSource> make_raw_values(std::unique_ptr<InputFile> file, const RawLayout& layout,
                                               SourceInfo info);
 

@@ -12,7 +12,7 @@
 
 namespace weir {
 
-/// Reads blocks of one tree; for one thread, for it may remember where it was.
+/// Reads blocks of one tree. For one thread, since it may remember its last position.
 class LeafReader {
  public:
   virtual ~LeafReader() = default;

@@ -1,6 +1,6 @@
 // The tree of a grid in a .vdb file walked without building it: how many nodes
-// it has, which voxels are active, and whether its parts are as long as OpenVDB
-// takes them to be, for OpenVDB reads some of them without looking.
+// it has, which voxels are active, and whether its parts are as long as OpenVDB takes them to be, since OpenVDB reads
+// some of them without a check.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ namespace weir::watched_tree_test {
 namespace {
 
 // A reload takes a watch away whose timer has ended, but whose turn comes after the reload's.
-TEST(WatchedTree, DoesNothingOnceItIsGone) {
+TEST(WatchedTree, DoesNothingAfterItsDestruction) {
   const TemporaryDirectory directory;
   boost::asio::io_context io;
   JobStore store(directory / "weir.db");

@@ -71,7 +71,7 @@ TEST(Interrupt, InTheSurveyLeavesNothing) {
   }
 }
 
-TEST(Interrupt, InTheEncodePassKeepsWhatWasThere) {
+TEST(Interrupt, InTheEncodePass_KeepsTheOldOutput) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
   const std::string volume = directory / "noise_512x512x128_uint8.raw";
@@ -106,7 +106,7 @@ TEST(Interrupt, KeepsALargeConversionThatTheSameCommandContinues) {
 }
 
 // Long before the first save is due, and with bytes to wait for.
-TEST(Interrupt, BelowABandwidthKeepsWhatIsDone) {
+TEST(Interrupt, WithABandwidthLimit_KeepsTheFinishedPart) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
   const std::string volume = directory / "zeros_1024x1024x1024_uint8.raw";
@@ -122,7 +122,7 @@ TEST(Interrupt, BelowABandwidthKeepsWhatIsDone) {
             (Names{".volume.nvdb.work/", ".volume.nvdb.work/journal", ".volume.nvdb.work/rows"}));
 }
 
-TEST(Interrupt, KilledAgainAndAgainItEndsWithTheSameBytes) {
+TEST(Interrupt, KilledRepeatedly_EndsWithTheSameBytes) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
   const std::string volume = directory / "noise_512x512x512_uint8.raw";

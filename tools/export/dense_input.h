@@ -1,4 +1,4 @@
-// The source of a volume read into memory whole, as `weir render --volume dense` shows it.
+// A source read into memory as a whole, as `weir render --volume dense` shows it.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // An output file as a standard stream, written from some offset on in order, with
-// a digest of what went by: for libraries and writers that know only std::ostream.
+// a digest of what was written: for libraries and writers that know only std::ostream.
 #pragma once
 
 #include <cstddef>

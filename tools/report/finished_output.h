@@ -1,6 +1,5 @@
-// What stands at an output's place, seen from the conversion that would write
-// it: the question behind `weir convert --skip-done`. Two small reads and one of
-// the volume's nodes; no values are read, that is for `weir verify`.
+// What a conversion finds at the path of its output, for `weir convert --skip-done`. Two small reads and one of the
+// volume's nodes; values are read by `weir verify` only.
 #pragma once
 
 #include <optional>

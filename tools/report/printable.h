@@ -1,4 +1,4 @@
-// Names from elsewhere, for a terminal.
+// Foreign names, made safe for a terminal.
 #pragma once
 
 #include <algorithm>

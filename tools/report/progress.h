@@ -47,7 +47,7 @@ class Progress {
  public:
   /// `clock_s` returns monotonic seconds; tests pass their own.
   explicit Progress(ProgressOptions options, std::FILE* out = stderr, std::function<double()> clock_s = {});
-  /// Ends a bar that an exception left standing, so that the message starts on a line of its own.
+  /// Ends a bar that an exception left unfinished, so that the message starts on a line of its own.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -1,5 +1,5 @@
-// What a grid really holds, counted by visiting every leaf and tile: the truth
-// that `verify` holds the stored figures against, and that `inspect` shows.
+// What a grid really holds, counted by visiting every leaf and tile: `verify` compares the stored figures with it, and
+// `inspect` shows it.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ class App;
 
 namespace weir {
 
-/// Where the service is and what it wants to be shown, as options.
+/// The service's address and token, as options.
 struct ServiceOptions {
   std::string address;     ///< HOST:PORT or unix:PATH
   std::string config;      ///< CONFIG.toml, which says both

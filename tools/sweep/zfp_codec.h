@@ -1,7 +1,7 @@
 // ZFP in its fixed-rate mode (P. Lindstrom, "Fixed-Rate Compressed Floating-Point
-// Arrays", IEEE TVCG 2014), by libzfp: what other compressors are held against.
-// Blocks of 4^3 voxels are coded one by one into the same number of bits, so that
-// the parts of a volume decode to what the volume in one piece decodes to.
+// Arrays", IEEE TVCG 2014), by libzfp: the codec that other compressors are compared with. Blocks of 4^3 voxels are
+// coded one by one into the same number of bits, so that the parts of a volume decode to what the volume in one piece
+// decodes to.
 #pragma once
 
 #include <cstddef>

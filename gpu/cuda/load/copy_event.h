@@ -1,4 +1,4 @@
-// The point of a stream that a copy has, to wait for it without spinning.
+// Marks a copy's point in a stream, to wait for it without spinning.
 #pragma once
 
 #include <utility>
@@ -21,9 +21,9 @@ class CopyEvent {
     return *this;
   }
 
-  /// After all that `stream` was given so far.
+  /// Marks the point after all that `stream` was given so far.
   void record(cudaStream_t stream) { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
-  /// Until what was recorded is done; at once where nothing was. Throws Error(io) where a copy failed.
+  /// Waits until what was recorded is done; returns at once where nothing was. Throws Error(io) where a copy failed.
   void wait() const { check_cuda(cudaEventSynchronize(event_), "copying to the device"); }
 
  private:

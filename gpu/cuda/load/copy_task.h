@@ -1,4 +1,4 @@
-// What every way of loading is given and what it answers.
+// What every way of loading is given and what it returns.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -15,7 +15,7 @@
 
 namespace weir {
 
-/// Bytes [offset, offset + bytes) of a file to `target` on `device`, behind what `stream` has to do.
+/// Bytes [offset, offset + bytes) of a file to `target` on `device`, after the work queued in `stream`.
 struct CopyTask {
   const FileMapping& file;
   std::uint64_t offset = 0;

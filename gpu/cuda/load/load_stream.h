@@ -1,4 +1,4 @@
-// The stream of one load, behind what another stream has to do.
+// The stream of one load, which runs after the work queued in another stream.
 #pragma once
 
 #include "gpu/cuda/runtime/check.h"

@@ -15,7 +15,7 @@ bool has_hdf5_signature(const std::string& path);
 bool is_classic_netcdf(std::span<const std::byte> head);
 
 /// Files with the signature; and those that only look so, by a name (.h5, .hdf5, .he5, .nc, .nc4) or as NetCDF of
-/// before version 4: open_hdf5_file has the words for them.
+/// before version 4: open_hdf5_file has the messages for them.
 bool recognises_hdf5(std::string_view path, std::span<const std::byte> head);
 
 }  // namespace weir

@@ -1,6 +1,6 @@
 // A virtual dataset's mappings: which elements of it lie where in which other
-// dataset. The library reads what it cannot find as fill values, without a word;
-// here every source is found, or named in an error.
+// dataset. The library silently reads what it cannot find as fill values; here every source is found, or named in an
+// error.
 #pragma once
 
 #include <hdf5.h>

@@ -46,7 +46,7 @@ std::string refusal(const Given& given) {
   return message_of_error(ErrorKind::usage, [&] { read(given); });
 }
 
-TEST(VersionedStruct, AnOlderProgramsStructIsReadAndNotExceeded) {
+TEST(VersionedStruct, OlderStruct_IsReadAndNotWrittenBeyondItsSize) {
   struct {
     First first{};
     int beyond = 99;
@@ -63,7 +63,7 @@ TEST(VersionedStruct, AnOlderProgramsStructIsReadAndNotExceeded) {
   EXPECT_EQ(older.beyond, 99);
 }
 
-TEST(VersionedStruct, ANewerProgramsStructIsReadWhereItSetsNothingNew) {
+TEST(VersionedStruct, NewerStruct_IsReadUnlessItsNewMembersAreSet) {
   Later later{};
   EXPECT_EQ(init_struct(reinterpret_cast<Known*>(&later), sizeof later), WEIR_OK);
   EXPECT_EQ(later.struct_size, sizeof later);
@@ -77,7 +77,7 @@ TEST(VersionedStruct, ANewerProgramsStructIsReadWhereItSetsNothingNew) {
             "weir_known: sets members that are newer than this library, " WEIR_VERSION "; leave them 0");
 }
 
-TEST(VersionedStruct, WhatWasNotSetUpIsRefused) {
+TEST(VersionedStruct, WrongStructSize_IsRefused) {
   First first{sizeof(First) - 1, 0, 0};
   EXPECT_EQ(refusal(first), cat("weir_known: struct_size is ", sizeof(First) - 1, ", and must be at least ",
                                 sizeof(First), "; set it up with weir_known_init"));

@@ -148,7 +148,7 @@ TEST_F(Mpi, AnyNumberOfProcessesConvertsToTheSameBytes) {
   expect_same(sample("cloud", "1x1x1", "uint8"), {"--lossless"});
 }
 
-TEST_F(Mpi, AScenesChoiceIsTheSame) {
+TEST_F(Mpi, ConversionWithAScene_GivesTheSameBytes) {
   const std::string cloud = sample("cloud", "150x140x140", "float32");
   write_file(directory_ / "scene.toml",
              "[volume]\nrange = [0.0, 1.0]\nopacity = [[0.0, 0.0], [0.4, 0.0], [1.0, 1.0]]\n");
@@ -225,7 +225,7 @@ TEST_F(Mpi, AFileThatSomeProcessDoesNotFindLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(directory_ / "work"));
 }
 
-TEST_F(Mpi, APushOfOtherThanEachVoxelOnceIsRefused) {
+TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   const std::string cloud = sample("cloud", "20x30x40", "float32");
   const std::vector<std::string> volume{"20", "30", "40", "10"};
   const auto refused = [&](const std::string& mode, const std::string& said) {
@@ -247,7 +247,7 @@ TEST_F(Mpi, APushOfOtherThanEachVoxelOnceIsRefused) {
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
 }
 
-TEST_F(Mpi, TheExampleSavesWhatOneProcessDoes) {
+TEST_F(Mpi, ExampleSavesTheSameBytesForAnyNumberOfProcesses) {
   for (const int processes : {1, 3}) {
     fs::create_directory(directory_ / cat(processes));
     const CommandResult run = run_mpi(processes, {WEIR_MPI_EXAMPLE, cat(processes), "40", "20"}, directory_.path());

@@ -21,7 +21,6 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/faulty_file_system.h"
-#include "tests/support/message_of_error.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -57,7 +56,13 @@ class PushedFaultTest : public testing::Test {
 
   template <typename Call>
   static std::string message_of(const Call& call) {
-    return message_of_error(ErrorKind::io, [&] { call(); });
+    try {
+      call();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io) << error.what();
+      return error.what();
+    }
+    return "";
   }
 
   TemporaryDirectory directory_;

@@ -39,14 +39,14 @@ std::string refusal(const std::string& text, const ConvertSyntax& known = syntax
   }
 }
 
-TEST(ConvertSyntax, KeysAreOptions) {
+TEST(ConvertSyntax, KeysBecomeCommandLineOptions) {
   EXPECT_EQ(read(""), Arguments{});
   EXPECT_EQ(read("rate = 8\nlossless = true\ndims = '64,64,64'\nmax_error = 'x'"),
             (Arguments{"--max-error=x", "--dims=64,64,64", "--lossless", "--rate=8"}));
   EXPECT_EQ(read("lossless = false"), Arguments{});
 }
 
-TEST(ConvertSyntax, FilesAreBesideTheConfiguration) {
+TEST(ConvertSyntax, RelativePathsStartAtTheConfigurationFile) {
   EXPECT_EQ(read("scene = 'looks/a.toml'"), Arguments{"--scene=/etc/weir/looks/a.toml"});
   EXPECT_EQ(read("scene = '../a.toml'"), Arguments{"--scene=/etc/a.toml"});
   EXPECT_EQ(read("scene = '/a.toml'"), Arguments{"--scene=/a.toml"});
@@ -62,7 +62,7 @@ TEST(ConvertSyntax, NumbersKeepAllTheirDigits) {
   EXPECT_EQ(read("dims = ['0:8', 2]"), Arguments{"--dims=0:8,2"});
 }
 
-TEST(ConvertSyntax, OtherTypesAreRefused) {
+TEST(ConvertSyntax, RefusesWrongTypesAndUnknownKeys) {
   EXPECT_EQ(refusal("lossless = 1"), "/etc/weir/c.toml:1:12: lossless must be true or false");
   EXPECT_EQ(refusal("max_error = true"),
             "/etc/weir/c.toml:1:13: max_error must be a string, a number or an array of them");
@@ -74,7 +74,7 @@ TEST(ConvertSyntax, OtherTypesAreRefused) {
       "/etc/weir/c.toml:1:1: unknown key \"max-error\" in [[watch]]; there are dims, lossless, max_error, rate, scene");
 }
 
-TEST(ConvertSyntax, ARefusalIsSaidOfTheKeyThatCausedIt) {
+TEST(ConvertSyntax, RefusalNamesThePlaceOfItsKey) {
   const ConvertSyntax known = syntax("--rate, --max-error and --max exclude each other --lossless");
   const std::string message = "rate, max_error and --max exclude each other lossless";
   EXPECT_EQ(refusal("max_error = 1\nrate = 8\ndims = 3", known), "/etc/weir/c.toml:2:8: " + message);
@@ -82,7 +82,7 @@ TEST(ConvertSyntax, ARefusalIsSaidOfTheKeyThatCausedIt) {
   EXPECT_EQ(refusal("dims = 3", known), "/etc/weir/c.toml:1:1: " + message);
 }
 
-TEST(ConvertSyntax, OtherErrorsPass) {
+TEST(ConvertSyntax, ErrorsOtherThanUsage_PassUnchanged) {
   EXPECT_THROW(
       {
         try {

@@ -23,7 +23,7 @@ TEST(ListenAddress, ReadsTheSocketsPath) {
   EXPECT_EQ(address.text(), "unix:/run/weir:1.sock");
 }
 
-TEST(ListenAddress, RefusesWhatIsNone) {
+TEST(ListenAddress, RefusesMalformedAddresses) {
   for (const char* text :
        {"", ":", "8470", ":8470", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "127.0.0.1:http",
         "::1:8470", "[127.0.0.1]:1", "[]:1", "[::1:1", "http://localhost:1", "a b:1"}) {
@@ -38,7 +38,7 @@ TEST(ListenAddress, RefusesWhatIsNone) {
   }
 }
 
-TEST(ListenAddress, KnowsWhatStaysOnThisMachine) {
+TEST(ListenAddress, RecognisesLoopbackHosts) {
   for (const char* host : {"localhost", "127.0.0.1", "127.255.255.255", "::1", "0:0:0:0:0:0:0:1"}) {
     EXPECT_TRUE(is_loopback(host)) << host;
   }

@@ -195,7 +195,7 @@ TEST_F(Config, WrongValuesOfTheService) {
   EXPECT_EQ(service_refusal("log_size = 1.5"), "2:12: log_size" + size);
 }
 
-TEST_F(Config, MemoryMustDoForAllJobs) {
+TEST_F(Config, MemoryTooLittleForAllJobs_IsRefused) {
   EXPECT_EQ(service_refusal("memory = '128MiB'"), "");
   EXPECT_EQ(service_refusal("memory = 134217727"),
             "2:10: memory is 128.0 MiB, too little for the daemon and jobs = 1; it must be at least 128.0 MiB");
@@ -205,7 +205,7 @@ TEST_F(Config, MemoryMustDoForAllJobs) {
             "2:10: memory is 1 B, too little for the daemon and jobs = 1; it must be at least 128.0 MiB");
 }
 
-TEST_F(Config, OthersThanLoopbackNeedAToken) {
+TEST_F(Config, ListeningBeyondLoopback_NeedsAToken) {
   EXPECT_EQ(service_refusal("listen = '127.0.0.9:1'"), "");
   EXPECT_EQ(service_refusal("listen = 'localhost:1'"), "");
   for (const std::string address : {"0.0.0.0:8470", "[::]:8470", "10.1.2.3:8470"}) {
@@ -250,7 +250,7 @@ TEST_F(Config, WrongValuesOfAWatch) {
   EXPECT_EQ(watch_refusal("label = ''"), "4:9: label is empty");
 }
 
-TEST_F(Config, NamesMustTellSourcesApart) {
+TEST_F(Config, OutputNameThatFitsAllSources_IsRefused) {
   EXPECT_EQ(watch_refusal("name = '{stem}_a.nvdb'"), "");
   EXPECT_EQ(watch_refusal("name = 'a.nvdb'"),
             "4:8: name is \"a.nvdb\", which gives all sources one output; put {stem} in it");
@@ -273,7 +273,7 @@ TEST_F(Config, ConversionOptionsAreCheckedAsTheCommandDoes) {
   EXPECT_EQ(watch_refusal("background = -5\norigin = [-1, 0, 2.5]\nnonfinite = 'keep'"), "");
 }
 
-TEST_F(Config, ConflictsAreFoundAtTheirKey) {
+TEST_F(Config, WatchConflict_IsReportedAtItsKey) {
   EXPECT_EQ(refusal("[[watch]]\ndirectory = 'in'\noutput = 'in'\n"),
             "3:10: " + (directory_ / "in") + " is watched and lies in the output " + (directory_ / "in") +
                 ", so that results would be converted again; separate them, " + (directory_ / "in/nvdb") +

@@ -23,12 +23,12 @@ std::string conflict(const std::vector<WatchConfig>& watches) {
   return found ? cat(found->watch, ' ', found->key, ": ", found->message) : "";
 }
 
-TEST(WatchConflicts, NoneBetweenDifferentPlaces) {
+TEST(WatchConflicts, SeparateDirectories_DoNotConflict) {
   EXPECT_EQ(conflict({watch("/in", "/in/nvdb"), watch("/in2", "/in2/nvdb"), watch("/in3", "/out")}), "");
   EXPECT_EQ(conflict({watch("/in", "/innvdb"), watch("/innvdb2", "/x")}), "") << "a common beginning is no directory";
 }
 
-TEST(WatchConflicts, ALabelTwice) {
+TEST(WatchConflicts, SameLabelTwice_IsAConflict) {
   const std::string message =
       R"(1 label: there is a watch of the label "/in" already; give this one a label of its own)";
   EXPECT_EQ(conflict({watch("/in", "/a"), watch("/in", "/b")}), message);
@@ -37,7 +37,7 @@ TEST(WatchConflicts, ALabelTwice) {
   EXPECT_EQ(conflict({watch("/in", "/a"), labelled}), "");
 }
 
-TEST(WatchConflicts, SourcesInAnOutput) {
+TEST(WatchConflicts, SourcesInsideAnOutput_AreAConflict) {
   EXPECT_EQ(conflict({watch("/in", "/in")}),
             "0 output: /in is watched and lies in the output /in, so that results would be converted again; separate "
             "them, /in/nvdb is a good output for instance");
@@ -49,7 +49,7 @@ TEST(WatchConflicts, SourcesInAnOutput) {
             "would be converted again; separate them, /out/deep/nvdb is a good output for instance");
 }
 
-TEST(WatchConflicts, TheSameNames) {
+TEST(WatchConflicts, SameOutputNames_AreAConflict) {
   WatchConfig second = watch("/in2", "/out");
   EXPECT_EQ(conflict({watch("/in", "/out"), second}),
             "1 output: the watch \"/in\" writes the same names, {stem}.nvdb in /out; give this one another output or "
@@ -60,7 +60,7 @@ TEST(WatchConflicts, TheSameNames) {
   EXPECT_EQ(conflict({watch("/in", "/out"), second}), "");
 }
 
-TEST(WatchConflicts, DeletingWhatAnotherOneReads) {
+TEST(WatchConflicts, DeletingSourcesOfAnotherWatch_IsAConflict) {
   WatchConfig outer = watch("/in", "/a");
   WatchConfig inner = watch("/in/deep", "/b");
   inner.source = AfterDone::delete_after_verify;

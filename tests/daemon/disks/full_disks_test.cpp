@@ -14,7 +14,7 @@ using Names = std::vector<std::string>;
 const FullDisks::Time kStart{1000h};
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
-TEST(FullDisks, HoldWhatGoesThereAndIsAsLarge) {
+TEST(FullDisks, JobsAsLargeOnAFullDisk_AreHeldBack) {
   FullDisks disks;
   EXPECT_TRUE(disks.empty());
   EXPECT_TRUE(disks.admits(1, 9, 100 * kMiB));
@@ -26,7 +26,7 @@ TEST(FullDisks, HoldWhatGoesThereAndIsAsLarge) {
   EXPECT_TRUE(disks.admits(2, 9, 128 * kMiB)) << "another file system";
 }
 
-TEST(FullDisks, AnEstimateThatWasWrongHoldsMore) {
+TEST(FullDisks, SmallerJobFoundNoRoom_HoldsBackSmallerJobsToo) {
   FullDisks disks;
   disks.add(1, "/out", 24 * kMiB, 1, 128 * kMiB, 32 * kMiB, kStart);
   disks.add(1, "/out", 4 * kMiB, 2, 80 * kMiB, 20 * kMiB, kStart);
@@ -45,7 +45,7 @@ TEST(FullDisks, AJobThatFoundNoRoom_WaitsWhateverItsEstimate) {
   EXPECT_EQ(disks.look(free_of, kStart + FullDisks::kRetry), Names{"/out"}) << "counted from the first";
 }
 
-TEST(FullDisks, AnUnknownNeedHoldsAllThatGoesThere) {
+TEST(FullDisks, UnknownNeed_HoldsBackEveryJobOfThatDisk) {
   FullDisks disks;
   disks.add(1, "/out", 5000, 1, 128, 0, kStart);
   EXPECT_FALSE(disks.admits(1, 9, 1));

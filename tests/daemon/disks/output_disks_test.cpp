@@ -22,7 +22,7 @@ std::vector<OutputDisk> looked_at(const OutputDisks& disks, OutputDisks::Time no
   return {};
 }
 
-TEST(OutputDisks, TellsWhenADiskIsFullAtTheRateOfTheLastMinutes) {
+TEST(OutputDisks, PredictsWhenADiskFillsAtTheRecentRate) {
   const TemporaryDirectory directory;
   OutputDisks disks;
   const auto now = std::chrono::steady_clock::now() + seconds(10);
@@ -57,7 +57,7 @@ TEST(OutputDisks, NamesTheMount) {
   EXPECT_FALSE(found[0].fills_in_s.has_value());
 }
 
-TEST(OutputDisks, KeepsWhatIsKnownWhereTheDirectoriesChange) {
+TEST(OutputDisks, DirectoriesChanged_KeepsKnownFigures) {
   const TemporaryDirectory directory;
   OutputDisks disks;
   disks.watch({directory.path()});

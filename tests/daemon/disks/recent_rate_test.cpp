@@ -9,7 +9,7 @@ using std::chrono::seconds;
 
 const RecentRate::Time kStart{std::chrono::hours(5)};
 
-TEST(RecentRate, IsOverTheWindow) {
+TEST(RecentRate, AveragesOverTheWindow) {
   RecentRate rate(seconds(600), kStart);
   for (int s = 0; s < 1200; s += 2) rate.add(100, kStart + seconds(s));
   const RecentRate::Rates rates = rate.at(kStart + seconds(1199));
@@ -17,7 +17,7 @@ TEST(RecentRate, IsOverTheWindow) {
   EXPECT_DOUBLE_EQ(rates.bytes_per_s, 50);
 }
 
-TEST(RecentRate, IsSinceTheStart_WhereThatIsShorter) {
+TEST(RecentRate, StartedWithinTheWindow_AveragesSinceTheStart) {
   RecentRate rate(seconds(600), kStart);
   rate.add(1000, kStart + seconds(1));
   rate.add(3000, kStart + seconds(90));
@@ -25,13 +25,13 @@ TEST(RecentRate, IsSinceTheStart_WhereThatIsShorter) {
   EXPECT_DOUBLE_EQ(rate.at(kStart + seconds(100)).bytes_per_s, 40);
 }
 
-TEST(RecentRate, OfOneMoment_IsOverASlot) {
+TEST(RecentRate, AtTheStart_AveragesOverOneSlot) {
   RecentRate rate(seconds(600), kStart);
   rate.add(1000, kStart);
   EXPECT_DOUBLE_EQ(rate.at(kStart).per_s, 0.1);
 }
 
-TEST(RecentRate, ForgetsWhatIsOlder) {
+TEST(RecentRate, ForgetsEntriesOlderThanTheWindow) {
   RecentRate rate(seconds(600), kStart);
   rate.add(1000, kStart + seconds(5));
   EXPECT_GT(rate.at(kStart + seconds(599)).per_s, 0);

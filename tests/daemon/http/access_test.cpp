@@ -24,7 +24,7 @@ TEST(Access, ComparesSecrets) {
   EXPECT_FALSE(same_secret("", std::string(1, '\0')));
 }
 
-TEST(Access, KnowsTheNamesOfThisMachine) {
+TEST(Access, OnLoopback_RefusesHostsOfOtherMachines) {
   const AccessRules rules;
   for (const char* host :
        {"localhost", "LocalHost:8470", "127.0.0.1", "127.0.0.1:80", "127.8.9.1:1", "[::1]", "[::1]:8470"}) {
@@ -38,11 +38,11 @@ TEST(Access, KnowsTheNamesOfThisMachine) {
             "{\"error\":\"Host example.org is not this machine; ask for localhost or 127.0.0.1\"}\n");
 }
 
-TEST(Access, TakesAnyNameWhereOthersConnect) {
+TEST(Access, BeyondLoopback_AcceptsAnyHost) {
   EXPECT_EQ(status_of(refuse({"secret", false}, request_for("example.org"), true)), 0U);
 }
 
-TEST(Access, WantsTheToken) {
+TEST(Access, RefusesRequestsWithoutTheToken) {
   const AccessRules rules{"secret", false};
   HttpRequest request;
   EXPECT_EQ(status_of(refuse(rules, request, false)), 401U);
@@ -66,7 +66,7 @@ TEST(Access, SaysHowToAuthenticate) {
   EXPECT_EQ(refusal->headers[0].second, "Bearer");
 }
 
-TEST(Access, RefusesAPostThatAForeignPageCanSend) {
+TEST(Access, RefusesAPostWithoutJsonTypeOrWeirHeader) {
   HttpRequest request;
   request.method = "POST";
   for (const char* type : {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x",
@@ -83,7 +83,7 @@ TEST(Access, RefusesAPostThatAForeignPageCanSend) {
   EXPECT_EQ(status_of(refuse({}, request, false)), 0U);
 }
 
-TEST(Access, AnswersAPostAtTheControlAddressAlone) {
+TEST(Access, RefusesAPostOutsideTheControlAddress) {
   AccessRules rules;
   rules.control_at = "unix:/run/weir.sock";
   HttpRequest request;

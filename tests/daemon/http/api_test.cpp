@@ -58,7 +58,7 @@ std::string header(const HttpResponse& response, const std::string& name) {
   return "";
 }
 
-TEST_F(ApiTest, TellsThatItLives) {
+TEST_F(ApiTest, ReportsHealthAndReadiness) {
   EXPECT_EQ(ask("GET", "/healthz").status, 200U);
   EXPECT_EQ(ask("GET", "/healthz").body, "ok\n");
   EXPECT_EQ(ask("GET", "/readyz").body, "ready\n");
@@ -105,7 +105,7 @@ TEST_F(ApiTest, RefusesWrongParameters) {
             "unknown parameter page; there are state, watch, text, problem, sort, order, limit and offset");
 }
 
-TEST_F(ApiTest, ShowsAJobWhole) {
+TEST_F(ApiTest, ShowsEveryFieldOfAJob) {
   JobView& job = control_.all[0];
   job.source_bytes = 1 << 20;
   job.attempts = 2;
@@ -130,7 +130,7 @@ TEST_F(ApiTest, ShowsAJobWhole) {
             "\"max_error\":null,\"min\":null,\"max\":null,\"thumbnail\":false}],\"log_tail\":\"line\\n\"}\n");
 }
 
-TEST_F(ApiTest, ShowsTheStatusWhole) {
+TEST_F(ApiTest, ShowsEveryFieldOfTheStatus) {
   control_.now.version = "0.1.0";
   control_.now.config = "/etc/weir.toml";
   control_.now.running.push_back({5, "/scratch/run 1", "/scratch/5.raw", "convert", std::nullopt, 2, 100, 1000});
@@ -206,7 +206,7 @@ TEST_F(ApiTest, SearchesAndSortsJobs) {
   }
 }
 
-TEST_F(ApiTest, KnowsNoOtherJobs) {
+TEST_F(ApiTest, UnknownJobId_Is404) {
   for (const char* id : {"6", "0", "-1", "x", "1.0", "99999999999999999999", "1%20"}) {
     for (const char* action : {"", "/retry", "/cancel"}) {
       const HttpResponse response = ask(*action == '\0' ? "GET" : "POST", cat("/api/jobs/", id, action));
@@ -217,7 +217,7 @@ TEST_F(ApiTest, KnowsNoOtherJobs) {
   EXPECT_TRUE(control_.asked.empty());
 }
 
-TEST_F(ApiTest, ChangesJobs) {
+TEST_F(ApiTest, RetriesAndCancelsJobs) {
   EXPECT_EQ(Json::parse(ask("POST", "/api/jobs/3/retry").body).at("state"), "waiting");
   EXPECT_EQ(Json::parse(ask("POST", "/api/jobs/5/cancel").body).at("state"), "cancelled");
   EXPECT_EQ(control_.asked, (std::vector<std::string>{"retry 3", "cancel 5"}));
@@ -229,14 +229,14 @@ TEST_F(ApiTest, ChangesJobs) {
   EXPECT_EQ(ask("POST", "/api/jobs/1/cancel").body, "{\"error\":\"job 1 is done: nothing to cancel\"}\n");
 }
 
-TEST_F(ApiTest, ChangesTheService) {
+TEST_F(ApiTest, PausesResumesAndRetriesFailedJobs) {
   EXPECT_EQ(Json::parse(ask("POST", "/api/pause").body).at("state"), "paused");
   EXPECT_EQ(Json::parse(ask("POST", "/api/resume").body).at("state"), "running");
   EXPECT_EQ(ask("POST", "/api/retry-failed").body, "{\"retried\":1}\n");
   EXPECT_EQ(control_.asked, (std::vector<std::string>{"pause", "resume", "retry all"}));
 }
 
-TEST_F(ApiTest, KnowsItsRoutesAndTheirMethods) {
+TEST_F(ApiTest, UnknownRouteIs404AndWrongMethodIs405) {
   for (const char* target : {"/api", "/api/", "/api/jobs/", "/api/jobs/1/", "/api/jobs/1/retry/x", "/nowhere", "//",
                              "/page/../metrics", "/healthz/"}) {
     EXPECT_EQ(ask("GET", target).status, 404U) << target;
@@ -310,7 +310,7 @@ TEST_F(ApiTest, SendsSecurityHeadersWithEverything) {
   }
 }
 
-TEST_F(ApiTest, AsksForTheTokenWhereThereIsData) {
+TEST_F(ApiTest, DataWithoutTheToken_Is401) {
   const Api api(control_, {"secret", true});
   const auto status = [&](const std::string& target, const std::string& authorization) {
     HttpRequest request;
@@ -333,7 +333,7 @@ TEST_F(ApiTest, AsksForTheTokenWhereThereIsData) {
   for (const char* target : {"/", "/page/page.js", "/healthz"}) EXPECT_EQ(status(target, ""), 200U) << target;
 }
 
-TEST_F(ApiTest, IsNoUseToForeignPages) {
+TEST_F(ApiTest, RefusesRequestsOfForeignPages) {
   HttpRequest post;
   post.method = "POST";
   post.target = "/api/pause";

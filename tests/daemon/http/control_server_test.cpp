@@ -41,7 +41,7 @@ TEST(ControlServer, ListensBeyondThisMachineOnlyWithAToken) {
   EXPECT_NE(server.port(), 0);
 }
 
-TEST(ControlServer, ListensOnAddressesNotNames) {
+TEST(ControlServer, RefusesToListenOnAHostName) {
   FakeControl control;
   boost::asio::io_context io;
   try {
@@ -52,7 +52,7 @@ TEST(ControlServer, ListensOnAddressesNotNames) {
   }
 }
 
-TEST(ControlServer, WantsTheTokenOnEveryRequestOfAConnection) {
+TEST(ControlServer, ChecksTheTokenOnEveryRequestOfAConnection) {
   FakeControl control;
   Served served(control, "secret");
   RawClient client(served.port());
@@ -65,7 +65,7 @@ TEST(ControlServer, WantsTheTokenOnEveryRequestOfAConnection) {
   EXPECT_EQ(client.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
 }
 
-TEST(ControlServer, TakesPostsOfItsOwnClientsOnly) {
+TEST(ControlServer, RefusesPostsOfForeignPages) {
   FakeControl control;
   Served served(control);
   RawClient client(served.port());
@@ -117,7 +117,7 @@ TEST_F(ControlSocket, OwnerAndGroupMayConnect) {
   EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
 }
 
-TEST_F(ControlSocket, TcpShowsAndTheSocketChanges) {
+TEST_F(ControlSocket, TcpIsReadOnlyAndTheSocketTakesPosts) {
   FakeControl control;
   Served served(control, "secret", {}, path_);
   const std::string post = "POST /api/pause HTTP/1.1\r\nHost: localhost\r\nX-Weir: 1\r\nContent-Length: 0\r\n";
@@ -145,7 +145,7 @@ TEST_F(ControlSocket, TcpShowsAndTheSocketChanges) {
       421);
 }
 
-TEST_F(ControlSocket, WhatAKilledServiceLeftIsReplaced) {
+TEST_F(ControlSocket, SocketLeftByAKilledServiceIsReplaced) {
   {
     const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
     sockaddr_un address{};
@@ -160,7 +160,7 @@ TEST_F(ControlSocket, WhatAKilledServiceLeftIsReplaced) {
   EXPECT_EQ(local.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
 }
 
-TEST_F(ControlSocket, WhatOthersUseStays) {
+TEST_F(ControlSocket, SocketInUseOrForeignFile_IsNotReplaced) {
   {
     FakeControl control;
     const Served served(control, "", {}, path_);

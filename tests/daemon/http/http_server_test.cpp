@@ -90,7 +90,7 @@ TEST(HttpServer, SendsNoBodyForHead) {
   EXPECT_EQ(client.ask(kHealth).body, "ok\n");  // nothing was left between
 }
 
-TEST(HttpServer, RefusesWhatIsNoRequest) {
+TEST(HttpServer, RefusesMalformedRequests) {
   FakeControl control;
   Served served(control);
   for (const std::string_view nonsense : {
@@ -162,7 +162,7 @@ TEST(HttpServer, RefusesALongBody) {
   EXPECT_EQ(served.run([&] { return control.asked.size(); }), 1U);
 }
 
-TEST(HttpServer, TakesRequestsInAnyPieces) {
+TEST(HttpServer, ReadsRequestsSentByteByByte) {
   FakeControl control;
   Served served(control);
   RawClient client(served.port());
@@ -213,7 +213,7 @@ TEST(HttpServer, ClosesAnIdleConnection) {
   EXPECT_TRUE(used.closed_within(milliseconds(2000)));
 }
 
-TEST(HttpServer, GivesUpAClientThatTakesNoAnswer) {
+TEST(HttpServer, DropsAClientThatDoesNotReadItsAnswers) {
   FakeControl control;
   control.all.resize(1000);
   for (std::size_t i = 0; i < control.all.size(); ++i) control.all[i].source = std::string(4000, 'x');
@@ -338,7 +338,7 @@ TEST(HttpServer, OutlivesAShortageOfDescriptors) {
   EXPECT_EQ(RawClient(served.port()).ask(kHealth).status, 200);
 }
 
-TEST(HttpServer, SaysWhatWentWrongInside) {
+TEST(HttpServer, ErrorWhileAnswering_Is500WithItsMessage) {
   FakeControl control;
   control.before_answer = [] { throw Error(ErrorKind::io, "weir.db: cannot read: Input/output error"); };
   Served served(control);
@@ -365,7 +365,7 @@ TEST(HttpServer, RefusesAPortThatIsTaken) {
   }
 }
 
-TEST(HttpServer, MayBeGoneBeforeItsConnections) {
+TEST(HttpServer, DestructionClosesOpenConnections) {
   FakeControl control;
   Served served(control);
   RawClient idle(served.port());

@@ -111,7 +111,7 @@ TEST(Metrics, CountConversionsCumulatively) {
 }
 
 // The format's rules: HELP, TYPE, then the samples of that name, each name once.
-TEST(Metrics, ShowTheRoomForOutputs) {
+TEST(Metrics, ShowFreeAndTotalBytesOfOutputDisks) {
   StatusView status = sample_status();
   status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
   EXPECT_EQ(
@@ -119,7 +119,7 @@ TEST(Metrics, ShowTheRoomForOutputs) {
       "weir_output_disk_free_bytes{disk=\"/scratch\"} 1000\nweir_output_disk_size_bytes{disk=\"/scratch\"} 4000\n");
 }
 
-TEST(Metrics, PrometheusFindsNoFault) {
+TEST(Metrics, PassPromtoolCheck) {
   if (std::system("command -v promtool >/dev/null") != 0) GTEST_SKIP() << "promtool is not installed";
   const TemporaryDirectory directory;
   StatusView status = sample_status();

@@ -88,7 +88,7 @@ TEST_F(PageTest, ChangesJobs) {
   run("changes_jobs");
 }
 
-TEST_F(PageTest, HasNoButtonsWhereControlIsElsewhere) {
+TEST_F(PageTest, HasNoButtonsWhereOnlyTheSocketControls) {
   show_busy_sample(control_, directory_.path());
   run("only_views", "", directory_ / "weir.sock");
 }

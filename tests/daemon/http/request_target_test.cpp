@@ -10,7 +10,7 @@ namespace {
 using Path = std::vector<std::string>;
 using Query = std::map<std::string, std::string>;
 
-TEST(RequestTarget, TakesPathsApart) {
+TEST(RequestTarget, SplitsAndDecodesPaths) {
   EXPECT_EQ(parse_target("/")->path, Path{});
   EXPECT_EQ(parse_target("/api/jobs/7")->path, (Path{"api", "jobs", "7"}));
   EXPECT_EQ(parse_target("/api//jobs/")->path, (Path{"api", "", "jobs", ""}));
@@ -18,7 +18,7 @@ TEST(RequestTarget, TakesPathsApart) {
   EXPECT_EQ(parse_target("/../etc")->path, (Path{"..", "etc"}));
 }
 
-TEST(RequestTarget, TakesQueriesApart) {
+TEST(RequestTarget, SplitsAndDecodesQueries) {
   EXPECT_EQ(parse_target("/a")->query, Query{});
   EXPECT_EQ(parse_target("/a?")->query, Query{});
   EXPECT_EQ(parse_target("/?x=1")->path, Path{});
@@ -27,7 +27,7 @@ TEST(RequestTarget, TakesQueriesApart) {
   EXPECT_EQ(parse_target("/a?x=1=2?3")->query, (Query{{"x", "1=2?3"}}));
 }
 
-TEST(RequestTarget, RefusesWhatIsNone) {
+TEST(RequestTarget, RefusesMalformedTargets) {
   for (const char* target : {"", "*", "api", "http://localhost/api", "/%", "/%4", "/%4g", "/%-1", "/a?x=%zz", "/a?%=1",
                              "/a?x=1&y&x=2", "/a?x=1&%78=1"}) {
     EXPECT_FALSE(parse_target(target)) << target;

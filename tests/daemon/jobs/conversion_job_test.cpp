@@ -68,7 +68,7 @@ TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
   EXPECT_GT(report.result.seconds, 0.75 * static_cast<double>(moved) / static_cast<double>(limited.bandwidth));
 }
 
-TEST_F(ConversionJobTest, SaysWhyItStandsStill) {
+TEST_F(ConversionJobTest, StoppedProcess_IsTheReasonGivenForAStall) {
   ConversionTask slow = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
   slow.thumbnails = false;
   slow.bandwidth = 4 << 20U;
@@ -122,7 +122,7 @@ TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
   EXPECT_EQ(fs::last_write_time(output + ".png"), written);
 }
 
-TEST_F(ConversionJobTest, SaysWhatConvertSays) {
+TEST_F(ConversionJobTest, FailedConversion_GivesTheMessageOfConvert) {
   const std::string source = write_source("short_48x40x32_uint8.raw", 1000);
   const TaskReport report = run(task(source));
   EXPECT_EQ(report.end, TaskEnd::failed);
@@ -132,7 +132,7 @@ TEST_F(ConversionJobTest, SaysWhatConvertSays) {
   EXPECT_EQ(list_directory(directory_ / "out"), Names{});
 }
 
-TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
+TEST_F(ConversionJobTest, ChangedSource_EndsAsSourceChanged) {
   const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
   ConversionTask stale = task(source);
   ++stale.identity.mtime_ns;
@@ -142,7 +142,7 @@ TEST_F(ConversionJobTest, ASourceThatChangedIsNotDone) {
 }
 
 // The header, which is what is watched, stays as it is.
-TEST_F(ConversionJobTest, DataOfAHeaderRewrittenMeanwhile_IsASourceThatChanged) {
+TEST_F(ConversionJobTest, DataFileRewrittenDuringConversion_EndsAsSourceChanged) {
   write_source("a.bin", 128 << 14U);
   write_file(directory_ / "a.nhdr",
              "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 128 128 128\nencoding: raw\ndata file: a.bin\n");
@@ -162,7 +162,7 @@ TEST_F(ConversionJobTest, DataOfAHeaderRewrittenMeanwhile_IsASourceThatChanged) 
   EXPECT_EQ(list_directory(directory_ / "out"), Names{});
 }
 
-TEST_F(ConversionJobTest, ASourceThatVanishedIsGone) {
+TEST_F(ConversionJobTest, MissingSource_EndsAsSourceGone) {
   EXPECT_EQ(run(task(directory_ / "a_48x40x32_uint8.raw")).end, TaskEnd::source_gone);
 }
 
@@ -201,7 +201,7 @@ TEST_F(ConversionJobTest, StopsWhenAsked) {
   EXPECT_EQ(list_directory(directory_ / "out"), Names{});
 }
 
-TEST_F(ConversionJobTest, AKilledProcessIsAFailureThatSaysSo) {
+TEST_F(ConversionJobTest, KilledProcess_FailsAndNamesTheSignal) {
   ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
   killed.program = directory_ / "weir";
   write_file(killed.program, "#!/bin/sh\nkill -9 $$\n");
@@ -212,7 +212,7 @@ TEST_F(ConversionJobTest, AKilledProcessIsAFailureThatSaysSo) {
   EXPECT_EQ(report.result.reason, "convert was ended by signal 9 (Killed); the system may have been out of memory");
 }
 
-TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
+TEST_F(ConversionJobTest, OutputDirectoryCannotBeMade_FailsWithExitCode5) {
   const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
   write_file(directory_ / "file", "");
   ConversionTask below = task(source);
@@ -223,7 +223,7 @@ TEST_F(ConversionJobTest, NoDirectoryForTheOutputIsAnIoFailure) {
   EXPECT_EQ(report.result.reason, (directory_ / "file/out") + ": make the directory: Not a directory");
 }
 
-TEST_F(ConversionJobTest, AKilledRenderIsDoneOnceMore) {
+TEST_F(ConversionJobTest, KilledRender_IsRetriedOnce) {
   ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
   killed.thumbnails = true;
   const std::string killer = directory_ / "weir.sh";

@@ -13,13 +13,13 @@ WatchConfig make_watch() {
   return watch;
 }
 
-TEST(ConversionTask, RepeatsTheTreeBelowTheOutput) {
+TEST(ConversionTask, OutputDirectoryMirrorsTheSourceTree) {
   const WatchConfig watch = make_watch();
   EXPECT_EQ(output_directory(watch, "/in/a.raw"), "/out");
   EXPECT_EQ(output_directory(watch, "/in/deep/er/a.raw"), "/out/deep/er");
 }
 
-TEST(ConversionTask, ASourceLiesInItsWatchByItsName) {
+TEST(ConversionTask, SourceBelowTheWatchedDirectory_LiesInTheWatch) {
   WatchConfig watch = make_watch();
   EXPECT_TRUE(lies_in(watch, "/in/a.raw"));
   EXPECT_TRUE(lies_in(watch, "/in/deep/a.raw"));
@@ -29,7 +29,7 @@ TEST(ConversionTask, ASourceLiesInItsWatchByItsName) {
   EXPECT_TRUE(lies_in(watch, "/a.raw"));
 }
 
-TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
+TEST(ConversionTask, TakesItsValuesFromServiceWatchAndJob) {
   ServiceConfig service;
   service.memory = kDaemonMemory + (std::uint64_t{256} << 20U);
   service.jobs = 2;
@@ -55,7 +55,7 @@ TEST(ConversionTask, HoldsWhatServiceWatchAndJobSay) {
   EXPECT_EQ(task.work_dir, "/spill");
 }
 
-TEST(ConversionTask, AShareOfTheBandwidthIsNeverNoLimit) {
+TEST(ConversionTask, ShareOfALowBandwidthLimit_IsAtLeastOneByte) {
   ServiceConfig service;
   service.jobs = 8;
   EXPECT_EQ(make_task("", service, make_watch(), {}).bandwidth, 0U);
@@ -63,7 +63,7 @@ TEST(ConversionTask, AShareOfTheBandwidthIsNeverNoLimit) {
   EXPECT_EQ(make_task("", service, make_watch(), {}).bandwidth, 1U);
 }
 
-TEST(ConversionTask, TheOutputHasTheNameThatTheWatchGives) {
+TEST(ConversionTask, OutputNameFollowsThePatternOfTheWatch) {
   WatchConfig watch = make_watch();
   watch.name = "{stem}_{step}.nvdb";
   Job job;
@@ -71,7 +71,7 @@ TEST(ConversionTask, TheOutputHasTheNameThatTheWatchGives) {
   EXPECT_EQ(make_task("", {}, watch, job).output, "/out/{stem}_{step}.nvdb");
 }
 
-TEST(ConversionTask, OptionsTextChangesWithWhatDecidesTheOutput) {
+TEST(ConversionTask, OptionsTextChangesOnlyWithSettingsOfTheOutput) {
   const WatchConfig watch = make_watch();
   EXPECT_EQ(options_text(watch), "output=/out/ --rate=4");
   WatchConfig other = watch;

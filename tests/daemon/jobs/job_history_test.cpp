@@ -49,7 +49,7 @@ class JobHistoryTest : public testing::Test {
   JobHistory history_{io_, turns_, store_, log_};
 };
 
-TEST_F(JobHistoryTest, ForgetsWhatIsLongOverAndGone) {
+TEST_F(JobHistoryTest, ForgetsOldDoneJobsWhoseSourceIsGone) {
   done("old_and_there", true);
   done("old_and_gone", false);
   const std::int64_t failed = store_.observe("w", directory_ / "failed", {}, "").job.id;
@@ -62,7 +62,7 @@ TEST_F(JobHistoryTest, ForgetsWhatIsLongOverAndGone) {
   EXPECT_TRUE(read_file(service_.log_file).ends_with("info history forgotten=1\n")) << read_file(service_.log_file);
 }
 
-TEST_F(JobHistoryTest, GoesThroughAllOfThemInPieces) {
+TEST_F(JobHistoryTest, ForgetsHundredsOfJobsInSeveralPieces) {
   store_.together([&] {
     for (int i = 0; i < 250; ++i) done(cat("gone", i), false);
   });

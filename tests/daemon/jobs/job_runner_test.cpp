@@ -72,7 +72,7 @@ class JobRunnerTest : public testing::Test {
   JobRunner runner_{io_, store_, log_, WEIR_COMMAND, [this](const Job& job) { changed_.push_back(job.source); }};
 };
 
-TEST_F(JobRunnerTest, ConvertsWhatWaits) {
+TEST_F(JobRunnerTest, ConvertsWaitingJobs) {
   const Job one = add("a", "one");
   const Job two = add("b", "two");
   const Job bad = add("a", "bad", 100);
@@ -98,7 +98,7 @@ TEST_F(JobRunnerTest, ConvertsWhatWaits) {
   EXPECT_NE(log.find(cat(" error failed job=", bad.id, ' ')), std::string::npos) << log;
 }
 
-TEST_F(JobRunnerTest, NoMoreAtOnceThanAsked) {
+TEST_F(JobRunnerTest, RunsNoMoreJobsAtOnceThanConfigured) {
   config_.service.jobs = 2;
   config_.service.memory = std::uint64_t{1} << 30U;
   runner_.configure(config_);
@@ -112,7 +112,7 @@ TEST_F(JobRunnerTest, NoMoreAtOnceThanAsked) {
   EXPECT_EQ(most, 2U);
 }
 
-TEST_F(JobRunnerTest, ASourceThatChangedBeforeItsTurnIsLookedAtAgain) {
+TEST_F(JobRunnerTest, SourceChangedWhileWaiting_IsReportedNotConverted) {
   const Job job = add("a", "one");
   write_file(job.source, "rewritten");
   runner_.wake();
@@ -143,7 +143,7 @@ TEST_F(JobRunnerTest, AbandonEndsACancelledJob) {
 }
 
 // Nobody continues it; `retry` begins anew.
-TEST_F(JobRunnerTest, CancelRemovesWhatCouldBeContinued) {
+TEST_F(JobRunnerTest, CancelRemovesResumableWorkFiles) {
   config_.watches[0].convert_options = {"--save-interval=0"};
   runner_.configure(config_);
   const Job running = add_long();
@@ -178,7 +178,7 @@ TEST_F(JobRunnerTest, CancelRemovesWhatCouldBeContinued) {
             std::string::npos);
 }
 
-TEST_F(JobRunnerTest, ShutDownLetsAJobEndWithinTheGrace) {
+TEST_F(JobRunnerTest, ShutDownLetsAJobFinishWithinTheGracePeriod) {
   const Job job = add("a", "one");
   runner_.wake();
   bool stopped = false;
@@ -190,7 +190,7 @@ TEST_F(JobRunnerTest, ShutDownLetsAJobEndWithinTheGrace) {
   EXPECT_EQ(state(late), JobState::waiting);
 }
 
-TEST_F(JobRunnerTest, ShutDownAbandonsWhatTakesLongerAtNoCost) {
+TEST_F(JobRunnerTest, ShutDown_JobOutlastsTheGrace_WaitsAgainWithoutAnAttempt) {
   const Job job = add_long();
   runner_.wake();
   run_until([&] { return runner_.running().at(job.id).work->fraction().has_value(); });

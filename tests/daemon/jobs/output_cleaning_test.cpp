@@ -32,7 +32,7 @@ CleaningReport clean(const TemporaryDirectory& directory, const TemporaryDirecto
   return clean_outputs(directory.path().string(), sources.path().string(), false, milliseconds(0));
 }
 
-TEST(OutputCleaning, RemovesWhatAKilledConversionLeavesAndNothingElse) {
+TEST(OutputCleaning, RemovesOnlyTheLeftoversOfKilledConversions) {
   const TemporaryDirectory directory;
   fs::create_directories(directory / ".a.nvdb.work");
   fs::create_directories(directory / "deep/.b.nvdb.work");
@@ -56,6 +56,30 @@ TEST(OutputCleaning, RemovesWhatAKilledConversionLeavesAndNothingElse) {
   EXPECT_EQ(list_directory(directory / "deep"), Names{});
 }
 
+TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"old", "new"}) {
+    const std::string source = directory / cat(name, "_16x16x16_uint8.raw");
+    write_file(source, std::string(16 * 16 * 16, name[0]));
+    const CommandResult made =
+        run_weir({"convert", source, "-o", directory / cat(name, ".nvdb"), "--progress", "never"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  fs::rename(directory / "old.nvdb", directory / "out.nvdb");
+  fs::rename(directory / "old.nvdb.json", directory / "out.nvdb.json.previous");
+  fs::rename(directory / "new.nvdb.json", directory / "out.nvdb.json");
+  const std::string old = read_file(directory / "out.nvdb.json.previous");
+  clean(directory);
+  EXPECT_EQ(read_file(directory / "out.nvdb.json"), old);
+  EXPECT_FALSE(fs::exists(directory / "out.nvdb.json.previous"));
+  // And where the volume is the new one, its own stays.
+  write_file(directory / "out.nvdb.json.previous", old);
+  fs::rename(directory / "new.nvdb", directory / "out.nvdb");
+  clean(directory);
+  EXPECT_EQ(read_file(directory / "out.nvdb.json"), old) << "neither describes it: what has the name stays";
+  EXPECT_FALSE(fs::exists(directory / "out.nvdb.json.previous"));
+}
+
 // What an interrupted conversion of `source` to "a.nvdb" leaves, spill files in `spills` or beside it.
 void leave_interrupted(const TemporaryDirectory& directory, const std::string& source, const std::string& spills = "",
                        const ConversionIdentity& more = {}) {
@@ -76,7 +100,7 @@ void make_old(const TemporaryDirectory& directory) {
   fs::last_write_time(directory / ".a.nvdb.work", fs::file_time_type::clock::now() - std::chrono::hours(8 * 24));
 }
 
-TEST(OutputCleaning, KeepsWhatCanBeContinuedAsLongAsItsSourceIsThere) {
+TEST(OutputCleaning, KeepsResumableWorkForAWeekWhileItsSourceIsUnchanged) {
   const TemporaryDirectory directory;
   const TemporaryDirectory sources;
   const std::string source = sources / "a.raw";
@@ -108,7 +132,7 @@ TEST(OutputCleaning, KeepsWhatCanBeContinuedAsLongAsItsSourceIsThere) {
 }
 
 // Its bytes and time are those of all its files together; which of them changed, its next conversion sees.
-TEST(OutputCleaning, KeepsWhatIsOfAHeaderAsLongAsItIsThere) {
+TEST(OutputCleaning, KeepsResumableWorkWhileItsHeaderExists) {
   const TemporaryDirectory directory;
   const TemporaryDirectory sources;
   const std::string source = sources / "a.nhdr";
@@ -120,7 +144,7 @@ TEST(OutputCleaning, KeepsWhatIsOfAHeaderAsLongAsItIsThere) {
   EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
 }
 
-TEST(OutputCleaning, KeepsWhatAUserMayContinue) {
+TEST(OutputCleaning, KeepsResumableWorkOfStacksAndOfSourcesElsewhere) {
   const TemporaryDirectory directory;
   const TemporaryDirectory sources;
   const TemporaryDirectory elsewhere;
@@ -140,7 +164,7 @@ TEST(OutputCleaning, KeepsWhatAUserMayContinue) {
 }
 
 // Conversions that begin while it cleans keep what they make.
-TEST(OutputCleaning, HoldsTheLockOfWhatItRemoves) {
+TEST(OutputCleaning, RemovesWorkOnlyWhileHoldingItsLock) {
   const TemporaryDirectory directory;
   const std::string work = directory / ".a.nvdb.work";
   std::atomic<bool> over{false};
@@ -170,7 +194,7 @@ TEST(OutputCleaning, HoldsTheLockOfWhatItRemoves) {
   EXPECT_EQ(robbed, 0) << "of " << conversions;
 }
 
-TEST(OutputCleaning, DiscardsWhatIsOfOneSource) {
+TEST(OutputCleaning, DiscardsTheInterruptedWorkOfOneSource) {
   const TemporaryDirectory directory;
   const TemporaryDirectory sources;
   write_file(sources / "a.raw", "source");
@@ -193,7 +217,7 @@ TEST(OutputCleaning, DiscardsWhatIsOfOneSource) {
   EXPECT_EQ(discard_interrupted("/nowhere/at/all", "a.raw").removed, Names{});
 }
 
-TEST(OutputCleaning, RemovesSpillFilesWhereverTheyAre) {
+TEST(OutputCleaning, RemovesSpillFilesInOtherDirectories) {
   const TemporaryDirectory directory;
   const TemporaryDirectory elsewhere;
   write_file(elsewhere / "a.raw", "source");
@@ -209,7 +233,7 @@ TEST(OutputCleaning, AMissingDirectoryHasNothingToRemove) {
   EXPECT_EQ(clean_outputs("/nowhere/at/all", "/nowhere", true, milliseconds(0)).removed, Names{});
 }
 
-TEST(OutputCleaning, LeavesWhatIsBeingWritten) {
+TEST(OutputCleaning, LeavesFilesThatAnotherProcessIsWriting) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / ".a.nvdb.work");
   const auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");
@@ -219,7 +243,7 @@ TEST(OutputCleaning, LeavesWhatIsBeingWritten) {
   EXPECT_EQ(list_directory(directory.path()), (Names{".a.nvdb.work/", "a.nvdb.partial"}));
 }
 
-TEST(OutputCleaning, WaitsForAWriterThatIsDying) {
+TEST(OutputCleaning, WaitsForAWriterThatIsAboutToEnd) {
   const TemporaryDirectory directory;
   auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");
   const auto death = std::async(std::launch::async, [&] {

@@ -35,7 +35,7 @@ TEST(Scheduler, TheWatchWithFewerRunningGoesFirst) {
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), "b");
 }
 
-TEST(Scheduler, NoMoreThanTheSlots) {
+TEST(Scheduler, StartsNoMoreJobsThanSlots) {
   Scheduler scheduler({2, 0, 0});
   std::vector<WatchLoad> watches{{"a", true, 1}, {"b", true, 1}};
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), none());
@@ -45,14 +45,14 @@ TEST(Scheduler, NoMoreThanTheSlots) {
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), none()) << "nothing waits";
 }
 
-TEST(Scheduler, ShortMemoryHoldsUpAllButTheFirst) {
+TEST(Scheduler, ShortMemory_StartsNoSecondJob) {
   const Scheduler scheduler({2, 1000, 0});
   EXPECT_EQ(scheduler.next(std::vector<WatchLoad>{{"a", true, 0}}, 999, kStart), "a");
   EXPECT_EQ(scheduler.next(std::vector<WatchLoad>{{"a", true, 1}}, 999, kStart), none());
   EXPECT_EQ(scheduler.next(std::vector<WatchLoad>{{"a", true, 1}}, 1000, kStart), "a");
 }
 
-TEST(Scheduler, PausedByAUser) {
+TEST(Scheduler, Paused_StartsNothingUntilResumed) {
   Scheduler scheduler({1, 0, 0});
   const std::vector<WatchLoad> watches{{"a", true, 0}};
   scheduler.pause();
@@ -63,7 +63,7 @@ TEST(Scheduler, PausedByAUser) {
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart), "a");
 }
 
-TEST(Scheduler, BandwidthIsTheMeanOverJobs) {
+TEST(Scheduler, BandwidthIsKeptOnAverageByDelayingTheNextJob) {
   Scheduler scheduler({1, 0, 100});
   const std::vector<WatchLoad> watches{{"a", true, 0}};
   scheduler.finished(1000, kStart);  // 10 s worth, in however short a time

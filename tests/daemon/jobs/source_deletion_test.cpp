@@ -92,7 +92,7 @@ class SourceDeletionTest : public testing::Test {
   SourceDeletion deletion_{io_, store_, log_};
 };
 
-TEST_F(SourceDeletionTest, AfterTheDelayAndNotBefore) {
+TEST_F(SourceDeletionTest, SourceIsDeletedAfterTheDelay) {
   config_.watches[0].delete_after_s = 0.3;
   delete_done();
   EXPECT_FALSE(run_until([&] { return !fs::exists(source_); }, milliseconds(150)));
@@ -100,7 +100,7 @@ TEST_F(SourceDeletionTest, AfterTheDelayAndNotBefore) {
   EXPECT_TRUE(logged(" deleted job=1 source=" + source_ + " in_use=no"));
 }
 
-TEST_F(SourceDeletionTest, ItsMarkerGoesWithIt) {
+TEST_F(SourceDeletionTest, MarkerIsDeletedWithItsSource) {
   config_.watches[0].complete = Completion::marker;
   write_file(source_ + ".done", "");
   delete_done();
@@ -143,7 +143,7 @@ TEST_F(SourceDeletionTest, ChangedInTheMeantime_Stays) {
   EXPECT_TRUE(stays());
 }
 
-TEST_F(SourceDeletionTest, ConvertedAnew_WaitsForThatJob) {
+TEST_F(SourceDeletionTest, RetriedJob_KeepsItsSource) {
   config_.watches[0].delete_after_s = 0.1;
   delete_done();
   store_.retry(1);
@@ -166,7 +166,7 @@ TEST_F(SourceDeletionTest, WithAnotherSourcesCertificate_Stays) {
   EXPECT_TRUE(stays());
 }
 
-TEST_F(SourceDeletionTest, WhatTheWatchTakesNoMore_Stays) {
+TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {
   convert();
   WatchConfig& watch = config_.watches[0];
   const WatchConfig before = watch;
@@ -197,21 +197,21 @@ TEST_F(SourceDeletionTest, WithoutACertificate_Stays) {
   EXPECT_TRUE(logged(sidecar_path(output_) + " cannot be read"));
 }
 
-TEST_F(SourceDeletionTest, InSeveralFiles_StaysWithAllOfThem) {
+TEST_F(SourceDeletionTest, ValuesInSeveralFiles_Stay) {
   write_output(", \"files_digest\": \"0123456789abcdef\"");
   delete_done();
   EXPECT_TRUE(stays());
   EXPECT_TRUE(logged("its values lie in several files, which other headers may name"));
 }
 
-TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsTakenUp) {
+TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsDeleted) {
   convert();
   deletion_.configure(config_);
   EXPECT_FALSE(deletion_.idle());
   EXPECT_FALSE(stays());
 }
 
-TEST_F(SourceDeletionTest, OfAWatchThatKeeps_IsNone) {
+TEST_F(SourceDeletionTest, WatchThatKeepsSources_DeletesNothing) {
   config_.watches[0].source = AfterDone::keep;
   delete_done();
   EXPECT_TRUE(deletion_.idle());

@@ -65,13 +65,13 @@ TEST(WorkerProcess, ReadsAllThatWasAnnouncedBeforeTheEnd) {
   EXPECT_EQ(shell.lines.back(), "2999");
 }
 
-TEST(WorkerProcess, ASignalIsSaidAsShellsSayIt) {
+TEST(WorkerProcess, KilledBySignal_ExitCodeIs128PlusTheSignal) {
   ShellRun shell("kill -SEGV $$");
   shell.run();
   EXPECT_EQ(shell.end->exit_code, 128 + SIGSEGV);
 }
 
-TEST(WorkerProcess, StopAsksFirst) {
+TEST(WorkerProcess, StopSendsSigtermFirst) {
   ShellRun shell("trap 'echo asked; exit 3' TERM; echo ready >&3; while :; do sleep 0.01; done");
   while (shell.lines.empty()) shell.io.run_one();
   shell.worker->stop(milliseconds(5000));
@@ -80,7 +80,7 @@ TEST(WorkerProcess, StopAsksFirst) {
   EXPECT_EQ(shell.end->log, "asked\n");
 }
 
-TEST(WorkerProcess, StopKillsWhatDoesNotListen) {
+TEST(WorkerProcess, Stop_SigtermIgnored_KillsAfterTheGrace) {
   ShellRun shell("trap '' TERM; echo ready >&3; while :; do sleep 0.01; done");
   while (shell.lines.empty()) shell.io.run_one();
   const auto begin = steady_clock::now();
@@ -90,7 +90,7 @@ TEST(WorkerProcess, StopKillsWhatDoesNotListen) {
   EXPECT_GE(steady_clock::now() - begin, milliseconds(100));
 }
 
-TEST(WorkerProcess, DestructionKillsAtOnceAndCallsNobody) {
+TEST(WorkerProcess, DestructionKillsTheProcessWithoutACallback) {
   ShellRun shell("trap '' TERM; echo $$ >&3; while :; do sleep 0.01; done");
   while (shell.lines.empty()) shell.io.run_one();
   const auto pid = static_cast<pid_t>(std::stoi(shell.lines.front()));
@@ -100,7 +100,7 @@ TEST(WorkerProcess, DestructionKillsAtOnceAndCallsNobody) {
   EXPECT_FALSE(shell.end);
 }
 
-TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoDescriptorsOfOurs) {
+TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoInheritedDescriptors) {
   const int leaked = ::dup(0);  // not close-on-exec
   ShellRun shell("ps -o pgid=,ni= -p $$; echo $$; ls /proc/self/fd | wc -l", 5);
   shell.run();
@@ -116,7 +116,7 @@ TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoDescriptorsOfOurs) {
   EXPECT_EQ(descriptors, 5) << "the three, the announcements, and the directory that ls lists";
 }
 
-TEST(WorkerProcess, LeavesNoDescriptors) {
+TEST(WorkerProcess, LeaksNoDescriptors) {
   const std::size_t before = open_descriptors();
   {
     ShellRun shell("true");

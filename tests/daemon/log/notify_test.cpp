@@ -46,7 +46,7 @@ TEST(ServiceNotifier, SendsToTheSocketOfTheEnvironmentAndHidesItFromChildren) {
   EXPECT_EQ(manager.received(), "READY=1\nSTATUS=watching");
 }
 
-TEST(ServiceNotifier, AWatchdogOfAnotherProcessIsNotOurs) {
+TEST(ServiceNotifier, WatchdogOfAnotherProcess_IsIgnored) {
   ::setenv("WATCHDOG_USEC", "3000000", 1);
   ::setenv("WATCHDOG_PID", "1", 1);
   EXPECT_EQ(ServiceNotifier::from_environment().watchdog(), std::nullopt);

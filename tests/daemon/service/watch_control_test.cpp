@@ -44,7 +44,7 @@ bool started(const ServiceHarness& service) {
   });
 }
 
-TEST(WatchControl, SigtermLetsWhatRunsEnd) {
+TEST(WatchControl, SigtermLetsRunningJobsFinish) {
   ServiceHarness service("grace = 600\n");
   service.start();
   const std::string name = add_long(service);
@@ -54,7 +54,7 @@ TEST(WatchControl, SigtermLetsWhatRunsEnd) {
   EXPECT_EQ(service.logged(" done "), 1U) << service.log();
 }
 
-TEST(WatchControl, SigtermAbandonsWhatTakesLongerThanTheGrace) {
+TEST(WatchControl, SigtermStopsJobsThatOutlastTheGracePeriod) {
   ServiceHarness service("grace = 0.1\n");
   service.start();
   add_long(service);
@@ -105,7 +105,7 @@ TEST(WatchControl, CancelPauseResumeAndRetry) {
   service.post(job + "/cancel");
 }
 
-TEST(WatchControl, ShowsRatesDisksAndWhatIsLost) {
+TEST(WatchControl, ShowsRatesDisksAndTheErrorOfOutputs) {
   ServiceHarness service;
   service.add("before");
   service.start();
@@ -143,7 +143,7 @@ TEST(WatchControl, SaysWhyAFileIsNotTakenYet) {
   EXPECT_TRUE(ServiceHarness::eventually([&] { return reason() == "a program has it open for writing"; })) << reason();
 }
 
-TEST(WatchControl, RetryConvertsAgainWhatIsDoneWhereItIsForced) {
+TEST(WatchControl, Retry_DoneJob_ConvertsAgainOnlyWithForce) {
   ServiceHarness service;
   const std::string name = service.add("a");
   service.start();
@@ -186,7 +186,7 @@ TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
   })) << service.log();
 }
 
-TEST(WatchControl, AReloadWithoutAWatchLetsItsJobEndAndForgetsWhatWaits) {
+TEST(WatchControl, ReloadWithoutAWatch_FinishesItsJobAndForgetsWaitingOnes) {
   ServiceHarness service;
   service.start();
   const std::string running = add_long(service);
@@ -215,7 +215,7 @@ TEST(WatchControl, AReloadWithoutAWatchLetsItsJobEndAndForgetsWhatWaits) {
 }
 
 // Else its output would lie as far from the output directory as its source from the new one.
-TEST(WatchControl, AWatchThatIsGivenAnotherDirectory_ForgetsWhatWaitedInTheFirst) {
+TEST(WatchControl, WatchGivenAnotherDirectory_ForgetsJobsOfTheFormerOne) {
   ServiceHarness service("", "label = \"w\"\n");
   service.start();
   service.post("/api/pause");
@@ -235,7 +235,7 @@ TEST(WatchControl, AWatchThatIsGivenAnotherDirectory_ForgetsWhatWaitedInTheFirst
   EXPECT_EQ(service.logged(" start "), 1U);
 }
 
-TEST(WatchControl, TheLogCanBeRotatedByOthers) {
+TEST(WatchControl, RenamedLog_IsReopenedOnSighup) {
   ServiceHarness service("log_size = \"0\"\n");
   service.start();
   fs::rename(service.path("log"), service.path("log.1"));
@@ -283,7 +283,7 @@ TEST(WatchControl, NotifiesTheServiceManager) {
   EXPECT_NE(receive().find("STOPPING=1\n"), std::string::npos);
 }
 
-TEST(WatchControl, ThumbnailsAreServed) {
+TEST(WatchControl, ThumbnailsAreWrittenAndListed) {
   ServiceHarness service("", "thumbnails = true\n");
   service.start();
   const std::string name = service.add("one");

@@ -38,7 +38,7 @@ TEST(WatchFaults, ALostStateFileIsRebuiltFromTheOutputs) {
 }
 
 // More than SQLite keeps in memory, so that what is damaged on disk is read.
-TEST(WatchFaults, AStateFileDamagedMeanwhileEndsItAndTheNextStartRebuildsIt) {
+TEST(WatchFaults, StateFileDamagedWhileRunning_EndsTheServiceAndIsRebuilt) {
   ServiceHarness service;
   {
     JobStore store(service.path("weir.db"));
@@ -70,7 +70,7 @@ TEST(WatchFaults, AStateFileDamagedMeanwhileEndsItAndTheNextStartRebuildsIt) {
   EXPECT_EQ(service.leftovers(), Names{});
 }
 
-TEST(WatchFaults, AFullDiskOfTheStateFileHoldsAllUntilThereIsRoom) {
+TEST(WatchFaults, FullDiskOfTheStateFile_PausesAllJobsUntilThereIsRoom) {
   ServiceHarness service("state = \"state/weir.db\"\n");
   fs::create_directory(service.path("state"));
   ScopedMount mount(service.path("state"), 8 << 20);
@@ -94,7 +94,7 @@ TEST(WatchFaults, AFullDiskOfTheStateFileHoldsAllUntilThereIsRoom) {
   EXPECT_EQ(service.stop(), 0);
 }
 
-TEST(WatchFaults, TwoSourcesOfOneOutputAreOneResultAndAnHonestFailure) {
+TEST(WatchFaults, SecondSourceOfTheSameOutput_FailsWithTheReason) {
   ServiceHarness service;
   const std::string name = service.add("same", 3);
   service.start();
@@ -133,7 +133,7 @@ TEST(WatchFaults, AFullDiskPausesUntilThereIsRoom) {
 }
 
 // One output is larger than the rest of its disk, and one than the whole of another: neither holds up what fits.
-TEST(WatchFaults, AnOutputThatDoesNotFitHoldsUpItsLikeOnly) {
+TEST(WatchFaults, OutputThatDoesNotFit_DelaysOnlyJobsAsLargeOnThatDisk) {
   ServiceHarness service("", "size = \"400000\"\nsettle = 0.2\n");
   ScopedMount mount(service.out(), 2 << 20);
   if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
@@ -183,7 +183,7 @@ TEST(WatchFaults, AReadOnlyOutputIsAFailureThatIsTriedAgain) {
   EXPECT_EQ(service.stop(), 0);
 }
 
-TEST(WatchFaults, AnOutputThatCannotBeADirectoryIsSaid) {
+TEST(WatchFaults, OutputDirectoryBelowAFile_FailsWithTheReason) {
   ServiceHarness service("", "output = \"file/out\"\n");
   write_file(service.path("file"), "");
   service.start();
@@ -215,7 +215,7 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
 }
 
 // As behind a file server that does not answer: what cannot be looked at is not deleted.
-TEST(WatchFaults, AFileThatCannotBeLookedAtIsNotForgotten) {
+TEST(WatchFaults, FileInAnUnreadableDirectory_KeepsItsJob) {
   ServiceHarness service("", "recursive = true\n");
   service.run_unprivileged();
   fs::create_directory(service.in("sub"));
@@ -235,7 +235,7 @@ TEST(WatchFaults, AFileThatCannotBeLookedAtIsNotForgotten) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("quarantined") == 0; })) << service.log();
 }
 
-TEST(WatchFaults, AFileThatCannotBeLookedAtIsSaidOnceAndTriedAgain) {
+TEST(WatchFaults, FileInAnUnreadableDirectory_IsReportedOnceAndTriedAgain) {
   ServiceHarness service("", "recursive = true\nsettle = 3\n");
   service.run_unprivileged();
   fs::create_directory(service.in("sub"));
@@ -257,7 +257,7 @@ TEST(WatchFaults, AFileThatCannotBeLookedAtIsSaidOnceAndTriedAgain) {
   EXPECT_EQ(service.logged(": cannot look at it:"), 1U);
 }
 
-TEST(WatchFaults, ASourceDeletedMeanwhileLeavesNothing) {
+TEST(WatchFaults, SourceDeletedWhileWaiting_RemovesItsJob) {
   ServiceHarness service;
   const std::string name = "long_1024x1024x1024_uint8.raw";
   write_file(service.path("tmp"), "");
@@ -274,7 +274,7 @@ TEST(WatchFaults, ASourceDeletedMeanwhileLeavesNothing) {
   EXPECT_EQ(service.logged(" failed "), 0U) << service.log();
 }
 
-TEST(WatchFaults, AnOutputOfSomebodyElseIsNotReplaced) {
+TEST(WatchFaults, ForeignOutput_IsNotReplaced) {
   ServiceHarness service;
   const std::string name = std::string("one") + ServiceHarness::kSuffix;
   write_file(service.out(name + ".nvdb"), "precious");
@@ -299,7 +299,7 @@ TEST(WatchFaults, LeftoversOfAKilledConversionAreCleanedAtStart) {
 }
 
 // A modification time in the future, and one that goes backwards: both are only different ones.
-TEST(WatchFaults, ClocksOfSourcesMayJump) {
+TEST(WatchFaults, SourceTimeJumpsByYears_IsConvertedAgain) {
   ServiceHarness service;
   service.start();
   const std::string name = service.add("one");

@@ -34,7 +34,7 @@ class WatchFiles : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(, WatchFiles, testing::Values("inotify", "poll"),
                          [](const auto& method) { return std::string(method.param); });
 
-TEST_P(WatchFiles, WhatAppearsAndWhatWasThereIsConvertedOnce) {
+TEST_P(WatchFiles, ExistingAndNewFilesAreConvertedOnce) {
   ServiceHarness service("", keys());
   const std::string before = service.add("before", 3);
   service.start();
@@ -66,7 +66,7 @@ TEST_P(WatchFiles, ASlowWriterIsWaitedFor) {
   EXPECT_EQ(service.logged(" start "), 1U);
 }
 
-TEST_P(WatchFiles, ARenamedFileComesWhole) {
+TEST_P(WatchFiles, FileRenamedIntoPlace_IsConvertedOnce) {
   ServiceHarness service("", keys());
   service.start();
   const std::string name = std::string("moved") + ServiceHarness::kSuffix;
@@ -77,7 +77,7 @@ TEST_P(WatchFiles, ARenamedFileComesWhole) {
   EXPECT_EQ(service.logged(" start "), 1U);
 }
 
-TEST_P(WatchFiles, FilesThatAppearWhileItIsStopped) {
+TEST_P(WatchFiles, FilesAddedWhileStopped_AreConvertedAfterTheStart) {
   ServiceHarness service("", keys());
   service.start();
   const std::string first = service.add("first");
@@ -103,7 +103,7 @@ TEST_P(WatchFiles, NestedDirectoriesAreRepeatedInTheOutput) {
   EXPECT_EQ(service.leftovers(), Names{});
 }
 
-TEST_P(WatchFiles, WhatIsRewrittenWhileItIsConvertedIsConvertedAgain) {
+TEST_P(WatchFiles, SourceReplacedDuringConversion_IsConvertedAgain) {
   ServiceHarness service("", keys());
   const std::string source = service.in("big_256x256x256_uint8.raw");
   write_file(source, std::string(256 << 16, 'a'));
@@ -133,7 +133,7 @@ TEST_P(WatchFiles, ATruncatedFileIsQuarantinedAndTriedAgainWhenItChanges) {
   EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
 }
 
-TEST_P(WatchFiles, TheDirectoryMayComeLateAndBeReplaced) {
+TEST_P(WatchFiles, DirectoryMadeLateOrReplaced_IsWatched) {
   ServiceHarness service("", keys());
   fs::remove(service.in());
   service.start();
@@ -160,7 +160,7 @@ TEST_P(WatchFiles, ALinkOutOfTheTreeIsRefused) {
   EXPECT_EQ(service.job(name + ".raw")["state"], "done");
 }
 
-TEST_P(WatchFiles, AHeaderThatNamesAFileOutside_IsConvertedWhereTheWatchFollowsAnywhere) {
+TEST_P(WatchFiles, HeaderNamingAFileOutside_NeedsFollowAnywhere) {
   ServiceHarness service("", keys());
   write_file(service.path("secret.raw"), ServiceHarness::volume(3));
   write_file(service.in("a.mhd"),
@@ -185,7 +185,7 @@ TEST_P(WatchFiles, AHeaderThatNamesAFileOutside_IsConvertedWhereTheWatchFollowsA
 }
 
 // As on a file system whose times are whole seconds: size, time and inode are those of what was converted.
-TEST(WatchRacyTimes, ARewriteThatTheTimeHides_IsConverted) {
+TEST(WatchRacyTimes, RewriteWithTheSameSizeAndTime_IsConverted) {
   ServiceHarness service("", "watch = \"inotify\"\nsettle = 0.2\n");
   service.start();
   const timespec second{std::time(nullptr), 0};
@@ -205,7 +205,7 @@ TEST(WatchRacyTimes, ARewriteThatTheTimeHides_IsConverted) {
   EXPECT_EQ(service.difference(stem + ".raw", stem + ".nvdb"), "");
 }
 
-TEST_P(WatchFiles, AMarkerOpensTheGate) {
+TEST_P(WatchFiles, SourceIsConvertedOnlyAfterItsMarkerAppears) {
   ServiceHarness service("", keys("complete = \"marker\"\nsource = \"delete-after-verify\"\ndelete_after = 0.2\n"));
   service.start();
   const std::string name = service.add("marked");

@@ -8,7 +8,7 @@
 namespace weir::disk_turns_test {
 namespace {
 
-TEST(DiskTurns, WhatComesDuringATurnIsAnsweredBeforeTheNext) {
+TEST(DiskTurns, HandlerPostedDuringATurn_RunsBeforeTheNextTurn) {
   boost::asio::io_context io;
   DiskTurns turns(io);
   std::string order;
@@ -25,7 +25,7 @@ TEST(DiskTurns, WhatComesDuringATurnIsAnsweredBeforeTheNext) {
   EXPECT_EQ(order, "a.b.c.");
 }
 
-TEST(DiskTurns, WhatATurnAsksForComesAfterTheOthers) {
+TEST(DiskTurns, TurnTakenDuringATurn_RunsAfterThoseWaiting) {
   boost::asio::io_context io;
   DiskTurns turns(io);
   std::string order;

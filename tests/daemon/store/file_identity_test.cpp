@@ -31,7 +31,7 @@ TEST(FileIdentity, IsSizeTimeAndInodeOfARegularFile) {
   EXPECT_EQ(identify(directory / "other"), expected);
 }
 
-TEST(FileIdentity, WhatIsNoRegularFileHasNoneAndIsGone) {
+TEST(FileIdentity, NotARegularFile_HasNoIdentityAndCountsAsGone) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "directory");
   ASSERT_EQ(::mkfifo((directory / "fifo").c_str(), 0600), 0);
@@ -47,7 +47,7 @@ TEST(FileIdentity, WhatIsNoRegularFileHasNoneAndIsGone) {
   EXPECT_FALSE(is_gone(directory / "file"));
 }
 
-TEST(FileIdentity, OnlyAnErrorOfThePathItselfSaysThatNothingIsThere) {
+TEST(FileIdentity, OnlyErrorsOfThePathItselfMeanMissing) {
   for (const int error : {ENOENT, ENOTDIR, ELOOP, ENAMETOOLONG}) EXPECT_TRUE(says_missing(error)) << error;
   for (const int error : {EACCES, EIO, ESTALE, ETIMEDOUT, ENOMEM, EOVERFLOW, EHOSTDOWN}) {
     EXPECT_FALSE(says_missing(error)) << error;

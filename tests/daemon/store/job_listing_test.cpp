@@ -13,7 +13,7 @@ using test::success;
 
 class JobListing : public test::StoredJobs {};
 
-TEST_F(JobListing, CandidatesComeByTheTimeOfTheirSources) {
+TEST_F(JobListing, CandidatesAreOrderedByTheTimeOfTheirSources) {
   waiting("/in/b.raw", {1, 200, 1});
   waiting("/in/a.raw", {1, 300, 1});
   waiting("/in/c.raw", {1, 100, 1});
@@ -25,7 +25,7 @@ TEST_F(JobListing, CandidatesComeByTheTimeOfTheirSources) {
   EXPECT_EQ(candidates(Priority::newest, 1), Names{"/in/a.raw"});
 }
 
-TEST_F(JobListing, AreListedFilteredAndCounted) {
+TEST_F(JobListing, ListsFiltersAndCountsJobs) {
   waiting("/in/a.raw");
   now_ += 1000;
   waiting("/in/b.raw", kIdentity, "v");
@@ -50,13 +50,13 @@ TEST_F(JobListing, AreListedFilteredAndCounted) {
   EXPECT_EQ(store_->queue_age_ms(), 2000);
 }
 
-TEST_F(JobListing, AreFoundByTheirReasons) {
+TEST_F(JobListing, SearchMatchesTheReason) {
   store_->fail(running("/in/a.raw"), failure(3, "/in/a.raw: is CUT"));
   EXPECT_EQ(sources({{}, "", "is cut"}), Names{"/in/a.raw"});
   EXPECT_EQ(sources({{}, "", "100%"}), Names{});
 }
 
-TEST_F(JobListing, AreListedInTheOrderAskedFor) {
+TEST_F(JobListing, ListsJobsInTheRequestedOrder) {
   FileIdentity small = kIdentity;
   small.bytes = 1;
   waiting("/in/b.raw");
@@ -79,7 +79,7 @@ TEST_F(JobListing, AreListedInTheOrderAskedFor) {
   EXPECT_EQ(listed(JobOrderKey::discovered, true), (Names{"/in/a.raw", "/in/c.raw", "/in/b.raw"}));
 }
 
-TEST_F(JobListing, OfTheSameProblemAreOneGroup) {
+TEST_F(JobListing, JobsWithTheSameProblemAreOneGroup) {
   for (const int i : {1, 2, 3}) {
     const std::string source = cat("/in/", i, ".raw");
     store_->fail(running(source), failure(3, cat(source, ": has ", 100 * i, " bytes and should have 512")));
@@ -105,7 +105,7 @@ TEST_F(JobListing, OfTheSameProblemAreOneGroup) {
   EXPECT_EQ(store_->problems(10).size(), 1U);
 }
 
-TEST_F(JobListing, ThatWaitHaveSoManyBytes) {
+TEST_F(JobListing, SumsWaitingBytesByWatch) {
   EXPECT_TRUE(store_->waiting_bytes().empty());
   waiting("/in/a.raw");
   waiting("/in/b.raw");

@@ -24,7 +24,7 @@ using test::kIdentity;
 using test::StoredJobs;
 using test::success;
 
-TEST_F(StoredJobs, ThatFailedAreRetried) {
+TEST_F(StoredJobs, RetryResetsFailedAndQuarantinedJobs) {
   JobResult wrong_options;
   wrong_options.exit_code = 2;
   const std::int64_t failed = running("/in/failed.raw");
@@ -44,7 +44,7 @@ TEST_F(StoredJobs, ThatFailedAreRetried) {
   EXPECT_EQ(job(done).state, JobState::done);
 }
 
-TEST_F(StoredJobs, HastenedOnesHaveOneAttemptMore) {
+TEST_F(StoredJobs, Hasten_FailedJob_GetsOneMoreAttempt) {
   const std::int64_t id = running("/in/a.raw");
   store_->fail(id, failure(5));
   EXPECT_TRUE(store_->hasten(id));
@@ -69,7 +69,7 @@ TEST_F(StoredJobs, HastenedOnesHaveOneAttemptMore) {
   EXPECT_FALSE(store_->hasten(bad));
 }
 
-TEST_F(StoredJobs, AreForcedUntilTheyAreDoneOrCancelled) {
+TEST_F(StoredJobs, ForcedRetry_StaysForcedUntilDoneOrCancelled) {
   const std::int64_t id = running("/in/a.raw");
   store_->finish(id, success());
   EXPECT_TRUE(store_->retry(id, true));
@@ -86,7 +86,7 @@ TEST_F(StoredJobs, AreForcedUntilTheyAreDoneOrCancelled) {
   EXPECT_FALSE(job(id).forced);
 }
 
-TEST_F(StoredJobs, FailuresOfADeviceAreRetriedAtAStart) {
+TEST_F(StoredJobs, RetryFailedIo_RetriesOnlyJobsWithExitCode5) {
   JobResult device;
   device.exit_code = 5;
   const std::int64_t io = running("/in/io.raw");

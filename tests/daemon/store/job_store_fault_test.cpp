@@ -24,7 +24,7 @@ using test::kIdentity;
 using test::StoredJobs;
 using test::success;
 
-TEST_F(StoredJobs, TogetherIsAllOrNothing) {
+TEST_F(StoredJobs, TogetherCommitsAllOrNothing) {
   EXPECT_THROW(store_->together([&] {
     waiting("/in/a.raw");
     waiting("/in/b.raw");
@@ -38,7 +38,7 @@ TEST_F(StoredJobs, TogetherIsAllOrNothing) {
   EXPECT_EQ(store_->count({JobState::waiting, "", ""}), 2000U);
 }
 
-TEST_F(StoredJobs, AFullDiskIsSurvived) {
+TEST_F(StoredJobs, FullDisk_RefusesWritesAndKeepsStoredJobs) {
   const std::string place = directory_ / "small";
   std::filesystem::create_directory(place);
   const ScopedMount mount(place, 1 << 20);
@@ -77,7 +77,7 @@ TEST_F(StoredJobs, AFullDiskIsSurvived) {
 }
 
 // A process does one step after the other and says each that returned; it is killed at a random moment.
-TEST_F(StoredJobs, AKillAtAnyMomentLosesNothingThatReturned) {
+TEST_F(StoredJobs, KillAtAnyMoment_LosesNoCompletedStep) {
   store_.reset();
   std::mt19937 random(5);
   std::vector<JobState> reached;  // of the jobs 1, 2, ..., as far as was said

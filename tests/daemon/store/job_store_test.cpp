@@ -24,7 +24,7 @@ using test::kIdentity;
 using test::StoredJobs;
 using test::success;
 
-TEST_F(StoredJobs, AJobGoesItsWay) {
+TEST_F(StoredJobs, RecordsAJobFromDiscoveryToDone) {
   const JobStore::Observation seen = store_->observe("w", "/in/a.raw", kIdentity, "--rate=8");
   EXPECT_EQ(seen.change, Change::created);
   EXPECT_EQ(seen.before, std::nullopt);
@@ -60,7 +60,7 @@ TEST_F(StoredJobs, AJobGoesItsWay) {
   EXPECT_EQ(job(1).state, JobState::done);
 }
 
-TEST_F(StoredJobs, StepsFromAnotherStateChangeNothing) {
+TEST_F(StoredJobs, StepNotAllowedInTheState_ChangesNothing) {
   const std::int64_t id = observe("/in/a.raw");
   EXPECT_FALSE(store_->start(id));
   EXPECT_FALSE(store_->finish(id, success()));
@@ -123,7 +123,7 @@ TEST_F(StoredJobs, AChangedSourceIsDiscoveredAgainFromEveryState) {
   }
 }
 
-TEST_F(StoredJobs, FailedAttemptsWaitLongerEachTimeAndEnd) {
+TEST_F(StoredJobs, RetryDelayDoublesUntilTheLastAttempt) {
   EXPECT_EQ(backoff_ms(1), 5'000);
   EXPECT_EQ(backoff_ms(7), 320'000);
   EXPECT_EQ(backoff_ms(8), 600'000);
@@ -153,7 +153,7 @@ TEST_F(StoredJobs, FailedAttemptsWaitLongerEachTimeAndEnd) {
   EXPECT_EQ(job(id).result.reason, "");
 }
 
-TEST_F(StoredJobs, RetryEndsADelay) {
+TEST_F(StoredJobs, RetryMakesADelayedJobDueAtOnce) {
   const std::int64_t id = running("/in/a.raw");
   store_->fail(id, failure(1));
   EXPECT_TRUE(store_->retry(id));
@@ -161,7 +161,7 @@ TEST_F(StoredJobs, RetryEndsADelay) {
   EXPECT_EQ(job(id).attempts, 0);
 }
 
-TEST_F(StoredJobs, TheExitCodeDecides) {
+TEST_F(StoredJobs, ExitCodeDecidesBetweenRetryFailureAndQuarantine) {
   const auto after = [&](int exit_code) {
     const std::int64_t id = running(cat("/in/", exit_code, ".raw"));
     store_->fail(id, failure(exit_code, cat("code ", exit_code)));
@@ -178,7 +178,7 @@ TEST_F(StoredJobs, TheExitCodeDecides) {
   EXPECT_EQ(after(139), JobState::waiting);
 }
 
-TEST_F(StoredJobs, PostponedAndInterruptedOnesCostNothing) {
+TEST_F(StoredJobs, PostponedOrInterrupted_CountsNoAttempt) {
   const std::int64_t postponed = running("/in/a.raw");
   EXPECT_TRUE(store_->postpone(postponed, "no room on /out"));
   EXPECT_EQ(job(postponed).state, JobState::waiting);
@@ -193,7 +193,7 @@ TEST_F(StoredJobs, PostponedAndInterruptedOnesCostNothing) {
   EXPECT_EQ(candidates(Priority::oldest), (Names{"/in/a.raw", "/in/b.raw"}));
 }
 
-TEST_F(StoredJobs, PostponedWithADelay_WaitsForItAndCountsNothing) {
+TEST_F(StoredJobs, PostponedWithADelay_WaitsForItAndCountsNoAttempt) {
   const std::int64_t id = running("/in/a.raw");
   EXPECT_TRUE(store_->postpone(id, "the source changed", 2000));
   EXPECT_EQ(job(id).state, JobState::waiting);
@@ -203,7 +203,7 @@ TEST_F(StoredJobs, PostponedWithADelay_WaitsForItAndCountsNothing) {
   EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
 }
 
-TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
+TEST_F(StoredJobs, ClockSetBack_DelaysNoJob) {
   const std::int64_t id = running("/in/a.raw");
   store_->fail(id, failure(1));
   now_ -= std::int64_t{365} * 86'400'000;
@@ -212,7 +212,7 @@ TEST_F(StoredJobs, AClockThatJumpsHoldsNothingBack) {
   EXPECT_EQ(store_->queue_age_ms(), 0);
 }
 
-TEST_F(StoredJobs, DatedInTheFuture_AreNotTheNewestForEver) {
+TEST_F(StoredJobs, TimesInTheFuture_AreSetBackToNow) {
   now_ += 3'600'000;
   waiting("/in/ahead.raw");
   now_ -= 3'600'000;  // the clock is set back
@@ -228,7 +228,7 @@ TEST_F(StoredJobs, DatedInTheFuture_AreNotTheNewestForEver) {
   EXPECT_EQ(job(store_->find("w", "/in/late.raw")->id).changed_ms, now_);
 }
 
-TEST_F(StoredJobs, OfOneSourceInTwoWatchesAreTwo) {
+TEST_F(StoredJobs, OneSourceInTwoWatches_IsTwoJobs) {
   EXPECT_EQ(observe("/in/a.raw", kIdentity, "w"), 1);
   EXPECT_EQ(observe("/in/a.raw", kIdentity, "v"), 2);
   EXPECT_EQ(store_->find("v", "/in/a.raw")->id, 2);
@@ -236,13 +236,13 @@ TEST_F(StoredJobs, OfOneSourceInTwoWatchesAreTwo) {
   EXPECT_FALSE(store_->find("v", "/in/b.raw"));
 }
 
-TEST_F(StoredJobs, NumbersAreNotUsedAgain) {
+TEST_F(StoredJobs, IdsOfRemovedJobsAreNotReused) {
   const std::int64_t id = observe("/in/a.raw");
   EXPECT_TRUE(store_->remove(id));
   EXPECT_EQ(observe("/in/a.raw"), id + 1);
 }
 
-TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
+TEST_F(StoredJobs, ForgetOtherWatches_KeepsDoneCancelledAndRunningJobs) {
   const std::int64_t kept = observe("/in/kept.raw", kIdentity, "a");
   std::vector<std::int64_t> ids;
   for (const char* name : {"discovered", "waiting", "failed", "quarantined", "running", "done", "cancelled"}) {
@@ -267,7 +267,7 @@ TEST_F(StoredJobs, OfOtherWatchesAreForgottenButForResultsAndDecisions) {
   EXPECT_FALSE(store_->job(kept));
 }
 
-TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
+TEST_F(StoredJobs, ForgetOtherWatches_ForgetsJobsOfFormerDirectories) {
   observe("/old/a.raw", kIdentity, "w");
   observe("/new/a.raw", kIdentity, "w");
   observe("/newer/a.raw", kIdentity, "w");
@@ -275,7 +275,7 @@ TEST_F(StoredJobs, OfTheDirectoryThatAWatchHadBeforeAreForgotten) {
   EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{"/new/a.raw"});
 }
 
-TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {
+TEST_F(StoredJobs, OverSinceListsJobsDoneOrCancelledBeforeATime) {
   const std::int64_t first = running("/in/first.raw");
   const std::int64_t second = running("/in/second.raw");
   const std::int64_t third = running("/in/third.raw");
@@ -298,7 +298,7 @@ TEST_F(StoredJobs, LongOverAreThoseDoneOrCancelledBeforeATime) {
   EXPECT_EQ(over(0, first), (Ids{second, third}));
 }
 
-TEST_F(StoredJobs, PathsAreBytes) {
+TEST_F(StoredJobs, PathsThatAreNotUtf8AreStoredUnchanged) {
   const std::string source = "/in/\xe9t\xe9 '\"\n%.raw";
   const std::int64_t id = waiting(source);
   EXPECT_EQ(store_->find("w", source)->id, id);

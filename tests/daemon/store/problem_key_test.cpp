@@ -17,7 +17,9 @@ TEST(ProblemKey, LeavesOutThePathInsideTheText) {
             "verify: /out/*.nvdb: damaged; made of *");
 }
 
-TEST(ProblemKey, LeavesWordsWhole) { EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head"); }
+TEST(ProblemKey, ReplacesTheFileNameOnlyAsAWholeWord) {
+  EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head");
+}
 
 TEST(ProblemKey, DifferentProblemsStayDifferent) {
   EXPECT_NE(problem_key("/a", "/a: is empty"), problem_key("/a", "/a: is no HDF5 file"));
@@ -26,7 +28,7 @@ TEST(ProblemKey, DifferentProblemsStayDifferent) {
   EXPECT_EQ(problem_key("/a", "/a: names \xff\xc3\xa4"), "names ???");
 }
 
-TEST(WithoutPath, TakesAwayThePathInFrontAlone) {
+TEST(WithoutPath, RemovesThePathOnlyAtTheFront) {
   EXPECT_EQ(without_path("/a/b", "/a/b: is empty"), "is empty");
   EXPECT_EQ(without_path("/a/b", "/a/bc: is empty"), "/a/bc: is empty");
   EXPECT_EQ(without_path("", ": x"), ": x");

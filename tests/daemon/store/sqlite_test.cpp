@@ -22,7 +22,7 @@ class Sqlite : public testing::Test {
   std::string path_ = directory_ / "t.db";
 };
 
-TEST_F(Sqlite, ValuesComeBackAsTheyWent) {
+TEST_F(Sqlite, BoundValuesAreReadBackUnchanged) {
   const Database database(path_);
   database.run("CREATE TABLE t (a, b, c, d, e, f)");
   Statement insert = database.prepare("INSERT INTO t VALUES (?, ?, ?, ?, ?, ?)");
@@ -41,7 +41,7 @@ TEST_F(Sqlite, ValuesComeBackAsTheyWent) {
   EXPECT_FALSE(row.step());
 }
 
-TEST_F(Sqlite, AStatementIsUsedAgainAndForgetsWhatWasBound) {
+TEST_F(Sqlite, ReusedStatement_HasNoOldBindings) {
   const Database database(path_);
   database.run("CREATE TABLE t (a)");
   const char* insert = "INSERT INTO t VALUES (?)";
@@ -74,7 +74,7 @@ TEST_F(Sqlite, ATransactionThatIsNotCommittedLeavesNothing) {
   EXPECT_EQ(count(database), 0);
 }
 
-TEST_F(Sqlite, AnInnerTransactionTakesBackItsOwnStatementsAlone) {
+TEST_F(Sqlite, AbandonedInnerTransaction_RollsBackItsOwnStatementsOnly) {
   Database database(path_);
   database.run("CREATE TABLE t (a)");
   Transaction outer(database);

@@ -39,14 +39,14 @@ class StateFile : public testing::Test {
   ErrorKind kind_ = ErrorKind::internal;
 };
 
-TEST_F(StateFile, IsMadeOnceAndFoundAgain) {
+TEST_F(StateFile, Reopened_HasItsContents) {
   make();
   EXPECT_EQ(marked(), 42);
   EXPECT_EQ(notice_, "");
   EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
 }
 
-TEST_F(StateFile, IsForOneProcess) {
+TEST_F(StateFile, OpenedByAnotherProcess_IsRefused) {
   const Database first = open_state_file(path_, notice_);
   EXPECT_EQ(refusal(), path_ +
                            ": cannot use the state: database is locked; another process has it open, and only one "
@@ -54,7 +54,7 @@ TEST_F(StateFile, IsForOneProcess) {
   EXPECT_EQ(kind_, ErrorKind::io);
 }
 
-TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
+TEST_F(StateFile, NewerVersion_IsRefusedAndUnchanged) {
   make();
   Database(path_).run("PRAGMA user_version=7");
   EXPECT_EQ(refusal(), path_ +
@@ -65,7 +65,7 @@ TEST_F(StateFile, OfANewerWeirIsRefusedAndLeftAlone) {
   EXPECT_EQ(marked(), 42);
 }
 
-TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
+TEST_F(StateFile, Version1_IsUpgraded) {
   make();
   {
     const Database old(path_);
@@ -95,7 +95,7 @@ TEST_F(StateFile, OfVersion1IsBroughtUpToDate) {
   EXPECT_EQ(changed.real_or_none(0), 2.5);
 }
 
-TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {
+TEST_F(StateFile, DatabaseOfAnotherProgram_IsRefusedAndUnchanged) {
   const std::string message = path_ + ": is a database of another program; name another file as state in [service]";
   Database(path_).run("CREATE TABLE theirs (a)");
   EXPECT_EQ(refusal(), message);
@@ -106,7 +106,7 @@ TEST_F(StateFile, OfAnotherProgramIsRefusedAndLeftAlone) {
   EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
 }
 
-TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
+TEST_F(StateFile, FileThatIsNoDatabase_IsMovedAside) {
   const std::string text(5000, 'x');
   for (const std::string n : {"1", "2"}) {
     write_file(path_, text);
@@ -118,7 +118,7 @@ TEST_F(StateFile, ThatIsNoDatabaseIsMovedAside) {
   }
 }
 
-TEST_F(StateFile, ThatIsCutOffIsMovedAside) {
+TEST_F(StateFile, TruncatedFile_IsMovedAside) {
   make();
   std::filesystem::resize_file(path_, 5 * 4096 + 100);
   EXPECT_EQ(marked(), 0);
@@ -137,7 +137,7 @@ TEST_F(StateFile, WithADamagedPageIsMovedAside) {
   EXPECT_EQ(read_file(path_ + ".corrupt-1"), bytes);
 }
 
-TEST_F(StateFile, EmptyIsNew) {
+TEST_F(StateFile, EmptyFile_IsTreatedAsNew) {
   write_file(path_, "");
   EXPECT_EQ(marked(), 0);
   EXPECT_EQ(notice_, "");

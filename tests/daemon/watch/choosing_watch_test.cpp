@@ -49,7 +49,7 @@ TEST_P(DirectoryWatchTest, FilesPresentAtStartAreFoundOnceAndNothingElse) {
   EXPECT_EQ(dir.watch->figures().directories, 4U);
 }
 
-TEST_P(DirectoryWatchTest, ASlowWriterIsToldOfFromItsFirstByteToItsClose) {
+TEST_P(DirectoryWatchTest, SlowWriter_IsReportedFromFirstWriteToClose) {
   dir.start();
   ASSERT_TRUE(dir.settle());
   std::ofstream writer(dir / "a.raw");
@@ -66,7 +66,7 @@ TEST_P(DirectoryWatchTest, ASlowWriterIsToldOfFromItsFirstByteToItsClose) {
   ASSERT_TRUE(dir.run_until_written(dir / "a.raw"));
 }
 
-TEST_P(DirectoryWatchTest, ManyWritesAreFewEvents) {
+TEST_P(DirectoryWatchTest, ManyWritesToOneFile_AreReportedOnce) {
   dir.start();
   ASSERT_TRUE(dir.settle());
   std::ofstream writer(dir / "a.raw");
@@ -79,7 +79,7 @@ TEST_P(DirectoryWatchTest, ManyWritesAreFewEvents) {
   EXPECT_EQ(dir.kinds(dir / "a.raw"), once);
 }
 
-TEST_P(DirectoryWatchTest, RenamesWithinAndFromOutsideTheTree) {
+TEST_P(DirectoryWatchTest, FilesRenamedWithinIntoAndOutOfTheTree_AreReported) {
   write_file(dir / "a.tmp", "1");
   write_file(dir.outside("b.raw"), "2");
   dir.start();
@@ -96,7 +96,7 @@ TEST_P(DirectoryWatchTest, RenamesWithinAndFromOutsideTheTree) {
   EXPECT_TRUE(dir.told(Kind::removed, dir / "a.raw"));
 }
 
-TEST_P(DirectoryWatchTest, RewrittenInPlaceAndByARenameAndRemoved) {
+TEST_P(DirectoryWatchTest, FileRewrittenReplacedOrRemoved_IsReported) {
   write_file(dir / "a.raw", "1");
   dir.start();
   ASSERT_TRUE(dir.settle());
@@ -112,7 +112,7 @@ TEST_P(DirectoryWatchTest, RewrittenInPlaceAndByARenameAndRemoved) {
   EXPECT_EQ(dir.watch->figures().files, 0U);
 }
 
-TEST_P(DirectoryWatchTest, NestedDirectoriesWithFilesAtOnce) {
+TEST_P(DirectoryWatchTest, FilesInNewNestedDirectories_AreReported) {
   dir.start();
   ASSERT_TRUE(dir.settle());
   std::set<std::string> paths;
@@ -133,7 +133,7 @@ TEST_P(DirectoryWatchTest, NestedDirectoriesWithFilesAtOnce) {
   EXPECT_TRUE(dir.run_until_written(dir / "run49/a/b/c/late.raw"));
 }
 
-TEST_P(DirectoryWatchTest, DirectoriesRenamedWithinOutOfAndIntoTheTree) {
+TEST_P(DirectoryWatchTest, DirectoriesRenamedWithinIntoAndOutOfTheTree_AreReported) {
   fs::create_directories(dir / "a/b/c");
   write_file(dir / "a/b/c/d.raw", "1");
   fs::create_directories(dir / "ab");  // begins alike
@@ -182,7 +182,7 @@ TEST_P(DirectoryWatchTest, SwappedDirectoriesAreToldUnderTheirNewNames) {
   ASSERT_TRUE(dir.run_until_written(dir / "b/y.raw"));
 }
 
-TEST_P(DirectoryWatchTest, ExchangedFilesAndDirectoriesAndADirectoryInThePlaceOfAnother) {
+TEST_P(DirectoryWatchTest, ExchangedOrReplacedDirectories_AreReportedAtTheirNewPaths) {
   for (const char* name : {"a", "b", "empty"}) fs::create_directory(dir / name);
   for (const char* name : {"a/of_a.raw", "b/of_b.raw", "x.raw", "y.raw"}) write_file(dir / name, name);
   dir.start();
@@ -227,7 +227,7 @@ std::set<std::string> files_in(const std::string& directory) {
   return files;
 }
 
-TEST_P(DirectoryWatchTest, AnyOrderOfChangesEndsInTheTruth) {
+TEST_P(DirectoryWatchTest, RandomChanges_EventsMatchTheFilesThatAreThere) {
   std::mt19937 random(20251);
   const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
   const auto any_directory = [&] {
@@ -280,7 +280,7 @@ TEST(ChoosingWatchTest, AutomaticIsInotifyOnADiskOfThisMachine) {
   EXPECT_EQ(dir.notices, std::vector<std::string>{});
 }
 
-TEST(ChoosingWatchTest, AutomaticPollsWhatIsNotKnownToBeLocal) {
+TEST(ChoosingWatchTest, AutomaticPollsUnknownFileSystems) {
   WatchedDirectory dir(WatchMethod::automatic);
   dir.open_inotify = no_inotify();
   dir.config.directory = "/proc/self/fdinfo";

@@ -103,12 +103,12 @@ TEST_F(CompletionTest, AutoLinkedIsCompleteWhenUnchanged) {
   EXPECT_EQ(at(2).state, State::complete);
 }
 
-TEST_F(CompletionTest, ALookAfterLostEventsForgetsThatItWasOpen) {
+TEST_F(CompletionTest, FoundAgainAfterLostEvents_IsNotTakenForOpen) {
   at(0, Kind::written);
   EXPECT_EQ(at(10, Kind::found).state, State::complete);  // it has not changed since 0
 }
 
-TEST_F(CompletionTest, AnEmptyFileIsWaitedForUntilItsWriterIsDone) {
+TEST_F(CompletionTest, EmptyFile_IsAwaitedThenBrokenOnceItsWriterCloses) {
   sample.identity.bytes = 0;
   at(0, Kind::created);
   expect_event_is_awaited(at(100), "it is empty");
@@ -118,7 +118,7 @@ TEST_F(CompletionTest, AnEmptyFileIsWaitedForUntilItsWriterIsDone) {
   EXPECT_EQ(at(102).reason, "is empty (0 bytes); write it again");
 }
 
-TEST_F(CompletionTest, ATruncatedFileIsBrokenUntilSomethingHappens) {
+TEST_F(CompletionTest, TruncatedFile_IsBrokenUntilItIsWrittenAgain) {
   rules.expected_bytes = 128;
   again(at(0, Kind::closed));
   const CompletionAnswer answer = at(0.2);
@@ -129,7 +129,7 @@ TEST_F(CompletionTest, ATruncatedFileIsBrokenUntilSomethingHappens) {
   EXPECT_EQ(at(5, Kind::closed).state, State::complete);
 }
 
-TEST_F(CompletionTest, GoneIsGone) {
+TEST_F(CompletionTest, RemovedFile_IsReportedGone) {
   sample = {};
   EXPECT_EQ(at(0, Kind::removed).state, State::gone);
 }
@@ -173,7 +173,7 @@ TEST_F(CompletionTest, Size) {
   EXPECT_EQ(at(62).state, State::broken);
 }
 
-TEST_F(CompletionTest, SizeThatCannotBeKnown) {
+TEST_F(CompletionTest, SizePolicy_ExpectedSizeUnknown_IsBroken) {
   rules.policy = Completion::size;
   EXPECT_EQ(at(0, Kind::found).state, State::broken);
   EXPECT_EQ(at(0).reason, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type");

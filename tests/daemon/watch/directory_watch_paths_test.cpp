@@ -31,7 +31,7 @@ class DirectoryWatchPathsTest : public testing::TestWithParam<WatchMethod> {
 INSTANTIATE_TEST_SUITE_P(Methods, DirectoryWatchPathsTest, testing::Values(WatchMethod::inotify, WatchMethod::poll),
                          [](const auto& method) { return std::string(watch_method_name(method.param)); });
 
-TEST_P(DirectoryWatchPathsTest, LinksThatLeaveTheTreeAreRefusedOnceAndLoopsAreNone) {
+TEST_P(DirectoryWatchPathsTest, LinksOutOfTheTreeAreRefusedOnceAndLoopsIgnored) {
   write_file(dir.outside("far.raw"), "1");
   fs::create_directory(dir.outside("far"));
   write_file(dir.outside("far/x.raw"), "1");
@@ -62,7 +62,7 @@ TEST_P(DirectoryWatchPathsTest, LinksThatLeaveTheTreeAreRefusedOnceAndLoopsAreNo
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "latest.raw"));
 }
 
-TEST_P(DirectoryWatchPathsTest, AHardLinkIsNamedWithoutACloseAndStillTold) {
+TEST_P(DirectoryWatchPathsTest, HardLink_IsReportedOnce) {
   write_file(dir / "a.tmp", "1");
   dir.start();
   ASSERT_TRUE(dir.settle());
@@ -73,7 +73,7 @@ TEST_P(DirectoryWatchPathsTest, AHardLinkIsNamedWithoutACloseAndStillTold) {
   EXPECT_EQ(dir.kinds(dir / "a.raw").size(), 1U);
 }
 
-TEST_P(DirectoryWatchPathsTest, TheDirectoryMissingAtStartRemovedAndMadeAgain) {
+TEST_P(DirectoryWatchPathsTest, WatchedDirectoryMissingOrRemoved_IsReadOnceItIsMade) {
   fs::remove(dir.root());
   dir.start();
   ASSERT_TRUE(dir.run_until_told(Kind::root_lost, dir.root()));
@@ -97,7 +97,7 @@ TEST_P(DirectoryWatchPathsTest, TheDirectoryMissingAtStartRemovedAndMadeAgain) {
   EXPECT_TRUE(dir.run_until_written(dir / "c.raw"));
 }
 
-TEST_P(DirectoryWatchPathsTest, TheDirectoryReplacedByARename) {
+TEST_P(DirectoryWatchPathsTest, WatchedDirectoryReplacedByARename_NewOneIsWatched) {
   write_file(dir / "old.raw", "1");
   fs::create_directory(dir.outside("next"));
   write_file(dir.outside("next/new.raw"), "1");
@@ -115,7 +115,7 @@ TEST_P(DirectoryWatchPathsTest, TheDirectoryReplacedByARename) {
   for (const FileEvent& event : dir.events) EXPECT_EQ(event.path, dir / "seen.raw");
 }
 
-TEST_P(DirectoryWatchPathsTest, AParentRenamedAwayIsNoticed) {
+TEST_P(DirectoryWatchPathsTest, ParentRenamedAway_DirectoryIsReportedLost) {
   fs::create_directories(dir / "run/out");
   dir.config.directory = dir / "run/out";
   dir.start();
@@ -124,7 +124,7 @@ TEST_P(DirectoryWatchPathsTest, AParentRenamedAwayIsNoticed) {
   ASSERT_TRUE(dir.run_until_told(Kind::root_lost, dir / "run/out"));
 }
 
-TEST_P(DirectoryWatchPathsTest, NothingIsToldOfWhatIsExcluded) {
+TEST_P(DirectoryWatchPathsTest, ExcludedFilesAreNotReported) {
   dir.config.exclude = {"skip*", "*_old.raw"};
   dir.config.excluded_paths = {dir / "nvdb"};
   for (const char* name : {"nvdb", "skipped", ".hidden", "kept"}) fs::create_directory(dir / name);
@@ -155,7 +155,7 @@ TEST_P(DirectoryWatchPathsTest, SubdirectoriesAreNotEnteredUnlessAskedFor) {
   EXPECT_EQ(dir.watch->figures().directories, 1U);
 }
 
-TEST_P(DirectoryWatchPathsTest, MarkersAreToldAsTheirSources) {
+TEST_P(DirectoryWatchPathsTest, MarkersAreReportedUnderTheirSources) {
   dir.config.complete = Completion::marker;
   write_file(dir / "early.raw", "1");
   write_file(dir / "early.raw.done", "");
@@ -173,7 +173,7 @@ TEST_P(DirectoryWatchPathsTest, MarkersAreToldAsTheirSources) {
   }
 }
 
-TEST_P(DirectoryWatchPathsTest, NamesAreBytes) {
+TEST_P(DirectoryWatchPathsTest, FileNamesOfAnyBytesAreReported) {
   const std::vector<std::string> names{"new\nline.raw", "\xff\xfe\x80.raw", " .raw",
                                        "-rf.raw",       "a'b\"c\\.raw",     std::string(251, 'n') + ".raw"};
   write_file(dir / ("early" + names[1]), "1");
@@ -191,7 +191,7 @@ TEST_P(DirectoryWatchPathsTest, NamesAreBytes) {
   }));
 }
 
-TEST_P(DirectoryWatchPathsTest, PathsLongerThanTheSystemTakesAreSaidAndTheRestGoesOn) {
+TEST_P(DirectoryWatchPathsTest, PathsTooLong_AreReportedAndOtherFilesFound) {
   // Deeper than any path can name, made step by step.
   const std::string name(200, 'd');
   int at = ::open(dir.root().c_str(), O_RDONLY | O_DIRECTORY);
@@ -235,7 +235,7 @@ class SomebodyElse {
   static constexpr uid_t kNobody = 65534;
 };
 
-TEST_P(DirectoryWatchPathsTest, AnUnreadableDirectoryIsSaidOnceAndReadWhenItCanBe) {
+TEST_P(DirectoryWatchPathsTest, UnreadableDirectory_IsReportedOnceAndReadOncePermitted) {
   fs::create_directory(dir / "locked");
   write_file(dir / "locked/a.raw", "1");
   write_file(dir / "b.raw", "1");
@@ -256,7 +256,7 @@ TEST_P(DirectoryWatchPathsTest, AnUnreadableDirectoryIsSaidOnceAndReadWhenItCanB
 }
 
 // rsync and tar set a link's own times right after they made it.
-TEST_P(DirectoryWatchPathsTest, ALinkOutOfTheTree_StaysRefusedWhereItsOwnTimesAreSet) {
+TEST_P(DirectoryWatchPathsTest, LinkOutOfTheTree_ItsTimesSet_StaysRefused) {
   write_file(dir.outside("a.raw"), "1");
   dir.start();
   ASSERT_TRUE(dir.settle());
@@ -268,7 +268,7 @@ TEST_P(DirectoryWatchPathsTest, ALinkOutOfTheTree_StaysRefusedWhereItsOwnTimesAr
   EXPECT_EQ(dir.last(dir / "link.raw"), std::nullopt);
 }
 
-TEST_P(DirectoryWatchPathsTest, AWatchThatEndsTellsNothingMore) {
+TEST_P(DirectoryWatchPathsTest, DestroyedWatch_ReportsNothing) {
   dir.start();
   ASSERT_TRUE(dir.settle());
   write_file(dir / "a.raw", "1");

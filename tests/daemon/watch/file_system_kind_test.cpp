@@ -7,7 +7,7 @@
 namespace weir::file_system_kind_test {
 namespace {
 
-TEST(FileSystemKind, DisksOfThisMachineTellAllAndOthersDoNot) {
+TEST(FileSystemKind, OnlyKnownLocalFileSystemsSeeAllChanges) {
   const auto kind = [](std::uint64_t type) { return file_system_kind(type); };
   EXPECT_EQ(kind(0xEF53).name, "ext4");
   EXPECT_TRUE(kind(0xEF53).sees_all_changes);
@@ -21,7 +21,7 @@ TEST(FileSystemKind, DisksOfThisMachineTellAllAndOthersDoNot) {
   EXPECT_FALSE(kind(0xABCDEF01).sees_all_changes);
 }
 
-TEST(FileSystemKind, OfAPath) {
+TEST(FileSystemKind, NamesTheFileSystemOfAPath) {
   EXPECT_EQ(file_system_kind("/proc").name, "type 0x9FA0");
   EXPECT_EQ(file_system_kind("/dev/shm").name, "tmpfs");
   try {

@@ -38,7 +38,7 @@ TEST(Glob, Sets) {
   EXPECT_FALSE(matches_glob("\\*", "a"));
 }
 
-TEST(Glob, TwoStarsAreAnyNumberOfDirectories) {
+TEST(Glob, TwoStarsMatchAnyNumberOfDirectories) {
   EXPECT_TRUE(matches_glob("**/a.raw", "a.raw"));
   EXPECT_TRUE(matches_glob("**/a.raw", "x/y/a.raw"));
   EXPECT_TRUE(matches_glob("run*/**/out/*.h5", "run1/out/a.h5"));
@@ -51,7 +51,7 @@ TEST(Glob, TwoStarsAreAnyNumberOfDirectories) {
   EXPECT_TRUE(matches_glob("a**b", "aXXb"));  // no component of its own: a star
 }
 
-TEST(Glob, HiddenNamesAreForPatternsThatSayTheirDot) {
+TEST(Glob, HiddenNamesMatchOnlyPatternsWithADot) {
   EXPECT_FALSE(matches_glob("*", ".a"));
   EXPECT_FALSE(matches_glob("?a", ".a"));
   EXPECT_FALSE(matches_glob("[.]a", ".a"));
@@ -61,7 +61,7 @@ TEST(Glob, HiddenNamesAreForPatternsThatSayTheirDot) {
   EXPECT_TRUE(matches_glob(".x/**", ".x/a"));
 }
 
-TEST(Glob, LongNamesAndManyStarsTakeNoTime) {
+TEST(Glob, LongNamesAndManyStarsAreMatchedQuickly) {
   const std::string name(100000, 'a');
   EXPECT_FALSE(matches_glob("*a*a*a*a*a*a*a*a*b", name));
   std::string deep;

@@ -89,7 +89,7 @@ class InotifyWatchTest : public testing::Test {
   std::shared_ptr<Faults> faults = std::make_shared<Faults>();
 };
 
-TEST_F(InotifyWatchTest, AnOverflowIsSaidAndAllThatWasLostIsFound) {
+TEST_F(InotifyWatchTest, Overflow_IsReportedAndLostChangesAreFound) {
   fs::create_directory(dir / "sub");
   write_file(dir / "old.raw", "1");
   write_file(dir / "gone.raw", "1");
@@ -119,7 +119,7 @@ TEST_F(InotifyWatchTest, AnOverflowIsSaidAndAllThatWasLostIsFound) {
   EXPECT_EQ(dir.watch->method(), WatchMethod::inotify);
 }
 
-TEST_F(InotifyWatchTest, AFileBeingWrittenWhileAllIsLookedAtIsLeftToItsEvents) {
+TEST_F(InotifyWatchTest, FileWrittenDuringTheScan_IsReportedByItsEventsAlone) {
   start();
   write_file(dir / "early.raw", "1");
   ASSERT_TRUE(dir.run_until([&] { return dir.watch->figures().directories == 1; }));  // watched, not listed to its end
@@ -161,7 +161,7 @@ TEST_F(InotifyWatchTest, TwoThousandFilesThroughASmallQueue) {
   }));
 }
 
-TEST_F(InotifyWatchTest, AtTheLimitOfWatchesTheTreeIsPolledAndThatIsSaid) {
+TEST_F(InotifyWatchTest, LimitOfWatchesReached_PollsTheTreeAndSaysSo) {
   for (const char* name : {"a", "b", "c"}) fs::create_directory(dir / name);
   write_file(dir / "c/x.raw", "1");
   dir.config.poll_interval_s = 0.02;
@@ -185,7 +185,7 @@ TEST_F(InotifyWatchTest, AtTheLimitOfWatchesTheTreeIsPolledAndThatIsSaid) {
   EXPECT_TRUE(dir.run_until_told(Kind::closed, dir / "c/z.raw"));
 }
 
-TEST_F(InotifyWatchTest, TheLimitReachedLaterLosesNothingThatIsKnown) {
+TEST_F(InotifyWatchTest, LimitOfWatchesReachedLater_LosesNoKnownFile) {
   dir.config.poll_interval_s = 0.02;
   start();
   ASSERT_TRUE(dir.settle());
@@ -203,7 +203,7 @@ TEST_F(InotifyWatchTest, TheLimitReachedLaterLosesNothingThatIsKnown) {
   EXPECT_EQ(dir.notices.size(), 1U);
 }
 
-TEST_F(InotifyWatchTest, NoQueueAndAQueueThatFailsMeanPolling) {
+TEST_F(InotifyWatchTest, MissingOrFailingInotifyQueue_FallsBackToPolling) {
   dir.config.poll_interval_s = 0.02;
   write_file(dir / "a.raw", "1");
   const std::string refused = "inotify: open a queue (fs.inotify.max_user_instances limits them): Too many open files";
@@ -222,7 +222,7 @@ TEST_F(InotifyWatchTest, NoQueueAndAQueueThatFailsMeanPolling) {
   EXPECT_EQ(dir.notices, std::vector<std::string>{notice("inotify: read its queue: Input/output error")});
 }
 
-TEST_F(InotifyWatchTest, TheSystemsRefusalOfAQueueNamesTheLimit) {
+TEST_F(InotifyWatchTest, RefusedInotifyQueue_NamesTheSystemLimit) {
   if (kSanitized) GTEST_SKIP() << "without descriptors the sanitizer takes an exception for no object";
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -238,7 +238,7 @@ TEST_F(InotifyWatchTest, TheSystemsRefusalOfAQueueNamesTheLimit) {
   EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
-TEST_F(InotifyWatchTest, ADirectoryThatIsThereTwiceIsPolled) {
+TEST_F(InotifyWatchTest, DirectoryMountedTwice_IsPolled) {
   fs::create_directories(dir / "a");
   fs::create_directories(dir / "b");
   if (::mount((dir / "a").c_str(), (dir / "b").c_str(), nullptr, MS_BIND, nullptr) != 0) {
@@ -254,7 +254,7 @@ TEST_F(InotifyWatchTest, ADirectoryThatIsThereTwiceIsPolled) {
   EXPECT_EQ(::umount((dir / "b").c_str()), 0);
 }
 
-TEST_F(InotifyWatchTest, AMountOverTheDirectoryAndItsEnd) {
+TEST_F(InotifyWatchTest, MountOverTheDirectory_AndUnmount_AreNoticed) {
   write_file(dir / "below.raw", "1");
   start();
   ASSERT_TRUE(dir.settle());

@@ -26,7 +26,7 @@ class PathFilterTest : public testing::Test {
   WatchConfig watch;
 };
 
-TEST_F(PathFilterTest, WithoutIncludeTheNamesOfFormatsAreSources) {
+TEST_F(PathFilterTest, NoIncludePattern_TakesNamesOfKnownFormats) {
   for (const char* name : {"a_64x64x64_uint8.raw", "sub/b_1x2x3_float32be.raw", "a.h5", "a.HDF5", "a.nc", "a.nii.gz",
                            "a.nhdr", "a.mha", "a.vti", "a.vtk", "a.vdb", "name with\nnewline.nc", "\xff.h5"}) {
     EXPECT_TRUE(accepts(name)) << name;
@@ -39,7 +39,7 @@ TEST_F(PathFilterTest, WithoutIncludeTheNamesOfFormatsAreSources) {
   EXPECT_TRUE(accepts("a.raw"));
 }
 
-TEST_F(PathFilterTest, PatternsAreForNamesOrForPaths) {
+TEST_F(PathFilterTest, PatternsWithASlashMatchPathsOthersMatchNames) {
   watch.include = {"rho_*.bin", "run*/out/*.dat", ".hidden.bin"};
   watch.exclude = {"*_tmp.bin", "old"};
   EXPECT_TRUE(accepts("rho_1.bin"));
@@ -64,7 +64,7 @@ TEST_F(PathFilterTest, HiddenDirectoriesAreNotEnteredAndNoneWithoutRecursion) {
   EXPECT_FALSE(accepts("a/b.h5"));
 }
 
-TEST_F(PathFilterTest, WhatIsWeirsOwnIsNoSourceWhateverThePatternsSay) {
+TEST_F(PathFilterTest, FilesOfWeirItselfAreNeverSources) {
   watch.include = {"*", ".*"};
   watch.excluded_paths = {directory / "in/nvdb", directory / "in/weir.db"};
   EXPECT_FALSE(accepts("a.nvdb.json"));
@@ -77,7 +77,7 @@ TEST_F(PathFilterTest, WhatIsWeirsOwnIsNoSourceWhateverThePatternsSay) {
   EXPECT_TRUE(accepts("weir.db2"));
 }
 
-TEST_F(PathFilterTest, ExcludedPathsCountByTheirRealPlace) {
+TEST_F(PathFilterTest, ExcludedPathsAreComparedWithLinksResolved) {
   fs::create_directory_symlink(directory / "in", directory / "link");
   watch.directory = directory / "link";
   watch.excluded_paths = {directory / "in/nvdb"};  // need not exist
@@ -99,7 +99,7 @@ TEST_F(PathFilterTest, MarkersNameTheirSources) {
   EXPECT_EQ(PathFilter(watch).marked_source("a.bin.ok"), std::nullopt);
 }
 
-TEST_F(PathFilterTest, LinksAreJudgedByWhereTheyEnd) {
+TEST_F(PathFilterTest, LinksToTargetsOutsideOrExcludedAreRefused) {
   const std::string in = fs::canonical(directory / "in");
   const std::string out = fs::canonical(directory.path());
   fs::create_directory(directory / "in2");  // begins alike

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = FileEventKind;
 
-TEST(PollWatchTest, OthersHaveTheirTurnWhileALargeDirectoryIsLookedAt) {
+TEST(PollWatchTest, ScanOfALargeDirectory_LetsOtherWorkRunBetween) {
   WatchedDirectory dir(WatchMethod::poll);
   for (int i = 0; i < 2000; ++i) write_file(dir / (std::to_string(i) + ".raw"), "1");
   std::vector<std::size_t> known_at_turns;
@@ -30,7 +30,7 @@ TEST(PollWatchTest, OthersHaveTheirTurnWhileALargeDirectoryIsLookedAt) {
   EXPECT_LE(longest, 256U);
 }
 
-TEST(PollWatchTest, WhatDoesNotChangeIsToldOnce) {
+TEST(PollWatchTest, UnchangedFileIsReportedOnce) {
   WatchedDirectory dir(WatchMethod::poll);
   write_file(dir / "a.raw", "1");
   dir.start();
@@ -39,7 +39,7 @@ TEST(PollWatchTest, WhatDoesNotChangeIsToldOnce) {
   EXPECT_EQ(dir.events.size(), 1U);
 }
 
-TEST(PollWatchTest, AnotherFileOfTheSameSizeAndTimeIsTold) {
+TEST(PollWatchTest, ReplacementOfTheSameSizeAndTimeIsReported) {
   WatchedDirectory dir(WatchMethod::poll);
   write_file(dir / "a.raw", "1");
   dir.start();
@@ -51,7 +51,7 @@ TEST(PollWatchTest, AnotherFileOfTheSameSizeAndTimeIsTold) {
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "a.raw"));
 }
 
-TEST(PollWatchTest, ATimeThatJumpsBackIsAChange) {
+TEST(PollWatchTest, TimeSetBack_IsReportedAsAChange) {
   WatchedDirectory dir(WatchMethod::poll);
   write_file(dir / "a.raw", "1");
   dir.start();

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "format/output/commit_traces.h"
+#include "format/output/commit_leftovers.h"
 #include "format/output/output_files.h"
 #include "format/output/partial_file.h"
 #include "format/sidecar/sidecar.h"

@@ -11,7 +11,7 @@
 #include <map>
 
 #include "format/base/error.h"
-#include "format/output/commit_traces.h"
+#include "format/output/commit_leftovers.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 

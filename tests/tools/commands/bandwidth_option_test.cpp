@@ -18,7 +18,7 @@ class BandwidthOptionTest : public testing::Test {
   std::string source_ = directory_ / "c_64x64x64_float32.raw";
 };
 
-TEST_F(BandwidthOptionTest, TheSameBytesAreMadeAndItIsDoneWhateverTheBandwidth) {
+TEST_F(BandwidthOptionTest, LimitedBandwidth_MakesTheSameBytesAndCountsAsDone) {
   const auto free = run_weir({"convert", source_, "-o", directory_ / "free.nvdb"});
   ASSERT_EQ(free.exit_code, 0) << free.err;
   const auto limited = run_weir({"convert", source_, "-o", directory_ / "limited.nvdb", "--bandwidth", "50MB"});
@@ -29,7 +29,7 @@ TEST_F(BandwidthOptionTest, TheSameBytesAreMadeAndItIsDoneWhateverTheBandwidth) 
   EXPECT_NE(again.err.find("limited.nvdb: done already"), std::string::npos) << again.err;
 }
 
-TEST_F(BandwidthOptionTest, WhatIsNoBandwidthIsRefused) {
+TEST_F(BandwidthOptionTest, RefusesInvalidBandwidths) {
   for (const std::string text : {"0", "fast", "-1"}) {
     const auto refused = run_weir({"convert", source_, "--bandwidth=" + text});
     EXPECT_EQ(refused.exit_code, 2);

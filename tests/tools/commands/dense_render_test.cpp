@@ -102,7 +102,7 @@ TEST_F(DenseRender, PlacedAndCutByTheInputOptions) {
   EXPECT_TRUE(picture({directory_ / "v.nvdb"}, {}) == picture(dense, {}));
 }
 
-TEST_F(DenseRender, ANanoVdbFileIsASourceToo) {
+TEST_F(DenseRender, NanoVdbFile_RendersAsADenseVolume) {
   const std::string raw = sample("cloud", "40x40x40_float32");
   ASSERT_EQ(run_weir({"convert", raw, "-o", directory_ / "v.nvdb", "--lossless"}).exit_code, 0);
   EXPECT_TRUE(picture({directory_ / "v.nvdb", "--volume", "dense"}, {}) == picture({directory_ / "v.nvdb"}, {}));
@@ -132,7 +132,7 @@ TEST_F(DenseRender, Refusals) {
 }
 
 // A sparse file: nothing of it is read before the memory is asked for.
-TEST_F(DenseRender, MoreThanTheMemoryThereIs) {
+TEST_F(DenseRender, VolumeLargerThanMemory_IsRefused) {
   const std::string raw = directory_ / "a_65536x65536x256_uint8.raw";
   { std::ofstream{raw}; }
   std::error_code too_large;

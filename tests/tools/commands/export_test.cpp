@@ -88,7 +88,7 @@ TEST_F(ExportCommand, EveryKindOfVolumeBitForBit) {
   }
 }
 
-TEST_F(ExportCommand, BackIntoWeirIsLossless) {
+TEST_F(ExportCommand, ConvertedBack_IsLossless) {
   sample("turbulence", "130,100,90", {"--rate", "4", "--spacing", "0.5,0.25,2", "--origin", "1,2,3"});
   exported({"--compression", "zip"});
   const CommandResult compared = run_weir({"compare", vdb_, nvdb_, "--json"});
@@ -124,7 +124,7 @@ TEST_F(ExportCommand, ARealCloudIsReadByTheStockTool) {
   EXPECT_TRUE(std::regex_search(printed.out, row)) << printed.out;
 }
 
-TEST_F(ExportCommand, TheCertificateComesAlong) {
+TEST_F(ExportCommand, CertificateIsWrittenAsMetadata) {
   sample("turbulence", "130,100,90", {"--rate", "10"});
   exported();
   const auto sidecar = nlohmann::json::parse(read_file(nvdb_ + ".json"));
@@ -154,7 +154,7 @@ TEST_F(ExportCommand, TheCertificateComesAlong) {
   }
 }
 
-TEST_F(ExportCommand, HalfSaysItsError) {
+TEST_F(ExportCommand, HalfReportsItsLargestError) {
   sample("turbulence", "130,100,90", {"--rate", "4"});
   const nlohmann::json report = exported({"--half"});
   double worst = 0;

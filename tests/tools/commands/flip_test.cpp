@@ -40,7 +40,7 @@ class FlipCommand : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(FlipCommand, ReportsAndDraws) {
+TEST_F(FlipCommand, WritesAJsonReportAndAnErrorMap) {
   const std::string a = picture("a.png", 60, 40, 40, 200);
   const std::string b = picture("b.png", 60, 40, 40, 190);
   const CommandResult result = run_weir({"flip", a, b, "--json", "-o", directory_ / "map.png"});
@@ -73,7 +73,7 @@ TEST_F(FlipCommand, ReportsAndDraws) {
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"a.png", "b.png", "map.png"}));
 }
 
-TEST_F(FlipCommand, PrintsForPeople) {
+TEST_F(FlipCommand, PrintsAReadableSummary) {
   const std::string black = picture("black.png", 24, 16, 0, 0);
   const std::string white = picture("white.png", 24, 16, 255, 255);
   EXPECT_EQ(run_weir({"flip", black, black}).out,
@@ -84,7 +84,7 @@ TEST_F(FlipCommand, PrintsForPeople) {
   EXPECT_EQ(result.out.rfind("mean                     0.9673", 0), 0U) << result.out;
 }
 
-TEST_F(FlipCommand, TheDisplayCounts) {
+TEST_F(FlipCommand, FewerPixelsPerDegree_GiveALargerError) {
   const std::string a = picture("a.png", 64, 20, 100, 110);
   const std::string b = picture("b.png", 64, 20, 110, 100);
   const auto mean = [&](const std::string& ppd) {

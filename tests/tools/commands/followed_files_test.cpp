@@ -46,7 +46,7 @@ class FollowedFiles : public ::testing::Test {
   std::vector<std::string> within_{"--within", directory_ / "run"};
 };
 
-TEST_F(FollowedFiles, BesideTheHeaderOrBelow_NeedNoWord) {
+TEST_F(FollowedFiles, BesideTheHeaderOrBelow_AreReadWithoutANotice) {
   for (const char* data : {"data.raw", "sub/data.raw"}) {
     for (const auto& options : {std::vector<std::string>{}, within_}) {
       const CommandResult result = convert(data, options);

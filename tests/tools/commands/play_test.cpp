@@ -79,7 +79,7 @@ TEST_F(Play, FramesAreThoseOfRenderInNaturalOrder) {
   EXPECT_EQ(report[report["limit"].get<std::string>() + "_s"], most);
 }
 
-TEST_F(Play, RawFramesAreThePixels) {
+TEST_F(Play, RawWritesTheRgbBytesOfEveryFrame) {
   make("s_1.nvdb", "noise", 1);
   make("s_2.nvdb", "noise", 2);
   const CommandResult raw = run_weir(with({"play", directory_ / "s_*.nvdb", "--raw", "-"}, {"--mode", "mip"}));
@@ -96,7 +96,7 @@ TEST_F(Play, RawFramesAreThePixels) {
 }
 
 // The range is the union's, so that a value has one colour in all frames; the scene's own wins.
-TEST_F(Play, TheRangeIsTheSeries) {
+TEST_F(Play, RangeIsTakenFromTheWholeSeriesUnlessGiven) {
   const std::string ramp = make("a.nvdb", "gradient", 1);
   const std::string half = make("b.nvdb", "constant", 1);
   const auto range = [&](const std::vector<std::string>& more) {
@@ -110,7 +110,7 @@ TEST_F(Play, TheRangeIsTheSeries) {
   EXPECT_EQ(range({"--scene", directory_ / "s.toml"}), nlohmann::json({3.0, 4.0}));
 }
 
-TEST_F(Play, OtherSizesAreSaid) {
+TEST_F(Play, StepsOfDifferentSizes_GiveAWarning) {
   const std::string small = make("a.nvdb", "noise", 1, "16x16x16");
   const std::string large = make("b.nvdb", "noise", 1, "24x16x16");
   const CommandResult result = run_weir(with({"play", small, large, "-o", out_}, {}));
@@ -122,7 +122,7 @@ TEST_F(Play, OtherSizesAreSaid) {
   EXPECT_EQ(list_directory(out_).size(), 2U);
 }
 
-TEST_F(Play, FramesOfALongerSeriesAreSaid) {
+TEST_F(Play, FramesLeftByALongerSeries_GiveAWarning) {
   const std::string volume = make("a.nvdb", "noise", 1);
   std::filesystem::create_directory(out_);
   write_file(out_ + "/frame_00001.png", "old");
@@ -134,7 +134,7 @@ TEST_F(Play, FramesOfALongerSeriesAreSaid) {
   EXPECT_EQ(frame("frame_00001.png"), "old");
 }
 
-TEST_F(Play, ABrokenFileEndsItAfterTheFramesBefore) {
+TEST_F(Play, BrokenFile_EndsPlayAfterTheFramesBefore) {
   make("s_1.nvdb", "noise", 1);
   make("s_2.nvdb", "noise", 2);
   const std::string broken = directory_ / "s_3.nvdb";
@@ -167,7 +167,7 @@ TEST_F(Play, Refusals) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
-TEST_F(Play, InterruptLeavesWholeFramesAlone) {
+TEST_F(Play, Interrupt_LeavesOnlyCompleteFrames) {
   std::vector<std::string> arguments{WEIR_COMMAND, "play"};
   for (int step = 0; step < 4; ++step) arguments.push_back(make("s_" + std::to_string(step) + ".nvdb", "cloud", step));
   arguments.insert(arguments.end(), {"-o", out_, "--size", "40x30", "--spp", "300", "--progress", "never"});

@@ -50,7 +50,7 @@ class ProcessLimits : public ::testing::Test {
   std::string output_ = directory_ / "out/v.nvdb";
 };
 
-TEST_F(ProcessLimits, FileSize_IsAnIoErrorAndNothingIsLeft) {
+TEST_F(ProcessLimits, FileSizeLimit_IsAnIoErrorAndLeavesNothing) {
   const CommandResult result = run_limited("ulimit -f 16", {"convert", volume(64), "-o", output_, "--lossless"});
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_NE(
@@ -61,7 +61,7 @@ TEST_F(ProcessLimits, FileSize_IsAnIoErrorAndNothingIsLeft) {
   EXPECT_EQ(left(), std::vector<std::string>{});
 }
 
-TEST_F(ProcessLimits, OpenFiles_AreAnIoErrorOfAStack) {
+TEST_F(ProcessLimits, OpenFilesLimit_OfAStack_IsAnIoError) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer needs descriptors, too";
   for (const char* name : {"p_0_16x16x8_uint8.raw", "p_1_16x16x8_uint8.raw"}) {
     write_file(directory_ / name, std::string(16 * 16 * 8, '\1'));
@@ -93,7 +93,7 @@ TEST_F(ProcessLimits, TheLongestName_HasAWorkDirectoryOfItsOwn) {
   EXPECT_EQ(list_directory(directory_ / "work"), std::vector<std::string>{});
 }
 
-TEST_F(ProcessLimits, NamesTooLong_AreOneLineAndNoFault) {
+TEST_F(ProcessLimits, NamesTooLong_AreRefusedInOneLine) {
   const std::string name(250, 'n');
   const CommandResult output = run_weir({"convert", volume(16), "-o", directory_ / ("out/" + name), "--skip-done"});
   EXPECT_EQ(output.exit_code, 2);
@@ -190,7 +190,7 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
   EXPECT_EQ(left(), std::vector<std::string>{});
 }
 
-TEST_F(ProcessLimits, ManyProcessors_AreUsedAsFarAsTheDefaultCeilingHoldsThem) {
+TEST_F(ProcessLimits, ManyProcessors_DefaultCeilingLimitsTheThreads) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const std::string path = volume(64);
   std::string bytes;

@@ -85,7 +85,7 @@ TEST_F(Render, Json) {
   EXPECT_EQ(report["bytes"], read_file(out_ + "/a.png").size());
 }
 
-TEST_F(Render, SceneFileAndTheCommandLineOverIt) {
+TEST_F(Render, CommandLineOverridesTheSceneFile) {
   write_file(directory_ / "s.toml", "mode = \"dvr\"\n[volume]\ncolormap = \"heat\"\n");
   const auto mode = [&](const std::vector<std::string>& more) {
     const CommandResult result = run_weir(arguments("a.png", more));
@@ -133,7 +133,7 @@ TEST_F(Render, Refusals) {
                      "position, up, zoom");
 }
 
-TEST_F(Render, AnEnvironmentLightsIt) {
+TEST_F(Render, EnvironmentOfTheSceneChangesThePicture) {
   const std::string scene = directory_ / "s.toml";
   write_file(scene, "[lighting]\nenvironment = \"sky.hdr\"\nbackground = \"environment\"\n");
   const std::string sky = directory_ / "sky.hdr";
@@ -152,7 +152,7 @@ TEST_F(Render, AnEnvironmentLightsIt) {
   EXPECT_EQ(missing.err, "weir: " + sky + ": cannot open: No such file or directory\n");
 }
 
-TEST_F(Render, UnwritableOutputIsKnownBeforeTheWork) {
+TEST_F(Render, UnwritableOutput_IsRefusedBeforeRendering) {
   const CommandResult result = run_weir({"render", volume_, "-o", directory_ / "missing/a.png", "--spp", "1000000"});
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_NE(result.err.find("missing"), std::string::npos) << result.err;

@@ -27,7 +27,7 @@ TEST(RunCommand, TakesOutputLargerThanAPipeHolds) {
   EXPECT_EQ(result.out, std::string(1000000, '\0'));
 }
 
-TEST(RunCommand, GivesNoInput) { EXPECT_EQ(run_command({"wc", "-c"}).out, "0\n"); }
+TEST(RunCommand, StandardInputIsEmpty) { EXPECT_EQ(run_command({"wc", "-c"}).out, "0\n"); }
 
 TEST(RunCommand, AppliesDirectoryAndEnvironment) {
   const TemporaryDirectory directory;
@@ -68,7 +68,7 @@ TEST(ChildProcess, TakesSignalsWhileItsOutputIsRead) {
   child.send_signal(SIGINT);  // after the end: nothing to signal, nothing to say
 }
 
-TEST(TemporaryDirectory, ListsAllAndLeavesNothing) {
+TEST(TemporaryDirectory, ListsItsFilesAndIsRemovedAtTheEnd) {
   std::filesystem::path path;
   {
     const TemporaryDirectory directory;

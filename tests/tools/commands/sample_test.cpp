@@ -31,7 +31,7 @@ void expect_refusal(const CommandResult& result, int exit_code, const std::strin
   EXPECT_EQ(result.out, "");
 }
 
-TEST(Sample, WritesTheSourcesValues) {
+TEST(Sample, WritesTheValuesOfTheSyntheticSource) {
   const TemporaryDirectory directory;
   const CommandResult result = run_weir(
       {"sample", "cloud", "--dims", "70,45,37", "--seed", "7", "-o", directory / "a.raw", "--log-level", "off"});
@@ -41,7 +41,7 @@ TEST(Sample, WritesTheSourcesValues) {
   EXPECT_EQ(list_directory(directory.path()), std::vector<std::string>{"a.raw"});
 }
 
-TEST(Sample, EveryKindHasAFile) {
+TEST(Sample, WritesAFileOfEveryKind) {
   const TemporaryDirectory directory;
   for (const SyntheticKind& kind : synthetic_kinds()) {
     const std::string path = directory / (std::string(kind.name) + "_9x8x7_float32.raw");

@@ -45,7 +45,7 @@ TEST_F(SeriesCommand, EveryStepHasTheSameSizeAndItsOwnValues) {
   EXPECT_EQ(list_directory(directory_.path() / "out").size(), 6U);
 }
 
-TEST_F(SeriesCommand, RefusesOneNameForAll) {
+TEST_F(SeriesCommand, RefusesOneOutputNameForAllSteps) {
   write_steps(2);
   const auto made = run_weir({"convert", pattern_, "-o", directory_ / "one.nvdb"});
   EXPECT_EQ(made.exit_code, 2);

@@ -140,7 +140,7 @@ TEST_F(SweepCommand, ZfpTakesAllBitsThatFit) {
   EXPECT_LT(found[1]["psnr_db"], found[2]["psnr_db"]);
 }
 
-TEST_F(SweepCommand, RatesThatCannotBeMetSaySo) {
+TEST_F(SweepCommand, UnreachableRates_AreNoted) {
   const std::string input = sample("turbulence", "64x64x64_float32");
   const Json found = rows(input, {"--rates", "1000,2", "--methods", "auto,float,zfp"});
   ASSERT_EQ(found.size(), 6U);
@@ -157,13 +157,13 @@ TEST_F(SweepCommand, RatesThatCannotBeMetSaySo) {
   EXPECT_EQ(found[4]["note"], "1049 bytes asked, ZFP takes 4608 or more: 9 bits a block of 4^3 voxels");
 }
 
-TEST_F(SweepCommand, NothingCanBeMet) {
+TEST_F(SweepCommand, NoRateReachable_StillWritesAllResults) {
   const CommandResult result = run(sample("sphere", "16x16x16_uint8"), {"--rates", "5000,4000"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(list_directory(out_), kResults);
 }
 
-TEST_F(SweepCommand, PaddingIsANote) {
+TEST_F(SweepCommand, PaddingOfALosslessFile_IsNoted) {
   const Json found = rows(sample("sphere", "96x96x96_uint8"), {"--rates", "1", "--methods", "auto"});
   EXPECT_EQ(found[0]["lossless"], true);
   EXPECT_TRUE(found[0]["psnr_db"].is_null());
@@ -203,7 +203,7 @@ TEST_F(SweepCommand, InputOptionsApply) {
   EXPECT_EQ(Json::parse(read_file(fs::path(out_) / "sweep.json"))["extent"], (Json{61, 47, 41}));
 }
 
-TEST_F(SweepCommand, KeepsTheVolumes) {
+TEST_F(SweepCommand, KeepOption_KeepsTheConvertedVolumes) {
   const std::string input = sample("turbulence", "64x64x64_float32");
   ASSERT_EQ(run(input, {"--rates", "2.5", "--methods", "auto,paper32,zfp", "--keep"}).exit_code, 0);
   Names expected{"auto_rate2.5.nvdb", "auto_rate2.5.nvdb.json", "paper32_rate2.5.nvdb", "paper32_rate2.5.nvdb.json"};
@@ -216,7 +216,7 @@ TEST_F(SweepCommand, KeepsTheVolumes) {
   EXPECT_EQ(options, (Json{{"preset", "paper"}, {"brick", "32"}, {"rate", "2.5"}}));
 }
 
-TEST_F(SweepCommand, ReplacesOnlyWhereAsked) {
+TEST_F(SweepCommand, ReplacesFilesOnlyWithOverwrite) {
   const std::string input = sample("sphere", "32x32x32_uint8");
   fs::create_directory(out_);
   const auto refused_for = [&](const std::string& name) {

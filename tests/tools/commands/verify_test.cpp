@@ -61,7 +61,7 @@ TEST_F(Verify, JsonListsEveryCheck) {
   EXPECT_EQ(nlohmann::json::parse(broken.out)["ok"], false);
 }
 
-TEST_F(Verify, ByteOfThePaddingBreaksTheDigestAlone) {
+TEST_F(Verify, DamagedPadding_FailsOnlyTheDigest) {
   const std::string digest = sidecar().file.digest;
   std::uint64_t padding = 0;
   {
@@ -94,7 +94,7 @@ TEST_F(Verify, ValueBeyondItsMacrocellIsFound) {
   EXPECT_NE(err.find(": sidecar value_range: found 0 .. 1000000, expected within "), std::string::npos) << err;
 }
 
-TEST_F(Verify, ByteOfTheHeadBreaksChecksumAndDigest) {
+TEST_F(Verify, DamagedHead_FailsChecksumAndDigest) {
   damage(nvdb::kPage + nvdb::grid::kName + 200, "x");
   const CommandResult result = verify();
   EXPECT_EQ(result.exit_code, 3);
@@ -102,7 +102,7 @@ TEST_F(Verify, ByteOfTheHeadBreaksChecksumAndDigest) {
   EXPECT_NE(result.err.find(volume_ + ": sidecar file.digest: found "), std::string::npos);
 }
 
-TEST_F(Verify, StoredCountsAreHeldAgainstTheTree) {
+TEST_F(Verify, StoredCountsAreComparedWithTheTree) {
   const std::uint64_t tree = nvdb::kPage + nvdb::kTreeOffset;
   const std::uint64_t active = open().grid().active_voxels();
   damage(tree + nvdb::tree::kTileCount, bytes_of<std::uint32_t>(12345));

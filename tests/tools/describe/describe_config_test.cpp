@@ -27,7 +27,7 @@ class WatchCheck : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(WatchCheck, SaysWhatItWouldDo) {
+TEST_F(WatchCheck, PrintsTheResolvedConfiguration) {
   std::filesystem::create_directory(directory_ / "in");
   const CommandResult result = check(R"([service]
 jobs = 2
@@ -96,7 +96,7 @@ watch "all"
       << "checking made something";
 }
 
-TEST_F(WatchCheck, TheMethodOfADirectoryThatIsNotThereIsOpen) {
+TEST_F(WatchCheck, MissingDirectory_LeavesTheWatchMethodOpen) {
   const std::string keys = "[[watch]]\ndirectory = 'later'\noutput = 'out'\n";
   EXPECT_NE(check(keys).out.find("\n  watch       auto: inotify or polling every 1 s, by its file system\n"),
             std::string::npos);

@@ -111,7 +111,7 @@ TEST(ManPage, OfEveryCommand) {
   }
 }
 
-TEST(ManPage, ADirectoryIsNeeded) {
+TEST(ManPage, UnwritableDirectory_IsRefused) {
   const CommandResult result = run_weir({"man", "/proc/none"});
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_EQ(result.err, "weir: /proc/none/weir.1: cannot be written; name a directory that can\n");

@@ -105,7 +105,7 @@ complete -c weir -n '__fish_seen_subcommand_from measure' -f -a 'm ft'
 )");
 }
 
-TEST_F(ShellCompletion, EachShellReadsTheRealScript) {
+TEST_F(ShellCompletion, EachShellParsesItsScript) {
   for (const std::string shell : {"bash", "zsh", "fish"}) {
     const CommandResult script = run_weir({"completion", shell});
     ASSERT_EQ(script.exit_code, 0) << script.err;

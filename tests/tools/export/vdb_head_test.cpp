@@ -29,7 +29,7 @@ VdbHead head() {
   return head;
 }
 
-TEST(VdbHead, IsWhatTheReaderTakes) {
+TEST(VdbHead, WrittenHeadIsReadBackUnchanged) {
   VdbHead written = head();
   written.end = vdb_head_bytes(written).size();
   const std::string bytes = vdb_head_bytes(written);
@@ -50,7 +50,7 @@ TEST(VdbHead, IsWhatTheReaderTakes) {
   EXPECT_EQ(grid.grid_class, "level set");
 }
 
-TEST(VdbHead, HalvesAndOtherMaps) {
+TEST(VdbHead, HalfFloatsAndRotatedMapsAreReadBack) {
   VdbHead written = head();
   written.half = true;
   written.matrix = {0, -1, 0, 1, 0, 0, 0, 0, 2};
@@ -63,7 +63,7 @@ TEST(VdbHead, HalvesAndOtherMaps) {
   EXPECT_EQ(turned.first, (Vector3{1, 2, 3}));
 }
 
-TEST(VdbHead, SizeDoesNotDependOnWhatIsKnownLast) {
+TEST(VdbHead, SizeDoesNotDependOnValuesFilledInLast) {
   const VdbHead empty = head();
   VdbHead full = head();
   full.metadata["count"] = std::numeric_limits<std::int64_t>::max();

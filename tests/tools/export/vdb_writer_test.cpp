@@ -100,7 +100,7 @@ TEST_F(VdbWriter, HalfRoundsToNearestAndSaysTheLargestError) {
   }
 }
 
-TEST_F(VdbWriter, WhatTheHeadSays) {
+TEST_F(VdbWriter, HeadHoldsNameCreatorMapAndMetadata) {
   const std::vector<std::byte> bytes = test::StockNvdb(GridType::float32).file();
   VdbWriterOptions options;
   options.creator = "weir 9.9";
@@ -187,7 +187,7 @@ TEST_F(VdbWriter, ProgressEndsAtOneAndCanStop) {
   EXPECT_EQ(refusal(bytes, options, ErrorKind::interrupted), "stop");
 }
 
-TEST_F(VdbWriter, AFullDiskIsSaid) {
+TEST_F(VdbWriter, FullDisk_ThrowsAnError) {
   const std::vector<std::byte> bytes = test::StockNvdb(GridType::float32).file();
   FaultyFileSystem full(*files_, 1, ENOSPC);  // the call after create
   const auto file = full.create(path_);

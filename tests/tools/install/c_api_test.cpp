@@ -163,7 +163,7 @@ TEST_F(CExamples, ASimulationInFortranPushesItsSteps) {
   expect_steps(program("gray_scott_fortran"));
 }
 
-TEST_F(CExamples, PkgConfigLeadsToTheLibrary) {
+TEST_F(CExamples, PkgConfigFindsTheLibrary) {
   if (!has_program("pkg-config")) GTEST_SKIP() << "no pkg-config";
   const TemporaryDirectory work;
   const std::string compile =

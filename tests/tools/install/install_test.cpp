@@ -138,11 +138,11 @@ std::set<std::string> files_below(const fs::path& root) {
   return files;
 }
 
-TEST_F(Installation, HasExactlyTheseFiles) {
+TEST_F(Installation, InstallsExactlyTheListedFiles) {
   EXPECT_EQ(files_below(prefix()), installed_files(has_cuda(), kPythonFolder));
 }
 
-TEST_F(Installation, ThePackageHasThemToo) {
+TEST_F(Installation, DebianPackageHasTheSameFiles) {
   for (const char* program : {"dpkg-shlibdeps", "file"}) {
     if (run_command({"sh", "-c", cat("command -v ", program)}).exit_code != 0) {
       GTEST_SKIP() << program << " is not installed";
@@ -199,7 +199,7 @@ TEST_F(Installation, PythonFindsTheModule) {
   EXPECT_EQ(result.out, cat(WEIR_VERSION, ' ', prefix(), '/', kPythonFolder, "/weir/__init__.py\n")) << result.err;
 }
 
-TEST_F(Installation, TheUnitLeadsToThisPrefix) {
+TEST_F(Installation, SystemdUnitNamesTheInstallPrefix) {
   const std::string unit = read_file(prefix() + "/lib/systemd/system/weir@.service");
   EXPECT_NE(unit.find(cat("\nExecStart=", prefix(), "/bin/weir watch /etc/weir/%i.toml\n")), std::string::npos) << unit;
   EXPECT_NE(unit.find(cat("file://", prefix(), "/share/doc/weir/docs/operations.md\n")), std::string::npos);
@@ -215,12 +215,12 @@ TEST_F(Installation, SystemdFindsNoFaultInTheUnit) {
   EXPECT_EQ(result.out + result.err, "");
 }
 
-TEST_F(Installation, LinksOfTheDocumentsLeadSomewhere) {
+TEST_F(Installation, LinksOfTheDocumentsPointToInstalledFiles) {
   const fs::path documents = prefix() + "/share/doc/weir";
   const std::regex link("\\]\\(([^)#:]+)(#[^)]*)?\\)");
   std::size_t links = 0;
   for (const std::string& name : list_directory(documents)) {
-    if (!name.ends_with(".md")) continue;
+    if (!name.ends_with(".md") || name == "docs/internals.md") continue;  // that one leads through the sources
     const std::string text = read_file(documents / name);
     for (auto at = std::sregex_iterator(text.begin(), text.end(), link); at != std::sregex_iterator(); ++at) {
       if (at->str(1).ends_with(".h")) continue;  // FORMAT.md says where in the sources

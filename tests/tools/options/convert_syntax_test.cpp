@@ -9,7 +9,7 @@
 namespace weir::convert_syntax_test {
 namespace {
 
-TEST(ConvertSyntaxOfTheCommand, IsItsInputAndConversionOptions) {
+TEST(ConvertSyntaxOfTheCommand, ListsInputAndConversionOptions) {
   std::set<std::string> values;
   std::set<std::string> flags;
   for (const auto& [name, flag, path] : convert_syntax().options) {

@@ -23,7 +23,7 @@ std::string message_of(const std::function<void()>& call) {
   return message_of_error(ErrorKind::usage, [&] { call(); });
 }
 
-TEST(InputOptions, NothingGivenIsNothingSaid) {
+TEST(InputOptions, NoOptionGiven_LeavesAllUnset) {
   const SourceOptions options = parse("");
   EXPECT_FALSE(options.extent || options.type || options.big_endian || options.spacing || options.origin ||
                options.roi);
@@ -50,7 +50,7 @@ TEST(InputOptions, AllGiven) {
   EXPECT_EQ(options.missing, StoredValue{std::int64_t{-9999}});
 }
 
-TEST(InputOptions, ExtentsThatNoVolumeHasAreForTheSourceToRefuse) {
+TEST(InputOptions, ImpossibleExtents_AreParsedForTheSourceToRefuse) {
   EXPECT_EQ(parse("--dims -1,0,5").extent, (Index3{-1, 0, 5}));
 }
 

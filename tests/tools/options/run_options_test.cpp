@@ -23,7 +23,7 @@ TEST(RunOptions, Defaults) {
   EXPECT_EQ(arguments.progress.mode, ProgressMode::automatic);
 }
 
-TEST(RunOptions, MemoryIsASize) {
+TEST(RunOptions, MemoryTakesASizeOfAtLeast64MiB) {
   EXPECT_EQ(parse_memory(parse("--memory 3GiB")), std::uint64_t{3} << 30U);
   EXPECT_EQ(parse_memory(parse("--memory 64MiB")), std::uint64_t{64} << 20U);
   for (const std::string text : {"63MiB", "much", "-1GiB"}) {

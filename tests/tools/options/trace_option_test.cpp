@@ -155,7 +155,7 @@ TEST_F(TraceOption, TellsWhatIsVerified) {
   EXPECT_EQ(names_of(read_trace(trace_)[0]), Names{"open"});
 }
 
-TEST_F(TraceOption, IsWholeWhereTheConversionIsNot) {
+TEST_F(TraceOption, FailedOrInterruptedConversion_WritesACompleteTrace) {
   EXPECT_EQ(run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--size", "1", "--trace", trace_}).exit_code, 4);
   Threads threads = read_trace(trace_);
   EXPECT_EQ(bytes_of(threads, "read"), 4 * kVoxels);
@@ -177,7 +177,7 @@ TEST_F(TraceOption, IsWholeWhereTheConversionIsNot) {
   EXPECT_TRUE(names_of(threads[0]).contains("save")) << "waited for at the end";
 }
 
-TEST_F(TraceOption, IsNoFileOfTheConversion) {
+TEST_F(TraceOption, TraceOverAnInputOrOutput_IsRefused) {
   for (const std::string& file : {input_, directory_ / "o.nvdb", directory_ / "o.nvdb.json"}) {
     const CommandResult result =
         run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--overwrite", "--trace", file});

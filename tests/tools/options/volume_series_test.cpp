@@ -11,7 +11,7 @@
 namespace weir::volume_series_test {
 namespace {
 
-TEST(NaturalLess, RunsOfDigitsAreNumbers) {
+TEST(NaturalLess, ComparesRunsOfDigitsAsNumbers) {
   const std::vector<std::string> sorted{"",      "a",     "a0b", "a01",      "a1", "a1b",    "a2",     "a2b010",
                                         "a2b10", "a2b11", "a10", "a10.nvdb", "b",  "step_9", "step_10"};
   for (std::size_t i = 0; i < sorted.size(); ++i) {

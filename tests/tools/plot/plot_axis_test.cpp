@@ -17,7 +17,7 @@ TEST(PlotAxis, StepIsTheSmallestRoundOneThatFits) {
   EXPECT_DOUBLE_EQ(tick_step(0.003, 6), 0.0005);
 }
 
-TEST(PlotAxis, EvenTicksHoldTheRange) {
+TEST(PlotAxis, EvenTicksCoverTheRange) {
   EXPECT_EQ(even_ticks(36.4, 131.8), (Ticks{20, 40, 60, 80, 100, 120, 140}));
   EXPECT_EQ(even_ticks(0, 100), (Ticks{0, 20, 40, 60, 80, 100}));
   EXPECT_EQ(even_ticks(-3, 3), (Ticks{-3, -2, -1, 0, 1, 2, 3}));
@@ -26,7 +26,7 @@ TEST(PlotAxis, EvenTicksHoldTheRange) {
   EXPECT_GE(small.back(), 41.34 - 1e-9);
 }
 
-TEST(PlotAxis, OneValueHasAnAxisToo) {
+TEST(PlotAxis, RangeOfOneValue_HasTicks) {
   EXPECT_EQ(even_ticks(0, 0), (Ticks{0, 0.2}));
   const Ticks at = even_ticks(57.2, 57.2);
   ASSERT_GE(at.size(), 2U);
@@ -44,12 +44,12 @@ TEST(PlotAxis, DecadeTicksAreExactDecimals) {
   EXPECT_EQ(decade_ticks(999, 1000), (Ticks{500, 1000}));
 }
 
-TEST(PlotAxis, ManyDecadesHaveNothingBetweenThem) {
+TEST(PlotAxis, ManyDecades_HaveTicksOnlyAtPowersOfTen) {
   EXPECT_EQ(decade_ticks(0.02, 300), (Ticks{0.01, 0.1, 1, 10, 100, 1000}));
   EXPECT_EQ(decade_ticks(0.01, 10000), (Ticks{0.01, 0.1, 1, 10, 100, 1000, 10000}));
 }
 
-TEST(PlotAxis, MinorTicksAreInside) {
+TEST(PlotAxis, MinorTicksLieWithinTheRange) {
   EXPECT_EQ(minor_decade_ticks(5, 20), (Ticks{5, 6, 7, 8, 9, 10, 20}));
   EXPECT_EQ(minor_decade_ticks(0.2, 0.5), (Ticks{0.2, 0.3, 0.4, 0.5}));
   EXPECT_EQ(minor_decade_ticks(1.1, 1.9), Ticks{});

@@ -57,7 +57,7 @@ a = 1
   EXPECT_EQ(document.links, (std::vector<std::string>{"docs/a.md", "b.md"}));
 }
 
-TEST(ParseDocument, MarksThatMeanNothingAreErrors) {
+TEST(ParseDocument, UnknownOrMisplacedMarksAreErrors) {
   const auto refusal = [](const char* text) {
     try {
       parse_document(text);
@@ -92,13 +92,13 @@ class Documentation : public testing::TestWithParam<std::filesystem::path> {
   std::filesystem::path path() const { return std::filesystem::path(WEIR_SOURCE_DIR) / GetParam(); }
 };
 
-TEST_P(Documentation, LinksLeadSomewhere) {
+TEST_P(Documentation, LinksPointToExistingFiles) {
   for (const std::string& link : parse_document(read_file(path())).links) {
     EXPECT_TRUE(std::filesystem::exists(path().parent_path() / link)) << link;
   }
 }
 
-TEST_P(Documentation, CommandsDoWhatItSays) {
+TEST_P(Documentation, CommandsGiveTheDocumentedResults) {
   const TemporaryDirectory directory;
   CommandOptions options;
   options.directory = directory.path();
@@ -126,7 +126,7 @@ TEST_P(Documentation, CommandsDoWhatItSays) {
 INSTANTIATE_TEST_SUITE_P(All, Documentation, testing::ValuesIn(documents()), name_of);
 
 // A page that nothing leads to is not read.
-TEST(DocumentationIndex, TheReadmeLeadsToEveryPage) {
+TEST(DocumentationIndex, ReadmeLinksToEveryPage) {
   const auto links = parse_document(read_file(std::filesystem::path(WEIR_SOURCE_DIR) / "README.md")).links;
   for (const std::filesystem::path& page : documents()) {
     if (page == "README.md") continue;

@@ -42,7 +42,7 @@ class Evaluation : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
+TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   const CommandResult run = evaluate({"--quick"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, (directory_ / "evaluation.md") + "\n");
@@ -89,7 +89,7 @@ TEST_F(Evaluation, KeepsItsPromisesOnSmallVolumes) {
   }
 }
 
-TEST_F(Evaluation, GoesOnWhereItWasAndSaysWhatIsBroken) {
+TEST_F(Evaluation, ResumesMissingMeasurementsAndReportsWrongOnes) {
   ASSERT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032\nworst_case: noise_0064\n");
   EXPECT_NE(report().find("*Not measured yet.*"), std::string::npos);
   const fs::path state = directory_.path() / "state/worst_case";
@@ -108,7 +108,7 @@ TEST_F(Evaluation, GoesOnWhereItWasAndSaysWhatIsBroken) {
             std::string::npos);
 }
 
-TEST_F(Evaluation, EndsWithItsProgramWhenInterrupted) {
+TEST_F(Evaluation, Interrupted_EndsAndKeepsFinishedMeasurements) {
   ChildProcess child({kPython, "-B", std::string(WEIR_SOURCE_DIR) + "/bench/evaluate", "--weir", WEIR_COMMAND,
                       directory_.path().string(), "--quick", "--only", "errors"});
   const fs::path state = directory_.path() / "state/errors";
@@ -123,7 +123,7 @@ TEST_F(Evaluation, EndsWithItsProgramWhenInterrupted) {
   EXPECT_EQ(list_directory(state), std::vector<std::string>{first});
 }
 
-TEST_F(Evaluation, NamesItsExperiments) {
+TEST_F(Evaluation, UnknownExperiment_IsRefusedWithTheKnownNames) {
   const CommandResult run = evaluate({"--only", "sizes,speeds"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("bench/evaluate.sh: error: --only names speeds; there are sizes, worst_case, errors"),

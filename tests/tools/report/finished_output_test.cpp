@@ -51,7 +51,7 @@ class SkipDone : public testing::Test {
   std::string output_ = directory_ / "v.nvdb";
 };
 
-TEST_F(SkipDone, ConvertsOnceAndReportsTheSame) {
+TEST_F(SkipDone, FinishedOutput_IsSkippedAndReportedTheSame) {
   const CommandResult first = convert();
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_TRUE(leaves_it());
@@ -68,7 +68,7 @@ TEST_F(SkipDone, ConvertsAgainWhatChanged) {
   EXPECT_FALSE(leaves_it()) << "a nanosecond";
 }
 
-TEST_F(SkipDone, ConvertsAgainWhatTookItsPlaceWithItsSizeAndTime) {
+TEST_F(SkipDone, SourceReplacedWithTheSameSizeAndTime_IsConvertedAgain) {
   ASSERT_EQ(convert().exit_code, 0);
   const auto time = fs::last_write_time(source_);
   const std::string first = source_;
@@ -84,7 +84,7 @@ TEST_F(SkipDone, ConvertsAgainWhatTookItsPlaceWithItsSizeAndTime) {
   EXPECT_FALSE(leaves_it()) << "the same file, rewritten";
 }
 
-TEST_F(SkipDone, ConvertsAgainWhatASceneSaysOtherwise) {
+TEST_F(SkipDone, OpacityOfTheSceneChanged_ConvertsAgain) {
   const TemporaryDirectory beside;
   const std::string scene = beside / "s.toml";
   const auto say = [&](const std::string& opacity, double azimuth) {
@@ -111,7 +111,7 @@ TEST_F(SkipDone, ConvertsAgainWhatASceneSaysOtherwise) {
 }
 
 // Of the same size, and older than another file of the volume.
-TEST_F(SkipDone, ConvertsAgainWhatOneOfSeveralFilesChanges) {
+TEST_F(SkipDone, OneOfSeveralSourceFilesChanged_ConvertsAgain) {
   const TemporaryDirectory beside;
   const auto rewrite = [&](const std::string& path, char fill) {
     const auto before = fs::last_write_time(path);
@@ -142,7 +142,7 @@ TEST_F(SkipDone, ConvertsAgainWhatOneOfSeveralFilesChanges) {
   expect_seen({beside / "h.mhd"}, beside / "d.raw");
 }
 
-TEST_F(SkipDone, ConvertsAgainWhatIsNotWhole) {
+TEST_F(SkipDone, DamagedOrMissingOutput_IsConvertedAgain) {
   ASSERT_EQ(convert().exit_code, 0);
   fs::resize_file(output_, fs::file_size(output_) - 1);
   EXPECT_FALSE(leaves_it()) << "short";
@@ -191,7 +191,7 @@ TEST_F(SkipDone, RemovesWhatAKilledConversionLeftBesideIt) {
   EXPECT_EQ(list_directory(directory_.path()), finished);
 }
 
-TEST_F(SkipDone, RefusesWhatIsNotItsOwn) {
+TEST_F(SkipDone, RefusesToReplaceAForeignOutput) {
   write_file(output_, "precious");
   const CommandResult unknown = convert();
   EXPECT_EQ(unknown.exit_code, 2);
@@ -210,7 +210,7 @@ TEST_F(SkipDone, RefusesWhatIsNotItsOwn) {
   EXPECT_TRUE(leaves_it());
 }
 
-TEST_F(SkipDone, APathThatIsNoTextIsStillRecognised) {
+TEST_F(SkipDone, PathThatIsNotUtf8_IsRecognisedAsDone) {
   const std::string odd = directory_ / "\xff_40x32x24_uint8.raw";
   fs::rename(source_, odd);
   const std::vector<std::string> command{"convert", odd, "-o", output_, "--skip-done"};
@@ -219,7 +219,7 @@ TEST_F(SkipDone, APathThatIsNoTextIsStillRecognised) {
   EXPECT_NE(again.err.find("done already"), std::string::npos) << again.err;
 }
 
-TEST_F(SkipDone, OfASeriesMakesTheMissingSteps) {
+TEST_F(SkipDone, Series_ConvertsOnlyTheMissingSteps) {
   fs::copy_file(source_, directory_ / "s_1_40x32x24_uint8.raw");
   fs::copy_file(source_, directory_ / "s_2_40x32x24_uint8.raw");
   fs::create_directory(directory_ / "out");

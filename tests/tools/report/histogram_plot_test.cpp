@@ -43,7 +43,7 @@ TEST(HistogramText, FewFilledBinsAreNotTakenForDiscreteData) {
   EXPECT_EQ(text.substr(0, text.find('\n')), "        9 |#   #");
 }
 
-TEST(HistogramText, SaysWhereThereIsNothingToShow) {
+TEST(HistogramText, NoFiniteValues_IsSaid) {
   const std::string nothing = "histogram: no finite values\n";
   EXPECT_EQ(histogram_text({}), nothing);
   EXPECT_EQ(histogram_text({0, 1, {0, 0}}), nothing);
@@ -67,7 +67,7 @@ TEST(HistogramImage, BarsStandWhereTheCountsAre) {
   EXPECT_EQ(pixel(image, 360, 315), (Float3{1, 1, 1}));
 }
 
-TEST(HistogramImage, MarksTheBackgroundInside) {
+TEST(HistogramImage, MarksTheBackgroundOnlyWithinTheRange) {
   const Image without = histogram_image({0, 4, {100, 0, 0, 100}}, std::nullopt);
   const Image with = histogram_image({0, 4, {100, 0, 0, 100}}, 2.0);
   const Image outside = histogram_image({0, 4, {100, 0, 0, 100}}, 5.0);

@@ -49,13 +49,13 @@ TEST(ProgressText, CompleteHasNoTimeLeft) {
   EXPECT_EQ(progress_text("survey", 100, 100, 1e-6), "survey 100 % of 100 B, 0.10 GB/s");
 }
 
-TEST(ProgressText, MoreThanAllIsAll) {
+TEST(ProgressText, MoreThanTheTotal_IsShownAs100Percent) {
   EXPECT_EQ(progress_text("survey", 300, 100, 1e-6), "survey 100 % of 100 B, 0.10 GB/s");
 }
 
 TEST(ProgressText, EmptyPassIsComplete) { EXPECT_EQ(progress_text("encode", 0, 0, 1.0), "encode 100 % of 0 B"); }
 
-TEST(Progress, LinesAFewSecondsApartWithoutATerminal) {
+TEST(Progress, WithoutATerminal_PrintsALineEveryFiveSeconds) {
   Stage stage;
   Progress progress(ProgressMode::automatic, stage.out.get(), stage.clock());
   progress.start("survey", 1000);
@@ -69,7 +69,7 @@ TEST(Progress, LinesAFewSecondsApartWithoutATerminal) {
   EXPECT_EQ(stage.text(), "weir: survey 50 % of 1000 B, 0.00 GB/s, 0:05 left\n");
 }
 
-TEST(Progress, AlwaysEndsEveryPassWithALine) {
+TEST(Progress, ModeAlways_EndsEveryPassWithALine) {
   Stage stage;
   Progress progress(ProgressMode::always, stage.out.get(), stage.clock());
   progress.start("survey", 1000);
@@ -79,7 +79,7 @@ TEST(Progress, AlwaysEndsEveryPassWithALine) {
   EXPECT_EQ(stage.text(), "weir: survey 100 % of 1000 B\nweir: encode 100 % of 10 B\n");
 }
 
-TEST(Progress, NeverIsSilent) {
+TEST(Progress, ModeNever_PrintsNothing) {
   Stage stage;
   Progress progress(ProgressMode::never, stage.out.get(), stage.clock());
   progress.start("survey", 1000);
@@ -114,7 +114,7 @@ TEST(Progress, BarOnATerminalEndsItsLineWhenWorkThrows) {
   EXPECT_EQ(shown, "\r\x1b[K[######..................] survey 25 % of 1000 B, 0.00 GB/s, 0:03 left\r\n");
 }
 
-TEST(Progress, TellsAProgramAtItsDescriptor) {
+TEST(Progress, WritesJsonLinesToTheGivenDescriptor) {
   Stage stage;
   Stage pipe;
   ProgressOptions options(ProgressMode::never);
@@ -139,7 +139,7 @@ TEST(Progress, TellsAProgramAtItsDescriptor) {
   EXPECT_EQ(stage.text(), "");
 }
 
-TEST(Progress, OptionNamesAreTheModes) {
+TEST(Progress, ProgressOptionTakesTheNamesOfTheModes) {
   ProgressOptions options;
   CLI::App app;
   add_progress_options(app, options);

@@ -11,7 +11,7 @@ namespace {
 
 using TreeCensusTest = ConvertedVolume;
 
-TEST_F(TreeCensusTest, CountsWhatIsThere) {
+TEST_F(TreeCensusTest, CountsLeavesTilesAndVoxels) {
   const NvdbFile file = open();
   const TreeCensus census = take_census(file.grid(), {});
   EXPECT_EQ(census.leaves + census.active_tiles[0] + census.inactive_tiles[0], 4096U);  // one lower node

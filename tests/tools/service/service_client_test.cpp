@@ -108,7 +108,7 @@ TEST_F(ServiceCommands, AskAtTheUnixSocket) {
   EXPECT_EQ(run_weir({"status", "--address", "unix:/" + std::string(107, 'x')}).exit_code, 2);
 }
 
-TEST_F(ServiceCommands, WantToKnowWhatToRetry) {
+TEST_F(ServiceCommands, RetryNeedsEitherJobIdsOrAllFailed) {
   const std::string message = "weir: give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed\n";
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"retry"}, std::vector<std::string>{"retry", "1", "--all-failed"}}) {
@@ -118,7 +118,7 @@ TEST_F(ServiceCommands, WantToKnowWhatToRetry) {
   }
 }
 
-TEST_F(ServiceCommands, SayWhereNobodyAnswers) {
+TEST_F(ServiceCommands, NoServiceAtTheAddress_IsReported) {
   std::string address;
   {
     const Served served(control_);
@@ -131,14 +131,14 @@ TEST_F(ServiceCommands, SayWhereNobodyAnswers) {
                             "--address or --config\n"));
 }
 
-TEST_F(ServiceCommands, RefuseWhatIsNoAddress) {
+TEST_F(ServiceCommands, RefuseAMalformedAddress) {
   const CommandResult result = run_weir({"jobs", "--address", "8470"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err,
             "weir: \"8470\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
 }
 
-TEST_F(ServiceCommands, ShowTheirToken) {
+TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {
   const Served served(control_, "secret");
   const CommandResult without = weir(served, {"status"});
   EXPECT_EQ(without.exit_code, 2);
@@ -174,7 +174,7 @@ TEST_F(ServiceCommands, FindTheServiceOfAConfiguration) {
 }
 
 // Something else may listen there.
-TEST_F(ServiceCommands, KnowAnotherServersAnswer) {
+TEST_F(ServiceCommands, AnswerOfAnotherServer_IsReported) {
   boost::asio::io_context io;
   HttpResponse response{200, "text/html", "<html>", {}};
   const HttpServer other(io, {"127.0.0.1", 0}, {}, [&](const HttpRequest&) { return response; });

@@ -55,7 +55,7 @@ TEST(ServiceReport, ListsJobs) {
             "         /in/b.raw: 12 bytes are missing\n");
 }
 
-TEST(ServiceReport, SaysWhatIsLeftOut) {
+TEST(ServiceReport, SaysWhichJobsOfTheTotalAreShown) {
   EXPECT_EQ(text_of({}, 0), "no such jobs\n");
   EXPECT_EQ(text_of({}, 7, 100), "no jobs beyond 7\n");
   EXPECT_TRUE(text_of({sample_job(), sample_job()}, 9, 4).ends_with("jobs 5 to 6 of 9; see --limit and --offset\n"));

@@ -41,7 +41,7 @@ TEST(SweepMethod, ByName) {
   EXPECT_EQ(refusal([] { parse_sweep_methods("auto,zfp,auto"); }), "--methods names auto twice; leave one of them out");
 }
 
-TEST(SweepMethod, OptionsAreThoseOfTheCommandLine) {
+TEST(SweepMethod, MethodNamesSetTheConversionOptions) {
   const auto conversion = [](const char* name, const char* policy = "") {
     return conversion_of(parse_sweep_methods(name).front(), policy);
   };

@@ -32,7 +32,7 @@ std::int64_t pixels_of(const Image& image, const Float3& ink) {
 }
 
 // The axes of these: x from 1 to 10 bits over the pixels 112 to 872, PSNR from 20 to 100 dB over 532 to 101.
-TEST(SweepPlot, PointsLieWhereTheyBelong) {
+TEST(SweepPlot, PointsAreDrawnAtTheirValues) {
   const Image image = psnr_plot(report_of({row("auto", 125, 20), row("auto", 1250, 100)}), SweepAxis::bits_per_voxel);
   EXPECT_EQ(image.width, 900);
   EXPECT_EQ(image.height, 600);
@@ -43,14 +43,14 @@ TEST(SweepPlot, PointsLieWhereTheyBelong) {
   EXPECT_EQ(image.at(800, 400), kPaper);
 }
 
-TEST(SweepPlot, SecondsAreAnAxisToo) {
+TEST(SweepPlot, SecondsCanBeTheAxis) {
   const auto report = report_of({row("auto", 125, 20, 0.01), row("auto", 125, 100, 0.1)});
   const Image image = psnr_plot(report, SweepAxis::seconds);
   EXPECT_EQ(image.at(112, 532), image.at(872, 101));
   EXPECT_NE(psnr_plot(report, SweepAxis::bits_per_voxel).pixels, image.pixels);
 }
 
-TEST(SweepPlot, LosslessIsABandOfItsOwn) {
+TEST(SweepPlot, LosslessRowsAreDrawnInABandOfTheirOwn) {
   const Image image = psnr_plot(report_of({row("auto", 125, 20), row("auto", 250, 100), row("auto", 1250, {})}),
                                 SweepAxis::bits_per_voxel);
   const Float3 ink = image.at(112, 532);
@@ -73,7 +73,7 @@ TEST(SweepPlot, UnmetRatesAreLeftOutOfTheLineButNotOfTheLegend) {
   EXPECT_NE(other.pixels, without.pixels);
 }
 
-TEST(SweepPlot, MethodsDiffer) {
+TEST(SweepPlot, MethodsHaveDifferentColours) {
   std::vector<SweepRow> rows;
   for (const char* name : {"auto", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp"}) {
     rows.push_back(row(name, 125, 20.0 + 10.0 * static_cast<double>(rows.size())));

@@ -20,7 +20,7 @@ std::vector<float> waves(const Index3& extent) {
   return values;
 }
 
-TEST(ZfpCodec, StreamIsTheBlocksBitsInWholeWords) {
+TEST(ZfpCodec, StreamSizeIsTheBitsOfAllBlocksInWholeWords) {
   const std::uint64_t word = stream_word_bits / 8;
   EXPECT_EQ(zfp_stream_bytes({8, 8, 8}, 64), 64U);
   EXPECT_EQ(zfp_stream_bytes({9, 5, 1}, 64), 6 * 8U);  // 3 x 2 x 1 blocks
@@ -28,7 +28,7 @@ TEST(ZfpCodec, StreamIsTheBlocksBitsInWholeWords) {
   EXPECT_EQ(zfp_stream_bytes({1 << 30, 1 << 20, 1 << 10}, 64), std::uint64_t{1} << 57U);
 }
 
-TEST(ZfpCodec, MostBitsThatTheBytesHold) {
+TEST(ZfpCodec, BlockBitsAreTheMostThatFitTheBytes) {
   EXPECT_EQ(zfp_block_bits({8, 8, 8}, 64), 64U);
   EXPECT_EQ(zfp_block_bits({8, 8, 8}, 72), 72U);
   EXPECT_EQ(zfp_block_bits({8, 8, 8}, 9 + 7), 16U);
@@ -47,7 +47,7 @@ TEST(ZfpCodec, MostBitsThatTheBytesHold) {
 }
 
 // The library's own use: one field, one stream.
-TEST(ZfpCodec, EqualsTheLibraryInOnePiece) {
+TEST(ZfpCodec, EqualsTheZfpLibraryOnTheWholeVolume) {
   const Index3 extent{19, 14, 10};
   std::vector<float> values = waves(extent);
   constexpr unsigned kBits = 333;
@@ -73,7 +73,7 @@ TEST(ZfpCodec, EqualsTheLibraryInOnePiece) {
   EXPECT_TRUE(std::equal(decoded.begin(), decoded.end(), expected.begin(), expected.end()));
 }
 
-TEST(ZfpCodec, PartsDecodeToWhatTheWholeDoes) {
+TEST(ZfpCodec, PartsDecodeToTheSameValuesAsTheWhole) {
   const Index3 extent{21, 18, 11};
   const std::vector<float> values = waves(extent);
   ZfpCodec codec(200);

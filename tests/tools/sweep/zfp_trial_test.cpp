@@ -60,7 +60,7 @@ void expect_equal(const Certificate& a, const Certificate& b) {
   EXPECT_EQ(a.lossless, b.lossless);
 }
 
-TEST_F(ZfpTrialTest, EqualsTheWholeInOnePiece) {
+TEST_F(ZfpTrialTest, PiecewiseErrorEqualsThatInOnePiece) {
   for (const Index3 extent : {Index3{61, 50, 43}, Index3{1, 1, 3000}, Index3{5000, 3, 2}, Index3{4, 4, 4}}) {
     const auto source = open_synthetic("turbulence", {extent, 1});
     const ZfpTrial trial = run(*source, 128);
@@ -87,7 +87,7 @@ TEST_F(ZfpTrialTest, SameErrorWhateverMemoryThreadsAndBlocks) {
 }
 
 // ZFP's blocks begin at the region's corner, wherever in the file's leaves that lies.
-TEST_F(ZfpTrialTest, RegionIsAVolumeOfItsOwn) {
+TEST_F(ZfpTrialTest, RegionErrorEqualsThatInOnePiece) {
   const auto region = crop_source(open_synthetic("turbulence", {{70, 60, 50}, 1}), {{3, 5, 9}, {64, 52, 50}});
   expect_equal(run(*region, 100).error, in_one_piece(*region, 100));
 }

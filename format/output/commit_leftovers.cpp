@@ -1,4 +1,4 @@
-#include "format/output/commit_traces.h"
+#include "format/output/commit_leftovers.h"
 
 #include <array>
 #include <cstdint>

@@ -18,8 +18,8 @@ bool describes(FileSystem& files, const std::string& sidecar, const std::string&
 /// Whether a commit that was killed, whose OUT.nvdb.partial was `partial`, put `sidecar` into its place.
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial);
 
-/// Whether OUT.nvdb.partial is the lock of a commit that came to its end, but not to the removal of what the output
-/// was made from.
+/// Whether OUT.nvdb.partial is the lock of a commit that was completed, but was killed before it removed what the
+/// output was made from.
 bool is_committed(FileSystem& files, const std::string& output);
 
 }  // namespace weir
