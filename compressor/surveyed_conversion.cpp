@@ -129,8 +129,7 @@ class SurveyedConversion {
         sidecar_(describe_source(info_, survey, options_)) {}
 
   Sidecar run() {
-    find_background();
-    FileRequest request = make_request();
+    FileRequest request = prepare();
     sidecar_.timing.survey_s = seconds_since(started_);
     const Clock::time_point encoding = Clock::now();
     const EncodedFile encoded = encode(std::move(request));
@@ -145,9 +144,15 @@ class SurveyedConversion {
   }
 
  private:
+  // All that selection needs.
+  FileRequest prepare() {
+    const TraceSpan span(parts_.control.trace, "background");
+    find_background();
+    return make_request();
+  }
+
   // The background and the source's digest, at the same time.
   void find_background() {
-    const TraceSpan span(parts_.control.trace, "background");
     if (options_.non_finite == NonFinitePolicy::error) refuse_non_finite(survey_, info_);
     Journal* const journal = parts_.journal;
     const bool known = journal != nullptr && journal->state.background;

@@ -123,6 +123,7 @@ void Service::run() {
   checkpoint_when_due();
   const ListenAddress& listen = config_.service.listen;
   log_.info("ready", {{"listen", listen.host}, {"port", server_.port()}, {"watches", trees_.size()}});
+  if (const std::string& path = config_.service.control_socket; !path.empty()) log_.info("control", {{"socket", path}});
   notifier_.send(cat("READY=1\nSTATUS=", trees_.size(), " directories watched, port ", server_.port()));
   runner_.wake();
   try {

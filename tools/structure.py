@@ -2,8 +2,9 @@
 """Checks what holds of the C++ files as a whole: tools/structure.py [--figures] [ROOT]
 
 - Includes run down: a folder uses itself and those that BELOW lists for it, and every file that is included is there.
-- There are no circles: neither of files, a header and its source taken as one, nor of rooms, the folders within those.
-- No two types have one qualified name (the one-definition rule), but those that are declared for one file alone.
+- There are no circles: neither of files, a header and its source taken as one, nor of rooms, the folders within those,
+  tests/ aside.
+- No two types in namespaces have one qualified name (the one-definition rule), but those in unnamed ones.
 - A header begins with a comment that says what it is for, and has #pragma once; C headers have guards.
 - No file has more than MOST_LINES lines, no folder more than MOST_FILES files, and of all files at most MOST_SMALL have
   fewer than SMALL lines.
@@ -111,7 +112,7 @@ def circles(uses):
     return found
 
 
-CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
+CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Fa-f])\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
 SCOPE = re.compile(r"(?:inline\s+)?namespace\s*([\w:]*)\s*\{"
                    r"|(?:class|struct|union|enum(?:\s+class|\s+struct)?)\s+(?:alignas\([^)]*\)\s*)?([\w:]+)\s*(?:final\s*)?(?::[^;{}()]*)?\{|[{}]")
 
@@ -129,8 +130,7 @@ def types(text):
             scopes.append(found.group(1) or "(unnamed)")
         elif found.group(2) is not None:
             name = found.group(2)
-            specialised = text[:found.start()].rstrip().endswith(">")
-            if scopes and all(scope and scope != "(unnamed)" for scope in scopes) and not specialised:
+            if scopes and all(scope and scope != "(unnamed)" for scope in scopes):
                 yield "::".join([*scopes, name]), text.count("\n", 0, found.start()) + 1
             scopes.append("")
         else:

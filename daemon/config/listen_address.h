@@ -22,8 +22,8 @@ struct ListenAddress {
 /// none of these.
 ListenAddress parse_listen_address(std::string_view text);
 
-/// Bytes of the path of a Unix socket, at most.
-inline constexpr std::size_t kLongestSocketPath = 107;
+/// Bytes of the path of a Unix socket, at most: the system takes 107, and a ".new" is appended for a moment.
+inline constexpr std::size_t kLongestSocketPath = 103;
 
 /// Whether `host` can only be reached from this machine: "localhost", 127.0.0.0/8, ::1. Any other name counts as
 /// reachable from elsewhere, whatever it resolves to now.

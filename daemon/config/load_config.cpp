@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "daemon/config/config_names.h"
@@ -116,8 +117,8 @@ void read_control_socket(ConfigReader& reader, ServiceConfig& service) {
   if (!reader.read_path("control_socket", service.control_socket)) return;
   const std::size_t bytes = service.control_socket.size();
   if (bytes > kLongestSocketPath) {
-    reader.refuse("control_socket", cat("control_socket is a path of ", bytes, " bytes, ", service.control_socket,
-                                        "; the system takes ", kLongestSocketPath, " at most"));
+    reader.refuse("control_socket", cat("control_socket is a path of ", bytes, " bytes, ", service.control_socket, "; ",
+                                        kLongestSocketPath, " can be used"));
   }
 }
 
@@ -167,10 +168,10 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
                                                             ", too little for the daemon and jobs = ", service.jobs,
                                                             "; it must be at least ", format_bytes(least)));
   }
+  std::set<std::string> files{service.state};
   for (const std::string* file : {&service.log_file, &service.port_file, &service.control_socket}) {
-    if (*file == service.state) {
-      reader.toml.fail(table, cat("two of state, log, port_file and control_socket are one file, ", *file));
-    }
+    if (file->empty() || files.insert(*file).second) continue;
+    reader.toml.fail(table, cat("two of state, log, port_file and control_socket are one file, ", *file));
   }
   if (service.state == path) reader.refuse("state", cat("state is this file, ", path));
   return service;
@@ -237,6 +238,7 @@ void exclude_own_files(DaemonConfig& config) {
   std::vector<std::string> own{config.path,       service.work_dir, service.log_file,
                                service.port_file, service.state,    service.control_socket};
   for (const char* journal : {"-wal", "-shm", "-journal"}) own.push_back(service.state + journal);
+  if (!service.control_socket.empty()) own.push_back(service.control_socket + ".lock");
   for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
   std::sort(own.begin(), own.end());
   own.erase(std::unique(own.begin(), own.end()), own.end());

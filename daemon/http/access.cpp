@@ -3,18 +3,11 @@
 #include <algorithm>
 
 #include "daemon/config/listen_address.h"
+#include "format/base/ascii.h"
 #include "format/base/text.h"
 
 namespace weir {
 namespace {
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(text.begin(), text.end(), result.begin(), [](char c) { return lower(c); });
-  return result;
-}
 
 // "localhost:8470", "127.0.0.1", "[::1]:8470". The port may be another: that of a tunnel.
 bool names_loopback(std::string_view host) {
@@ -22,19 +15,17 @@ bool names_loopback(std::string_view host) {
     const std::size_t end = host.find(']');
     return end != std::string_view::npos && is_loopback(host.substr(1, end - 1));
   }
-  return is_loopback(lower(host.substr(0, host.find(':'))));
+  return is_loopback(lower_case(host.substr(0, host.find(':'))));
 }
 
 // The media type without its parameters.
 bool is_json(std::string_view content_type) {
-  std::string_view type = content_type.substr(0, content_type.find(';'));
-  while (type.ends_with(' ')) type.remove_suffix(1);
-  return lower(type) == "application/json";
+  return lower_case(trimmed(content_type.substr(0, content_type.find(';')))) == "application/json";
 }
 
 bool has_token(const AccessRules& rules, std::string_view authorization) {
   constexpr std::string_view kScheme = "bearer ";
-  return lower(authorization.substr(0, kScheme.size())) == kScheme &&
+  return lower_case(authorization.substr(0, kScheme.size())) == kScheme &&
          same_secret(rules.token, authorization.substr(kScheme.size()));
 }
 

@@ -5,9 +5,8 @@
 //   GET  /readyz                          200 while every watch is up and the state file can be written, else 503
 //                                         with the reason, for those who may see it
 //   GET  /metrics                         metrics.h
-//   GET  /api/status                      StatusView, and control_at: the address at which alone a POST is answered,
-//   null
-//                                         where it is this one
+//   GET  /api/status                      StatusView, and control_at: the address at which alone a POST is
+//                                         answered, null where it is this one
 //   GET  /api/jobs?state=S&watch=LABEL&text=T&problem=KEY&sort=K&order=O&limit=N&offset=N
 //                                         JobPage; JobQuery says what they mean. K: changed (the default), discovered,
 //                                         source, state, watch, bytes, seconds; O: desc (the default) or asc; limit 100

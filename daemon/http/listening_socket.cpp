@@ -1,6 +1,7 @@
 #include "daemon/http/listening_socket.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <boost/asio/local/stream_protocol.hpp>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -20,6 +22,7 @@ using boost::system::error_code;
 using UnixProtocol = boost::asio::local::stream_protocol;
 
 constexpr mode_t kOwnerAndGroup = 0660;
+constexpr std::string_view kBeside = ".new";
 
 tcp::endpoint endpoint_of(const ListenAddress& address) {
   error_code error;
@@ -45,27 +48,61 @@ bool is_this_machine(const boost::asio::ip::address& address) {
   return address.is_loopback();
 }
 
-// Refuses a path at which there is something else than a socket that nobody listens on any more.
+[[noreturn]] void refuse_used(const std::string& path) {
+  throw Error(ErrorKind::io, cat(path,
+                                 ": cannot listen: another process does; is another weir watch running? choose "
+                                 "another service.control_socket"));
+}
+
+// Held by whoever listens at `path`, or is about to.
+Descriptor lock_path(const std::string& path) {
+  const std::string lock = path + ".lock";
+  Descriptor file(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (file.get() < 0 && errno == ENOENT) {
+    throw Error(ErrorKind::io, cat(path,
+                                   ": cannot listen: there is no such directory; make it, or choose another "
+                                   "service.control_socket"));
+  }
+  if (file.get() < 0) throw io_error(lock, "open", errno);
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) refuse_used(path);
+    throw io_error(lock, "lock", errno);
+  }
+  return file;
+}
+
+bool is_socket(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
+}
+
+// Refuses a path at which there is something else than a socket that nobody listens on any more: other programs take no
+// lock.
 void require_free(boost::asio::io_context& io, const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return;  // what else is wrong, bind says
-  if (!S_ISSOCK(status.st_mode)) {
+  if (!is_socket(path)) {
     throw Error(ErrorKind::io, cat(path, ": cannot listen: there is a file that is no socket; name another path"));
   }
   UnixProtocol::socket probe(io);
   error_code error;
-  probe.connect(UnixProtocol::endpoint(path), error);
-  if (!error) {
-    throw Error(ErrorKind::io, cat(path,
-                                   ": cannot listen: another process does; is another weir watch running? choose "
-                                   "another service.control_socket"));
-  }
+  probe.open(UnixProtocol(), error);
+  if (!error) probe.non_blocking(true, error);
+  if (!error) probe.connect(UnixProtocol::endpoint(path), error);
+  if (error == boost::asio::error::connection_refused) return;
+  if (!error || error == boost::asio::error::would_block || error == boost::asio::error::in_progress) refuse_used(path);
+  throw io_error(path, "see whether another process listens there", error.value());
 }
 
 }  // namespace
 
 ListeningSocket::ListeningSocket(boost::asio::io_context& io, const ListenAddress& address) : acceptor_(io) {
   if (address.is_unix()) {
+    if (address.path.size() > kLongestSocketPath) {
+      throw Error(ErrorKind::usage, cat(address.path, ": cannot listen: a socket's path has ", kLongestSocketPath,
+                                        " bytes at most; choose a shorter service.control_socket"));
+    }
+    lock_ = lock_path(address.path);
     require_free(io, address.path);
     listen_on_path(address.path);
   } else {
@@ -93,32 +130,22 @@ void ListeningSocket::listen_on_tcp(const ListenAddress& address) {
 // 2. It gets its mode, listens,
 // 3. and is renamed to its path, in place of what a killed process left there.
 void ListeningSocket::listen_on_path(const std::string& path) {
-  const std::string beside = cat(path.substr(0, path.rfind('/') + 1), ".weir-", ::getpid());
+  const std::string beside = cat(path, kBeside);
   const auto fail = [&](const char* what, int cause) {
     ::unlink(beside.c_str());
     throw io_error(path, what, cause);
   };
-  for (const std::string* name : {&beside, &path}) {
-    if (name->size() > kLongestSocketPath) {
-      throw Error(ErrorKind::usage, cat(path, ": cannot listen: a socket's path has ", kLongestSocketPath,
-                                        " bytes at most; choose a shorter service.control_socket"));
-    }
-  }
-  ::unlink(beside.c_str());
+  if (is_socket(beside)) ::unlink(beside.c_str());  // of a process that was killed before 3.
   error_code error;
   acceptor_.open(UnixProtocol(), error);
-  if (error) fail("listen", error.value());
-  close_on_exec(acceptor_);
-  acceptor_.bind(UnixProtocol::endpoint(beside), error);
-  if (error) fail("listen", error.value());
+  if (!error) close_on_exec(acceptor_);
+  if (!error) acceptor_.bind(UnixProtocol::endpoint(beside), error);
+  if (error) throw io_error(beside, "listen", error.value());
   if (::chmod(beside.c_str(), kOwnerAndGroup) != 0) fail("set the mode", errno);
   acceptor_.listen(Acceptor::max_listen_connections, error);
   if (error) fail("listen", error.value());
-  struct stat status {};
-  if (::lstat(beside.c_str(), &status) != 0 || ::rename(beside.c_str(), path.c_str()) != 0) fail("listen", errno);
+  if (::rename(beside.c_str(), path.c_str()) != 0) fail("listen", errno);
   path_ = path;
-  device_ = status.st_dev;
-  inode_ = status.st_ino;
 }
 
 std::uint16_t ListeningSocket::port() const {
@@ -130,14 +157,13 @@ std::uint16_t ListeningSocket::port() const {
   return endpoint.port();
 }
 
+// The path goes before the lock does: after that it may be another process's.
 void ListeningSocket::close() {
   error_code ignored;
   acceptor_.close(ignored);
-  struct stat status {};
-  const bool ours =
-      !path_.empty() && ::lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_;
-  if (ours) ::unlink(path_.c_str());
+  if (!path_.empty()) ::unlink(path_.c_str());
   path_.clear();
+  lock_.reset();
 }
 
 bool prepare(StreamSocket& socket) {

@@ -182,10 +182,12 @@ class Cleaner {
   void restore(const fs::path& path) {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
     const std::string volume = fs::path(record).replace_extension().string();
-    const bool of_volume = !describes(*files, record.string(), volume) && describes(*files, path.string(), volume);
     std::error_code error;
-    if (fs::exists(record, error) && !of_volume) {
+    const bool has_record = fs::exists(record, error);
+    if (has_record && (!fs::exists(volume, error) || describes(*files, record.string(), volume))) {
       remove(path);
+    } else if (has_record && !describes(*files, path.string(), volume)) {
+      leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
     } else {
       fs::rename(path, record, error);
       if (error) leave(path, error.message());

@@ -14,7 +14,7 @@ class DiskTurns {
   explicit DiskTurns(boost::asio::io_context& io) : timer_(io) {}
 
   /// Calls `work` after those that are queued, each in a handler of its own and 1 ms after the one before, in which
-  /// what came meanwhile is answered.
+  /// what came meanwhile is answered. What it throws leaves the event loop, and nothing else has a turn.
   void take(std::function<void()> work);
 
  private:

@@ -1,19 +1,18 @@
 #include "daemon/store/problem_key.h"
 
+#include "format/base/ascii.h"
 #include "format/base/text.h"
 
 namespace weir {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-bool is_letter(char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_letter(char c) { return is_digit(c) || is_letter(c); }
 
 // Whether the text does not go on on either side as a word would.
 bool is_word_at(std::string_view text, std::size_t at, std::size_t length) {
-  const bool begins = at == 0 || !is_letter(text[at - 1]) || !is_letter(text[at]);
+  const bool begins = at == 0 || !is_word_letter(text[at - 1]) || !is_word_letter(text[at]);
   const std::size_t end = at + length;
-  return begins && (end == text.size() || !is_letter(text[end]) || !is_letter(text[end - 1]));
+  return begins && (end == text.size() || !is_word_letter(text[end]) || !is_word_letter(text[end - 1]));
 }
 
 }  // namespace

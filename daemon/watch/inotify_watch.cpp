@@ -77,7 +77,7 @@ void InotifyWatch::close(State next) {
   watches_.clear();
   changes_.clear();
   look_.clear();
-  looking_ = false;
+  looking_ = looking_at_all_ = false;
   state_ = next;
 }
 
@@ -94,6 +94,7 @@ void InotifyWatch::start() {
 }
 
 void InotifyWatch::look_at_root() {
+  if (state_ == State::failed) return;
   switch (table_.look_at_root()) {
     case SourceTable::Root::missing:
       close(State::absent);
@@ -117,6 +118,7 @@ bool InotifyWatch::look_is_due() const { return std::chrono::steady_clock::now()
 void InotifyWatch::look_at_all(bool events_tell) {
   table_.begin_look(events_tell);
   state_ = State::scanning;
+  looking_at_all_ = true;
   look_.add({});
   look_on();
 }
@@ -131,8 +133,8 @@ void InotifyWatch::step() {
   if (!is_open()) return;  // it failed on the way
   if (more) return after(look_timer_, milliseconds(0), &InotifyWatch::step);
   looking_ = false;
-  if (state_ != State::scanning) return;
-  state_ = State::watching;
+  if (!std::exchange(looking_at_all_, false)) return;
+  if (state_ == State::scanning) state_ = State::watching;
   table_.end_look();
   looked_at_all_ = std::chrono::steady_clock::now();
 }

@@ -16,15 +16,16 @@
 //   lost       open       events were lost; a moment later all begins anew
 //   failed     closed     inotify cannot do it, which is reported once; nothing follows
 //
-//   event                                      from                to
-//   the directory is there, or is another one  any but failed      scanning, with a new queue (failed where it is
-//   refused) the directory is missing                   any but failed      absent the listing has ended scanning
-//   watching five minutes, or the root's watch is gone  watching            scanning, with the same queue the queue
-//   overflowed, a mount below ended  scanning, watching  lost 0.1 s later                                lost scanning,
-//   with a new queue a watch is refused, the queue fails        any but absent      failed
+//   from                to        when
+//   any but failed      scanning  the directory is there and was not, or is another one: with a new queue
+//   any but failed      absent    the directory is missing
+//   scanning            watching  the listing has ended
+//   watching            scanning  every five minutes, or the root's watch is gone: with the same queue
+//   scanning, watching  lost      the queue overflowed, or a mount below ended
+//   lost                scanning  0.1 s later, with a new queue
+//   any but absent      failed    a watch or a queue is refused, or the queue fails
 //
-// Beside that, in any state with an open queue, single directories and files are looked at (TreeLook) that events tell
-// of.
+// Beside that, where the queue is open, single directories and files are looked at (TreeLook) that events tell of.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -102,7 +103,8 @@ class InotifyWatch final : public DirectoryWatch {
   std::map<std::string, int> watches_;                ///< by directory
   std::vector<Change> changes_;                       ///< of this batch, to be delivered
   TreeLook look_;
-  bool looking_ = false;  ///< look_timer_ waits for the next step of look_
+  bool looking_ = false;         ///< look_timer_ waits for the next step of look_
+  bool looking_at_all_ = false;  ///< the whole tree is among what it looks at
   std::chrono::steady_clock::time_point looked_at_all_{};
   boost::asio::steady_timer root_timer_;
   boost::asio::steady_timer look_timer_;

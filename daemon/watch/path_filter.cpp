@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/watch/glob.h"
+#include "format/base/ascii.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 #include "ingest/raw/raw_name.h"
@@ -21,15 +22,6 @@ constexpr std::array<std::string_view, 15> kExtensions{".nrrd",   ".nhdr", ".mhd
 constexpr std::array<std::string_view, 3> kNeverSources{".partial", ".nvdb.json", ".nvdb.json.previous"};
 
 std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
-
-// ASCII letters only: other bytes are no letters here.
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
 
 bool matches(const std::vector<std::string>& patterns, std::string_view path) {
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {

@@ -9,8 +9,6 @@
 namespace weir {
 namespace {
 
-constexpr std::string_view kWhite = " \t\r\n\v\f";
-
 template <typename T>
 std::optional<std::vector<T>> parse_all(std::string_view text, std::optional<T> (*parse)(std::string_view)) {
   std::vector<T> values;
@@ -42,26 +40,15 @@ std::optional<std::string_view> LineReader::next() {
   return line;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kWhite);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kWhite) - first + 1);
-}
-
 std::vector<std::string_view> words(std::string_view text) {
   std::vector<std::string_view> found;
-  for (std::size_t start = text.find_first_not_of(kWhite); start != std::string_view::npos;) {
-    const std::size_t stop = std::min(text.find_first_of(kWhite, start), text.size());
-    found.push_back(text.substr(start, stop - start));
-    start = text.find_first_not_of(kWhite, stop);
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const auto stop = std::find_if(text.begin(), text.end(), [](char c) { return is_space(c); });
+    const auto length = static_cast<std::size_t>(stop - text.begin());
+    found.push_back(text.substr(0, length));
+    text.remove_prefix(length);
   }
   return found;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "format/base/ascii.h"
 #include "ingest/files/input_file.h"
 
 namespace weir {
@@ -40,14 +41,8 @@ class LineReader {
   bool open_ended_ = false;
 };
 
-/// Blank, tab or line end; a negative `c` (the end of a file) is none.
-constexpr bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-/// Without white space at both ends.
-std::string_view trimmed(std::string_view text);
 /// What white space separates.
 std::vector<std::string_view> words(std::string_view text);
-/// ASCII letters in lower case.
-std::string lower_case(std::string_view text);
 /// "'text'" for a message: one line, cut after 60 characters, what is not printable ASCII as '?'.
 std::string in_quotes(std::string_view text);
 

@@ -4,16 +4,11 @@
 #include <filesystem>
 #include <system_error>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 
 namespace weir {
-namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-}  // namespace
-
 std::optional<NumberPattern> NumberPattern::parse(std::string_view text) {
   std::optional<NumberPattern> found;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
@@ -13,8 +14,6 @@
 
 namespace weir {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The run of digits at the start of `text`, without leading zeros; `text` becomes what follows.
 std::string_view take_number(std::string_view& text) {

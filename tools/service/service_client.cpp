@@ -48,7 +48,6 @@ std::string reachable(const std::string& host) {
 }
 
 ListenAddress address_of(const ServiceConfig& service) {
-  if (!service.control_socket.empty()) return {"", 0, service.control_socket};
   ListenAddress address = service.listen;
   if (address.port == 0) {
     if (service.port_file.empty()) {
@@ -157,9 +156,12 @@ ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.
   }
   if (!options.config.empty()) {
     const ServiceConfig service = load_config(options.config, convert_syntax()).service;
-    address_ = address_of(service);
     token_ = service.token;
+    if (!service.control_socket.empty()) control_ = {"", 0, service.control_socket};
+    const bool has_no_port = service.listen.port == 0 && service.port_file.empty();
+    address_ = has_no_port && control_.is_unix() ? control_ : address_of(service);
   }
+  if (!control_.is_unix()) control_ = address_;
   if (!options.token_file.empty()) {
     token_ = first_word_of(options.token_file);
   } else if (const char* token = std::getenv("WEIR_TOKEN"); token != nullptr && token_.empty()) {
@@ -168,15 +170,16 @@ ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.
 }
 
 ServiceClient::Json ServiceClient::ask(const std::string& method, const std::string& target) const {
+  const ListenAddress& address = method == "GET" ? address_ : control_;
   http::request<http::empty_body> request(http::string_to_verb(method), target, 11);
-  request.set(http::field::host, address_.is_unix() ? "localhost" : address_.text());
+  request.set(http::field::host, address.is_unix() ? "localhost" : address.text());
   request.set(http::field::connection, "close");
   request.set("X-Weir", "command");
-  if (!token_.empty()) request.set(http::field::authorization, "Bearer " + token_);
+  if (!token_.empty() && !address.is_unix()) request.set(http::field::authorization, "Bearer " + token_);
   request.prepare_payload();
-  const auto response = Exchange(address_, request).run();
+  const auto response = Exchange(address, request).run();
   Json body = Json::parse(response.body(), nullptr, false);
-  if (response.result_int() >= 400) refuse(address_.text(), response.result_int(), body);
+  if (response.result_int() >= 400) refuse(address.text(), response.result_int(), body);
   if (body.is_discarded()) refuse_foreign();
   return body;
 }

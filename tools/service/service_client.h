@@ -27,8 +27,10 @@ class ServiceClient {
  public:
   using Json = nlohmann::ordered_json;
 
-  ServiceClient(ListenAddress address, std::string token) : address_(std::move(address)), token_(std::move(token)) {}
-  /// As the options say: 127.0.0.1:8470 where they say nothing. Throws Error(usage) for an address that is none,
+  ServiceClient(ListenAddress address, std::string token)
+      : address_(std::move(address)), control_(address_), token_(std::move(token)) {}
+  /// As the options say: 127.0.0.1:8470 where they say nothing. Of a configuration with a control socket, what changes
+  /// something is asked there, and all else at `listen`. Throws Error(usage) for an address that is none,
   /// Error(input) or Error(io) for a file that cannot be read, or is no configuration.
   explicit ServiceClient(const ServiceOptions& options);
 
@@ -52,6 +54,7 @@ class ServiceClient {
   [[noreturn]] void refuse_foreign() const;
 
   ListenAddress address_;
+  ListenAddress control_;  ///< for post(); the same where there is no other
   std::string token_;
 };
 

@@ -177,11 +177,12 @@ TEST_F(Config, WrongValuesOfTheService) {
   EXPECT_EQ(service_refusal("state = ''"), "2:9: state is empty, it must be a path");
   EXPECT_EQ(service_refusal("state = 'watch.toml'"), "2:9: state is this file, " + path_);
   EXPECT_EQ(service_refusal("listen = 'unix:weir.sock'"), "2:10: listen is HOST:PORT; a Unix socket is control_socket");
-  EXPECT_EQ(
-      service_refusal("control_socket = '/" + std::string(107, 'x') + "'"),
-      "2:18: control_socket is a path of 108 bytes, /" + std::string(107, 'x') + "; the system takes 107 at most");
+  EXPECT_EQ(service_refusal("control_socket = '/" + std::string(103, 'x') + "'"),
+            "2:18: control_socket is a path of 104 bytes, /" + std::string(103, 'x') + "; 103 can be used");
   EXPECT_EQ(service_refusal("log = 'weir.db'"),
             "1:1: two of state, log, port_file and control_socket are one file, " + (directory_ / "weir.db"));
+  EXPECT_EQ(service_refusal("port_file = 'a'\ncontrol_socket = 'a'"),
+            "1:1: two of state, log, port_file and control_socket are one file, " + (directory_ / "a"));
   EXPECT_EQ(service_refusal("jobs = 0"), "2:8: jobs is 0, it must be from 1 to 1024");
   EXPECT_EQ(service_refusal("jobs = 1.5"), "2:8: jobs must be a whole number");
   EXPECT_EQ(service_refusal("nice = -1"), "2:8: nice is -1, it must be from 0 to 19");

@@ -8,9 +8,11 @@
 #include <fstream>
 
 #include "format/base/error.h"
+#include "format/io/descriptor.h"
 #include "tests/daemon/support/fake_control.h"
 #include "tests/daemon/support/raw_client.h"
 #include "tests/daemon/support/served.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::control_server_test {
@@ -114,7 +116,7 @@ TEST_F(ControlSocket, OwnerAndGroupMayConnect) {
     EXPECT_EQ(status.st_mode & 0777U, 0660U);
   }
   EXPECT_FALSE(std::filesystem::exists(path_));
-  EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
+  EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.sock.lock"});
 }
 
 TEST_F(ControlSocket, TcpIsReadOnlyAndTheSocketTakesPosts) {
@@ -170,14 +172,25 @@ TEST_F(ControlSocket, SocketInUseOrForeignFile_IsNotReplaced) {
     RawClient local(path_);
     EXPECT_EQ(local.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
   }
+  {  // of a program that takes no lock, and no connection of this kind
+    const Descriptor other(::socket(AF_UNIX, SOCK_DGRAM, 0));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(::bind(other.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(refusal(with_socket()),
+              path_ + ": cannot see whether another process listens there: Protocol wrong type for socket");
+    std::filesystem::remove(path_);
+  }
   std::ofstream(path_) << "result";
   EXPECT_EQ(refusal(with_socket()), path_ + ": cannot listen: there is a file that is no socket; name another path");
   EXPECT_EQ(std::filesystem::file_size(path_), 6U);
   path_ = directory_ / "nowhere/weir.sock";
-  EXPECT_EQ(refusal(with_socket()), path_ + ": cannot listen: No such file or directory");
+  EXPECT_EQ(refusal(with_socket()),
+            path_ + ": cannot listen: there is no such directory; make it, or choose another service.control_socket");
   path_ = directory_ / std::string(120, 'x');
   EXPECT_EQ(refusal(with_socket()), path_ +
-                                        ": cannot listen: a socket's path has 107 bytes at most; choose a shorter "
+                                        ": cannot listen: a socket's path has 103 bytes at most; choose a shorter "
                                         "service.control_socket");
 }
 

@@ -31,6 +31,11 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
   add("tools/report/text.h", "// Uses it.\n#pragma once\n#include \"tools/plot/line.h\"\n");
   add("gpu/extent.cpp",
       "namespace weir {\nnamespace {\nstruct Own {};\n}\nclass Extent final {\n  struct Part {};\n};\n}\n");
+  add("gpu/mask.h",
+      "// 1.\n#pragma once\nnamespace weir {\nconstexpr int kMany = f(16'384, '{');\ntemplate <int N>\nstruct Mask "
+      "{};\n}\n");
+  add("format/mask.h",
+      "// 2.\n#pragma once\nnamespace weir {\ntemplate <int N>\nstruct Mask {};\ntemplate <>\nstruct Mask<1> {};\n}\n");
   add("gpu/own.cpp", "namespace weir {\nnamespace {\nstruct Own {};\n}\n}\n");
   for (int i = 0; i <= 40; ++i) add(cat("tests/many/", i, ".cpp"), "\n");
   add("attic/a.cpp", "\n");
@@ -51,6 +56,7 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
             "daemon: includes run in a circle: daemon, format\n"
             "tools/plot: includes run in a circle: tools/plot, tools/report\n"
             "ingest/other.h:4: weir::Extent is defined in gpu/extent.cpp:5, too; rename one\n"
+            "gpu/mask.h:6: weir::Mask is defined in format/mask.h:5, too; rename one\n"
             "tests/many/: has 41 files, more than 40; part it\n");
 }
 

@@ -2,6 +2,8 @@
 #include "tools/service/service_client.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include <boost/asio/io_context.hpp>
@@ -88,12 +90,13 @@ TEST_F(ServiceCommands, RetryJobs) {
 TEST_F(ServiceCommands, AskAtTheUnixSocket) {
   const std::string socket = directory_ / "weir.sock";
   const std::string config = directory_ / "weir.toml";
-  std::ofstream(config)
-      << "[service]\ncontrol_socket = \"weir.sock\"\n[[watch]]\ndirectory = \"in\"\noutput = \"out\"\n";
   Served served(control_, "", {}, socket);
+  std::ofstream(config) << "[service]\nlisten = \"" << served.address()
+                        << "\"\ncontrol_socket = \"weir.sock\"\n[[watch]]\ndirectory = \"in\"\noutput = \"out\"\n";
   EXPECT_EQ(run_weir({"retry", "2", "--address", "unix:" + socket}).out,
             "job 2 is tried again: /scratch/run 1/2.raw\n");
   EXPECT_EQ(run_weir({"retry", "1", "--config", config}).out, "job 1 is tried again: /scratch/run 1/1.raw\n");
+  ::chmod(socket.c_str(), 0);  // who may not control may look
   EXPECT_EQ(run_weir({"jobs", "--config", config, "--state", "failed"}).exit_code, 0);
   const CommandResult refused = weir(served, {"retry", "3"});
   EXPECT_EQ(refused.exit_code, 2);
@@ -105,7 +108,7 @@ TEST_F(ServiceCommands, AskAtTheUnixSocket) {
   EXPECT_EQ(gone.err, cat("weir: unix:", socket,
                           ": cannot connect: No such file or directory; is weir watch running there? "
                           "name its address with --address or --config\n"));
-  EXPECT_EQ(run_weir({"status", "--address", "unix:/" + std::string(107, 'x')}).exit_code, 2);
+  EXPECT_EQ(run_weir({"status", "--address", "unix:/" + std::string(103, 'x')}).exit_code, 2);
 }
 
 TEST_F(ServiceCommands, RetryNeedsEitherJobIdsOrAllFailed) {
