@@ -1,5 +1,7 @@
 #include "daemon/config/config.h"
 
+#include <algorithm>
+
 namespace weir {
 
 std::uint64_t job_memory(const ServiceConfig& service) {

@@ -25,6 +25,9 @@ std::string ListenAddress::text() const {
 ListenAddress parse_listen_address(std::string_view text) {
   if (text.starts_with(kUnix)) {
     if (text.size() == kUnix.size()) refuse(text);
+    if (text.size() > kUnix.size() + kLongestSocketPath) {
+      throw Error(ErrorKind::usage, cat(text, ": a socket's path has ", kLongestSocketPath, " bytes at most"));
+    }
     return {"", 0, std::string(text.substr(kUnix.size()))};
   }
   const std::size_t colon = text.rfind(':');

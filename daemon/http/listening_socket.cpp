@@ -81,7 +81,7 @@ bool is_socket(const std::string& path) {
 void require_free(boost::asio::io_context& io, const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return;  // what else is wrong, bind says
-  if (!is_socket(path)) {
+  if (!S_ISSOCK(status.st_mode)) {
     throw Error(ErrorKind::io, cat(path, ": cannot listen: there is a file that is no socket; name another path"));
   }
   UnixProtocol::socket probe(io);

@@ -183,14 +183,13 @@ class Cleaner {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
     const std::string volume = fs::path(record).replace_extension().string();
     std::error_code error;
-    const bool has_record = fs::exists(record, error);
-    if (has_record && (!fs::exists(volume, error) || describes(*files, record.string(), volume))) {
-      remove(path);
-    } else if (has_record && !describes(*files, path.string(), volume)) {
-      leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
-    } else {
+    if (!fs::exists(record, error) || belongs_back(*files, path.string(), record.string(), volume)) {
       fs::rename(path, record, error);
       if (error) leave(path, error.message());
+    } else if (!fs::exists(volume, error) || describes(*files, record.string(), volume)) {
+      remove(path);
+    } else {
+      leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
     }
   }
 

@@ -52,6 +52,11 @@ bool describes(FileSystem& files, const std::string& sidecar, const std::string&
   }
 }
 
+bool belongs_back(FileSystem& files, const std::string& previous, const std::string& sidecar,
+                  const std::string& volume) {
+  return !describes(files, sidecar, volume) && describes(files, previous, volume);
+}
+
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial) {
   try {
     const std::string text = text_of(*files.open(sidecar));

@@ -15,6 +15,11 @@ std::string commit_record(const std::string& sidecar_text);
 bool describes(FileSystem& files, const std::string& sidecar, File& volume);
 bool describes(FileSystem& files, const std::string& sidecar, const std::string& volume);
 
+/// Whether `previous`, and not `sidecar`, which lies in its place, describes `volume`: a commit was killed before it
+/// replaced the volume.
+bool belongs_back(FileSystem& files, const std::string& previous, const std::string& sidecar,
+                  const std::string& volume);
+
 /// Whether a commit that was killed, whose OUT.nvdb.partial was `partial`, put `sidecar` into its place.
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial);
 

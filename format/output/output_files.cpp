@@ -92,7 +92,7 @@ void OutputFiles::settle(bool left_over) {
 void OutputFiles::restore_previous() {
   const std::string previous = previous_of(sidecar_);
   if (!files_.exists(previous) || !files_.exists(path_)) return;
-  if (!describes(files_, sidecar_, path_) && describes(files_, previous, path_)) files_.rename(previous, sidecar_);
+  if (belongs_back(files_, previous, sidecar_, path_)) files_.rename(previous, sidecar_);
 }
 
 // By a second name, which takes nothing; where there are none, by a copy.

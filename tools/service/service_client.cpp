@@ -151,9 +151,6 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
 
 ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.1", 8470} {
   if (!options.address.empty()) address_ = parse_listen_address(options.address);
-  if (address_.path.size() > kLongestSocketPath) {
-    throw Error(ErrorKind::usage, cat(address_.text(), ": a socket's path has ", kLongestSocketPath, " bytes at most"));
-  }
   if (!options.config.empty()) {
     const ServiceConfig service = load_config(options.config, convert_syntax()).service;
     token_ = service.token;

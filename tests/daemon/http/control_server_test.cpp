@@ -94,6 +94,15 @@ class ControlSocket : public testing::Test {
     }
     return "";
   }
+  // A socket of another program at path_.
+  Descriptor bound_socket(int type) const {
+    Descriptor made(::socket(AF_UNIX, type, 0));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(::bind(made.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return made;
+  }
   ControlServerSettings with_socket() const {
     ControlServerSettings result = settings({"127.0.0.1", 0}, "");
     result.control_socket = path_;
@@ -148,14 +157,7 @@ TEST_F(ControlSocket, TcpIsReadOnlyAndTheSocketTakesPosts) {
 }
 
 TEST_F(ControlSocket, SocketLeftByAKilledServiceIsReplaced) {
-  {
-    const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path_.copy(address.sun_path, sizeof address.sun_path - 1);
-    ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    ::close(left);
-  }
+  bound_socket(SOCK_STREAM);  // closed at once, and its path stays
   FakeControl control;
   const Served served(control, "", {}, path_);
   RawClient local(path_);
@@ -173,11 +175,7 @@ TEST_F(ControlSocket, SocketInUseOrForeignFile_IsNotReplaced) {
     EXPECT_EQ(local.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
   }
   {  // of a program that takes no lock, and no connection of this kind
-    const Descriptor other(::socket(AF_UNIX, SOCK_DGRAM, 0));
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path_.copy(address.sun_path, sizeof address.sun_path - 1);
-    ASSERT_EQ(::bind(other.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const Descriptor other = bound_socket(SOCK_DGRAM);
     EXPECT_EQ(refusal(with_socket()),
               path_ + ": cannot see whether another process listens there: Protocol wrong type for socket");
     std::filesystem::remove(path_);
