@@ -170,8 +170,9 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
   const Box domain = source.info().domain();
   if (grid.index_bbox() != domain) {
     throw Error(ErrorKind::input,
-                cat(grid_path, ": holds the voxels ", box_text(grid.index_bbox()), ", ", source.info().path, " holds ",
-                    box_text(domain), "; give the source it was converted from, with the same --dims and --roi"));
+                compose(grid_path, ": holds the voxels ", box_text(grid.index_bbox()), ", ", source.info().path,
+                        " holds ", box_text(domain), "; give the source it was converted from, with the same ",
+                        option("dims"), " and ", option("roi")));
   }
   const BlockPlan plan = plan_blocks(domain, source.access(), options.block_bytes);
   std::vector<Box> boxes;

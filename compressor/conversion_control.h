@@ -7,6 +7,7 @@
 #include <string>
 
 #include "format/base/error.h"
+#include "format/base/message.h"
 #include "format/base/trace.h"
 #include "ingest/plan/block_stream.h"
 
@@ -17,7 +18,7 @@ struct ConversionControl {
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
-  std::function<void(const std::string& line)> notice;
+  Notice notice;
   std::function<void(std::uint64_t bytes)>
       planned;             ///< of the file, before room is taken for it; again where it is replanned
   Trace* trace = nullptr;  ///< gets the passes, and what each thread reads, surveys, encodes and writes in them

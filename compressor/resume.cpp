@@ -22,8 +22,9 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files) {
   const bool in_memory = files.is_memory(output.directory());
   if (options.resume == Resume::on && in_memory) {
-    throw Error(ErrorKind::usage, cat("--resume on: ", options.output,
-                                      " lies on a memory file system; choose an output on a disk or --resume off"));
+    throw Error(ErrorKind::usage,
+                compose(option("resume", "on"), ": ", options.output,
+                        " lies on a memory file system; choose an output on a disk or ", option("resume", "off")));
   }
   const bool large = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float) >= kResumableBytes;
   if (options.resume == Resume::off || in_memory || (options.resume == Resume::automatic && !large)) {
@@ -77,8 +78,8 @@ Error ended_with(const Error& error, Journal& journal) {
     // What was saved before it counts.
   }
   if (!journal.resumable()) return error;
-  return {error.kind(), cat(interrupted ? "interrupted" : error.what(), "; what is done is kept in ",
-                            journal.directory(), ", the same command continues it")};
+  return {error.kind(), compose(interrupted ? Message("interrupted") : error.message(), "; what is done is kept in ",
+                                journal.directory(), ", the same command continues it")};
 }
 
 }  // namespace weir

@@ -42,10 +42,10 @@ void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
     what = cat(what, others > 0 ? " and " : "", beyond, beyond == 1 ? " voxel is" : " voxels are",
                " finite but beyond the 3.4e+38 of float32");
   }
-  throw Error(ErrorKind::input, cat(info.path, ": ", what, ", the first (", survey.first_non_finite_value,
-                                    beyond > 0 ? " as float32" : "", ") at ", at.x, ",", at.y, ",", at.z,
-                                    beyond > 0 ? "; scale the values, or choose" : "; choose",
-                                    " --nonfinite background or --nonfinite keep"));
+  throw Error(ErrorKind::input, compose(info.path, ": ", what, ", the first (", survey.first_non_finite_value,
+                                        beyond > 0 ? " as float32" : "", ") at ", at.x, ",", at.y, ",", at.z,
+                                        beyond > 0 ? "; scale the values, or choose" : "; choose", " ",
+                                        option("nonfinite", "background"), " or ", option("nonfinite", "keep")));
 }
 
 Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
@@ -94,8 +94,9 @@ double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t f
 std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain) {
   if (!options.scene) return std::nullopt;
   if (options.metric != Metric::sse) {
-    throw Error(ErrorKind::usage, cat("--scene weighs squared errors, --metric ", metric_name(options.metric),
-                                      " has none; use --metric sse"));
+    throw Error(ErrorKind::usage,
+                compose(option("scene"), " weighs squared errors, ", option("metric", metric_name(options.metric)),
+                        " has none; use ", option("metric", "sse")));
   }
   const bool promise = options.budget.by_error() || options.budget.kind == Budget::Kind::lossless;
   return Visibility(options.scene->scene, options.scene->path, domain,
@@ -195,7 +196,7 @@ class SurveyedConversion {
                      [&] { team_.run([&] { start_pass(parts_.control, "encode", voxels); }); }, parts_.control.notice,
                      parts_.control.planned},
                     std::move(request));
-    const std::string& notice = encoded.file.size.notice;
+    const Message& notice = encoded.file.size.notice;
     if (!notice.empty() && parts_.control.notice) parts_.control.notice(notice);
     return encoded;
   }

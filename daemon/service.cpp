@@ -130,7 +130,7 @@ void Service::run() {
     io_.run();
   } catch (const CorruptDatabase& damage) {  // nothing can be known from here on; what runs ends with the process
     log_.error("end", {{"reason", damage.what()}});
-    throw Error(damage.kind(), cat(damage.what(), "; start again, then it is moved aside and rebuilt"));
+    throw Error(damage.kind(), compose(damage.message(), "; start again, then it is moved aside and rebuilt"));
   }
   log_.info("end", {});
 }

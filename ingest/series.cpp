@@ -39,11 +39,11 @@ std::vector<SeriesStep> files_of(const std::string& input, bool stack) {
   return steps;
 }
 
-std::vector<DatasetInfo> datasets_of(const std::string& path, const SourceOptions& options, std::string_view option) {
+std::vector<DatasetInfo> datasets_of(const std::string& path, const SourceOptions& options, const Message& asked) {
   const SourceFormat& format = format_of(path);
   if (!format.container) {
-    throw Error(ErrorKind::usage, cat(path, ": ", option, " is for files that hold several volumes, and this is ",
-                                      format.name, "; leave it out"));
+    throw Error(ErrorKind::usage, compose(path, ": ", asked, " is for files that hold several volumes, and this is ",
+                                          format.name, "; leave it out"));
   }
   return format.list(path, options);
 }
@@ -55,7 +55,7 @@ std::vector<SeriesStep> with_datasets(const SeriesStep& file, const SourceOption
   named.dataset = options.dataset;
   if (!pattern) return {named};
   std::map<std::int64_t, std::string> found;
-  for (const DatasetInfo& dataset : datasets_of(file.path, options, "--dataset with a pattern")) {
+  for (const DatasetInfo& dataset : datasets_of(file.path, options, compose(option("dataset"), " with a pattern"))) {
     if (dataset.name == options.dataset) return {named};
     if (const auto number = pattern->match(dataset.name)) found[*number] = dataset.name;
   }
@@ -80,16 +80,16 @@ const DatasetInfo& chosen(const std::vector<DatasetInfo>& datasets, const Series
                                            : dataset.name == step.dataset || dataset.name == '/' + step.dataset;
     if (!fits) continue;
     if (only != nullptr) {
-      throw Error(ErrorKind::usage, cat(step.path, ": --index has a *, and several datasets have ", axes,
-                                        " leading axes; choose one with --dataset"));
+      throw Error(ErrorKind::usage, compose(step.path, ": ", option("index"), " has a *, and several datasets have ",
+                                            axes, " leading axes; choose one with ", option("dataset")));
     }
     only = &dataset;
   }
   if (only == nullptr || only->leading_axes != axes || only->extents.size() < axes) {
-    throw Error(ErrorKind::usage, cat(step.path, ": --index has ", axes, " positions, and ",
-                                      only == nullptr ? std::string("no dataset asks for that many")
-                                                      : cat(only->name, " asks for ", only->leading_axes),
-                                      "; weir inspect lists what there is"));
+    throw Error(ErrorKind::usage, compose(step.path, ": ", option("index"), " has ", axes, " positions, and ",
+                                          only == nullptr ? std::string("no dataset asks for that many")
+                                                          : cat(only->name, " asks for ", only->leading_axes),
+                                          "; weir inspect lists what there is"));
   }
   return *only;
 }
@@ -99,7 +99,7 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   SeriesStep at = step;
   at.index = options.index;
   if (std::find(at.index.begin(), at.index.end(), kEveryIndex) == at.index.end()) return {at};
-  const std::vector<DatasetInfo> datasets = datasets_of(step.path, options, "--index");
+  const std::vector<DatasetInfo> datasets = datasets_of(step.path, options, option("index"));
   const DatasetInfo& dataset = chosen(datasets, step, at.index.size());
   std::vector<SeriesStep> steps{at};
   for (std::size_t axis = 0; axis < at.index.size(); ++axis) {
@@ -168,10 +168,11 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
     if (directory) path /= name;
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {
-      throw Error(ErrorKind::usage, cat(path.string(), ": ", steps.size(), " volumes, and two of them (",
-                                        other->second->path, " and ", step.path,
-                                        ") would have this name; give -o a directory, or a name with {stem}, "
-                                        "{dataset} or {step}"));
+      throw Error(ErrorKind::usage,
+                  compose(path.string(), ": ", steps.size(), " volumes, and two of them (", other->second->path,
+                          " and ", step.path, ") would have this name; give ", option("output"),
+                          " a directory, or a name with {stem}, "
+                          "{dataset} or {step}"));
     }
     paths.push_back(path.string());
   }

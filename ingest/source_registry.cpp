@@ -5,9 +5,9 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/drivers/hdf5_driver.h"
+#include "ingest/drivers/hdf5_signature.h"
 #include "ingest/files/input_file.h"
-#include "ingest/hdf5/file/hdf5_signature.h"
-#include "ingest/hdf5/hdf5_source.h"
 #include "ingest/meta_image/meta_image_source.h"
 #include "ingest/nifti/nifti_source.h"
 #include "ingest/nrrd/nrrd_source.h"
@@ -51,8 +51,11 @@ constexpr std::array kFormats{
                  .list = list_vtk_legacy,
                  .container = true},
     // Asked late: its signature may lie anywhere behind a user block.
-    SourceFormat{
-        .name = "hdf5", .recognises = recognises_hdf5, .open = open_hdf5, .list = list_hdf5, .container = true},
+    SourceFormat{.name = "hdf5",
+                 .recognises = recognises_hdf5,
+                 .open = open_by_hdf5_driver,
+                 .list = list_by_hdf5_driver,
+                 .container = true},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },
@@ -62,20 +65,20 @@ constexpr std::array kFormats{
 };
 
 void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options) {
-  const auto refuse = [&](bool given, std::string_view option, std::string_view meant) {
+  const auto refuse = [&](bool given, const Message& what, std::string_view meant) {
     if (!given) return;
     throw Error(ErrorKind::usage,
-                cat(path, ": ", option, " is for ", meant, ", and this is ", format.name, "; leave it out"));
+                compose(path, ": ", what, " is for ", meant, ", and this is ", format.name, "; leave it out"));
   };
   if (!format.raw_shape) {
-    refuse(options.extent.has_value(), "--dims", "raw files");
-    refuse(options.type.has_value(), "--type", "raw files");
-    refuse(options.big_endian.has_value(), "--endian", "raw files");
-    refuse(options.offset.has_value(), "--offset", "raw files");
+    refuse(options.extent.has_value(), option("dims"), "raw files");
+    refuse(options.type.has_value(), option("type"), "raw files");
+    refuse(options.big_endian.has_value(), option("endian"), "raw files");
+    refuse(options.offset.has_value(), option("offset"), "raw files");
   }
   if (!format.container) {
-    refuse(!options.dataset.empty(), "--dataset", "files that hold several volumes");
-    refuse(!options.index.empty(), "--index", "arrays of more than three axes");
+    refuse(!options.dataset.empty(), option("dataset"), "files that hold several volumes");
+    refuse(!options.index.empty(), option("index"), "arrays of more than three axes");
   }
 }
 
@@ -103,8 +106,8 @@ std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceO
       place_source(options.stack ? open_stack(path, options, open_source) : open_file(path, options), options);
   const ScalarType type = source->info().type;
   if (options.missing && !holds(type, *options.missing)) {
-    throw Error(ErrorKind::usage, cat(path, ": --missing is ", stored_value_text(*options.missing), ", and no ",
-                                      scalar_name(type), " is; give a value of that type"));
+    throw Error(ErrorKind::usage, compose(path, ": ", option("missing"), " is ", stored_value_text(*options.missing),
+                                          ", and no ", scalar_name(type), " is; give a value of that type"));
   }
   return options.roi ? crop_source(std::move(source), *options.roi) : std::move(source);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Configures and builds: tools/build.sh [PRESET] [TARGET...]
 #   command (weir alone), package (all that is installed), release (the default: that, tests and benchmarks), these three in
-#   build/release; asan (with the fuzzers), tsan, tidy, each in build/PRESET.
+#   build/release; core (without what is optional), asan (with the fuzzers), tsan, tidy, each in build/PRESET.
 # The command is then build/release/weir. Uses ccache where it is installed. Says how far it is, and all of what the build
 # prints is in build/PRESET/build.log. WEIR_CUDA=ON|OFF, in the environment, compiles the kernels or not; by default where a
 # CUDA device answers.
@@ -12,9 +12,9 @@ preset=${1:-release}
 [[ $# -eq 0 ]] || shift
 case $preset in
   command | package | release) folder=build/release ;;
-  asan | tsan | tidy) folder=build/$preset ;;
+  core | asan | tsan | tidy) folder=build/$preset ;;
   *)
-    echo "tools/build.sh: unknown preset '$preset': use command, package, release, asan, tsan or tidy" >&2
+    echo "tools/build.sh: unknown preset '$preset': use command, package, release, core, asan, tsan or tidy" >&2
     exit 2
     ;;
 esac

@@ -4,7 +4,8 @@
 #   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled; the format of C++, the shell
 #                          scripts and the structure of the sources checked; the tests again with AddressSanitizer and
 #                          UndefinedBehaviorSanitizer (but heavy ones) and, where threads run, with ThreadSanitizer; a
-#                          short run of each fuzzer.
+#                          short run of each fuzzer. The tests once more of a build without HDF5, OpenVDB and all else that
+#                          is optional.
 #   tools/test.sh --full   besides, the heavy ones with the sanitizers, the property tests over a thousand volumes, and
 #                          clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
@@ -234,6 +235,7 @@ targets=(weir weir_tests)
 if build release "${targets[@]}"; then run_tests release; fi
 unset WEIR_MANY_FILES WEIR_KILLS
 if [[ $size != test ]]; then
+  if build core; then run_tests core; fi
   run_asan
   run_tsan
 fi

@@ -4,6 +4,8 @@
 #include <exception>
 #include <new>
 
+#include "bindings/c/wording.h"
+
 namespace weir::c {
 
 static_assert(WEIR_ERROR_INTERNAL == static_cast<int>(ErrorKind::internal));
@@ -26,7 +28,7 @@ weir_status end_with_exception(weir_error* error) noexcept {
   try {
     throw;
   } catch (const Error& e) {
-    return end_call(error, e.exit_code(), e.what());
+    return end_call(error, e.exit_code(), e.message().worded(c_wording).c_str());
   } catch (const std::bad_alloc&) {
     return end_call(error, WEIR_ERROR_INTERNAL, "out of memory; give less memory to weir, or free some");
   } catch (const std::exception& e) {

@@ -12,16 +12,16 @@
 #include "bindings/mpi/mpi_team.h"
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/output/output_files.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
-#include "tools/options/conversion_options.h"
 #include "tools/options/given_options.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/report/progress.h"
 
 namespace {
@@ -30,24 +30,21 @@ namespace {
 struct Arguments {
   std::string input;
   std::string output;
-  std::string work_dir;
-  bool overwrite = false;
   bool json = false;
-  weir::InputArguments source;
-  weir::ConversionArguments conversion;
-  weir::RunArguments run;
+  weir::GivenOptions options;
+  weir::ProgressOptions progress;
 };
 
 void add_convert(CLI::App& app, Arguments& a) {
   CLI::App& command = *app.add_subcommand("convert", "Convert a volume to the file that weir convert makes of it");
   command.add_option("input", a.input, "volume file that all processes can read")->required();
   command.add_option("-o,--output", a.output, "OUT.nvdb, on a file system that all processes share")->required();
-  weir::add_input_options(command, a.source);
-  weir::add_conversion_options(command, a.conversion);
-  weir::add_run_options(command, a.run);
-  command.add_option("--work-dir", a.work_dir,
-                     "for spill files, shared by all processes too; default: a hidden directory beside the output");
-  command.add_flag("--overwrite", a.overwrite, "replace an existing output");
+  weir::add_input_options(command, a.options);
+  weir::add_method_options(command, a.options);
+  weir::add_run_options(command, a.options, a.progress);
+  // Which all processes share, too.
+  weir::add_option(command, weir::conversion_option("work-dir"), a.options);
+  weir::add_option(command, weir::conversion_option("overwrite"), a.options);
   command.add_flag("--json", a.json, "print the sidecar on stdout");
   weir::add_log_level(command);
 }
@@ -57,21 +54,16 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
   weir::ConversionOptions options;
   std::unique_ptr<weir::VolumeSource> source;
   team.run([&] {
-    options = weir::parse_conversion(a.conversion);
+    weir::ConversionRequest request = weir::read_conversion_request(a.options);
+    options = std::move(request.conversion);
     options.output = a.output;
-    options.overwrite = a.overwrite;
     options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
-    options.memory = weir::parse_memory(a.run);
-    options.threads = static_cast<std::size_t>(a.run.threads);
     options.processors = processors;
-    options.work_dir = a.work_dir;
     options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command)};
-    weir::SourceOptions source_options = weir::parse_input(a.source);
-    source_options.memory = options.memory;
-    source_options.spool_directory = a.work_dir.empty() ? weir::directory_of(a.output) : a.work_dir;
-    source = weir::open_source(a.input, source_options);
+    request.source.spool_directory = options.work_dir.empty() ? weir::directory_of(a.output) : options.work_dir;
+    source = weir::open_source(a.input, request.source);
   });
-  weir::Progress progress(a.run.progress);
+  weir::Progress progress(a.progress);
   weir::ConversionControl control;
   control.cancel = &weir::interrupt_flag();
   if (team.leads()) {
@@ -79,7 +71,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
       progress.start(pass, bytes / static_cast<std::uint64_t>(team.size()));  // of this process's share
     };
     control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-    control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
+    control.notice = [](const weir::Message& line) { spdlog::warn("{}", line.text()); };
   }
   const std::unique_ptr<weir::FileSystem> local = weir::make_posix_file_system();
   const std::unique_ptr<weir::FileSystem> shared = weir::make_mpi_file_system(team, *local);

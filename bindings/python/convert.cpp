@@ -1,14 +1,15 @@
 #include "bindings/python/convert.h"
 
-#include <CLI/CLI.hpp>
+#include <array>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <utility>
 
-#include "bindings/python/option_list.h"
 #include "bindings/python/watch.h"
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
@@ -17,10 +18,8 @@
 #include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
 #include "ingest/values/array_source.h"
-#include "tools/options/conversion_options.h"
 #include "tools/options/given_options.h"
-#include "tools/options/input_options.h"
-#include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/report/finished_output.h"
 
 namespace weir::python {
@@ -29,45 +28,14 @@ namespace py = pybind11;
 
 namespace {
 
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
 /// What a call asks for. No interpreter is needed from here on.
-struct Request {
-  ConversionOptions conversion;
-  SourceOptions source;
-  std::string reading_option;  ///< the first one that says how to read a file; empty: none is given
-};
-
-Request parse_request(const std::string& output, const std::vector<std::string>& options) {
-  InputArguments input;
-  ConversionArguments method;
-  RunArguments run;
-  std::string work_dir;
-  std::string resume = "auto";
-  bool overwrite = false;
-  CLI::App command;
-  add_input_options(command, input);
-  add_conversion_options(command, method);
-  add_run_options(command, run);
-  command.add_option("--work-dir", work_dir);
-  command.add_option("--resume", resume)->check(CLI::IsMember({"auto", "on", "off"}));
-  command.add_flag("--overwrite", overwrite);
-  parse_options(command, options);
-
-  Request request;
-  request.conversion = parse_conversion(method);
+ConversionRequest make_request(const std::string& output, const GivenOptions& given) {
+  ConversionRequest request = read_conversion_request(given);
   request.conversion.output = output;
-  request.conversion.overwrite = overwrite;
-  request.conversion.threads = static_cast<std::size_t>(run.threads);
-  request.conversion.work_dir = work_dir;
-  request.conversion.resume = resume == "auto" ? Resume::automatic : resume == "on" ? Resume::on : Resume::off;
-  request.conversion.provenance = {WEIR_VERSION, build_commit(), given_options(command)};
   // The program's own data are in the process as well, and none of the conversion's business.
-  request.conversion.memory = resident_bytes() + parse_memory(run);
-  request.source = parse_input(input);
+  request.conversion.memory += resident_bytes();
   request.source.memory = request.conversion.memory;
-  for (std::string* text : {&input.dataset, &input.missing, &input.spacing, &input.origin, &input.roi}) text->clear();
-  request.reading_option = given_input_option(input);
+  request.conversion.provenance = {WEIR_VERSION, build_commit(), recorded_options(given)};
   return request;
 }
 
@@ -80,7 +48,7 @@ std::string convert(const ConversionOptions& options, const OpenSource& open, co
     control.cancel = &watch.cancelled();
     control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     control.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
-    control.notice = [&](const std::string& line) { watch.notice(line); };
+    control.notice = [&](const Message& line) { watch.notice(line); };
     const std::unique_ptr<FileSystem> files = make_posix_file_system();
     const std::unique_ptr<VolumeSource> source = open();
     sidecar = to_json_text(convert_volume(*source, options, control, *files));
@@ -104,14 +72,15 @@ DenseArray dense_array(const py::array& array, const std::string& type, const So
 
 }  // namespace
 
-std::string convert_file(const std::string& source, const std::string& output, const std::vector<std::string>& options,
+std::string convert_file(const std::string& source, const std::string& output, const GivenOptions& options,
                          const py::object& progress) {
-  Request request = parse_request(output, options);
+  ConversionRequest request = make_request(output, options);
   SeriesStep step;
   {
     const py::gil_scoped_release unlocked;
     const std::vector<SeriesStep> steps = expand_series(std::vector{source}, request.source);
-    if (steps.size() != 1) throw usage(cat(source, ": names ", steps.size(), " volumes; convert them one by one"));
+    if (steps.size() != 1)
+      throw usage_error(cat(source, ": names ", steps.size(), " volumes; convert them one by one"));
     step = steps.front();
     request.conversion.output = series_outputs(steps, output).front();
     check_output(step.path, request.conversion.output);
@@ -125,10 +94,11 @@ std::string convert_file(const std::string& source, const std::string& output, c
 }
 
 std::string convert_array(const py::array& source, const std::string& type, const std::string& output,
-                          const std::vector<std::string>& options, const py::object& progress) {
-  Request request = parse_request(output, options);
-  if (!request.reading_option.empty()) {
-    throw usage(cat(request.reading_option, " says how to read a file; source is an array"));
+                          const GivenOptions& options, const py::object& progress) {
+  ConversionRequest request = make_request(output, options);
+  constexpr std::array<std::string_view, 5> kOfArrays{"dataset", "missing", "spacing", "origin", "roi"};
+  if (const std::string key = given_input_option(options, kOfArrays); !key.empty()) {
+    throw usage_error(compose(option(key), " says how to read a file; source is an array"));
   }
   check_output({}, output);
   request.conversion.resume = Resume::off;

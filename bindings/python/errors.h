@@ -4,16 +4,14 @@
 
 #include <pybind11/pybind11.h>
 
-#include <string>
+#include "format/base/message.h"
 
 namespace weir::python {
 
 /// From here on an Error becomes an exception of weir.errors.
 void translate_errors();
 
-/// `message` with "--max-error" as "max_error" and without " with -o".
-std::string keyword_text(const std::string& message);
-/// keyword_text as Python's text: paths in it may hold any bytes.
-pybind11::str python_text(const std::string& message);
+/// `message` with keywords for options ("max_error") as Python's text: paths in it may hold any bytes.
+pybind11::str python_text(const Message& message);
 
 }  // namespace weir::python

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "format/base/option_row.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/volume/leaf_table.h"
 #include "gpu/volume/volume_sampler.h"
@@ -55,7 +56,7 @@ class Grid {
   /// Voxels along a cell, voxel position of the first cell's corner, and float32 [z, y, x] of minima and maxima.
   std::tuple<std::int64_t, Triple, pybind11::array_t<float>, pybind11::array_t<float>> macrocells() const;
   /// The picture that `weir render` makes with `options`: uint8 sRGB or, where linear, float32 radiance, [y, x, RGB].
-  pybind11::array render(const std::vector<std::string>& options, bool linear, const pybind11::object& progress) const;
+  pybind11::array render(const GivenOptions& options, bool linear, const pybind11::object& progress) const;
   /// name, found, expected, ok of all checks of `weir verify`.
   std::vector<std::tuple<std::string, std::string, std::string, bool>> verify(const pybind11::object& progress) const;
 

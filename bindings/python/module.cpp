@@ -14,7 +14,6 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of weir; use the package weir.";
   m.attr("__version__") = WEIR_VERSION;
   weir::python::translate_errors();
-  m.def("keyword_text", &weir::python::keyword_text, py::arg("message"));
   m.def("convert_file", &weir::python::convert_file, py::arg("source"), py::arg("output"), py::arg("options"),
         py::arg("progress"));
   m.def("convert_array", &weir::python::convert_array, py::arg("source").noconvert(), py::arg("type"),

@@ -1,12 +1,10 @@
 // Grid::render: a picture by the renderer of `weir render`, as an array.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "bindings/python/grid.h"
-#include "bindings/python/option_list.h"
 #include "bindings/python/watch.h"
 #include "gpu/image/image_output.h"
 #include "tools/options/picture_options.h"
@@ -37,15 +35,11 @@ py::array display_pixels(const Picture& picture) {
 
 }  // namespace
 
-py::array Grid::render(const std::vector<std::string>& options, bool linear, const py::object& progress) const {
+py::array Grid::render(const GivenOptions& options, bool linear, const py::object& progress) const {
   const auto file = shared();
-  PictureArguments arguments;
-  CLI::App command;
-  add_picture_options(command, arguments);
-  parse_options(command, options);
   Picture picture;
   run_watched(progress, [&](Watch& watch) {
-    PictureRequest request = parse_picture(arguments);
+    PictureRequest request = read_picture_request(options);
     request.sampling.cancel = &watch.cancelled();
     request.sampling.progress = [&](std::uint64_t done) { watch.advance(done); };
     const std::unique_ptr<Backend> backend = make_backend(request.backend);

@@ -41,7 +41,7 @@ void Watch::advance(std::uint64_t done) {
   changed_ = true;
 }
 
-void Watch::notice(const std::string& line) {
+void Watch::notice(const Message& line) {
   const std::lock_guard lock(mutex_);
   earlier_.push_back({{}, 0, 0, line});
 }

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "format/base/message.h"
+
 namespace weir::python {
 
 /// What the work tells, and is told. Thread-safe.
@@ -22,12 +24,12 @@ class Watch {
     std::string pass;  ///< empty: `notice` is a line for the user
     std::uint64_t done = 0;
     std::uint64_t total = 0;
-    std::string notice;
+    Message notice;
   };
 
   void start(const std::string& pass, std::uint64_t total);
   void advance(std::uint64_t done);
-  void notice(const std::string& line);
+  void notice(const Message& line);
   const std::atomic<bool>& cancelled() const { return cancelled_; }
   /// Throws Error(interrupted) where `cancel` was called.
   void stop_if_cancelled() const;

@@ -11,6 +11,7 @@
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/encoding_choice.h"
 #include "compressor/survey/row_store.h"
+#include "format/base/message.h"
 #include "format/output/output_files.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"
@@ -37,9 +38,9 @@ struct EncodeJob {
   Journal* journal;  ///< null: what is interrupted is lost
   std::string seen;  ///< visible_values of the scene; empty without one
   const StreamOptions& stream;
-  std::function<void()> pass_started;                   ///< may throw Error(interrupted)
-  std::function<void(const std::string& line)> notice;  ///< may be empty
-  std::function<void(std::uint64_t bytes)> planned;     ///< may be empty
+  std::function<void()> pass_started;                ///< may throw Error(interrupted)
+  Notice notice;                                     ///< may be empty
+  std::function<void(std::uint64_t bytes)> planned;  ///< may be empty
 };
 
 /// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.

@@ -53,9 +53,9 @@ std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint6
   return std::clamp<std::size_t>(free / 4 * 3 / each, 1, most);
 }
 
-std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling) {
-  return cat("--memory ", format_bytes(ceiling), " holds ", threads, " of ", processors,
-             " threads; give more to use them all");
+Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling) {
+  return compose(option("memory", format_bytes(ceiling)), " holds ", threads, " of ", processors,
+                 " threads; give more to use them all");
 }
 
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
@@ -63,8 +63,8 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
   if (ceiling < least) {
     throw Error(ErrorKind::usage,
-                cat("--memory ", format_bytes(ceiling), " is too small for this volume with ", threads,
-                    " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
+                compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
+                        " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
   }
   const std::uint64_t free = ceiling - fixed;
   MemoryPlan plan;

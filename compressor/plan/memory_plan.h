@@ -7,6 +7,7 @@
 #include <string>
 
 #include "format/base/index.h"
+#include "format/base/message.h"
 
 namespace weir {
 
@@ -30,7 +31,7 @@ std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint6
                            const Box& domain);
 
 /// One line for the user where it chose fewer.
-std::string fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling);
+Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling);
 
 /// The ceiling that leaves `block_bytes` for a block, all else as `plan`, made for `ceiling`, has it.
 std::uint64_t ceiling_for_blocks(const MemoryPlan& plan, std::uint64_t ceiling, std::uint64_t block_bytes);

@@ -30,16 +30,17 @@ ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
           plan_blocks(domain, access, kInPlaceEncodeBytes, BlockShape::deep)};
 }
 
-std::string amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
-                                 const BlockPlan& plan) {
+Message amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
+                             const BlockPlan& plan) {
   const AccessShape access = source.access();
   std::uint64_t enough = ceiling_for_blocks(memory, ceiling, bytes_for_whole_chunks(source.info().domain(), access));
   // A source may take more for its own work where there is more: up to an eighth.
   if (source.working_bytes() > 0) enough = enough / 7 * 8 + 8;
-  return cat(source.info().path, ": its chunks of ", access.chunk.x, " x ", access.chunk.y, " x ", access.chunk.z,
-             " voxels do not fit the blocks of ", format_bytes(plan.block_bytes), " that --memory ",
-             format_bytes(ceiling), " leaves, so that each is decoded ", std::round(plan.amplification * 10) / 10,
-             " times in a pass; --memory ", (enough >> 20U) + 1, "MiB decodes it once");
+  return compose(source.info().path, ": its chunks of ", access.chunk.x, " x ", access.chunk.y, " x ", access.chunk.z,
+                 " voxels do not fit the blocks of ", format_bytes(plan.block_bytes), " that ",
+                 option("memory", format_bytes(ceiling)), " leaves, so that each is decoded ",
+                 std::round(plan.amplification * 10) / 10, " times in a pass; ",
+                 option("memory", cat((enough >> 20U) + 1, "MiB")), " decodes it once");
 }
 
 }  // namespace weir

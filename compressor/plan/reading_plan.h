@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compressor/plan/memory_plan.h"
+#include "format/base/message.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"
 #include "ingest/source/volume_source.h"
@@ -22,7 +23,7 @@ ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory);
 
 /// "each is decoded 4 times in a pass": what a ceiling that is too small for whole chunks costs, by the `plan` that was
 /// made for it.
-std::string amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
-                                 const BlockPlan& plan);
+Message amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
+                             const BlockPlan& plan);
 
 }  // namespace weir

@@ -27,7 +27,7 @@ std::size_t startable_threads(std::size_t wanted) {
   return count;
 }
 
-std::size_t startable_workers(std::size_t threads, const std::function<void(const std::string&)>& notice) {
+std::size_t startable_workers(std::size_t threads, const Notice& notice) {
   constexpr std::size_t kOthers = 6;
   const std::size_t wanted = threads - 1 + kOthers;
   const std::size_t startable = startable_threads(wanted);

@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "format/base/message.h"
+
 namespace weir {
 
 /// What an error says where a thread cannot be started.
@@ -18,6 +20,6 @@ std::size_t startable_threads(std::size_t wanted);
 
 /// Workers, of which the calling thread is one, that can run beside what reads, writes back and saves: at most
 /// `threads`, at least 1. Tells `notice`, where there is one, of fewer. Throws Error(io) where not one can read.
-std::size_t startable_workers(std::size_t threads, const std::function<void(const std::string&)>& notice);
+std::size_t startable_workers(std::size_t threads, const Notice& notice);
 
 }  // namespace weir

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "compressor/survey/checkpoint.h"
+#include "format/base/message.h"
 #include "format/base/trace.h"
 #include "format/io/file_system.h"
 
@@ -32,9 +33,9 @@ namespace weir {
 struct JournalOptions {
   std::string work_dir;   ///< where spill files go; empty: beside the output
   double interval_s = 0;  ///< between two saves; 0: whenever there is something to save, and each is waited for
-  const std::atomic<bool>* cancel = nullptr;            ///< once set, everything is saved at the next pause
-  Trace* trace = nullptr;                               ///< gets a "save" of each
-  std::function<void(const std::string& line)> notice;  ///< may be empty
+  const std::atomic<bool>* cancel = nullptr;  ///< once set, everything is saved at the next pause
+  Trace* trace = nullptr;                     ///< gets a "save" of each
+  Notice notice;                              ///< may be empty
 };
 
 /// One thread uses it. The lock on the output (OutputFiles) must be held longer than it lives.

@@ -22,10 +22,10 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
-      throw Error(ErrorKind::usage, cat("--work-dir ", chosen, ": does not exist; make it or choose another"));
+      throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": does not exist; make it or choose another"));
     if (files_.is_memory(chosen)) {
       throw Error(ErrorKind::usage,
-                  cat("--work-dir ", chosen, ": is a memory file system; choose a directory on a disk"));
+                  compose(option("work-dir", chosen), ": is a memory file system; choose a directory on a disk"));
     }
     path_ = chosen;
     return;
@@ -37,8 +37,8 @@ WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const
     if (!files_.exists(path_) || files_.is_memory(path_)) {
       throw Error(
           ErrorKind::usage,
-          cat(output,
-              ": lies on a memory file system, and so does /var/tmp; name a directory on a disk with --work-dir"));
+          compose(output, ": lies on a memory file system, and so does /var/tmp; name a directory on a disk with ",
+                  option("work-dir")));
     }
     return;
   }

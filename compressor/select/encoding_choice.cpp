@@ -120,10 +120,11 @@ bool meets(const FileRequest& request, const Candidate& candidate, const FilePla
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
   if (encoding != Encoding::float32 && !can_quantise(request)) {
     throw Error(ErrorKind::usage,
-                cat("--encoding ", encoding_name(encoding),
-                    request.keeps_non_finite ? " holds no NaN or infinite voxels, which --nonfinite keep asks for"
-                                             : " selects by --metric sse only",
-                    "; use --encoding float"));
+                compose(option("encoding", encoding_name(encoding)),
+                        request.keeps_non_finite ? compose(" holds no NaN or infinite voxels, which ",
+                                                           option("nonfinite", "keep"), " asks for")
+                                                 : compose(" selects by ", option("metric", "sse"), " only"),
+                        "; use ", option("encoding", "float")));
   }
   Candidate candidate(request, encoding, rows, work);
   if (request.budget.by_error()) {
@@ -133,8 +134,9 @@ FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore&
     return file;
   }
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
-    throw Error(ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding), " cannot be lossless: ",
-                                       lossy_leaves_text(candidate), "; use --encoding auto or float"));
+    throw Error(ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
+                                           " cannot be lossless: ", lossy_leaves_text(candidate), "; use ",
+                                           option("encoding", "auto"), " or float"));
   }
   return candidate.plan(candidate.size_for(request.budget));
 }
@@ -187,8 +189,9 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
   const bool psnr = request.budget.kind == Budget::Kind::psnr;
   std::string best;
   if (request.budget.kind == Budget::Kind::lossless) {
-    return {ErrorKind::budget, cat(request.path, ": --encoding ", encoding_name(encoding),
-                                   " cannot be lossless: a leaf of it reads other bits; use --encoding auto or float")};
+    return {ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
+                                       " cannot be lossless: a leaf of it reads other bits; use ",
+                                       option("encoding", "auto"), " or float")};
   }
   if (psnr && squared_error > 0) {
     const double short_by = 10 * std::log10(squared_error / request.squared_error);
@@ -196,9 +199,9 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
   } else {
     best = " has leaves whose range 16 bits do not divide that finely";
   }
-  return {ErrorKind::budget,
-          cat(request.path, ": --", psnr ? "psnr " : "max-error ", request.budget.target, " cannot be met: --encoding ",
-              encoding_name(encoding), best, "; use --encoding auto or float")};
+  return {ErrorKind::budget, compose(request.path, ": ", option(psnr ? "psnr" : "max-error", request.budget.target),
+                                     " cannot be met: ", option("encoding", encoding_name(encoding)), best, "; use ",
+                                     option("encoding", "auto"), " or float")};
 }
 
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {

@@ -55,8 +55,8 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
       size = {bytes_at_rate(dense_bytes, budget.rate), "rate", ""};
       if (size.bytes < minimum) {
         return {minimum, "minimum",
-                cat(path, ": --rate 8 would be ", size.bytes,
-                    " bytes, less than the smallest tree; writing that: ", minimum, " bytes")};
+                compose(path, ": ", option("rate", 8), " would be ", size.bytes,
+                        " bytes, less than the smallest tree; writing that: ", minimum, " bytes")};
       }
       break;
     case Budget::Kind::rate:
@@ -67,8 +67,9 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
       break;
   }
   if (size.bytes < minimum) {
-    throw Error(ErrorKind::budget, cat(path, ": ", size.bytes, " bytes asked, the smallest tree for this volume takes ",
-                                       minimum, "; ask for --size ", minimum, " or more"));
+    throw Error(ErrorKind::budget,
+                compose(path, ": ", size.bytes, " bytes asked, the smallest tree for this volume takes ", minimum,
+                        "; ask for ", option("size", minimum), " or more"));
   }
   if (size.bytes > full) {
     const char* all = bytes.by_scene            ? ": what the scene shows takes no more than "

@@ -6,6 +6,7 @@
 
 #include "compressor/select/budget.h"
 #include "compressor/select/selection.h"
+#include "format/base/message.h"
 
 namespace weir {
 
@@ -13,7 +14,7 @@ namespace weir {
 struct FileSize {
   std::uint64_t bytes = 0;
   std::string kind;
-  std::string notice;  ///< one line for the user where the size is not what was asked, or pads a lot; may be empty
+  Message notice;  ///< one line for the user where the size is not what was asked, or pads a lot; may be empty
 };
 
 /// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as.

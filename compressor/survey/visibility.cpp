@@ -40,9 +40,9 @@ Visibility::Visibility(const Scene& scene, const std::string& path, const Box& d
     return;
   }
   if (!volume.region) {
-    throw Error(ErrorKind::usage,
-                cat(path, ": nothing in it says what can be seen; give [volume] ",
-                    scene.mode == RenderMode::iso ? "iso" : "opacity and range", ", or region, or leave out --scene"));
+    throw Error(ErrorKind::usage, compose(path, ": nothing in it says what can be seen; give [volume] ",
+                                          scene.mode == RenderMode::iso ? "iso" : "opacity and range",
+                                          ", or region, or leave out ", option("scene")));
   }
 }
 

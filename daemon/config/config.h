@@ -75,7 +75,7 @@ struct WatchConfig {
   double delete_after_s = 600;     ///< between the end of a job and the deletion of its source
   Follow follow = Follow::inside;  ///< inside: in `directory` and below, symbolic links resolved
   bool thumbnails = true;
-  std::vector<std::string> convert_options;  ///< arguments of `weir convert`, in the form of ConvertSyntax::check
+  std::vector<std::string> convert_options;  ///< arguments of `weir convert`, as read_watch_options() writes them
 
   /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
   std::optional<std::string> convert_option(std::string_view option) const;

@@ -9,8 +9,10 @@
 #include <set>
 #include <utility>
 
+#include "compressor/options/conversion_request.h"
 #include "daemon/config/config_names.h"
 #include "daemon/config/watch_conflicts.h"
+#include "daemon/config/watch_options.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/base/toml_reader.h"
@@ -80,7 +82,7 @@ std::string read_whole(const std::string& path) {
   std::array<char, 4096> piece{};
   while (in.read(piece.data(), piece.size()), in.gcount() > 0)
     text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).what());
+  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).message());
   return text;
 }
 
@@ -139,7 +141,7 @@ void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& 
   }
 }
 
-ServiceConfig read_service(const toml::table& table, const std::string& path, const ConvertSyntax& convert) {
+ServiceConfig read_service(const toml::table& table, const std::string& path) {
   ServiceConfig service;
   service.state = (fs::path(path).parent_path() / "weir.db").string();
   ConfigReader reader(table, "[service]", path);
@@ -161,9 +163,9 @@ ServiceConfig read_service(const toml::table& table, const std::string& path, co
   reader.read_bytes("log_size", service.log_size);
   reader.toml.read("log_files", service.log_files, {1, 1000});
   reader.toml.finish();
-  if (job_memory(service) < convert.least_memory) {
+  if (job_memory(service) < kLeastMemory) {
     const toml::node* place = table.get("memory") != nullptr ? table.get("memory") : table.get("jobs");
-    const std::uint64_t least = kDaemonMemory + static_cast<std::uint64_t>(service.jobs) * convert.least_memory;
+    const std::uint64_t least = kDaemonMemory + static_cast<std::uint64_t>(service.jobs) * kLeastMemory;
     reader.toml.fail(place != nullptr ? *place : table, cat("memory is ", format_bytes(service.memory),
                                                             ", too little for the daemon and jobs = ", service.jobs,
                                                             "; it must be at least ", format_bytes(least)));
@@ -198,7 +200,7 @@ void check_name(ConfigReader& reader, const std::string& name) {
   if (!name.ends_with(".nvdb")) reader.refuse("name", cat("name is \"", name, "\", it must end with .nvdb"));
 }
 
-WatchConfig read_watch(const toml::table& table, const std::string& path, const ConvertSyntax& convert) {
+WatchConfig read_watch(const toml::table& table, const std::string& path) {
   WatchConfig watch;
   ConfigReader reader(table, "[[watch]]", path);
   if (!reader.read_path("directory", watch.directory)) reader.toml.fail(table, "[[watch]] needs a directory");
@@ -227,7 +229,7 @@ WatchConfig read_watch(const toml::table& table, const std::string& path, const 
   reader.toml.read("delete_after", watch.delete_after_s, {0, 31'536'000});
   reader.choose("follow", watch.follow, kFollow);
   reader.toml.read("thumbnails", watch.thumbnails);
-  watch.convert_options = read_convert_options(reader.toml, table, convert);
+  watch.convert_options = read_watch_options(reader.toml, table);
   reader.toml.finish();
   return watch;
 }
@@ -251,7 +253,7 @@ void exclude_own_files(DaemonConfig& config) {
 
 }  // namespace
 
-DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert) {
+DaemonConfig load_config(const std::string& path) {
   DaemonConfig config;
   config.path = fs::absolute(path).lexically_normal().string();
   const toml::table document = parse_toml(read_whole(config.path), config.path);
@@ -259,13 +261,13 @@ DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert) 
   const toml::node* service = reader.find("service");
   if (service != nullptr && !service->is_table()) reader.fail(*service, "service must be a table: [service]");
   const toml::table defaults;
-  config.service = read_service(service != nullptr ? *service->as_table() : defaults, config.path, convert);
+  config.service = read_service(service != nullptr ? *service->as_table() : defaults, config.path);
   const toml::node* watches = reader.find("watch");
   reader.finish();
   if (watches == nullptr) reader.fail(document, "there is no [[watch]]; add one for each directory to watch");
   if (!watches->is_array_of_tables()) reader.fail(*watches, "watch must be an array of tables: [[watch]]");
   const toml::array& tables = *watches->as_array();
-  for (const toml::node& table : tables) config.watches.push_back(read_watch(*table.as_table(), config.path, convert));
+  for (const toml::node& table : tables) config.watches.push_back(read_watch(*table.as_table(), config.path));
   if (const auto conflict = find_conflict(config.watches)) {
     const toml::table& table = *tables.get(conflict->watch)->as_table();
     const toml::node* node = table.get(conflict->key);

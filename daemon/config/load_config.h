@@ -6,13 +6,12 @@
 #include <string>
 
 #include "daemon/config/config.h"
-#include "daemon/config/convert_syntax.h"
 
 namespace weir {
 
 /// Reads and checks `path`. Relative paths in it are relative to its directory. Throws Error(input) with
 /// "PATH:LINE:COLUMN: ..." for an unknown key, a wrong value or a contradiction, Error(input) or Error(io)
 /// where a file cannot be read.
-DaemonConfig load_config(const std::string& path, const ConvertSyntax& convert);
+DaemonConfig load_config(const std::string& path);
 
 }  // namespace weir

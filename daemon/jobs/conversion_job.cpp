@@ -43,7 +43,9 @@ std::string reason_of(std::string_view step, const WorkerEnd& end) {
 
 // Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
 bool says_disk_full(const std::string& reason) {
-  const auto says = [&](int error) { return reason.ends_with(cat(": ", std::strerror(error), kDiskFullRemedy)); };
+  const auto says = [&](int error) {
+    return reason.ends_with(cat(": ", std::strerror(error), disk_full_remedy().text()));
+  };
   return says(ENOSPC) || says(EDQUOT);
 }
 

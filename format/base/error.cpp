@@ -2,26 +2,37 @@
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace weir {
 
-Error usage_error(const std::string& message) { return {ErrorKind::usage, message}; }
-
-Error input_error(const std::string& path, const std::string& message) {
-  return {ErrorKind::input, path + ": " + message};
+Error::Error(ErrorKind kind, Message message) : kind_(kind) {
+  std::string text = message.text();
+  content_ = std::make_shared<const Content>(Content{std::move(message), std::move(text)});
 }
 
-Error io_error(const std::string& path, const std::string& action, int errno_value) {
-  std::string remedy;
+Message disk_full_remedy() {
+  return compose("; free space on that file system or choose another with ", option("output"), " or ",
+                 option("work-dir"));
+}
+
+Error usage_error(Message message) { return {ErrorKind::usage, std::move(message)}; }
+
+Error input_error(const std::string& path, const Message& message) {
+  return {ErrorKind::input, compose(path, ": ", message)};
+}
+
+Error io_error(const std::string& path, const Message& action, int errno_value) {
+  Message remedy;
   if (errno_value == ENOSPC || errno_value == EDQUOT) {
-    remedy = kDiskFullRemedy;
+    remedy = disk_full_remedy();
   } else if (errno_value == EACCES || errno_value == EPERM || errno_value == EROFS) {
     remedy = "; check the permissions or choose another place";
   } else if (errno_value == EFBIG) {
     remedy = "; raise the limit of file size (ulimit -f) or choose another file system";
   }
-  return Error(ErrorKind::io,
-               path + ": cannot " + action + ": " + std::generic_category().message(errno_value) + remedy);
+  return {ErrorKind::io,
+          compose(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy)};
 }
 
 }  // namespace weir

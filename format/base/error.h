@@ -1,11 +1,14 @@
 // The one error type of weir. A message is one line: what, where (path and
 // offset, dataset or key), the value found, what to do. `main` prints it and
 // exits with the kind's code; nothing else in the project ends the process.
+// Options in it are worded by whoever shows it: format/base/message.h.
 #pragma once
 
-#include <stdexcept>
+#include <exception>
+#include <memory>
 #include <string>
-#include <string_view>
+
+#include "format/base/message.h"
 
 namespace weir {
 
@@ -19,28 +22,36 @@ enum class ErrorKind {
   interrupted = 130  ///< SIGINT or SIGTERM
 };
 
-class Error : public std::runtime_error {
+class Error : public std::exception {
  public:
-  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  Error(ErrorKind kind, Message message);
 
   ErrorKind kind() const noexcept { return kind_; }
   int exit_code() const noexcept { return static_cast<int>(kind_); }
+  /// For a front end with words of its own for options.
+  const Message& message() const noexcept { return content_->message; }
+  /// The message in the command line's words.
+  const char* what() const noexcept override { return content_->text.c_str(); }
 
  private:
+  struct Content {
+    Message message;
+    std::string text;
+  };
   ErrorKind kind_;
+  std::shared_ptr<const Content> content_;  // shared: copying an exception must not throw
 };
 
 /// The end of every message of a full disk.
-inline constexpr std::string_view kDiskFullRemedy =
-    "; free space on that file system or choose another with -o or --work-dir";
+Message disk_full_remedy();
 
 /// Of kind usage.
-Error usage_error(const std::string& message);
+Error usage_error(Message message);
 
 /// "PATH: MESSAGE", kind input.
-Error input_error(const std::string& path, const std::string& message);
+Error input_error(const std::string& path, const Message& message);
 
 /// "PATH: ACTION: strerror(ERRNO)", kind io; ENOENT and ENOTDIR say the path is missing.
-Error io_error(const std::string& path, const std::string& action, int errno_value);
+Error io_error(const std::string& path, const Message& action, int errno_value);
 
 }  // namespace weir

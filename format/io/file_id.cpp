@@ -21,7 +21,7 @@ void require_not_input(std::span<const FileId> inputs, const std::string& output
     const std::optional<FileId> there = file_id(path);
     if (!there || std::find(inputs.begin(), inputs.end(), *there) == inputs.end()) continue;
     throw usage_error(cat(path, ": belongs to the input, and writing ", output,
-                          " would replace or remove it; choose another output with -o"));
+                          " would replace or remove it; choose another output"));
   }
 }
 

@@ -22,7 +22,7 @@ constexpr int MADV_POPULATE_READ = 22;  // Linux 5.14; unknown to older C librar
 constexpr std::uint64_t kSampledPages = 16;
 
 [[noreturn]] void fail_input(const std::string& path, const std::string& action, int errno_value) {
-  throw Error(ErrorKind::input, io_error(path, action, errno_value).what());
+  throw Error(ErrorKind::input, io_error(path, action, errno_value).message());
 }
 
 struct stat status_of(const Descriptor& file, const std::string& path) {

@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 
+#include "format/base/message.h"
+
 namespace weir {
 
 /// An open file. Positioned calls may be made from several threads at once. Closes on destruction.
@@ -66,7 +68,7 @@ class FileSystem {
 };
 
 struct PosixFileSystemOptions {
-  std::function<void(const std::string& line)> notice;   ///< gets one line, once, where files cannot be locked
+  Notice notice;                                         ///< gets one line, once, where files cannot be locked
   int (*lock)(int descriptor, int operation) = nullptr;  ///< instead of flock, for tests
 };
 

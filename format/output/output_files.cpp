@@ -38,7 +38,7 @@ void require_place(FileSystem& files, const std::string& path, std::size_t besid
                           kLongestName - beside, " can be used; choose a shorter one"));
   }
   if (!files.is_replaceable(path)) {
-    throw usage_error(cat(path, ": is no regular file, and nothing else is replaced; choose another output with -o"));
+    throw usage_error(cat(path, ": is no regular file, and nothing else is replaced; choose another output"));
   }
 }
 
@@ -114,7 +114,7 @@ void OutputFiles::keep_previous(const std::string& previous) {
 
 void OutputFiles::refuse_existing(const std::string& path) {
   if (!files_.exists(path)) return;
-  throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
+  throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
 }
 
 void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }

@@ -13,7 +13,7 @@ PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwr
     : files_(files), path_(path), overwrite_(overwrite) {
   require_place(files_, path, std::string_view(".partial").size());
   if (!overwrite && files_.exists(path)) {
-    throw Error(ErrorKind::usage, cat(path, ": exists; choose another output with -o or pass --overwrite"));
+    throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
   }
   file_ = files_.create(path + ".partial");
   require_alone(*file_);

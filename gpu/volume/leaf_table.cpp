@@ -28,15 +28,17 @@ NodeLattice leaf_lattice(const Box& domain) {
   const NodeLattice lattice = make_lattice(domain, kLeafDim);
   // Three axes of 2^27 blocks overflow 64 bits: compare by division.
   if (lattice.count.x > kMaxBlocks / lattice.count.y / lattice.count.z) {
-    throw Error(ErrorKind::input, cat("the grid's bounding box is ", extent, " voxels, more than 2^31 blocks of 8^3;",
-                                      " convert a part of it with --roi"));
+    throw Error(ErrorKind::input,
+                compose("the grid's bounding box is ", extent, " voxels, more than 2^31 blocks of 8^3;",
+                        " convert a part of it with ", option("roi")));
   }
   return lattice;
 }
 
 void check_entry_range(std::uint64_t tiles, std::uint64_t units) {
   if (tiles > kMaxEntry / 2) {
-    throw Error(ErrorKind::input, "the grid has more than 2^31 value tiles; convert a part of it with --roi");
+    throw Error(ErrorKind::input,
+                compose("the grid has more than 2^31 value tiles; convert a part of it with ", option("roi")));
   }
   if (units + tiles > kMaxEntry) {
     throw Error(ErrorKind::input, cat("the grid's leaves span ", format_bytes(units * nvdb::kAlignment),

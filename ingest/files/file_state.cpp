@@ -48,7 +48,7 @@ FileState look_at_file(const std::string& path) {
 
 bool touched_since(const FileState& file, const FileState& record) {
   const std::int64_t tick = file.ctime_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0;
-  return file.ctime_ns + tick > record.mtime_ns;
+  return file.ctime_ns + tick >= record.mtime_ns;  // as old: within one tick of the clock, and after it
 }
 
 Error changed_error(const std::string& path, const std::string& what) {

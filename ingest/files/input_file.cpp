@@ -186,7 +186,8 @@ std::size_t InputFile::read_some(int descriptor, std::uint64_t offset, std::span
 }
 
 void InputFile::throw_refused() const {
-  throw Error(ErrorKind::usage, cat(path_, ": its file system refuses direct I/O; use --direct-io auto"));
+  throw Error(ErrorKind::usage,
+              compose(path_, ": its file system refuses direct I/O; use ", option("direct-io", "auto")));
 }
 
 void InputFile::throw_short(std::uint64_t offset, std::uint64_t count, std::uint64_t end) const {

@@ -38,17 +38,17 @@ std::uint64_t chosen_volume(const std::string& path, std::span<const std::int64_
   if (index.empty() && !must_choose(leading)) return 0;
   if (index.size() != leading.size()) {
     throw Error(ErrorKind::usage,
-                leading.empty()
-                    ? cat(path, ": --index chooses along the axes after the third, and there is none; leave it out")
-                    : cat(path, ": axes after the third have the extents ", extents_text(leading),
-                          " (slowest first); give --index with ", leading.size(),
-                          leading.size() == 1 ? " position" : " positions"));
+                leading.empty() ? compose(path, ": ", option("index"),
+                                          " chooses along the axes after the third, and there is none; leave it out")
+                                : compose(path, ": axes after the third have the extents ", extents_text(leading),
+                                          " (slowest first); give ", option("index"), " with ", leading.size(),
+                                          leading.size() == 1 ? " position" : " positions"));
   }
   std::uint64_t position = 0;
   for (std::size_t a = 0; a < leading.size(); ++a) {
     if (index[a] < 0 || index[a] >= leading[a]) {
-      throw Error(ErrorKind::usage, cat(path, ": --index ", index[a],
-                                        " is outside its axis, which has the positions 0 to ", leading[a] - 1));
+      throw Error(ErrorKind::usage, compose(path, ": ", option("index", index[a]),
+                                            " is outside its axis, which has the positions 0 to ", leading[a] - 1));
     }
     position = position * static_cast<std::uint64_t>(leading[a]) + static_cast<std::uint64_t>(index[a]);
   }
@@ -130,13 +130,14 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
   try {
     return std::make_unique<InputFile>(name, mode);
   } catch (const Error& error) {
-    throw Error(error.kind(), cat(volume.info.path, ": its data file ", error.what()));
+    throw Error(error.kind(), compose(volume.info.path, ": its data file ", error.message()));
   }
 }
 
 std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, const SourceOptions& options) {
   if (!options.dataset.empty()) {
-    throw Error(ErrorKind::usage, cat(volume.info.path, ": holds one array without a name; leave --dataset out"));
+    throw Error(ErrorKind::usage,
+                compose(volume.info.path, ": holds one array without a name; leave ", option("dataset"), " out"));
   }
   const Shape shape = checked_shape(volume);
   const std::uint64_t position = chosen_volume(volume.info.path, shape.leading, options.index);

@@ -53,8 +53,8 @@ std::size_t choose_volume(const std::string& path, std::string_view kind, std::s
     throw Error(ErrorKind::input, cat(path, ": holds no ", kind, " that can be converted; ",
                                       in_quotes(there.front().name), ": ", there.front().obstacle));
   }
-  throw Error(ErrorKind::usage, cat(path, ": holds ", usable.size(), ' ', kind, "s that can be converted; name ",
-                                    article(kind), " with --dataset: ", names_text(there, usable)));
+  throw Error(ErrorKind::usage, compose(path, ": holds ", usable.size(), ' ', kind, "s that can be converted; name ",
+                                        article(kind), " with ", option("dataset"), ": ", names_text(there, usable)));
 }
 
 }  // namespace weir

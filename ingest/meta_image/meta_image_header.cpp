@@ -78,10 +78,10 @@ class Entries {
     if (found == entries_.end()) throw Error(ErrorKind::input, cat(path_, ": its header has no ", key));
     return found->second;
   }
-  Error wrong(std::string_view key, const std::string& expected) const {
+  Error wrong(std::string_view key, const Message& expected) const {
     const Entry& entry = required(key);
     return Error(ErrorKind::input,
-                 cat(path_, ": line ", entry.line, ": ", key, " is ", in_quotes(entry.value), "; ", expected));
+                 compose(path_, ": line ", entry.line, ": ", key, " is ", in_quotes(entry.value), "; ", expected));
   }
 
   /// MetaIO takes every value that begins with T, t or 1 as true.
@@ -168,8 +168,9 @@ void read_place_of_values(const Entries& entries, MetaImageHeader& header) {
   const std::string_view name = entries.required("ElementDataFile").value;
   if (name.empty()) throw entries.wrong("ElementDataFile", "LOCAL or a file name belongs there");
   if (name.starts_with("LIST") || name.find('%') != std::string_view::npos) {
-    throw entries.wrong("ElementDataFile",
-                        "one file for all values can be read; stack the files of a list with --stack");
+    throw entries.wrong(
+        "ElementDataFile",
+        compose("one file for all values can be read; stack the files of a list with ", option("stack")));
   }
   if (lower_case(name) != "local") header.data_file = name;
 }

@@ -72,10 +72,10 @@ class Fields {
     if (const Field* field = find(name)) return *field;
     throw Error(ErrorKind::input, cat(path_, ": its header has no field '", name, "'"));
   }
-  Error wrong(const std::string& name, const std::string& expected) const {
+  Error wrong(const std::string& name, const Message& expected) const {
     const Field& field = required(name);
     return Error(ErrorKind::input,
-                 cat(path_, ": line ", field.line, ": ", name, " is ", in_quotes(field.value), "; ", expected));
+                 compose(path_, ": line ", field.line, ": ", name, " is ", in_quotes(field.value), "; ", expected));
   }
   std::string_view value(const std::string& name) const {
     const Field* field = find(name);
@@ -101,7 +101,8 @@ class Fields {
     // The lines after LIST are names of files, not fields.
     const std::string_view value = fields_[name].value;
     if (name == "datafile" && (value.starts_with("LIST") || value.find('%') != std::string_view::npos)) {
-      throw wrong(name, "one file for all values can be read; stack the files of a list with --stack");
+      throw wrong(name,
+                  compose("one file for all values can be read; stack the files of a list with ", option("stack")));
     }
   }
 

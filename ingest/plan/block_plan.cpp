@@ -113,8 +113,8 @@ BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_
     const std::uint64_t leaf_bytes = largest_bytes(axes);
     if (leaf_bytes > block_bytes) {
       throw Error(ErrorKind::usage,
-                  cat("--memory leaves ", block_bytes, " bytes for a block of the volume, and one leaf needs ",
-                      leaf_bytes, "; raise it"));
+                  compose(option("memory"), " leaves ", block_bytes,
+                          " bytes for a block of the volume, and one leaf needs ", leaf_bytes, "; raise it"));
     }
   }
   if (whole_chunks) grow_rows(axes, block_bytes, shape);

@@ -14,7 +14,7 @@ PageBuffer::PageBuffer(std::size_t size) {
   if (size == 0) return;
   void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
-    throw io_error("memory", cat("get ", size, " bytes for reading; lower --memory"), errno);
+    throw io_error("memory", compose("get ", size, " bytes for reading; lower ", option("memory")), errno);
   }
   bytes_ = {static_cast<std::byte*>(memory), size};
 }

@@ -19,13 +19,13 @@ struct RawShape {
   bool big_endian = false;
 };
 
-Error usage_error(const std::string& path, const std::string& what) {
-  return Error(ErrorKind::usage, cat(path, ": ", what));
+Error usage_error(const std::string& path, const Message& what) {
+  return Error(ErrorKind::usage, compose(path, ": ", what));
 }
 
-Error contradiction(const std::string& path, std::string_view option, std::string_view given, std::string_view named) {
-  return usage_error(path, cat(option, ' ', given, " contradicts the file's name, which says ", named,
-                               "; drop it or rename the file"));
+Error contradiction(const std::string& path, std::string_view key, std::string_view given, std::string_view named) {
+  return usage_error(path, compose(option(key, given), " contradicts the file's name, which says ", named,
+                                   "; drop it or rename the file"));
 }
 
 std::string dims_text(const Index3& e) { return cat(e.x, ',', e.y, ',', e.z); }
@@ -34,26 +34,27 @@ RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
   const auto name = parse_raw_name(path);
   RawShape shape;
   if (name && options.extent && *options.extent != name->extent) {
-    throw contradiction(path, "--dims", dims_text(*options.extent), extent_text(name->extent));
+    throw contradiction(path, "dims", dims_text(*options.extent), extent_text(name->extent));
   }
   if (!name && !options.extent) {
-    throw usage_error(path, "extent unknown; give --dims X,Y,Z and --type or name the file NAME_XxYxZ_TYPE.raw");
+    throw usage_error(path, compose("extent unknown; give ", option("dims", "X,Y,Z"), " and ", option("type"),
+                                    " or name the file NAME_XxYxZ_TYPE.raw"));
   }
   shape.extent = options.extent ? *options.extent : name->extent;
 
   const std::optional<ScalarType> named_type = name ? name->type : std::nullopt;
   if (named_type && options.type && *options.type != *named_type) {
-    throw contradiction(path, "--type", scalar_name(*options.type), scalar_name(*named_type));
+    throw contradiction(path, "type", scalar_name(*options.type), scalar_name(*named_type));
   }
   if (!named_type && !options.type) {
     const std::string found = name ? cat("unknown type '", name->type_text, "' in the file's name") : "type unknown";
-    throw usage_error(path, cat(found, "; give --type with one of ", scalar_names()));
+    throw usage_error(path, compose(found, "; give ", option("type"), " with one of ", scalar_names()));
   }
   shape.type = options.type ? *options.type : *named_type;
 
   // A name without "be" says nothing: published little-endian and big-endian files both lack it.
   const bool named_big = name && name->type && name->big_endian;
-  if (named_big && options.big_endian == false) throw contradiction(path, "--endian", "little", name->type_text);
+  if (named_big && options.big_endian == false) throw contradiction(path, "endian", "little", name->type_text);
   shape.big_endian = options.big_endian.value_or(named_big);
   return shape;
 }
@@ -64,10 +65,11 @@ void check_size(const InputFile& file, const RawShape& shape, std::uint64_t offs
   if (expected == file.size()) return;
   const bool too_short = expected > file.size();
   const std::uint64_t difference = too_short ? expected - file.size() : file.size() - expected;
-  throw Error(ErrorKind::input, cat(file.path(), ": ", difference, difference == 1 ? " byte too " : " bytes too ",
-                                    too_short ? "short" : "long", ": ", extent_text(shape.extent), ' ',
-                                    scalar_name(shape.type), " after an offset of ", offset, " needs ", expected,
-                                    " bytes, the file has ", file.size(), "; check --dims, --type and --offset"));
+  throw Error(ErrorKind::input,
+              compose(file.path(), ": ", difference, difference == 1 ? " byte too " : " bytes too ",
+                      too_short ? "short" : "long", ": ", extent_text(shape.extent), ' ', scalar_name(shape.type),
+                      " after an offset of ", offset, " needs ", expected, " bytes, the file has ", file.size(),
+                      "; check ", option("dims"), ", ", option("type"), " and ", option("offset")));
 }
 
 }  // namespace

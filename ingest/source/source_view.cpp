@@ -54,13 +54,13 @@ Error unusable(const std::string& path, bool given, std::string_view option, dou
 std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, const Box& region) {
   const SourceInfo& info = source->info();
   if (region.empty()) {
-    throw Error(ErrorKind::usage, cat(info.path, ": --roi ", box_text(region),
-                                      " holds no voxel; each axis is "
-                                      "FROM:TO with FROM below TO"));
+    throw Error(ErrorKind::usage, compose(info.path, ": ", option("roi", box_text(region)),
+                                          " holds no voxel; each axis is "
+                                          "FROM:TO with FROM below TO"));
   }
   if (!info.domain().contains(region)) {
-    throw Error(ErrorKind::usage, cat(info.path, ": --roi ", box_text(region), " reaches outside the volume ",
-                                      box_text(info.domain()), "; keep it within"));
+    throw Error(ErrorKind::usage, compose(info.path, ": ", option("roi", box_text(region)),
+                                          " reaches outside the volume ", box_text(info.domain()), "; keep it within"));
   }
   SourceInfo cropped = info;
   cropped.extent = region.extent();

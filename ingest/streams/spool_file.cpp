@@ -23,8 +23,8 @@ std::unique_ptr<File> create_spool(FileSystem& files, const std::string& chosen,
   }
   // Unpacking into a memory file system would be memory that no ceiling counts.
   if (!files.exists(kDiskDirectory) || files.is_memory(kDiskDirectory)) {
-    throw Error(ErrorKind::io, cat(packed_path, ": must be unpacked, but ", directory, " and ", kDiskDirectory,
-                                   " are no writable directories on a disk; name one with --work-dir"));
+    throw Error(ErrorKind::io, compose(packed_path, ": must be unpacked, but ", directory, " and ", kDiskDirectory,
+                                       " are no writable directories on a disk; name one with ", option("work-dir")));
   }
   return files.create_unnamed(kDiskDirectory);
 }

@@ -82,8 +82,9 @@ ValuePacker::ValuePacker(const SyntheticKind& kind, ScalarType type, bool big_en
   const auto high = static_cast<double>(kind.max);
   switch (kind.scaling) {
     case IntegerScaling::none:
-      throw Error(ErrorKind::usage, cat("kind '", kind.name, "' has values that are not finite, which ",
-                                        scalar_name(type), " cannot hold; use --type float32 or float64"));
+      throw Error(ErrorKind::usage,
+                  compose("kind '", kind.name, "' has values that are not finite, which ", scalar_name(type),
+                          " cannot hold; use ", option("type"), " float32 or float64"));
     case IntegerScaling::verbatim:
       if (low < limits.lowest || high > limits.highest) {
         throw Error(ErrorKind::usage, cat("kind '", kind.name, "' has integers up to ", high, ", which ",

@@ -86,7 +86,8 @@ bool recognises_nvdb(std::string_view path, std::span<const std::byte> head) {
 
 std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOptions& options) {
   if (!options.index.empty()) {
-    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+    throw Error(ErrorKind::usage,
+                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
   }
   auto file = std::make_unique<InputFile>(path, DirectIo::off);
   const FileMapping mapping(path, ".nvdb");  // to choose and check a grid; its values are read otherwise

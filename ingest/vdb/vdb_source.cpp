@@ -13,9 +13,9 @@
 #include "ingest/streams/file_stream.h"
 #include "ingest/values/axis_placement.h"
 #include "ingest/vdb/grid_placement.h"
+#include "ingest/vdb/openvdb_library.h"
 #include "ingest/vdb/vdb_header.h"
 #include "ingest/vdb/vdb_topology.h"
-#include "ingest/vdb/vdb_tree.h"
 #include "ingest/vdb/vdb_type.h"
 
 namespace weir {
@@ -70,13 +70,14 @@ std::string compression_text(std::uint32_t flags) {
   return text;
 }
 
+const OpenVdbLibrary& library_for(const std::string& path) { return openvdb_library(path + ": is an OpenVDB file"); }
+
 void require_memory(const std::string& where, std::uint64_t tree_bytes, const SourceOptions& options) {
   const std::uint64_t resident = resident_bytes();
   if (tree_bytes <= options.memory && resident + kConversionBytes <= options.memory - tree_bytes) return;
-  throw Error(ErrorKind::usage,
-              cat(where, ": its tree takes ", format_bytes(tree_bytes), " of memory, more than --memory ",
-                  format_bytes(options.memory), " leaves; give at least ",
-                  ((resident + kConversionBytes + tree_bytes) >> 20U) + 1, "MiB"));
+  throw Error(ErrorKind::usage, compose(where, ": its tree takes ", format_bytes(tree_bytes), " of memory, more than ",
+                                        option("memory", format_bytes(options.memory)), " leaves; give at least ",
+                                        ((resident + kConversionBytes + tree_bytes) >> 20U) + 1, "MiB"));
 }
 
 }  // namespace
@@ -89,7 +90,8 @@ bool recognises_vdb(std::string_view path, std::span<const std::byte> head) {
 
 std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOptions& options) {
   if (!options.index.empty()) {
-    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+    throw Error(ErrorKind::usage,
+                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
   }
   InputFile file(path, DirectIo::off);
   FileStream stream(file);
@@ -103,7 +105,8 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   const std::string where = cat(path, ": grid ", in_quotes(grid.name));
   if (topology.active.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
   checked_volume_bytes(topology.active.extent(), scalar_bytes(type.scalar), where);
-  require_memory(where, vdb_tree_bytes(type, topology), options);
+  const OpenVdbLibrary& library = library_for(path);
+  require_memory(where, library.tree_bytes(type, topology), options);
 
   SourceInfo info;
   info.path = path;
@@ -119,7 +122,7 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   info.file_bytes = file.size();
   info.mtime_ns = file.mtime_ns();
   info.files = {file.state()};
-  return make_leaf_source(load_vdb_tree(stream, header, owner, type, where), std::move(info));
+  return make_leaf_source(library.load_tree(stream, header, owner, type, where), std::move(info));
 }
 
 std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&) {
@@ -141,7 +144,8 @@ std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&)
       describe_box(topology.active, info);
       describe_placement(place_axes(grid.steps, grid.first), info);
       info.attributes.emplace_back("leaves", cat(topology.nodes[0]));
-      info.attributes.emplace_back("memory", format_bytes(vdb_tree_bytes(*vdb_type(owner.tree), topology)));
+      info.attributes.emplace_back("memory",
+                                   format_bytes(library_for(path).tree_bytes(*vdb_type(owner.tree), topology)));
     }
     list.push_back(std::move(info));
   }

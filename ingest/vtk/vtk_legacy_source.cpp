@@ -41,7 +41,8 @@ bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> hea
 
 std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options) {
   if (!options.index.empty()) {
-    throw Error(ErrorKind::usage, cat(path, ": --index is for arrays of more than three axes; leave it out"));
+    throw Error(ErrorKind::usage,
+                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
   }
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkLegacyHeader header = read_legacy_header(*file);

@@ -74,8 +74,9 @@ BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std
   }
   if (count > options.memory / kBlockListShare / sizeof(std::uint64_t)) {
     throw Error(ErrorKind::usage,
-                cat(where, ": has a list of ", count, " compressed blocks; give --memory ",
-                    (count * kBlockListShare * sizeof(std::uint64_t) >> 20U) + 1, "MiB or write larger blocks"));
+                compose(where, ": has a list of ", count, " compressed blocks; give ",
+                        option("memory", (count * kBlockListShare * sizeof(std::uint64_t) >> 20U) + 1),
+                        "MiB or write larger blocks"));
   }
   // Not reserved: what is not in the file shall not cost memory.
   for (std::uint64_t i = 0; i < count; ++i) list.packed_bytes.push_back(read_size(encoded, header));

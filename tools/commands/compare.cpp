@@ -10,6 +10,7 @@
 #include <string>
 
 #include "compressor/compare.h"
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -19,8 +20,8 @@
 #include "ingest/plan/staging.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
 
 namespace weir {
@@ -35,8 +36,8 @@ constexpr std::uint64_t kMostBlockBytes = std::uint64_t{256} << 20U;
 struct CompareArguments {
   std::string input;
   std::string volume;
-  InputArguments source;
-  RunArguments run;
+  GivenOptions options;
+  ProgressOptions progress;
   std::string trace;
   bool json = false;
 };
@@ -97,22 +98,20 @@ void print_text(const Comparison& c) {
 
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const std::uint64_t memory = parse_memory(arguments.run);
-  const auto threads = limit_threads(arguments.run.threads);
-  SourceOptions source_options = parse_input(arguments.source);
-  source_options.memory = memory;
+  auto [source_options, run] = read_conversion_request(arguments.options);
+  const auto threads = limit_threads(run.threads);
   const auto source = open_source(arguments.input, source_options);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
 
   CompareOptions options;
-  options.block_bytes = block_bytes(memory, source->working_bytes());
+  options.block_bytes = block_bytes(run.memory, source->working_bytes());
   options.cancel = &interrupt_flag();
   options.release_pages = [&] { file.mapping().release_pages(); };
   const std::unique_ptr<Trace> trace =
       open_trace(arguments.trace, std::array{arguments.input, arguments.volume, sidecar_path(arguments.volume)});
   options.trace = trace.get();
-  Progress progress(arguments.run.progress);
+  Progress progress(arguments.progress);
   progress.start("compare", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   options.progress = [&](std::uint64_t done) { progress.update(done); };
   const Comparison comparison = compare_volumes(*source, file.grid(), arguments.volume, options);
@@ -139,8 +138,8 @@ void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Computes the exact error of a volume against its source");
   command->add_option("input", arguments->input, "the source")->type_name("INPUT")->required();
   command->add_option("volume", arguments->volume, "the .nvdb file made from it")->type_name("OUT.nvdb")->required();
-  add_input_options(*command, arguments->source);
-  add_run_options(*command, arguments->run);
+  add_input_options(*command, arguments->options);
+  add_run_options(*command, arguments->options, arguments->progress);
   add_trace_option(*command, arguments->trace);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);

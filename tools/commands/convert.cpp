@@ -13,6 +13,7 @@
 
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/options/conversion_request.h"
 #include "compressor/resume.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -25,10 +26,9 @@
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
-#include "tools/options/conversion_options.h"
 #include "tools/options/given_options.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
 #include "tools/report/finished_output.h"
 #include "tools/report/progress.h"
@@ -40,16 +40,11 @@ namespace {
 struct ConvertArguments {
   std::vector<std::string> inputs;
   std::string output;
-  InputArguments source;
-  ConversionArguments conversion;
-  RunArguments run;
-  std::string work_dir;
-  std::string resume = "auto";
+  GivenOptions options;  ///< of input, method and run
+  ProgressOptions progress;
   std::string within;  ///< a directory; empty: not asked for
   std::string trace;
-  double save_interval_s = ConversionOptions{}.save_interval_s;
   std::string bandwidth;  ///< a size, per second
-  bool overwrite = false;
   bool skip_done = false;
   bool again = false;
   bool json = false;
@@ -89,7 +84,7 @@ void check_outputs(std::span<const SeriesStep> steps, std::span<const std::strin
     check_output(steps[i].path, outputs[i]);
     require_not_input(inputs, outputs[i]);
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
-      throw usage_error(cat(outputs[i], ": exists; choose another output with -o or pass --overwrite"));
+      throw usage_error(cat(outputs[i], ": exists; choose another output or pass --overwrite"));
     }
   }
 }
@@ -154,7 +149,7 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, bool again, Conve
     case FinishedOutput::State::foreign:
       if (options.overwrite) return std::nullopt;
       throw usage_error(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
-                            "); choose another output with -o or pass --overwrite"));
+                            "); choose another output or pass --overwrite"));
   }
   throw Error(ErrorKind::internal, "unknown state of an output");
 }
@@ -177,7 +172,7 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
 
 Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
                      const Sidecar* first, const ConvertArguments& a, Bandwidth* bandwidth, Trace* trace) {
-  const ProgressOptions& shown = a.run.progress;
+  const ProgressOptions& shown = a.progress;
   source_options.dataset = step.dataset;
   source_options.index = step.index;
   std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
@@ -195,7 +190,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   control.trace = trace;
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-  control.notice = [](const std::string& line) { spdlog::warn("{}", line); };
+  control.notice = [](const Message& line) { spdlog::warn("{}", line.text()); };
   control.planned = [&](std::uint64_t bytes) { announce(shown, nlohmann::json{{"planned", bytes}}.dump()); };
   const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({control.notice});
   std::unique_ptr<FileSystem> limited;
@@ -224,21 +219,13 @@ void print_json(std::span<const Sidecar> sidecars) {
 }
 
 void convert(const CLI::App& command, const ConvertArguments& a) {
-  ConversionOptions options = parse_conversion(a.conversion);
-  options.overwrite = a.overwrite;
-  options.memory = parse_memory(a.run);
-  options.threads = static_cast<std::size_t>(a.run.threads);
-  options.work_dir = a.work_dir;
-  options.save_interval_s = a.save_interval_s;
-  options.resume = a.resume == "auto" ? Resume::automatic : a.resume == "on" ? Resume::on : Resume::off;
+  auto [source_options, options] = read_conversion_request(a.options);
   options.provenance = {WEIR_VERSION, build_commit(), given_options(command)};
-  SourceOptions source_options = parse_input(a.source);
-  source_options.memory = options.memory;
   source_options.cancel = &interrupt_flag();
 
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options);
   const std::vector<std::string> outputs = series_outputs(steps, a.output);
-  check_outputs(steps, outputs, a.overwrite || a.skip_done);
+  check_outputs(steps, outputs, options.overwrite || a.skip_done);
   if (steps.size() > 1 && options.budget.kind == Budget::Kind::lossless) {
     spdlog::warn("--lossless: each of the {} files is as long as it needs; give --size for files of one size",
                  steps.size());
@@ -252,7 +239,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   std::vector<Sidecar> sidecars;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
-    source_options.spool_directory = a.work_dir.empty() ? directory_of(options.output) : a.work_dir;
+    source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
     sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(), a,
                                     bandwidth ? &*bandwidth : nullptr, trace.get()));
   }
@@ -274,32 +261,17 @@ void add_convert(CLI::App& app) {
   command->add_option("-o,--output", a->output,
                       "OUT.nvdb, or DIRECTORY/; default: the input's stem + .nvdb, beside it. For a series a "
                       "directory, or a name with {stem}, {dataset} or {step}");
-  add_input_options(*command, a->source);
-  add_conversion_options(*command, a->conversion);
-  add_run_options(*command, a->run);
+  add_input_options(*command, a->options);
+  add_method_options(*command, a->options);
+  add_run_options(*command, a->options, a->progress);
   command
       ->add_option("--bandwidth", a->bandwidth,
                    "most bytes per second that are read and written, in the long run; default: no limit")
       ->type_name("SIZE")
       ->group("Run");
-  command->add_option("--work-dir", a->work_dir,
-                      "for spill files, on a disk; default: a hidden directory beside the output");
-  command
-      ->add_option("--resume", a->resume,
-                   "keep the work of an interrupted or failed conversion in a hidden directory beside the output "
-                   "(.OUT.nvdb.work): the same command continues it, with the same bytes in the end. auto: for volumes "
-                   "of 1 GiB of float32 or more")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->type_name("auto|on|off")
-      ->group("Run")
-      ->capture_default_str();
-  command
-      ->add_option("--save-interval", a->save_interval_s,
-                   "between two points that an interrupted conversion can be continued from; 0: as many as there are")
-      ->check(CLI::Range(0.0, 1e6))
-      ->type_name("SECONDS")
-      ->group("Run")
-      ->capture_default_str();
+  add_option(*command, conversion_option("work-dir"), a->options);
+  add_option(*command, conversion_option("resume"), a->options, "Run");
+  add_option(*command, conversion_option("save-interval"), a->options, "Run");
   command
       ->add_option("--within", a->within,
                    "refuse inputs that lie in files outside this directory, symbolic links resolved: what a header, an "
@@ -308,7 +280,7 @@ void add_convert(CLI::App& app) {
       ->type_name("DIRECTORY")
       ->group("Input");
   add_trace_option(*command, a->trace);
-  command->add_flag("--overwrite", a->overwrite, "replace an existing output");
+  add_option(*command, conversion_option("overwrite"), a->options);
   command->add_flag("--skip-done", a->skip_done,
                     "leave an output that this very conversion made of the same source; convert it again where the "
                     "source, the scene or an option has changed or the output is not whole");

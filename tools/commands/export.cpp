@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -20,8 +21,8 @@
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/output/partial_file.h"
+#include "ingest/vdb/openvdb_library.h"
 #include "ingest/vdb/vdb_header.h"
-#include "ingest/vdb/vdb_tree.h"
 #include "tools/command.h"
 #include "tools/export/vdb_writer.h"
 #include "tools/options/run_options.h"
@@ -40,7 +41,8 @@ struct ExportArguments {
   bool half = false;
   bool overwrite = false;
   bool json = false;
-  RunArguments run;
+  GivenOptions options;
+  ProgressOptions progress;
 };
 
 std::uint32_t compression_flags(const std::string& name) {
@@ -118,12 +120,12 @@ void export_volume(const ExportArguments& arguments) {
   if (!arguments.output.ends_with(".vdb")) {
     throw Error(ErrorKind::usage, cat("--output is \"", arguments.output, "\", it must end in .vdb"));
   }
-  const std::uint64_t memory = parse_memory(arguments.run);
-  const auto threads = limit_threads(arguments.run.threads);
+  const ConversionOptions run = read_conversion_request(arguments.options).conversion;
+  const auto threads = limit_threads(run.threads);
   if (const auto id = file_id(arguments.volume)) require_not_input({&*id, 1}, arguments.output);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
-  require_memory(file.grid(), memory);
+  require_memory(file.grid(), run.memory);
   warn_of_other_grids(file);
 
   VdbWriterOptions options;
@@ -131,7 +133,7 @@ void export_volume(const ExportArguments& arguments) {
   options.half = arguments.half;
   options.creator = cat("weir ", WEIR_VERSION);
   if (const auto sidecar = sidecar_of(file)) options.metadata = certificate(*sidecar);
-  Progress progress(arguments.run.progress);
+  Progress progress(arguments.progress);
   const std::uint64_t total = file.grid().data_bytes();
   options.progress = [&](double share) {
     progress.update(static_cast<std::uint64_t>(share * static_cast<double>(total)));
@@ -139,6 +141,7 @@ void export_volume(const ExportArguments& arguments) {
   };
   options.release_pages = [&] { file.mapping().release_pages(); };
 
+  const OpenVdbLibrary& library = openvdb_library(arguments.output + ": is to be an OpenVDB file");
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   PartialFile output(*files, arguments.output, arguments.overwrite);
   progress.start("export", total);
@@ -146,7 +149,7 @@ void export_volume(const ExportArguments& arguments) {
   progress.finish();
   output.commit();
 
-  const std::uint64_t tree_bytes = vdb_tree_bytes(*vdb_type("Tree_float_5_4_3"), written.topology);
+  const std::uint64_t tree_bytes = library.tree_bytes(*vdb_type("Tree_float_5_4_3"), written.topology);
   if (arguments.json) {
     const auto report = to_json(arguments, file.grid(), written, tree_bytes, seconds_since(start));
     std::cout << report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
@@ -172,7 +175,7 @@ void add_export(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing output");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  add_run_options(*command, arguments->run);
+  add_run_options(*command, arguments->options, arguments->progress);
   add_log_level(*command);
   command->footer(
       "Values, tiles and active states are those of the volume, bit for bit. The file is written node by node: "

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
@@ -21,8 +22,8 @@
 #include "format/nanovdb/nvdb_header.h"
 #include "gpu/image/image_output.h"
 #include "tools/command.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
 #include "tools/report/printable.h"
@@ -39,7 +40,7 @@ constexpr std::size_t kBins = 256;  // of a histogram counted here
 
 struct InspectArguments {
   std::string path;
-  InputArguments source;
+  GivenOptions source;
   std::string plot;
   bool json = false;
   ProgressOptions progress;
@@ -197,17 +198,23 @@ void run(const InspectArguments& arguments) {
       throw Error(ErrorKind::usage,
                   cat("--plot is for .nvdb files, and ", arguments.path, " is none; convert it first"));
     }
-    print_listing(list_input(arguments.path, parse_input(arguments.source)), arguments.json);
+    print_listing(list_input(arguments.path, read_conversion_request(arguments.source).source), arguments.json);
     return;
   }
   const auto files = make_posix_file_system();
-  std::optional<ImageFile> picture;
-  if (!arguments.plot.empty()) picture.emplace(*files, arguments.plot);
+  std::optional<PlotFormat> format;
+  std::optional<PartialFile> chart;
+  if (!arguments.plot.empty()) {
+    format = plot_format(arguments.plot);
+    chart.emplace(*files, arguments.plot, true);
+  }
   const NvdbFile file(arguments.path);
   const auto threads = limit_threads(0);
   const Inspection found = look_at(file, arguments);
-  if (picture) {
-    picture->commit(histogram_image(found.histogram, file.grid().background()), {1, false});
+  if (chart) {
+    const std::string bytes = histogram_chart(found.histogram, file.grid().background(), *format);
+    chart->file().write_at(0, std::as_bytes(std::span(bytes)));
+    chart->commit();
   }
   if (arguments.json) {
     print_json(file, found);
@@ -226,7 +233,7 @@ void add_inspect(CLI::App& app) {
   command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")
       ->type_name("FILE")
       ->required();
-  command->add_option("--plot", arguments->plot, "also draws the histogram as FILE.png")->type_name("FILE.png");
+  command->add_option("--plot", arguments->plot, "also draws the histogram, as FILE.png or FILE.svg")->type_name("FILE");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_input_options(*command, arguments->source);
   add_progress_options(*command, arguments->progress);

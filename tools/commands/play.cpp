@@ -34,7 +34,7 @@ struct PlayArguments {
   std::vector<std::string> inputs;
   std::string output;
   std::string raw;
-  PictureArguments picture;
+  GivenOptions picture;
   ProgressOptions progress;
   bool json = false;
 };
@@ -97,7 +97,7 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
           {"width", request.options.width},
           {"height", request.options.height},
           {"mode", render_mode_name(request.scene.mode)},
-          {"filter", arguments.picture.filter},
+          {"filter", filter_name(request.options.filter)},
           {"backend", backend},
           {"samples", request.sampling.samples},
           {"seed", request.options.seed},
@@ -113,7 +113,7 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
 
 void play_series(const PlayArguments& arguments) {
   check_output(arguments);
-  PictureRequest request = parse_picture(arguments.picture);
+  PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
   const std::unique_ptr<Backend> backend = make_backend(request.backend);

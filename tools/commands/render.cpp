@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
@@ -19,9 +20,9 @@
 #include "tools/command.h"
 #include "tools/export/dense_input.h"
 #include "tools/options/backend_choice.h"
-#include "tools/options/input_options.h"
 #include "tools/options/picture_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/report/progress.h"
 
 namespace weir {
@@ -32,21 +33,22 @@ struct RenderArguments {
   std::string input;
   std::string output;
   std::string volume = "file";
-  InputArguments source;
-  PictureArguments picture;
+  GivenOptions source;
+  GivenOptions picture;
   ProgressOptions progress;
   bool json = false;
 };
 
 std::unique_ptr<LoadedVolume> load_file(Backend& backend, const RenderArguments& arguments) {
-  if (const std::string option = given_input_option(arguments.source); !option.empty()) {
-    throw Error(ErrorKind::usage, cat(option, " says how to read a source; give --volume dense with it"));
+  if (const std::string key = given_input_option(arguments.source); !key.empty()) {
+    throw Error(ErrorKind::usage,
+                compose(option(key), " says how to read a source; give ", option("volume", "dense"), " with it"));
   }
   return backend.load(std::make_shared<const NvdbFile>(arguments.input), 0, nullptr);
 }
 
 std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments& arguments, Progress& progress) {
-  const auto source = open_source(arguments.input, parse_input(arguments.source));
+  const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
   options.cancel = &interrupt_flag();
@@ -57,7 +59,7 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
 }
 
 void render(const RenderArguments& arguments) {
-  PictureRequest request = parse_picture(arguments.picture);
+  PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
   const auto threads = limit_threads(0);
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
@@ -83,7 +85,7 @@ void render(const RenderArguments& arguments) {
         {"width", request.options.width},
         {"height", request.options.height},
         {"mode", render_mode_name(request.scene.mode)},
-        {"filter", arguments.picture.filter},
+        {"filter", filter_name(request.options.filter)},
         {"volume", arguments.volume},
         {"backend", backend->name()},
         {"samples", request.sampling.samples},

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -24,8 +25,8 @@
 #include "ingest/synthetic/slabs.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tools/command.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 
 namespace weir {
 namespace {
@@ -38,13 +39,11 @@ constexpr std::uint64_t kMostSlabBytes = std::uint64_t{96} << 20U;
 struct SampleArguments {
   std::string kind;
   std::string output;
-  std::string dims;
-  std::string type;
-  std::string endian;
   std::uint64_t seed = 1;
   bool overwrite = false;
   bool json = false;
-  RunArguments run;
+  GivenOptions options;
+  ProgressOptions progress;
 };
 
 /// What the file will be, after options and name agreed.
@@ -54,25 +53,22 @@ struct Shape {
   bool big_endian = false;
 };
 
-Error contradiction(const std::string& path, const std::string& option, const std::string& named) {
-  return {ErrorKind::usage, cat(path, ": ", option, " contradicts the file's name, which says ", named,
-                                "; drop the option or choose another name")};
+Error contradiction(const std::string& path, const Message& given, const std::string& named) {
+  return {ErrorKind::usage, compose(path, ": ", given, " contradicts the file's name, which says ", named,
+                                    "; drop the option or choose another name")};
 }
 
 // A name of the pattern NAME_XxYxZ_TYPE.raw is believed by whoever reads the file.
 Shape resolve_shape(const SampleArguments& arguments) {
   const std::string& path = arguments.output;
-  InputArguments given;
-  given.dims = arguments.dims;
-  given.type = arguments.type;
-  given.endian = arguments.endian;
-  const SourceOptions options = parse_input(given);
+  const SourceOptions options = read_conversion_request(arguments.options).source;
+  const auto given = [&](const char* key) { return option(key, arguments.options.at(key)); };
   const auto name = parse_raw_name(path);
   if (!name && !options.extent) {
     throw Error(ErrorKind::usage, cat(path, ": extent unknown; give --dims X,Y,Z or name it NAME_XxYxZ_TYPE.raw"));
   }
   if (name && options.extent && *options.extent != name->extent) {
-    throw contradiction(path, "--dims " + arguments.dims, extent_text(name->extent));
+    throw contradiction(path, given("dims"), extent_text(name->extent));
   }
   Shape shape{options.extent ? *options.extent : name->extent, options.type.value_or(ScalarType::float32),
               options.big_endian.value_or(false)};
@@ -82,10 +78,9 @@ Shape resolve_shape(const SampleArguments& arguments) {
                 cat(path, ": unknown type '", name->type_text, "' in the file's name; it must be one of ",
                     scalar_names(), ", with be appended for big-endian"));
   }
-  if (options.type && *options.type != *name->type)
-    throw contradiction(path, "--type " + arguments.type, name->type_text);
+  if (options.type && *options.type != *name->type) throw contradiction(path, given("type"), name->type_text);
   if (options.big_endian && *options.big_endian != name->big_endian) {
-    throw contradiction(path, "--endian " + arguments.endian, name->type_text);
+    throw contradiction(path, given("endian"), name->type_text);
   }
   return {shape.extent, *name->type, name->big_endian};
 }
@@ -149,22 +144,22 @@ void sample(const SampleArguments& arguments) {
   const Shape shape = resolve_shape(arguments);
   const SyntheticKind& kind = find_synthetic_kind(arguments.kind);
   const ValuePacker packer(kind, shape.type, shape.big_endian);
-  const std::uint64_t memory = parse_memory(arguments.run);
+  const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto source = open_synthetic(kind.name, {shape.extent, arguments.seed});
   const std::int64_t voxels = volume(shape.extent);
   const std::uint64_t value_bytes = scalar_bytes(shape.type);
   const std::uint64_t bytes = static_cast<std::uint64_t>(voxels) * value_bytes;
-  const auto threads = limit_threads(arguments.run.threads);
+  const auto threads = limit_threads(run.threads);
 
   const auto files = make_posix_file_system();
   PartialFile output(*files, arguments.output, arguments.overwrite);
   output.reserve(bytes);
 
-  Progress progress(arguments.run.progress);
+  Progress progress(arguments.progress);
   progress.start(cat("sample ", kind.name), bytes);
   {
     SlabWriter writer(*source, packer, shape.type, output.file());
-    const std::int64_t most = slab_voxels(memory, packer, shape.type);
+    const std::int64_t most = slab_voxels(run.memory, packer, shape.type);
     for (std::int64_t first = 0; first < voxels;) {
       if (interrupt_flag()) {
         throw Error(ErrorKind::interrupted, cat(arguments.output, ": interrupted; nothing was left behind"));
@@ -215,16 +210,17 @@ void add_sample(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "raw file; NAME_XxYxZ_TYPE.raw says what is in it")
       ->required()
       ->type_name("FILE.raw");
-  command->add_option("--dims", arguments->dims, "voxels; default: the name's")->type_name("X,Y,Z");
-  command
-      ->add_option("--type", arguments->type,
-                   cat(scalar_names(), "; default: the name's, else float32; integers are scaled to their range"))
-      ->type_name("TYPE");
-  command->add_option("--endian", arguments->endian, "byte order; default: the name's, else little")
-      ->type_name("little|big");
+  OptionRow dims = conversion_option("dims");
+  dims.help = "voxels";
+  dims.standard = "the name's";
+  OptionRow type = conversion_option("type");
+  type.standard = "the name's, else float32; integers are scaled to their range";
+  for (const OptionRow& row : {dims, type, conversion_option("endian")}) {
+    add_option(*command, row, arguments->options);
+  }
   command->add_option("--seed", arguments->seed, "of the kinds with randomness")->type_name("N")->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
-  add_run_options(*command, arguments->run);
+  add_run_options(*command, arguments->options, arguments->progress);
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
   add_log_level(*command);
   command->callback([arguments] { sample(*arguments); });

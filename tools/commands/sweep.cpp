@@ -14,18 +14,19 @@
 
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/options/conversion_request.h"
 #include "compressor/select/file_size.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/output/partial_file.h"
-#include "gpu/image/image_output.h"
+#include "ingest/drivers/driver.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
-#include "tools/options/input_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/table_options.h"
 #include "tools/sweep/sweep_method.h"
 #include "tools/sweep/sweep_plot.h"
 #include "tools/sweep/sweep_report.h"
@@ -41,11 +42,10 @@ using Clock = std::chrono::steady_clock;
 struct SweepArguments {
   std::string input;
   std::string rates = "20,10,8,5,4,2";
-  std::string methods = "auto,float,paper,zfp";
+  std::string methods = has_zfp() ? "auto,float,paper,zfp" : "auto,float,paper";
   std::string output;
-  std::string non_finite;
-  InputArguments source;
-  RunArguments run;
+  GivenOptions options;
+  ProgressOptions progress;
   bool keep = false;
   bool overwrite = false;
   bool json = false;
@@ -85,7 +85,7 @@ std::string volume_name(const SweepMethod& method, double rate) { return cat(met
 void check_outputs(const ResultDirectory& directory, std::span<const SweepMethod> methods,
                    std::span<const double> rates, const SweepArguments& a) {
   std::vector<std::string> paths;
-  for (const char* name : {"sweep.csv", "sweep.json", "psnr_bits.png", "psnr_seconds.png"}) {
+  for (const char* name : {"sweep.csv", "sweep.json", "psnr_bits.png", "psnr_bits.svg", "psnr_seconds.png", "psnr_seconds.svg"}) {
     paths.push_back(directory / name);
   }
   for (const SweepMethod& method : methods) {
@@ -118,14 +118,14 @@ class Sweep {
         files_(files),
         arguments_(arguments),
         given_(std::move(given)),
-        memory_(parse_memory(arguments.run)) {}
+        run_(read_conversion_request(arguments.options).conversion) {}
 
   SweepRow run(const SweepMethod& method, double rate) {
     SweepRow row;
     row.method = method.name;
     row.rate = rate;
     row.bytes_asked = bytes_at_rate(static_cast<std::uint64_t>(volume(source_.info().extent)) * sizeof(float), rate);
-    Progress progress(arguments_.run.progress);
+    Progress progress(arguments_.progress);
     ConversionControl control;
     control.cancel = &interrupt_flag();
     control.pass_started = [&](const std::string& pass, std::uint64_t bytes) {
@@ -143,20 +143,21 @@ class Sweep {
 
  private:
   void run_conversion(const SweepMethod& method, ConversionControl& control, SweepRow& row) {
-    ConversionOptions options = conversion_of(method, arguments_.non_finite);
+    ConversionOptions options = conversion_of(method, arguments_.options);
     options.output = directory_ / volume_name(method, row.rate);
     options.overwrite = arguments_.overwrite;
     options.budget = {Budget::Kind::rate, row.rate, 0};
-    options.memory = memory_;
+    options.memory = run_.memory;
     options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
-    options.threads = static_cast<std::size_t>(arguments_.run.threads);
+    options.threads = run_.threads;
     options.provenance = {WEIR_VERSION, build_commit(), given_};
     options.provenance.options.insert(method.options.begin(), method.options.end());
     options.provenance.options["rate"] = cat(row.rate);
     // What a conversion says of its file belongs to the row; of the source, and of the disk, it is said once.
     const std::string own = options.output + ": ";
     const auto is_own = [&own](const std::string& line) { return line.compare(0, own.size(), own) == 0; };
-    control.notice = [&](const std::string& line) {
+    control.notice = [&](const Message& message) {
+      const std::string line = message.text();
       if (is_own(line)) {
         row.note = line.substr(own.size());
       } else if (said_.insert(line).second) {
@@ -196,7 +197,7 @@ class Sweep {
     }
     ZfpTrialOptions options;
     options.block_bits = *block_bits;
-    options.memory = memory_;
+    options.memory = run_.memory;
     options.directory = directory_.path();
     const ZfpTrial trial = try_zfp(source_, options, control, files_);
     if (trial.nonfinite > 0 || trial.nonfinite_decoded > 0) {
@@ -213,7 +214,7 @@ class Sweep {
   FileSystem& files_;
   const SweepArguments& arguments_;
   std::map<std::string, std::string> given_;
-  std::uint64_t memory_;
+  ConversionOptions run_;
   std::set<std::string> said_;
 };
 
@@ -223,18 +224,28 @@ void write_text(FileSystem& files, const std::string& path, const std::string& t
   file.commit();
 }
 
-// As it is: a chart's white is the screen's.
-constexpr ToneMapping kChartTone{1.0F, false};
+void draw_charts(FileSystem& files, const ResultDirectory& directory, const SweepReport& report) {
+  if (!driver_is_there("plot")) {
+    spdlog::warn("this weir has no weir_plot.so: no charts are drawn");
+    return;
+  }
+  for (const auto& [name, axis] :
+       {std::pair{"psnr_bits", SweepAxis::bits_per_voxel}, std::pair{"psnr_seconds", SweepAxis::seconds}}) {
+    for (const char* ending : {".png", ".svg"}) {
+      const std::string path = directory / cat(name, ending);
+      write_text(files, path, psnr_chart(report, axis, plot_format(path)), true);
+    }
+  }
+}
 
 void sweep(const CLI::App& command, const SweepArguments& a) {
   const Clock::time_point start = Clock::now();
   const std::vector<double> rates = parse_rates(a.rates);
   const std::vector<SweepMethod> methods = parse_sweep_methods(a.methods);
-  for (const SweepMethod& method : methods) conversion_of(method, a.non_finite);
-  SourceOptions source_options = parse_input(a.source);
-  source_options.memory = parse_memory(a.run);
+  for (const SweepMethod& method : methods) conversion_of(method, a.options);
+  auto [source_options, run] = read_conversion_request(a.options);
   source_options.spool_directory = a.output;
-  const auto threads = limit_threads(a.run.threads);
+  const auto threads = limit_threads(run.threads);
   const auto files = make_posix_file_system();
   const ResultDirectory directory(*files, a.output);
   check_outputs(directory, methods, rates, a);
@@ -257,12 +268,9 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   report.total_s = seconds_since(start);
   report.peak_rss_bytes = peak_resident_bytes();
 
-  ImageFile bits(*files, directory / "psnr_bits.png");
-  ImageFile seconds(*files, directory / "psnr_seconds.png");
   write_text(*files, directory / "sweep.csv", csv_text(report), a.overwrite);
   write_text(*files, directory / "sweep.json", json_text(report), a.overwrite);
-  bits.commit(psnr_plot(report, SweepAxis::bits_per_voxel), kChartTone);
-  seconds.commit(psnr_plot(report, SweepAxis::seconds), kChartTone);
+  draw_charts(*files, directory, report);
   std::cout << (a.json ? json_text(report) : table_text(report));
 }
 
@@ -275,7 +283,7 @@ void add_sweep(CLI::App& app) {
   command->add_option("input", a->input, "volume file, NAME_XxYxZ_TYPE.raw for instance")
       ->type_name("INPUT")
       ->required();
-  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, psnr_bits.png, psnr_seconds.png")
+  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, and charts, psnr_bits and psnr_seconds, as .png and .svg")
       ->type_name("DIR")
       ->required();
   command->add_option("--rates", a->rates, "dense float32 bytes / file bytes, between commas")
@@ -284,12 +292,11 @@ void add_sweep(CLI::App& app) {
   command->add_option("--methods", a->methods, cat("between commas, of ", sweep_method_names()))
       ->type_name("METHOD,...")
       ->capture_default_str();
-  command->add_option("--nonfinite", a->non_finite, "what becomes of NaN and infinite voxels; default error")
-      ->type_name("error|background|keep");
+  add_option(*command, conversion_option("nonfinite"), a->options);
   command->add_flag("--keep", a->keep, "keep the converted volumes, METHOD_rateRATE.nvdb, in the directory");
   command->add_flag("--overwrite", a->overwrite, "replace existing results");
-  add_input_options(*command, a->source);
-  add_run_options(*command, a->run);
+  add_input_options(*command, a->options);
+  add_run_options(*command, a->options, a->progress);
   command->add_flag("--json", a->json, "print what is in sweep.json on stdout");
   add_log_level(*command);
   command->callback([command, a] { sweep(*command, *a); });

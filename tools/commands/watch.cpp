@@ -10,7 +10,6 @@
 #include "format/base/error.h"
 #include "tools/command.h"
 #include "tools/describe/describe_config.h"
-#include "tools/options/convert_syntax.h"
 
 namespace weir {
 namespace {
@@ -22,7 +21,7 @@ struct WatchArguments {
 
 void watch_directories(const CLI::App& command, const WatchArguments& a) {
   const auto load = [&] {
-    DaemonConfig config = load_config(a.config, convert_syntax());
+    DaemonConfig config = load_config(a.config);
     const CLI::Option* level = command.get_option("--log-level");
     if (level->count() > 0) config.service.log_level = level->as<std::string>();
     return config;

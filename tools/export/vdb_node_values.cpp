@@ -1,18 +1,19 @@
 #include "tools/export/vdb_node_values.h"
 
-#include <openvdb/io/Compression.h>
-
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <vector>
 
-#include "ingest/vdb/vdb_header.h"
+#include "ingest/vdb/openvdb_library.h"
 
 namespace weir {
 namespace {
 
-using ToHalf = openvdb::io::RealToHalf<float>;
+const OpenVdbLibrary& library() {
+  static const OpenVdbLibrary& loaded = openvdb_library("OpenVDB files are to be written");
+  return loaded;
+}
 
 /// The kinds that are written of those that Compression.h knows.
 enum Kind : std::uint8_t { inactive_background = 0, one_inactive = 2, mask_and_two = 5, all_values = 6 };
@@ -63,9 +64,9 @@ template <typename T>
 void put_packed(std::ostream& out, const std::vector<T>& values, std::uint32_t compression) {
   const char* const bytes = reinterpret_cast<const char*>(values.data());
   if ((compression & kVdbBlosc) != 0) {
-    openvdb::io::bloscToStream(out, bytes, sizeof(T), values.size());
+    library().write_blosc(out, bytes, sizeof(T), values.size());
   } else if ((compression & kVdbZip) != 0) {
-    openvdb::io::zipToStream(out, bytes, sizeof(T) * values.size());
+    library().write_zip(out, bytes, sizeof(T) * values.size());
   } else {
     put_all(out, values);
   }
@@ -73,7 +74,7 @@ void put_packed(std::ostream& out, const std::vector<T>& values, std::uint32_t c
 
 }  // namespace
 
-float rounded_to_half(float value) { return static_cast<float>(ToHalf::convert(value)); }
+float rounded_to_half(float value) { return library().value_of_half(library().half_of(value)); }
 
 void write_vdb_values(std::ostream& out, std::span<const float> values, std::span<const std::uint64_t> active,
                       std::span<const std::uint64_t> children, const VdbStorage& storage) {
@@ -101,9 +102,9 @@ void write_vdb_values(std::ostream& out, std::span<const float> values, std::spa
   }
   if (!storage.half) return put_packed(out, kept, storage.compression);
   if (kept.empty()) return;  // not even a length
-  std::vector<ToHalf::HalfT> halves;
+  std::vector<std::uint16_t> halves;
   halves.reserve(kept.size());
-  for (const float value : kept) halves.push_back(ToHalf::convert(value));
+  for (const float value : kept) halves.push_back(library().half_of(value));
   put_packed(out, halves, storage.compression);
 }
 

@@ -12,6 +12,8 @@ namespace {
 constexpr std::array<std::string_view, 10> kSilent{"help",      "json",  "progress", "progress-fd",   "log-level",
                                                    "skip-done", "again", "resume",   "save-interval", "trace"};
 
+bool silent(std::string_view key) { return std::find(kSilent.begin(), kSilent.end(), key) != kSilent.end(); }
+
 }  // namespace
 
 std::map<std::string, std::string> given_options(const CLI::App& command) {
@@ -19,10 +21,16 @@ std::map<std::string, std::string> given_options(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->get_lnames().empty()) continue;
     const std::string& name = option->get_lnames().front();
-    if (std::find(kSilent.begin(), kSilent.end(), name) != kSilent.end()) continue;
+    if (silent(name)) continue;
     given[name] = option->get_expected_max() == 0 ? "true" : option->results().back();
   }
   return given;
+}
+
+std::map<std::string, std::string> recorded_options(const GivenOptions& given) {
+  std::map<std::string, std::string> record(given.begin(), given.end());
+  std::erase_if(record, [](const auto& option) { return silent(option.first); });
+  return record;
 }
 
 }  // namespace weir

@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "format/base/option_row.h"
+
 namespace CLI {
 class App;
 }
@@ -12,5 +14,7 @@ namespace weir {
 
 /// Every option of `command` that was given and has a say in what is written, by its long name; a flag is "true".
 std::map<std::string, std::string> given_options(const CLI::App& command);
+/// The same of options that were given otherwise.
+std::map<std::string, std::string> recorded_options(const GivenOptions& given);
 
 }  // namespace weir

@@ -1,9 +1,10 @@
 // What a picture looks like, as options: the same for every command that renders.
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <string>
 
+#include "format/base/option_row.h"
 #include "format/sidecar/scene.h"
 #include "gpu/render/backend.h"
 #include "tools/options/backend_choice.h"
@@ -14,42 +15,28 @@ class App;
 
 namespace weir {
 
-/// The options as given; empty: not given.
-struct PictureArguments {
-  std::string scene;
-  std::string mode;
-  std::string backend = "auto";
-  std::string devices = "0";
-  std::string filter = "trilinear";
-  std::string size = "960x720";
-  std::string colormap;
-  std::string camera;
-  std::string iso;
-  std::string range;
-  std::string samples;
-  std::string seed = "0";
-  std::string threads = "0";
-};
-
-/// Adds --backend, --devices, --mode, --size, --spp, --seed, --scene, --filter, --colormap, --range, --iso, --camera
+/// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --range, --iso, --camera
 /// and
-/// --threads, stored in `arguments`, which must live as long as the command.
-void add_picture_options(CLI::App& command, PictureArguments& arguments);
+/// --threads; what is given goes to `given`, which must live as long as the command.
+void add_picture_options(CLI::App& command, GivenOptions& given);
 
 /// What they mean.
 struct PictureRequest {
   Scene scene;
   RenderOptions options;  ///< with the scene's environment, loaded
   SampleOptions sampling;
-  BackendChoice backend;
+  BackendChoice backend{"auto", {0}, 0};
 
   std::uint64_t pixel_samples() const {
     return static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * sampling.samples;
   }
 };
 
+/// "trilinear", "stochastic" or "nearest", as --filter says it.
+std::string filter_name(Filter filter);
+
 /// The scene file first, the command line over it. Throws Error(usage) naming option, text and form where one cannot be
 /// read, and as load_scene and load_environment.
-PictureRequest parse_picture(const PictureArguments& arguments);
+PictureRequest read_picture_request(const GivenOptions& given);
 
 }  // namespace weir

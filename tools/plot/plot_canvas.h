@@ -1,42 +1,52 @@
-// A small canvas for charts: filled boxes, smooth lines, and text in a fixed 5 x 7
-// font.
+// A sheet to draw a chart on, as a PNG picture or as SVG, by cairo: the driver weir_plot.so (ingest/drivers/driver.h).
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 
-#include "gpu/image/image.h"
+#include "gpu/math/vector3.h"
 
 namespace weir {
 
-/// Pixels of one character cell, spacing included.
-inline constexpr std::int32_t kGlyphWidth = 6;
-inline constexpr std::int32_t kGlyphHeight = 10;
-
-/// In pixels; the first pixel's centre is (0.5, 0.5).
+/// In pixels from the upper left corner; the first pixel's centre is (0.5, 0.5).
 struct PlotPoint {
-  float x = 0;
-  float y = 0;
+  double x = 0;
+  double y = 0;
 };
 
-/// Pixel coordinates count from the upper left corner; what lies outside is clipped.
+enum class PlotFormat { png, svg };
+/// Of a file's name. Throws Error(usage) where it ends in neither .png nor .svg.
+PlotFormat plot_format(const std::string& path);
+
+/// Which point of a text, at the middle of its height, it is placed by.
+enum class TextAnchor { left, middle, right };
+
+/// Colours are sRGB, each channel from 0 to 1; what lies outside of the sheet is clipped.
 class PlotCanvas {
  public:
-  PlotCanvas(std::int32_t width, std::int32_t height, const Float3& paper);
+  virtual ~PlotCanvas() = default;
 
   /// Fills [x0, x1) x [y0, y1).
-  void fill(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const Float3& ink);
-  /// A line of round ends, `width` pixels wide, blended at its edges; a disc where both ends are one point.
-  void line(const PlotPoint& from, const PlotPoint& to, float width, const Float3& ink);
-  /// Digits, letters and " .,:+-^()/_"; any other character leaves a gap. `scale` pixels are one of the font.
-  void text(std::int32_t x, std::int32_t y, std::string_view text, const Float3& ink, std::int32_t scale = 1);
+  virtual void fill(double x0, double y0, double x1, double y1, const Float3& ink) = 0;
+  /// A line of round ends, `width` pixels wide.
+  virtual void line(const PlotPoint& from, const PlotPoint& to, double width, const Float3& ink) = 0;
+  /// A closed polygon: filled, then outlined.
+  virtual void polygon(std::span<const PlotPoint> corners, double width, const Float3& inside,
+                       const Float3& outline) = 0;
+  /// UTF-8 in a sans-serif font of `size` pixels, upright or from the bottom up.
+  virtual void text(const PlotPoint& at, std::string_view text, double size, const Float3& ink, TextAnchor anchor,
+                    bool upwards = false) = 0;
   /// Pixels along x that text() takes.
-  static std::int32_t text_width(std::string_view text, std::int32_t scale = 1);
-
-  const Image& image() const { return image_; }
-
- private:
-  Image image_;
+  virtual double text_width(std::string_view text, double size) = 0;
+  /// The file's bytes; nothing is drawn after it. Throws Error(internal) where cairo fails.
+  virtual std::string finish() = 0;
 };
+
+/// A sheet of `paper`, pixels. Throws Error(input) where there is no weir_plot.so.
+std::unique_ptr<PlotCanvas> make_plot_canvas(std::int32_t width, std::int32_t height, PlotFormat format,
+                                             const Float3& paper);
 
 }  // namespace weir

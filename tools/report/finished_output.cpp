@@ -105,10 +105,10 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
 void check_output(const std::string& input, const std::string& output) {
   std::error_code ignored;
   if (std::filesystem::equivalent(input, output, ignored)) {
-    throw Error(ErrorKind::usage, cat(output, ": is the input; choose another output with -o"));
+    throw Error(ErrorKind::usage, cat(output, ": is the input; choose another output"));
   }
   if (std::filesystem::is_directory(output, ignored)) {
-    throw Error(ErrorKind::usage, cat(output, ": is a directory; name a file in it with -o"));
+    throw Error(ErrorKind::usage, cat(output, ": is a directory; name a file in it"));
   }
 }
 

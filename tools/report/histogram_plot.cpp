@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -20,16 +21,17 @@ constexpr std::size_t kDiscreteBins = 16;  // fewer filled ones say nothing abou
 
 constexpr std::int32_t kWidth = 720;  // pixels
 constexpr std::int32_t kHeight = 360;
-constexpr std::int32_t kLeft = 48;
+constexpr std::int32_t kLeft = 64;
 constexpr std::int32_t kRight = 24;
-constexpr std::int32_t kTop = 24;
-constexpr std::int32_t kBottom = 40;
+constexpr std::int32_t kTop = 32;
+constexpr std::int32_t kBottom = 48;
+constexpr double kTextSize = 12;
 constexpr int kMostSteps = 6;  // of the ticks along x
 constexpr Float3 kPaper{1, 1, 1};
-constexpr Float3 kInk{0.05F, 0.05F, 0.05F};
-constexpr Float3 kGridLine{0.78F, 0.78F, 0.78F};
-constexpr Float3 kBar{0.06F, 0.19F, 0.46F};
-constexpr Float3 kMark{0.75F, 0.16F, 0.02F};
+constexpr Float3 kInk{0.2F, 0.2F, 0.2F};
+constexpr Float3 kGridLine{0.88F, 0.88F, 0.88F};
+constexpr Float3 kBar{0.00F, 0.45F, 0.70F};
+constexpr Float3 kMark{0.84F, 0.37F, 0.00F};
 
 bool nothing_to_show(const Sidecar::Histogram& h) {
   return !std::isfinite(h.min) || !std::isfinite(h.max) ||
@@ -94,14 +96,18 @@ std::string histogram_text(const Sidecar::Histogram& histogram) {
   return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
 }
 
-Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background) {
-  PlotCanvas canvas(kWidth, kHeight, kPaper);
+std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background,
+                            PlotFormat format) {
+  const std::unique_ptr<PlotCanvas> canvas = make_plot_canvas(kWidth, kHeight, format, kPaper);
   constexpr std::int32_t kFloor = kHeight - kBottom;
   constexpr std::int32_t kBarsWidth = kWidth - kLeft - kRight;
   constexpr std::int32_t kBarsHeight = kFloor - kTop;
+  const auto write = [&](double x, double y, const std::string& text, TextAnchor anchor, const Float3& ink = kInk) {
+    canvas->text({x, y}, text, kTextSize, ink, anchor);
+  };
   if (nothing_to_show(histogram)) {
-    canvas.text(kLeft, kHeight / 2, "no finite values", kInk);
-    return canvas.image();
+    write(kWidth / 2.0, kHeight / 2.0, "no finite values", TextAnchor::middle);
+    return canvas->finish();
   }
   const Sidecar::Histogram shown = merged(histogram, static_cast<std::size_t>(kBarsWidth));
   const auto& bins = shown.counts;
@@ -112,21 +118,20 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
   std::uint64_t decade = 1;
   for (int exponent = 0; decade <= most; ++exponent, decade *= 10) {
     const std::int32_t y = kFloor - height(decade);
-    canvas.fill(kLeft, y, kWidth - kRight, y + 1, kGridLine);
-    const std::string label = exponent < 4 ? cat(decade) : cat("1e", exponent);
-    canvas.text(kLeft - 6 - PlotCanvas::text_width(label), y - 3, label, kInk);
+    canvas->fill(kLeft, y, kWidth - kRight, y + 1, kGridLine);
+    write(kLeft - 8, y, exponent < 4 ? cat(decade) : cat("1e", exponent), TextAnchor::right);
     if (decade > most / 10) break;  // the next one might not fit 64 bits
   }
   const auto columns = static_cast<std::int32_t>(bins.size());
   for (std::int32_t i = 0; i < columns; ++i) {
     const std::uint64_t count = bins[static_cast<std::size_t>(i)];
     if (count == 0) continue;
-    canvas.fill(kLeft + i * kBarsWidth / columns, kFloor - std::max(height(count), 1),
-                kLeft + (i + 1) * kBarsWidth / columns, kFloor, kBar);
+    canvas->fill(kLeft + i * kBarsWidth / columns, kFloor - std::max(height(count), 1),
+                 kLeft + (i + 1) * kBarsWidth / columns, kFloor, kBar);
   }
-  canvas.fill(kLeft - 1, kTop, kLeft, kFloor, kInk);
-  canvas.fill(kLeft - 1, kFloor, kWidth - kRight, kFloor + 1, kInk);
-  canvas.text(kLeft - 6 - PlotCanvas::text_width("voxels"), kTop - 14, "voxels", kInk);
+  canvas->fill(kLeft - 1, kTop, kLeft, kFloor, kInk);
+  canvas->fill(kLeft - 1, kFloor, kWidth - kRight, kFloor + 1, kInk);
+  canvas->text({16, (kTop + kFloor) / 2.0}, "voxels", kTextSize, kInk, TextAnchor::middle, true);
   const double range = shown.max - shown.min;
   const auto x_of = [&](double value) {
     const double part = range > 0 ? (value - shown.min) / range : 0.5;
@@ -134,9 +139,9 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
   };
   const auto tick = [&](double value, const std::string& label) {
     const std::int32_t x = x_of(value);
-    canvas.fill(x, kFloor, x + 1, kFloor + 5, kInk);
-    const std::int32_t width = PlotCanvas::text_width(label);
-    canvas.text(std::clamp(x - width / 2, 0, kWidth - width), kFloor + 8, label, kInk);
+    canvas->fill(x, kFloor, x + 1, kFloor + 5, kInk);
+    const double half = canvas->text_width(label, kTextSize) / 2;
+    write(std::clamp<double>(x, half, kWidth - half), kFloor + 15, label, TextAnchor::middle);
   };
   if (range > 0 && std::isfinite(range)) {
     const double step = tick_step(range, kMostSteps);
@@ -145,14 +150,15 @@ Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double>
   } else {
     tick(shown.min, cat(shown.min));
   }
-  canvas.text(kWidth - kRight - PlotCanvas::text_width("value"), kHeight - 12, "value", kInk);
+  write((kLeft + kWidth - kRight) / 2.0, kHeight - 14, "value", TextAnchor::middle);
   if (background && *background >= shown.min && *background <= shown.max) {
     const std::int32_t x = x_of(*background);
-    canvas.fill(x, kTop - 4, x + 1, kFloor, kMark);
+    canvas->fill(x, kTop - 6, x + 1, kFloor, kMark);
     const std::string label = cat("background ", *background);
-    canvas.text(std::min(x + 4, kWidth - kRight - PlotCanvas::text_width(label)), kTop - 14, label, kMark);
+    const double widest = kWidth - kRight - canvas->text_width(label, kTextSize);
+    write(std::min<double>(x + 5, widest), kTop - 12, label, TextAnchor::left, kMark);
   }
-  return canvas.image();
+  return canvas->finish();
 }
 
 }  // namespace weir

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "format/sidecar/sidecar.h"
-#include "gpu/image/image.h"
+#include "tools/plot/plot_canvas.h"
 
 namespace weir {
 
@@ -14,7 +14,8 @@ namespace weir {
 /// line saying so where there is nothing to show.
 std::string histogram_text(const Sidecar::Histogram& histogram);
 
-/// 720 x 360 pixels with axes, decade lines, and a mark at `background` where it is given and inside.
-Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background);
+/// The bytes of a file, 720 x 360 pixels with axes, decade lines, and a mark at `background` where it is given and
+/// inside. Throws as make_plot_canvas.
+std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background, PlotFormat format);
 
 }  // namespace weir

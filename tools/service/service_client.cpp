@@ -19,7 +19,6 @@
 #include "daemon/config/load_config.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "tools/options/convert_syntax.h"
 
 namespace weir {
 namespace {
@@ -152,7 +151,7 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
 ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.1", 8470} {
   if (!options.address.empty()) address_ = parse_listen_address(options.address);
   if (!options.config.empty()) {
-    const ServiceConfig service = load_config(options.config, convert_syntax()).service;
+    const ServiceConfig service = load_config(options.config).service;
     token_ = service.token;
     if (!service.control_socket.empty()) control_ = {"", 0, service.control_socket};
     const bool has_no_port = service.listen.port == 0 && service.port_file.empty();

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "tools/options/conversion_options.h"
+#include "tools/sweep/zfp_codec.h"
 
 namespace weir {
 namespace {
@@ -36,30 +37,25 @@ std::vector<SweepMethod> parse_sweep_methods(std::string_view text) {
     if (std::any_of(methods.begin(), methods.end(), [&](const SweepMethod& m) { return m.name == name; })) {
       throw usage_error(cat("--methods names ", name, " twice; leave one of them out"));
     }
+    if (name == "zfp" && !has_zfp()) {
+      throw usage_error("--methods names zfp, and this weir was built without it; build it with -DWEIR_ZFP=ON");
+    }
     methods.push_back({name, options_of(name)});
   }
   return methods;
 }
 
-ConversionOptions conversion_of(const SweepMethod& method, const std::string& non_finite) {
-  ConversionArguments arguments;
-  arguments.non_finite = non_finite;
-  const auto given = [&](const char* name) {
-    const auto found = method.options.find(name);
-    return found == method.options.end() ? std::string() : found->second;
-  };
-  arguments.encoding = given("encoding");
-  arguments.preset = given("preset");
-  arguments.brick = given("brick");
-  return parse_conversion(arguments);
+ConversionOptions conversion_of(const SweepMethod& method, const GivenOptions& given) {
+  GivenOptions options(method.options.begin(), method.options.end());
+  if (const auto policy = given.find("nonfinite"); policy != given.end()) options.insert(*policy);
+  return read_conversion_request(options).conversion;
 }
 
 std::vector<double> parse_rates(std::string_view text) {
   std::vector<double> rates;
   for (const std::string& part : split(text, ',')) {
     const auto rate = parse_double(part);
-    // The limits of --rate: above 2^60 no volume has a byte left; below 2^-20 no disk holds the file.
-    if (!rate || !(*rate >= 0x1p-20 && *rate <= 0x1p60)) {
+    if (!rate || !(*rate >= kLeastRate && *rate <= kMostRate)) {
       throw usage_error(cat("--rates holds \"", part,
                             "\", it must be positive numbers such as 20,10,8: dense float32 bytes ", "/ file bytes"));
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "format/base/option_row.h"
 
 namespace weir {
 
@@ -23,9 +24,9 @@ std::string sweep_method_names();
 /// Of names between commas. Throws Error(usage) naming --methods and the name that is none, or is there twice.
 std::vector<SweepMethod> parse_sweep_methods(std::string_view text);
 
-/// What `weir convert` makes of the method's options and --nonfinite `non_finite` (empty: the default). Throws
-/// Error(usage) for a policy that is none.
-ConversionOptions conversion_of(const SweepMethod& method, const std::string& non_finite);
+/// What `weir convert` makes of the method's options and the nonfinite of `given`. Throws Error(usage) for a policy
+/// that is none.
+ConversionOptions conversion_of(const SweepMethod& method, const GivenOptions& given);
 
 /// Of numbers between commas. Throws Error(usage) naming --rates and what is no rate, or is there twice.
 std::vector<double> parse_rates(std::string_view text);

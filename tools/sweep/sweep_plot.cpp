@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -21,37 +22,37 @@ constexpr std::int32_t kSheetHeight = 600;
 constexpr std::int32_t kSheetLeft = 112;
 constexpr std::int32_t kSheetRight = 28;
 constexpr std::int32_t kSheetBottom = 68;
-constexpr std::int32_t kTitle = 20;       // top of its text
+constexpr std::int32_t kTitle = 26;       // centre of its text
 constexpr std::int32_t kLegend = 56;      // centre of its first line
 constexpr std::int32_t kLegendLine = 26;  // from one line of it to the next
 constexpr std::int32_t kLosslessBand = 48;
-constexpr std::int32_t kText = 2;      // scale of the font
-constexpr std::int32_t kTextRise = 7;  // from the middle of a line of text to its top
-constexpr std::size_t kTitleCharacters = 60;
-constexpr float kLineWidth = 2.4F;
-constexpr float kMarkerRadius = 7;
+constexpr double kLabelSize = 15;
+constexpr double kTitleSize = 18;
+constexpr std::size_t kTitleCharacters = 80;
+constexpr double kLineWidth = 2.4;
+constexpr double kMarkerRadius = 7;
 constexpr Float3 kSheetPaper{1, 1, 1};
-constexpr Float3 kSheetInk{0.02F, 0.02F, 0.02F};
-constexpr Float3 kSheetGridLine{0.78F, 0.78F, 0.78F};
+constexpr Float3 kSheetInk{0.13F, 0.13F, 0.13F};
+constexpr Float3 kSheetGridLine{0.88F, 0.88F, 0.88F};
 
 /// How a method's points look: a regular polygon, so that methods can be told apart without colours.
 struct Style {
   Float3 ink;
   int corners;
-  float turn;  ///< of the first corner from the right, in turns
+  double turn;  ///< of the first corner from the right, in turns
   bool filled;
 };
 
-// Colours that the colour-blind tell apart (M. Okabe, K. Ito, 2008), in linear light, and darker ones.
-constexpr std::array<Style, 9> kStyles{{{{0.000F, 0.168F, 0.445F}, 16, 0.000F, true},
-                                        {{0.665F, 0.112F, 0.000F}, 4, 0.125F, false},
-                                        {{0.000F, 0.342F, 0.171F}, 4, 0.000F, false},
-                                        {{0.030F, 0.030F, 0.030F}, 3, 0.750F, true},
-                                        {{0.604F, 0.191F, 0.386F}, 4, 0.125F, true},
-                                        {{0.791F, 0.347F, 0.000F}, 3, 0.250F, true},
-                                        {{0.093F, 0.456F, 0.815F}, 16, 0.000F, false},
-                                        {{0.250F, 0.080F, 0.020F}, 4, 0.000F, true},
-                                        {{0.160F, 0.220F, 0.010F}, 3, 0.750F, false}}};
+// Colours that the colour-blind tell apart (M. Okabe, K. Ito, 2008), and darker ones.
+constexpr std::array<Style, 9> kStyles{{{{0.000F, 0.447F, 0.698F}, 24, 0.000, true},
+                                        {{0.835F, 0.369F, 0.000F}, 4, 0.125, false},
+                                        {{0.000F, 0.620F, 0.451F}, 4, 0.000, false},
+                                        {{0.200F, 0.200F, 0.200F}, 3, 0.750, true},
+                                        {{0.800F, 0.475F, 0.655F}, 4, 0.125, true},
+                                        {{0.902F, 0.624F, 0.000F}, 3, 0.250, true},
+                                        {{0.337F, 0.706F, 0.914F}, 24, 0.000, false},
+                                        {{0.537F, 0.314F, 0.153F}, 4, 0.000, true},
+                                        {{0.439F, 0.506F, 0.098F}, 3, 0.750, false}}};
 
 struct Point {
   double x;
@@ -89,9 +90,9 @@ class Scale {
       : ticks_(std::move(ticks)), logarithmic_(logarithmic), first_(first), last_(last) {}
 
   const std::vector<double>& ticks() const { return ticks_; }
-  float at(double value) const {
+  double at(double value) const {
     const double part = (map(value) - map(ticks_.front())) / (map(ticks_.back()) - map(ticks_.front()));
-    return static_cast<float>(first_ + part * (last_ - first_));
+    return first_ + part * (last_ - first_);
   }
   std::int32_t pixel(double value) const { return static_cast<std::int32_t>(std::lround(at(value))); }
 
@@ -104,40 +105,32 @@ class Scale {
   std::int32_t last_;
 };
 
-void draw_outline(PlotCanvas& canvas, const PlotPoint& centre, const Style& style, float radius, const Float3& ink) {
-  const auto corner = [&](int i) {
-    const float turns = style.turn + static_cast<float>(i) / static_cast<float>(style.corners);
-    const float angle = 2 * std::numbers::pi_v<float> * turns;
-    return PlotPoint{centre.x + radius * std::cos(angle), centre.y - radius * std::sin(angle)};
-  };
-  for (int i = 0; i < style.corners; ++i) canvas.line(corner(i), corner(i + 1), kLineWidth, ink);
-}
-
 // The inside hides what lies below, of a hollow marker too.
 void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style) {
-  for (float radius = 0; radius < kMarkerRadius; radius += kLineWidth / 2) {
-    draw_outline(canvas, centre, style, radius, style.filled ? style.ink : kSheetPaper);
+  std::vector<PlotPoint> corners;
+  for (int i = 0; i < style.corners; ++i) {
+    const double angle = 2 * std::numbers::pi * (style.turn + static_cast<double>(i) / style.corners);
+    corners.push_back({centre.x + kMarkerRadius * std::cos(angle), centre.y - kMarkerRadius * std::sin(angle)});
   }
-  draw_outline(canvas, centre, style, kMarkerRadius, style.ink);
+  canvas.polygon(corners, kLineWidth, style.filled ? style.ink : kSheetPaper, style.ink);
 }
 
 // Below the title, as many lines as it needs; returns the y below it.
 std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
-  constexpr std::int32_t kSample = 40;  // a piece of line with a marker
-  constexpr std::int32_t kGap = 28;
-  std::int32_t x = kSheetLeft;
+  constexpr double kSample = 40;  // a piece of line with a marker
+  constexpr double kGap = 28;
+  double x = kSheetLeft;
   std::int32_t y = kLegend;
   for (const Series& series : all) {
-    const std::int32_t width = kSample + 8 + PlotCanvas::text_width(series.name, kText);
+    const double width = kSample + 8 + canvas.text_width(series.name, kLabelSize);
     if (x > kSheetLeft && x + width > kSheetWidth - kSheetRight) {
       x = kSheetLeft;
       y += kLegendLine;
     }
-    const auto middle = static_cast<float>(y);
-    const auto left = static_cast<float>(x);
-    canvas.line({left, middle}, {left + kSample, middle}, kLineWidth, series.style.ink);
-    draw_marker(canvas, {left + kSample * 0.5F, middle}, series.style);
-    canvas.text(x + kSample + 8, y - kTextRise, series.name, kSheetInk, kText);
+    const double middle = y;
+    canvas.line({x, middle}, {x + kSample, middle}, kLineWidth, series.style.ink);
+    draw_marker(canvas, {x + kSample / 2, middle}, series.style);
+    canvas.text({x + kSample + 8, middle}, series.name, kLabelSize, kSheetInk, TextAnchor::left);
     x += width + kGap;
   }
   return y + kLegendLine / 2;
@@ -151,7 +144,7 @@ struct Frame {
   bool band;
 
   PlotPoint at(const Point& p) const {
-    return {x.at(p.x), p.psnr_db ? psnr.at(*p.psnr_db) : static_cast<float>(top) + kLosslessBand * 0.5F};
+    return {x.at(p.x), p.psnr_db ? psnr.at(*p.psnr_db) : top + kLosslessBand * 0.5};
   }
 };
 
@@ -175,45 +168,44 @@ Frame make_frame(const std::vector<Series>& all, std::int32_t top) {
 }
 
 void draw_axes(PlotCanvas& canvas, const Frame& frame, const std::string& x_label) {
+  const auto write = [&](double x, double y, const std::string& text, TextAnchor anchor) {
+    canvas.text({x, y}, text, kLabelSize, kSheetInk, anchor);
+  };
   for (const double tick : frame.psnr.ticks()) {
     const std::int32_t y = frame.psnr.pixel(tick);
     canvas.fill(kSheetLeft, y, kSheetWidth - kSheetRight, y + 1, kSheetGridLine);
-    const std::string label = cat(tick);
-    canvas.text(kSheetLeft - 10 - PlotCanvas::text_width(label, kText), y - kTextRise, label, kSheetInk, kText);
+    write(kSheetLeft - 10, y, cat(tick), TextAnchor::right);
   }
   for (const double tick : frame.x.ticks()) {
     const std::int32_t x = frame.x.pixel(tick);
     canvas.fill(x, frame.top, x + 1, frame.floor, kSheetGridLine);
     canvas.fill(x, frame.floor, x + 2, frame.floor + 8, kSheetInk);
     const std::string label = cat(tick);
-    const std::int32_t width = PlotCanvas::text_width(label, kText);
-    canvas.text(std::clamp(x - width / 2, 0, kSheetWidth - width), frame.floor + 12, label, kSheetInk, kText);
+    const double half = canvas.text_width(label, kLabelSize) / 2;
+    write(std::clamp<double>(x, half, kSheetWidth - half), frame.floor + 20, label, TextAnchor::middle);
   }
   for (const double tick : minor_decade_ticks(frame.x.ticks().front(), frame.x.ticks().back())) {
     const std::int32_t x = frame.x.pixel(tick);
     canvas.fill(x, frame.floor, x + 1, frame.floor + 4, kSheetInk);
   }
-  if (frame.band) {
-    canvas.text(kSheetLeft - 10 - PlotCanvas::text_width("lossless", kText), frame.top + kLosslessBand / 2 - kTextRise,
-                "lossless", kSheetInk, kText);
-  }
+  if (frame.band) write(kSheetLeft - 10, frame.top + kLosslessBand / 2.0, "lossless", TextAnchor::right);
   canvas.fill(kSheetLeft - 1, frame.top, kSheetLeft + 1, frame.floor, kSheetInk);
   canvas.fill(kSheetLeft - 1, frame.floor, kSheetWidth - kSheetRight, frame.floor + 2, kSheetInk);
-  canvas.text(8, frame.top - 22, "PSNR (dB)", kSheetInk, kText);
-  const std::int32_t width = PlotCanvas::text_width(x_label, kText);
-  canvas.text((kSheetLeft + kSheetWidth - kSheetRight - width) / 2, kSheetHeight - 24, x_label, kSheetInk, kText);
+  canvas.text({22, (frame.top + frame.floor) / 2.0}, "PSNR (dB)", kLabelSize, kSheetInk, TextAnchor::middle, true);
+  write((kSheetLeft + kSheetWidth - kSheetRight) / 2.0, kSheetHeight - 18, x_label, TextAnchor::middle);
 }
 
 }  // namespace
 
-Image psnr_plot(const SweepReport& report, SweepAxis axis) {
-  PlotCanvas canvas(kSheetWidth, kSheetHeight, kSheetPaper);
+std::string psnr_chart(const SweepReport& report, SweepAxis axis, PlotFormat format) {
+  const std::unique_ptr<PlotCanvas> sheet = make_plot_canvas(kSheetWidth, kSheetHeight, format, kSheetPaper);
+  PlotCanvas& canvas = *sheet;
   const std::string title = std::filesystem::path(report.source).filename().string().substr(0, kTitleCharacters);
-  canvas.text(kSheetLeft, kTitle, title, kSheetInk, kText);
+  canvas.text({kSheetLeft, kTitle}, title, kTitleSize, kSheetInk, TextAnchor::left);
   const std::vector<Series> all = series_of(report, axis);
   if (std::none_of(report.rows.begin(), report.rows.end(), shown)) {
-    canvas.text(kSheetLeft, kSheetHeight / 2, "no rate with a PSNR", kSheetInk, kText);
-    return canvas.image();
+    canvas.text({kSheetLeft, kSheetHeight / 2.0}, "no rate with a PSNR", kLabelSize, kSheetInk, TextAnchor::left);
+    return canvas.finish();
   }
   const Frame frame = make_frame(all, draw_legend(canvas, all) + 32);
   draw_axes(canvas, frame, axis == SweepAxis::seconds ? "seconds" : "bits per voxel");
@@ -225,7 +217,7 @@ Image psnr_plot(const SweepReport& report, SweepAxis axis) {
   for (const Series& series : all) {
     for (const Point& point : series.points) draw_marker(canvas, frame.at(point), series.style);
   }
-  return canvas.image();
+  return canvas.finish();
 }
 
 }  // namespace weir

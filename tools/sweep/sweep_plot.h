@@ -1,7 +1,9 @@
 // Charts of a sweep: error against size, and error against time.
 #pragma once
 
-#include "gpu/image/image.h"
+#include <string>
+
+#include "tools/plot/plot_canvas.h"
 #include "tools/sweep/sweep_report.h"
 
 namespace weir {
@@ -10,6 +12,7 @@ enum class SweepAxis { bits_per_voxel, seconds };
 
 /// 900 x 600 pixels: PSNR upwards, `axis` to the right on a logarithmic scale, a line for each method through
 /// its rates in the report's order, a legend. Lossless results, which have no PSNR, lie in a band at the top.
-Image psnr_plot(const SweepReport& report, SweepAxis axis);
+/// Returns the bytes of a file. Throws as make_plot_canvas.
+std::string psnr_chart(const SweepReport& report, SweepAxis axis, PlotFormat format);
 
 }  // namespace weir

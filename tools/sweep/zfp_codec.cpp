@@ -54,6 +54,8 @@ class Coder {
 
 }  // namespace
 
+bool has_zfp() { return true; }
+
 std::uint64_t zfp_stream_bytes(const Index3& extent, unsigned block_bits) {
   const std::uint64_t word_bits = 8 * word_bytes();
   return (blocks_of(extent) * block_bits + word_bits - 1) / word_bits * word_bytes();

@@ -18,6 +18,9 @@ inline constexpr std::int64_t kZfpBlockDim = 4;  ///< voxels; blocks at the uppe
 inline constexpr unsigned kLeastZfpBits = 9;     ///< a block: whether it is zero, and its exponent
 inline constexpr unsigned kMostZfpBits = 16658;  ///< a block, the library's limit
 
+/// Whether this build has it (WEIR_ZFP); all else throws Error(usage) where it has not.
+bool has_zfp();
+
 /// Bytes of a volume of `extent` voxels in one stream without a header: the blocks' bits, up to a whole word of
 /// the library's.
 std::uint64_t zfp_stream_bytes(const Index3& extent, unsigned block_bits);

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .errors import UsageError
-from .options import box_text, option_list
+from .options import box_text, given_options
 
 #: Called with the pass ("survey", "encode", ...), and its float32 bytes done and in all.
 Progress = Callable[[str, int, int], Any]
@@ -79,7 +79,7 @@ def convert(
     psnr, max_error
         The smallest file of at least so many dB, or in which every voxel is within that of its value.
     lossless
-        As long as every bit of every voxel needs.
+        The smallest file that preserves every bit of every voxel.
 
     What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
     "fp16"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
@@ -109,7 +109,7 @@ def convert(
 
     Raises UsageError (a ValueError), InputError, BudgetError or IoError; TypeError where source is something else.
     """
-    options = option_list(
+    options = given_options(
         rate=rate,
         size=size,
         psnr=psnr,

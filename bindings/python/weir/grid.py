@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
-from .options import option_list
+from .options import given_options
 
 
 class Macrocells(NamedTuple):
@@ -219,7 +219,7 @@ class Grid:
         "nearest"; backend "auto", "cpu" or "cuda"; threads, 0: all. Returns uint8 sRGB or, where `linear`, float32
         radiance before tone mapping. progress is called with "render" and samples.
         """
-        options = option_list(
+        options = given_options(
             mode=mode,
             size="x".join(map(str, size)),
             spp=spp,

@@ -36,12 +36,10 @@ def box_text(box: Any) -> str:
         raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), half open") from None
 
 
-def option_list(**keywords: Any) -> list[str]:
-    """["--max-error=0.5", "--lossless"]: what is None or False is not given."""
-    options = []
-    for name, value in keywords.items():
-        if value is None or value is False:
-            continue
-        option = "--" + name.replace("_", "-")
-        options.append(option if value is True else f"{option}={text_of(value)}")
-    return options
+def given_options(**keywords: Any) -> dict[str, str]:
+    """{"max-error": "0.5", "lossless": "true"}: what is None or False is not given."""
+    return {
+        name.replace("_", "-"): "true" if value is True else text_of(value)
+        for name, value in keywords.items()
+        if value is not None and value is not False
+    }

@@ -25,8 +25,8 @@ void use_device(int device) {
   const cudaError_t code = cudaGetDeviceCount(&count);
   if (code != cudaSuccess || count == 0) {
     cudaGetLastError();
-    throw Error(ErrorKind::usage, cat("no CUDA device: ", code == cudaSuccess ? "none is visible" : cuda_text(code),
-                                      "; use --backend cpu"));
+    throw Error(ErrorKind::usage, compose("no CUDA device: ", code == cudaSuccess ? "none is visible" : cuda_text(code),
+                                          "; use ", option("backend", "cpu")));
   }
   if (device < 0 || device >= count) {
     throw Error(ErrorKind::usage, cat("there is no CUDA device ", device, ", the last is ", count - 1));

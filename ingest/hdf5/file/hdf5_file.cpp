@@ -8,9 +8,9 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/drivers/hdf5_signature.h"
 #include "ingest/files/input_file.h"
 #include "ingest/hdf5/file/hdf5_error.h"
-#include "ingest/hdf5/file/hdf5_signature.h"
 
 namespace weir {
 namespace {

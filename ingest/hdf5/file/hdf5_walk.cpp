@@ -35,8 +35,8 @@ struct Group {
 Error too_deep(const Group& group) {
   std::array<char, 4096> file{};
   H5Fget_name(group.handle.get(), file.data(), file.size() - 1);
-  return input_error(file.data(), cat("groups are nested more than ", kMaxGroupDepth, " deep in ",
-                                      in_quotes(group.name), "; name a dataset with --dataset"));
+  return input_error(file.data(), compose("groups are nested more than ", kMaxGroupDepth, " deep in ",
+                                          in_quotes(group.name), "; name a dataset with ", option("dataset")));
 }
 
 class GroupWalk {

@@ -30,7 +30,8 @@ Error several(const std::string& path, const std::vector<DatasetCandidate>& cand
   if (candidates.size() > kMostCandidates) {
     names += cat(" and ", candidates.size() - kMostCandidates, " more (weir inspect lists them)");
   }
-  return {ErrorKind::usage, cat(path, ": holds ", candidates.size(), " volumes; choose one with --dataset: ", names)};
+  return {ErrorKind::usage,
+          compose(path, ": holds ", candidates.size(), " volumes; choose one with ", option("dataset"), ": ", names)};
 }
 
 }  // namespace

@@ -30,22 +30,23 @@ std::size_t leading_axes(std::span<const AxisPlace> axes) {
 VolumeSlice volume_slice(std::span<const AxisPlace> axes, const std::vector<std::int64_t>& index,
                          const std::string& where) {
   const auto leading = axes.first(axes.size() - kVolumeRank);
-  const auto refuse = [&](const std::string& found) {
-    const std::string remedy = leading.empty()
-                                   ? "leave --index out"
-                                   : cat("give --index with ", leading.size(),
+  const auto refuse = [&](const Message& found) {
+    const Message remedy = leading.empty()
+                               ? compose("leave ", option("index"), " out")
+                               : compose("give ", option("index"), " with ", leading.size(),
                                          leading.size() == 1 ? " position: " : " positions: ", ranges_text(leading));
-    return Error(ErrorKind::usage, cat(where, ": its axes are ", axes_text(axes), found, "; ", remedy));
+    return Error(ErrorKind::usage, compose(where, ": its axes are ", axes_text(axes), found, "; ", remedy));
   };
   VolumeSlice slice;
   slice.index = index.empty() && leading_axes(axes) == 0 ? std::vector<std::int64_t>(leading.size(), 0) : index;
   if (slice.index.empty() && !leading.empty()) throw refuse(", and a volume has three");
   if (slice.index.size() != leading.size()) {
-    throw refuse(cat(", and --index has ", index.size(), index.size() == 1 ? " position" : " positions"));
+    throw refuse(
+        compose(", and ", option("index"), " has ", index.size(), index.size() == 1 ? " position" : " positions"));
   }
   for (std::size_t i = 0; i < leading.size(); ++i) {
     if (slice.index[i] < 0 || slice.index[i] >= leading[i].extent) {
-      throw refuse(cat(", and --index has ", slice.index[i]));
+      throw refuse(compose(", and ", option("index"), " has ", slice.index[i]));
     }
   }
   const auto last = axes.last(kVolumeRank);

@@ -116,8 +116,8 @@ std::span<const std::byte> ChunkReader::decode(std::span<const hsize_t> corner, 
     return undo_filters(store_.pipeline(), stored->left_out, chunk_bytes_, stored->bytes, scratch.buffer.bytes(),
                         scratch.other.bytes(), scratch.inflater);
   } catch (const Error& error) {
-    throw Error(error.kind(),
-                cat(slice_.name, ": chunk at ", corner_text(corner), ": ", error.what(), "; the file is damaged"));
+    throw Error(error.kind(), compose(slice_.name, ": chunk at ", corner_text(corner), ": ", error.message(),
+                                      "; the file is damaged"));
   }
 }
 

@@ -23,9 +23,9 @@ ScratchPool::ScratchPool(const FilterPipeline& pipeline, std::size_t chunk_bytes
   scratch_bytes_ = (two ? 2 : 1) * std::uint64_t{buffer_bytes} + kInflaterBytes;
   if (scratch_bytes_ > memory / 2) {
     throw Error(ErrorKind::usage,
-                cat(name, ": decoding one of its chunks of ", format_bytes(chunk_bytes), " takes ",
-                    format_bytes(scratch_bytes_), ", more than half of --memory ", format_bytes(memory),
-                    "; give at least ", (2 * scratch_bytes_ >> 20U) + 1, "MiB"));
+                compose(name, ": decoding one of its chunks of ", format_bytes(chunk_bytes), " takes ",
+                        format_bytes(scratch_bytes_), ", more than half of ", option("memory", format_bytes(memory)),
+                        "; give at least ", (2 * scratch_bytes_ >> 20U) + 1, "MiB"));
   }
   const std::uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t count = std::clamp<std::uint64_t>(memory / kScratchShare / scratch_bytes_, 1, cores);

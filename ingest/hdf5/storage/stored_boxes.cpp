@@ -85,8 +85,8 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
   const std::uint64_t needed = buffer_bytes + boxes->working_bytes();
   if (needed > memory / 2) {
     throw Error(ErrorKind::usage,
-                cat(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of --memory ",
-                    format_bytes(memory), "; give at least ", (2 * needed >> 20U) + 1, "MiB"));
+                compose(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of ",
+                        option("memory", format_bytes(memory)), "; give at least ", (2 * needed >> 20U) + 1, "MiB"));
   }
   return std::make_unique<StoredBoxSource>(std::move(boxes), std::move(info), big_endian,
                                            static_cast<std::size_t>(buffer_bytes));

@@ -128,35 +128,35 @@ static void volumes(void) {
 static void options(void) {
   REFUSE_OPTIONS("budget_kind is 6, it must be 0 to 5", o.budget_kind = 6);
   REFUSE_OPTIONS("budget_kind is -1, it must be 0 to 5", o.budget_kind = -1);
-  REFUSE_OPTIONS("budget is 0, a rate must be 2^-20 to 2^60: float32 bytes / file bytes",
+  REFUSE_OPTIONS("WEIR_BUDGET_RATE is \"0\", it must be a positive number: dense float32 bytes / file bytes",
                  o.budget_kind = WEIR_BUDGET_RATE);
-  REFUSE_OPTIONS("budget is nan, a PSNR must be -1000 to 1000 dB", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
-  REFUSE_OPTIONS("budget is -1, a largest error must be 0 to 1e300, in the values' own unit",
+  REFUSE_OPTIONS("WEIR_BUDGET_PSNR is \"nan\", it must be a number of dB, 60 for instance", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
+  REFUSE_OPTIONS("WEIR_BUDGET_MAX_ERROR is \"-1\", it must be a number from 0 on, in the values' own unit",
                  (o.budget_kind = WEIR_BUDGET_MAX_ERROR, o.budget = -1));
   REFUSE_OPTIONS("budget is 8, and budget_kind is not WEIR_BUDGET_RATE, _PSNR or _MAX_ERROR; set one or the other",
                  o.budget = 8);
-  REFUSE_OPTIONS("size is 0, with WEIR_BUDGET_SIZE it must be the file's bytes", o.budget_kind = WEIR_BUDGET_SIZE);
+  REFUSE_OPTIONS("WEIR_BUDGET_SIZE is \"0\", it must be a size such as 1048577, 64MiB or 1.5GB", o.budget_kind = WEIR_BUDGET_SIZE);
   REFUSE_OPTIONS("size is 4096, and budget_kind is not WEIR_BUDGET_SIZE; set one or the other", o.size = 4096);
   REFUSE_OPTIONS("encoding is 6, it must be 0 to 5", o.encoding = 6);
   REFUSE_OPTIONS("metric is 4, it must be 0 to 3", o.metric = 4);
   REFUSE_OPTIONS("fill is 2, it must be 0 to 1", o.fill = 2);
   REFUSE_OPTIONS("nonfinite is 3, it must be 0 to 2", o.nonfinite = 3);
-  REFUSE_OPTIONS("brick is 9, it must be 8, 16 or 32", o.brick = 9);
-  REFUSE_OPTIONS("brick is 16, and WEIR_METRIC_SSE chooses single leaves; leave it 0", o.brick = 16);
-  REFUSE_OPTIONS("metric is 1, and error budgets select by WEIR_METRIC_SSE",
+  REFUSE_OPTIONS("brick is \"9\", it must be 8, 16 or 32", o.brick = 9);
+  REFUSE_OPTIONS("brick 16 is for WEIR_METRIC_FARTHEST, closest or median; sse chooses single leaves", o.brick = 16);
+  REFUSE_OPTIONS("WEIR_METRIC_FARTHEST has no error target; WEIR_BUDGET_PSNR and WEIR_BUDGET_MAX_ERROR select by sse",
                  (o.metric = 1, o.budget_kind = WEIR_BUDGET_PSNR, o.budget = 50));
-  REFUSE_OPTIONS("background is inf, it must be finite", (o.has_background = 1, o.background = INFINITY));
+  REFUSE_OPTIONS("background is \"inf\", it must be auto or a finite float32", (o.has_background = 1, o.background = INFINITY));
   REFUSE_OPTIONS("background is 1, and has_background is 0; set it", o.background = 1);
-  REFUSE_OPTIONS("threads is -1, it must be 0 to 4096", o.threads = -1);
+  REFUSE_OPTIONS("threads is \"-1\", it must be a whole number from 0 to 4096", o.threads = -1);
   REFUSE_OPTIONS("memory is 18446744073709551615 bytes, it must be at most 2^50", o.memory = UINT64_MAX);
 
   weir_convert_options o = default_options();
   o.memory = 1;
   o.threads = 2;
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert(&volume, values, NULL, &o, path_of("a.nvdb"), &error));
-  CHECK(strstr(error.message, "--memory 1 B is too small for this volume with 2 threads; give at least ") != NULL);
+  CHECK(strstr(error.message, "memory 1 B is too small for this volume with 2 threads; give at least ") != NULL);
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert(&volume, values, NULL, NULL, directory, &error));
-  CHECK(strstr(error.message, ": is a directory; name a file in it as output") != NULL);
+  CHECK(strstr(error.message, ": is a directory; name a file in it") != NULL);
 }
 
 #define REFUSE_INPUT(wanted, change)                                                               \
@@ -173,7 +173,7 @@ static void inputs(void) {
   REFUSE_INPUT("endian is 3, it must be 0 to 2", i.endian = 3);
   REFUSE_INPUT("index is a null pointer", i.index_count = 1);
   REFUSE_INPUT("index_count is 33, it must be at most 32", (i.index = index, i.index_count = 33));
-  REFUSE_INPUT("index has -1, each must be 0 or more", (i.index = index, i.index_count = 2));
+  REFUSE_INPUT("index is \"0,-1\", it must be i,j,..., whole numbers from 0 on, or * for each of them", (i.index = index, i.index_count = 2));
   REFUSE_INPUT("missing is \"\", it must be a number or nan", i.missing = "");
   REFUSE_INPUT("origin is set, and has_origin is 0; set it", i.origin[0] = 1);
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert_file(path_of("x.raw"), NULL, NULL, path_of("a.nvdb"), &error));

@@ -175,8 +175,8 @@ static void values_that_are_none(const float* values) {
   weir_convert_options options = default_options();
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
   CHECK_TEXT(
-      "memory: 2 voxels are NaN or infinite, the first (nan) at 5,0,0; choose --nonfinite background or --nonfinite "
-      "keep",
+      "memory: 2 voxels are NaN or infinite, the first (nan) at 5,0,0; choose WEIR_NONFINITE_BACKGROUND or "
+      "WEIR_NONFINITE_KEEP",
       error.message);
   CHECK(!exists(path_of("holed.nvdb")) && !exists(path_of("holed.nvdb.partial")));
   options.nonfinite = WEIR_NONFINITE_KEEP;

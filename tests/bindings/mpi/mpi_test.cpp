@@ -197,7 +197,7 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
         "weir-mpi: The following arguments were not expected: 9 --speed; see weir-mpi --help");
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
   write_file(directory_ / "out.nvdb", "theirs");
-  fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output with -o or pass --overwrite");
+  fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output or pass --overwrite");
   EXPECT_EQ(read_file(directory_ / "out.nvdb"), "theirs");
 }
 

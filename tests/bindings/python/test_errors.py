@@ -115,12 +115,6 @@ class Errors(FolderTest):
         message = self.refused(weir.InputError, weir.open, os.fsdecode(path + b".no"))
         self.assertTrue(message.startswith("\udcff\udce4.nvdb.no: "), ascii(message))
 
-    def test_messages_name_keywords(self):
-        translate = weir._core.keyword_text
-        self.assertEqual(translate("--max-error is 3; or pass --dims, --roi"), "max_error is 3; or pass dims, roi")
-        self.assertEqual(translate("give (--size) with -o"), "give (size)")
-        self.assertEqual(translate("a--b.raw: -- x-o -other with -other"), "a--b.raw: -- x-o -other with -other")
-
 
 class OpenErrors(FolderTest):
     def test_no_file(self):

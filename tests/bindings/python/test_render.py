@@ -53,7 +53,7 @@ class Render(FolderTest):
             'size is "0x9", it must be WxH in pixels, each from 1 to 32768 and 268435456 together': {"size": (0, 9)},
             'camera is "1,99", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, '
             "zoom from 0.01 to 100": {"camera": (1, 99)},
-            "mode: oil not in {path,dvr,iso,mip}": {"mode": "oil"},
+            'mode is "oil", it must be path, dvr, iso or mip': {"mode": "oil"},
             'spp is "0", it must be a whole number from 1 to 1048576': {"spp": 0},
         }.items():
             self.assertEqual(self.refused(weir.UsageError, grid.render, **keywords), message)

@@ -101,7 +101,7 @@ TEST(MemoryPlan, ThreadsThatWereAskedForAreNotReduced) {
 }
 
 TEST(MemoryPlan, NoticeNamesTheFewerThreads) {
-  EXPECT_EQ(fewer_threads_notice(60, 128, 512 * kMiB),
+  EXPECT_EQ(fewer_threads_notice(60, 128, 512 * kMiB).text(),
             "--memory 512.0 MiB holds 60 of 128 threads; give more to use them all");
 }
 

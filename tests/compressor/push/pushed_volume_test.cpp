@@ -379,7 +379,7 @@ TEST_F(PushMisuse, RefusesNonFiniteValuesAsAConversionDoes) {
 TEST_F(PushMisuse, RefusesAnOutputThatIsThere) {
   files_.create("out.nvdb");
   EXPECT_EQ(message(ErrorKind::usage, [&] { PushedVolume(info_, options_, {}, files_); }),
-            "out.nvdb: exists; choose another output with -o or pass --overwrite");
+            "out.nvdb: exists; choose another output or pass --overwrite");
 }
 
 TEST_F(PushMisuse, CancelledPushStaysInterrupted) {

@@ -86,7 +86,7 @@ TEST(Journal, RestoresOnlyTheSavedState) {
   std::string said;
   {
     Journal journal(files, "o.nvdb", kIdentity,
-                    {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
+                    {"", 0, nullptr, nullptr, [&](const Message& line) { said = line.text(); }});
     EXPECT_TRUE(journal.resumable());
     EXPECT_EQ(journal.state.survey.done.boxes(), std::vector<Box>{kSome});
     EXPECT_EQ(journal.open("rows")->size(), 10U);
@@ -139,7 +139,7 @@ TEST(Journal, SpillFilesGoToTheChosenWorkDirectory) {
   EXPECT_TRUE(names[1].starts_with("/scratch/.o.nvdb.") && names[1].ends_with(".work/rows")) << names[1];
   std::string said;
   const Journal journal(files, "o.nvdb", kIdentity,
-                        {"", 0, nullptr, nullptr, [&](const std::string& line) { said = line; }});
+                        {"", 0, nullptr, nullptr, [&](const Message& line) { said = line.text(); }});
   EXPECT_TRUE(
       said.starts_with("o.nvdb: an interrupted conversion of it is not continued: its spill files were in "
                        "/scratch/.o.nvdb."))

@@ -163,7 +163,7 @@ TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
       run(options, memory);
       ADD_FAILURE();
     } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()), "out.nvdb: exists; choose another output with -o or pass --overwrite");
+      EXPECT_EQ(std::string(error.what()), "out.nvdb: exists; choose another output or pass --overwrite");
     }
     EXPECT_EQ(memory.names(), kResult) << call;
     EXPECT_EQ(memory.directories(), Names{}) << call;

@@ -59,11 +59,11 @@ TEST(Budget, AutomaticIsRateEightOrTheMinimumWithANotice) {
   const FileSize fits = file_size_for({}, 8000, sizes(1000, 5000), "out.nvdb");
   EXPECT_EQ(fits.bytes, 1000U);
   EXPECT_EQ(fits.kind, "rate");
-  EXPECT_EQ(fits.notice, "");
+  EXPECT_EQ(fits.notice.text(), "");
   const FileSize tight = file_size_for({}, 7999, sizes(1001, 5000), "out.nvdb");
   EXPECT_EQ(tight.bytes, 1001U);
   EXPECT_EQ(tight.kind, "minimum");
-  EXPECT_EQ(tight.notice,
+  EXPECT_EQ(tight.notice.text(),
             "out.nvdb: --rate 8 would be 1000 bytes, less than the smallest tree; writing that: 1001 bytes");
 }
 
@@ -84,18 +84,18 @@ TEST(Budget, BelowTheMinimumIsAnErrorThatNamesIt) {
 
 TEST(Budget, MoreThanLosslessIsPaddingWithANotice) {
   const FileSize exact = file_size_for({Budget::Kind::size, 8, 5000}, 9000, sizes(1000, 5000), "out.nvdb");
-  EXPECT_EQ(exact.notice, "");
+  EXPECT_EQ(exact.notice.text(), "");
   const FileSize more = file_size_for({Budget::Kind::size, 8, 5001}, 9000, sizes(1000, 5000), "out.nvdb");
   EXPECT_EQ(more.bytes, 5001U);
   EXPECT_EQ(more.kind, "size");
-  EXPECT_EQ(more.notice, "out.nvdb: lossless takes 5000 bytes; the other 1 of the 5001 asked are padding");
+  EXPECT_EQ(more.notice.text(), "out.nvdb: lossless takes 5000 bytes; the other 1 of the 5001 asked are padding");
 }
 
 TEST(Budget, LosslessTakesExactlyTheLosslessSize) {
   const FileSize size = file_size_for({Budget::Kind::lossless, 8, 0}, 9000, sizes(1000, 5000), "out.nvdb");
   EXPECT_EQ(size.bytes, 5000U);
   EXPECT_EQ(size.kind, "lossless");
-  EXPECT_EQ(size.notice, "");
+  EXPECT_EQ(size.notice.text(), "");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Converted convert(VolumeSource& volume, ConversionOptions options) {
   if (options.threads == 0) options.threads = 2;
   Converted converted;
   ConversionControl control;
-  control.notice = [&](const std::string& line) { converted.notices.push_back(line); };
+  control.notice = [&](const Message& line) { converted.notices.push_back(line.text()); };
   converted.sidecar = convert_volume(volume, options, control, files);
   EXPECT_EQ(files.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
   converted.file = files.content("out.nvdb");

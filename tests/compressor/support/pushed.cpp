@@ -35,7 +35,7 @@ Converted push(const SourceInfo& info, std::span<const std::byte> values, Conver
   if (options.threads == 0) options.threads = 2;
   Converted pushed;
   ConversionControl control;
-  control.notice = [&](const std::string& line) { pushed.notices.push_back(line); };
+  control.notice = [&](const Message& line) { pushed.notices.push_back(line.text()); };
   PushedVolume volume(info, options, control, files, threads);
   const std::size_t plane = values.size() / static_cast<std::size_t>(info.extent.z);
   std::atomic<std::size_t> next{0};

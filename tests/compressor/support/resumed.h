@@ -85,7 +85,7 @@ class ResumeTest : public ::testing::Test {
     options.memory += least_memory(volume_, options.threads) + kMargin;
     Result result;
     ConversionControl control;
-    control.notice = [&](const std::string& line) { result.notices.push_back(line); };
+    control.notice = [&](const Message& line) { result.notices.push_back(line.text()); };
     control.pass_started = [&](const std::string& pass, std::uint64_t) { result.encode_passes += pass == "encode"; };
     const std::uint64_t before = volume_.bytes_read();
     result.record = record_of(convert_volume(volume_, options, control, files));

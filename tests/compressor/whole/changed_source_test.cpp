@@ -227,7 +227,7 @@ TEST_F(ChangedSourceTest, ResumeOfAnotherFileOfTheSameSizeAndTime_BeginsAnew) {
     control.cancel = &cancel;
     control.pass_started = [&](const std::string& pass, std::uint64_t) { cancel = interrupt && pass == "encode"; };
     Names notices;
-    control.notice = [&](const std::string& line) { notices.push_back(line); };
+    control.notice = [&](const Message& line) { notices.push_back(line.text()); };
     std::string digest;
     try {
       digest = convert_volume(*source, options, control, files).source.digest;

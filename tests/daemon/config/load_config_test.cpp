@@ -7,7 +7,6 @@
 #include "format/base/error.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
-#include "tools/options/convert_syntax.h"
 
 namespace weir::config_test {
 namespace {
@@ -18,7 +17,7 @@ class Config : public testing::Test {
  protected:
   DaemonConfig load(const std::string& text) {
     write_file(path_, text);
-    return load_config(path_, convert_syntax());
+    return load_config(path_);
   }
   /// The message without the path before ":LINE:COLUMN: "; empty: it is accepted.
   std::string refusal(const std::string& text) {
@@ -306,7 +305,7 @@ output = "in/deep/nvdb"
 TEST_F(Config, UnreadableFiles) {
   const auto message = [](const std::string& path) -> std::string {
     try {
-      load_config(path, convert_syntax());
+      load_config(path);
       return "";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <thread>
 
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/store/file_identity.h"
@@ -37,6 +39,7 @@ class SourceDeletionTest : public testing::Test {
     watch.delete_after_s = 0.05;
     config_.watches = {watch};
     write_file(source_, "values");
+    std::this_thread::sleep_for(milliseconds(20));  // longer than a tick of the clock of files
     write_output("");
   }
 

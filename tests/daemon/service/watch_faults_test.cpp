@@ -104,7 +104,7 @@ TEST(WatchFaults, SecondSourceOfTheSameOutput_FailsWithTheReason) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
   EXPECT_EQ(service.job(name + ".nrrd")["reason"],
             cat(service.out(name), ".nvdb: exists and is not of ", service.in(name), ".nrrd (was made of ",
-                service.in(name), ".raw); choose another output with -o or pass --overwrite"));
+                service.in(name), ".raw); choose another output or pass --overwrite"));
   EXPECT_EQ(service.job(name + ".nrrd")["attempts"], 1);
   EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
 }

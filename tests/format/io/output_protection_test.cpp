@@ -127,7 +127,7 @@ TEST_F(OutputProtection, HiddenDirectoryThatIsALink_IsRefused) {
 TEST_F(OutputProtection, WhatIsNoRegularFile_IsNotReplaced) {
   const auto refused = [&](const std::string& path) {
     EXPECT_EQ(write_output(*real_, true),
-              path + ": is no regular file, and nothing else is replaced; choose another output with -o");
+              path + ": is no regular file, and nothing else is replaced; choose another output");
     EXPECT_FALSE(fs::exists(output() + ".partial"));
   };
   ASSERT_EQ(::mkfifo(output().c_str(), 0600), 0);
@@ -154,12 +154,12 @@ TEST_F(OutputProtection, ForeignSidecarBesideAStalePartial_IsKept) {
   put("out.nvdb.json", "{\"mine\": 1}");
   put("out.nvdb.partial", "half of a volume");
   const Listing before = listing();
-  EXPECT_EQ(write_output(*real_, false), output() + ".json: exists; choose another output with -o or pass --overwrite");
+  EXPECT_EQ(write_output(*real_, false), output() + ".json: exists; choose another output or pass --overwrite");
   EXPECT_EQ(listing(), before);
   put("out.nvdb.json", sidecar_of(volume('o'), "another volume"));
   put("out.nvdb.partial", volume('x'));
   const Listing of_another = listing();
-  EXPECT_EQ(write_output(*real_, false), output() + ".json: exists; choose another output with -o or pass --overwrite");
+  EXPECT_EQ(write_output(*real_, false), output() + ".json: exists; choose another output or pass --overwrite");
   EXPECT_EQ(listing(), of_another);
 }
 
@@ -236,7 +236,7 @@ TEST_F(OutputProtection, NameTooLongForTheFilesBesideIt_IsRefused) {
 
 TEST_F(OutputProtection, WithoutLocks_OneNoticeAndTheSameFiles) {
   std::vector<std::string> notices;
-  const auto files = make_posix_file_system({[&](const std::string& line) { notices.push_back(line); }, &no_locks});
+  const auto files = make_posix_file_system({[&](const Message& line) { notices.push_back(line.text()); }, &no_locks});
   EXPECT_EQ(write_output(*files, false), "");
   EXPECT_EQ(write_output(*files, true), "");
   EXPECT_EQ(listing(), new_pair_);

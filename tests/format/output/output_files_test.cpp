@@ -120,7 +120,7 @@ TEST_F(OutputFilesTest, RefusesAnExistingOutput) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_EQ(std::string(error.what()), output() + ": exists; choose another output with -o or pass --overwrite");
+    EXPECT_EQ(std::string(error.what()), output() + ": exists; choose another output or pass --overwrite");
   }
   EXPECT_EQ(listing(), (Listing{{"out.nvdb", "old volume"}}));
 }
@@ -146,7 +146,7 @@ TEST_F(OutputFilesTest, ForeignSidecarIsKeptAndTheOutputRefused) {
     OutputFiles output_files(*real_, output(), false);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()), output() + ".json: exists; choose another output with -o or pass --overwrite");
+    EXPECT_EQ(std::string(error.what()), output() + ".json: exists; choose another output or pass --overwrite");
   }
   EXPECT_EQ(listing(), (Listing{{"out.nvdb.json", "kept"}}));
 }

@@ -49,6 +49,18 @@ TEST_F(FileStateTest, UntouchedFile_IsUnchanged) {
   EXPECT_EQ(before_[0].bytes, 4U);
 }
 
+TEST_F(FileStateTest, TouchedSince_WithinOneTickOfTheClock_IsTrue) {
+  FileState file;
+  FileState record;
+  file.ctime_ns = 5'000'000'001;
+  record.mtime_ns = 5'000'000'002;
+  EXPECT_FALSE(touched_since(file, record));
+  record.mtime_ns = file.ctime_ns;
+  EXPECT_TRUE(touched_since(file, record));
+  file.ctime_ns = 5'000'000'000;
+  EXPECT_TRUE(touched_since(file, record)) << "a file system that counts whole seconds";
+}
+
 TEST_F(FileStateTest, AnotherSize_IsSaidWithBoth) {
   look();
   std::ofstream(path_, std::ios::app) << "more";

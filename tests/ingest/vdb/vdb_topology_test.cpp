@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "ingest/vdb/vdb_tree.h"
+#include "ingest/vdb/openvdb_library.h"
 #include "tests/ingest/support/header_file.h"
 #include "tests/stock/openvdb_file.h"
 
@@ -74,7 +74,7 @@ TEST(VdbTopology, EstimatesTheMemoryThatOpenVdbCounts) {
                              : kind == GridKind::float64 ? "Tree_double_5_4_3"
                              : kind == GridKind::int32   ? "Tree_int32_5_4_3"
                                                          : "Tree_bool_5_4_3";
-    const auto estimate = static_cast<double>(vdb_tree_bytes(*vdb_type(tree), walk(grid)));
+    const auto estimate = static_cast<double>(openvdb_library("a test").tree_bytes(*vdb_type(tree), walk(grid)));
     const auto counted = static_cast<double>(grid.memory_bytes());
     EXPECT_GE(estimate, counted) << tree;
     EXPECT_LE(estimate, counted * 1.25) << tree;

@@ -165,7 +165,7 @@ TEST_F(BadInput, OutputDirectoryMissing) {
 TEST_F(BadInput, OutputExists) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
   const auto line = [](const std::string& existing) {
-    return existing + ": exists; choose another output with -o or pass --overwrite";
+    return existing + ": exists; choose another output or pass --overwrite";
   };
   write_file(out(), "precious");
   expect_convert_refused(path, {}, 2, line(out()));
@@ -177,15 +177,14 @@ TEST_F(BadInput, OutputExists) {
 
 TEST_F(BadInput, OutputIsTheInput) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
-  expect_refused({"convert", path, "-o", path, "--overwrite"}, 2,
-                 path + ": is the input; choose another output with -o");
+  expect_refused({"convert", path, "-o", path, "--overwrite"}, 2, path + ": is the input; choose another output");
   EXPECT_EQ(read_file(path), std::string(512, '\1'));
 }
 
 TEST_F(BadInput, OutputIsADirectory) {
   const std::string path = bytes("volume_8x8x8_uint8.raw", 512);
   expect_refused({"convert", path, "-o", out_.string(), "--overwrite"}, 2,
-                 out_.string() + ": is a directory; name a file in it with -o");
+                 out_.string() + ": is a directory; name a file in it");
 }
 
 TEST_F(BadInput, OutputDirectoryReadOnly) {

@@ -240,8 +240,7 @@ TEST_F(ExportCommand, Refusals) {
       << half.err;
   EXPECT_FALSE(std::filesystem::exists(vdb_));
   exported();
-  expect_refused({"export", nvdb_, "-o", vdb_}, 2,
-                 vdb_ + ": exists; choose another output with -o or pass --overwrite");
+  expect_refused({"export", nvdb_, "-o", vdb_}, 2, vdb_ + ": exists; choose another output or pass --overwrite");
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"v.nvdb", "v.nvdb.json", "v.raw", "v.vdb"}));
 }
 

@@ -34,7 +34,7 @@ class ForeignFiles : public ::testing::Test {
   }
   static std::string belongs(const std::string& path, const std::string& output) {
     return path + ": belongs to the input, and writing " + output +
-           " would replace or remove it; choose another output with -o";
+           " would replace or remove it; choose another output";
   }
 
   TemporaryDirectory directory_;
@@ -77,7 +77,7 @@ TEST_F(ForeignFiles, PlaneOfAStack_IsNotReplaced) {
 TEST_F(ForeignFiles, PipeAndWhatALinkLeadsTo_AreNotReplaced) {
   const std::string volume = directory_ / "v_16x16x16_uint8.raw";
   write_file(volume, std::string(kVoxels, '\1'));
-  const std::string reason = ": is no regular file, and nothing else is replaced; choose another output with -o";
+  const std::string reason = ": is no regular file, and nothing else is replaced; choose another output";
   ASSERT_EQ(::mkfifo((directory_ / "pipe").c_str(), 0600), 0);
   expect_refused({"convert", volume, "-o", directory_ / "pipe", "--overwrite"}, directory_ / "pipe" + reason);
   fs::create_symlink("/dev/null", directory_ / "null");

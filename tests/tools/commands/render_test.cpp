@@ -110,7 +110,7 @@ TEST_F(Render, Refusals) {
   }
   expect_refused(arguments("a.jpg"), 2, out_ + "/a.jpg: an image's name must end in .png or .exr");
   expect_refused(arguments("a.png", {"--colormap", "jet"}), 2,
-                 "unknown colormap \"jet\"; use one of gray, white, heat, cool-warm, dusk, ct, water, magma");
+                 "--colormap is \"jet\", it must be gray, white, heat, cool-warm, dusk, ct, water or magma");
   expect_refused(
       arguments("a.png", {"--camera", "1"}), 2,
       "--camera is \"1\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, zoom from "

@@ -171,7 +171,7 @@ TEST(Sample, KeepsAnExistingFileUnlessToldTo) {
   const std::string path = directory / "a.raw";
   write_file(path, "mine");
   expect_refusal(run_weir({"sample", "zero", "--dims", "1,1,1", "-o", path}), 2,
-                 path + ": exists; choose another output with -o or pass --overwrite");
+                 path + ": exists; choose another output or pass --overwrite");
   EXPECT_EQ(read_file(path), "mine");
   EXPECT_EQ(run_weir({"sample", "zero", "--dims", "1,1,1", "--overwrite", "-o", path}).exit_code, 0);
   EXPECT_EQ(read_file(path), std::string(4, '\0'));

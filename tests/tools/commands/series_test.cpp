@@ -59,7 +59,7 @@ TEST_F(SeriesCommand, RefusesWhatExistsBeforeTheFirstStep) {
   const auto made = run_weir({"convert", pattern_});
   EXPECT_EQ(made.exit_code, 2);
   EXPECT_EQ(made.err, "weir: " + directory_ / "t_1_64x48x40_uint8.nvdb" +
-                          ": exists; choose another output with -o or pass --overwrite\n");
+                          ": exists; choose another output or pass --overwrite\n");
   EXPECT_FALSE(std::filesystem::exists(directory_.path() / "t_0_64x48x40_uint8.nvdb"));
 }
 

@@ -52,10 +52,11 @@ void add_files(const fs::path& root, const std::string& as, std::set<std::string
 
 std::set<std::string> headers() {
   std::set<std::string> files;
-  for (const char* name : {"io/descriptor", "base/error", "io/file_mapping", "base/host_device", "base/index",
-                           "leaf/leaf_decode", "nanovdb/macrocells", "layout/nanovdb_layout", "nanovdb/nvdb_blind",
-                           "nanovdb/nvdb_bytes", "nanovdb/nvdb_file", "nanovdb/nvdb_grid", "nanovdb/nvdb_header",
-                           "nanovdb/nvdb_tree", "layout/nvdb_type", "nanovdb/range_max", "base/text"}) {
+  for (const char* name :
+       {"io/descriptor", "base/error", "base/message", "io/file_mapping", "base/host_device", "base/index",
+        "leaf/leaf_decode", "nanovdb/macrocells", "layout/nanovdb_layout", "nanovdb/nvdb_blind", "nanovdb/nvdb_bytes",
+        "nanovdb/nvdb_file", "nanovdb/nvdb_grid", "nanovdb/nvdb_header", "nanovdb/nvdb_tree", "layout/nvdb_type",
+        "nanovdb/range_max", "base/text"}) {
     files.insert(cat("include/weir/format/", name, ".h"));
   }
   for (const char* name :
@@ -99,6 +100,9 @@ std::set<std::string> installed_files(bool has_cuda, const std::string& python) 
       "lib/libweir.so." WEIR_VERSION,
       "lib/libweir_format_core.a",
       "lib/libweir_gpu_core.a",
+      "lib/weir/weir_hdf5.so",
+      "lib/weir/weir_openvdb.so",
+      "lib/weir/weir_plot.so",
       "lib/cmake/weir/weirCTargets.cmake",
       "lib/cmake/weir/weirCTargets-release.cmake",
       "lib/cmake/weir/weirConfig.cmake",

@@ -196,7 +196,7 @@ TEST_F(SkipDone, RefusesToReplaceAForeignOutput) {
   const CommandResult unknown = convert();
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_EQ(unknown.err, "weir: " + output_ + ": exists and is not of " + source_ +
-                             " (has no sidecar, so that weir cannot say what it is); choose another output with -o or "
+                             " (has no sidecar, so that weir cannot say what it is); choose another output or "
                              "pass --overwrite\n");
   EXPECT_EQ(read_file(output_), "precious");
   EXPECT_EQ(convert({"--overwrite"}).exit_code, 0);

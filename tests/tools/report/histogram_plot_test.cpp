@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/tools/support/chart_picture.h"
+
 namespace weir::histogram_plot_test {
 namespace {
 
@@ -56,22 +58,26 @@ TEST(HistogramText, OneBinOfAConstantVolume) {
 
 Float3 pixel(const Image& image, std::int32_t x, std::int32_t y) { return image.at(x, y); }
 
+Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background) {
+  return test::picture_of(histogram_chart(histogram, background, PlotFormat::png));
+}
+
 TEST(HistogramImage, BarsStandWhereTheCountsAre) {
-  // Two of four bins over the plot's 648 pixels from x = 48; the floor is at y = 320.
+  // Two of four bins over the plot's 632 pixels from x = 64; the floor is at y = 312.
   const Image image = histogram_image({0, 4, {100, 0, 0, 100}}, std::nullopt);
   EXPECT_EQ(image.width, 720);
   EXPECT_EQ(image.height, 360);
-  const Float3 bar = pixel(image, 60, 200);
+  const Float3 bar = pixel(image, 80, 200);
   EXPECT_LT(bar.x, 0.5F);
   EXPECT_EQ(pixel(image, 680, 200), bar);
-  EXPECT_EQ(pixel(image, 360, 315), (Float3{1, 1, 1}));
+  EXPECT_EQ(pixel(image, 360, 308), (Float3{1, 1, 1}));
 }
 
 TEST(HistogramImage, MarksTheBackgroundOnlyWithinTheRange) {
   const Image without = histogram_image({0, 4, {100, 0, 0, 100}}, std::nullopt);
   const Image with = histogram_image({0, 4, {100, 0, 0, 100}}, 2.0);
   const Image outside = histogram_image({0, 4, {100, 0, 0, 100}}, 5.0);
-  EXPECT_NE(pixel(with, 48 + 324, 200), pixel(without, 48 + 324, 200));
+  EXPECT_NE(pixel(with, 64 + 316, 200), pixel(without, 64 + 316, 200));
   EXPECT_EQ(outside.pixels, without.pixels);
 }
 

@@ -42,13 +42,13 @@ TEST(SweepMethod, ByName) {
 }
 
 TEST(SweepMethod, MethodNamesSetTheConversionOptions) {
-  const auto conversion = [](const char* name, const char* policy = "") {
-    return conversion_of(parse_sweep_methods(name).front(), policy);
+  const auto conversion = [](const char* name, const GivenOptions& given = {}) {
+    return conversion_of(parse_sweep_methods(name).front(), given);
   };
   EXPECT_EQ(conversion("auto").encoding, Encoding::automatic);
   EXPECT_EQ(conversion("fp16").encoding, Encoding::fp16);
   EXPECT_EQ(conversion("fp16").metric, Metric::sse);
-  EXPECT_EQ(conversion("auto", "keep").non_finite, NonFinitePolicy::keep);
+  EXPECT_EQ(conversion("auto", {{"nonfinite", "keep"}}).non_finite, NonFinitePolicy::keep);
   const ConversionOptions paper = conversion("paper");
   EXPECT_EQ(paper.encoding, Encoding::float32);
   EXPECT_EQ(paper.metric, Metric::farthest);
@@ -56,7 +56,9 @@ TEST(SweepMethod, MethodNamesSetTheConversionOptions) {
   EXPECT_TRUE(paper.paper_background);
   EXPECT_EQ(paper.brick, 8);
   EXPECT_EQ(conversion("paper32").brick, 32);
-  EXPECT_EQ(refusal([&] { conversion("auto", "drop"); }),
+  EXPECT_EQ(refusal([&] {
+              conversion("auto", {{"nonfinite", "drop"}});
+            }),
             "--nonfinite is \"drop\", it must be error, background or keep");
 }
 

@@ -4,10 +4,17 @@
 
 #include <algorithm>
 
+#include "gpu/image/colormap.h"
+#include "tests/tools/support/chart_picture.h"
+
 namespace weir::sweep_plot_test {
 namespace {
 
 constexpr Float3 kPaper{1, 1, 1};
+
+Image psnr_plot(const SweepReport& report, SweepAxis axis) {
+  return test::picture_of(psnr_chart(report, axis, PlotFormat::png));
+}
 
 // 10^3 voxels, so that 125 bytes are a bit a voxel.
 SweepReport report_of(const std::vector<SweepRow>& rows) {
@@ -26,6 +33,11 @@ SweepRow row(const std::string& method, std::uint64_t bytes, std::optional<doubl
 }
 
 SweepRow unmet(const std::string& method) { return {method, 100, 10, std::nullopt, "too small"}; }
+
+Float3 ink_of(int red, int green, int blue) {
+  const auto channel = [](int value) { return linear_from_srgb(static_cast<float>(value) / 255); };
+  return {channel(red), channel(green), channel(blue)};
+}
 
 std::int64_t pixels_of(const Image& image, const Float3& ink) {
   return std::count(image.pixels.begin(), image.pixels.end(), ink);
@@ -79,8 +91,8 @@ TEST(SweepPlot, MethodsHaveDifferentColours) {
     rows.push_back(row(name, 125, 20.0 + 10.0 * static_cast<double>(rows.size())));
   }
   const Image image = psnr_plot(report_of(rows), SweepAxis::bits_per_voxel);
-  EXPECT_GT(pixels_of(image, {0, 0.168F, 0.445F}), 50);
-  EXPECT_GT(pixels_of(image, {0.160F, 0.220F, 0.010F}), 10);  // the ninth, in the legend's second line
+  EXPECT_GT(pixels_of(image, ink_of(0, 114, 178)), 50);
+  EXPECT_GT(pixels_of(image, ink_of(112, 129, 25)), 10);  // the ninth, in the legend's second line
 }
 
 // Ranges whose ticks could loop, divide by zero or overflow; volumes without anything to show.

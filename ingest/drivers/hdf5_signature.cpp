@@ -1,4 +1,4 @@
-#include "ingest/hdf5/file/hdf5_signature.h"
+#include "ingest/drivers/hdf5_signature.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
-#include "tools/options/input_options.h"
+#include "compressor/options/conversion_request.h"
 
 #include <gtest/gtest.h>
-#include <CLI/CLI.hpp>
 
 #include <functional>
 
@@ -11,20 +10,14 @@
 namespace weir::input_options_test {
 namespace {
 
-SourceOptions parse(const std::string& command_line) {
-  CLI::App app;
-  InputArguments arguments;
-  add_input_options(app, arguments);
-  app.parse(command_line);
-  return parse_input(arguments);
-}
+SourceOptions parse(const GivenOptions& given) { return read_conversion_request(given).source; }
 
 std::string message_of(const std::function<void()>& call) {
   return message_of_error(ErrorKind::usage, [&] { call(); });
 }
 
 TEST(InputOptions, NoOptionGiven_LeavesAllUnset) {
-  const SourceOptions options = parse("");
+  const SourceOptions options = parse({});
   EXPECT_FALSE(options.extent || options.type || options.big_endian || options.spacing || options.origin ||
                options.roi);
   EXPECT_FALSE(options.offset || options.missing);
@@ -34,9 +27,17 @@ TEST(InputOptions, NoOptionGiven_LeavesAllUnset) {
 }
 
 TEST(InputOptions, AllGiven) {
-  const SourceOptions options = parse(
-      "--dims 3,4,5 --type uint16 --endian big --offset 1KiB --spacing 0.5,1,2e-3 --origin -1.5,0,7"
-      " --roi -1:2,0:4,3:5 --direct-io off --dataset '/a b/c' --index 3,0 --missing -9999");
+  const SourceOptions options = parse({{"dims", "3,4,5"},
+                                       {"type", "uint16"},
+                                       {"endian", "big"},
+                                       {"offset", "1KiB"},
+                                       {"spacing", "0.5,1,2e-3"},
+                                       {"origin", "-1.5,0,7"},
+                                       {"roi", "-1:2,0:4,3:5"},
+                                       {"direct-io", "off"},
+                                       {"dataset", "/a b/c"},
+                                       {"index", "3,0"},
+                                       {"missing", "-9999"}});
   EXPECT_EQ(options.extent, (Index3{3, 4, 5}));
   EXPECT_EQ(options.type, ScalarType::uint16);
   EXPECT_EQ(options.big_endian, true);
@@ -51,63 +52,80 @@ TEST(InputOptions, AllGiven) {
 }
 
 TEST(InputOptions, ImpossibleExtents_AreParsedForTheSourceToRefuse) {
-  EXPECT_EQ(parse("--dims -1,0,5").extent, (Index3{-1, 0, 5}));
+  EXPECT_EQ(parse({{"dims", "-1,0,5"}}).extent, (Index3{-1, 0, 5}));
 }
 
 TEST(InputOptions, Dims) {
   const std::string form = ", it must be X,Y,Z, three whole numbers of voxels";
   for (const std::string text : {"3,4", "3,4,5,6", "3x4x5", "3,4,", "3,4,5.5", "3,4,99999999999999999999"}) {
-    EXPECT_EQ(message_of([&] { parse("--dims " + text); }), "--dims is \"" + text + "\"" + form);
+    EXPECT_EQ(message_of([&] { parse({{"dims", text}}); }), "--dims is \"" + text + "\"" + form);
   }
 }
 
 TEST(InputOptions, Type) {
-  EXPECT_EQ(message_of([] { parse("--type half"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"type", "half"}});
+            }),
             "--type is \"half\", it must be one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, "
             "float32, float64");
 }
 
 TEST(InputOptions, Endian) {
-  EXPECT_EQ(message_of([] { parse("--endian middle"); }), "--endian is \"middle\", it must be little or big");
+  EXPECT_EQ(message_of([] { parse({{"endian", "middle"}}); }), "--endian is \"middle\", it must be little or big");
 }
 
 TEST(InputOptions, Offset) {
-  EXPECT_EQ(message_of([] { parse("--offset 0.3"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"offset", "0.3"}});
+            }),
             "--offset is \"0.3\", it must be a number of bytes, like 352 or 4KiB");
 }
 
 TEST(InputOptions, SpacingAndOrigin) {
-  EXPECT_EQ(message_of([] { parse("--spacing 1,2"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"spacing", "1,2"}});
+            }),
             "--spacing is \"1,2\", it must be x,y,z, three numbers in world units");
-  EXPECT_EQ(message_of([] { parse("--origin 1,2,3,4"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"origin", "1,2,3,4"}});
+            }),
             "--origin is \"1,2,3,4\", it must be x,y,z, three numbers in world units");
-  EXPECT_EQ(message_of([] { parse("--origin 1,two,3"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"origin", "1,two,3"}});
+            }),
             "--origin is \"1,two,3\", it must be x,y,z, three numbers in world units");
 }
 
 TEST(InputOptions, Index) {
   for (const std::string text : {"-1", "1,", "a", "1.5"}) {
-    EXPECT_EQ(message_of([&] { parse("--index " + text); }),
+    EXPECT_EQ(message_of([&] {
+                parse({{"index", text}});
+              }),
               "--index is \"" + text + "\", it must be i,j,..., whole numbers from 0 on, or * for each of them");
   }
 }
 
 TEST(InputOptions, Missing) {
-  EXPECT_EQ(message_of([] { parse("--missing none"); }), "--missing is \"none\", it must be a number or nan");
-  EXPECT_EQ(parse("--missing 18446744073709551615").missing, StoredValue{~std::uint64_t{0}});
+  EXPECT_EQ(message_of([] { parse({{"missing", "none"}}); }), "--missing is \"none\", it must be a number or nan");
+  EXPECT_EQ(parse({{"missing", "18446744073709551615"}}).missing, StoredValue{~std::uint64_t{0}});
 }
 
 TEST(InputOptions, Roi) {
   const std::string form = ", it must be x0:x1,y0:y1,z0:z1, whole numbers, half open";
   for (const std::string text : {"1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:6:7", "a:2,3:4,5:6", "1:2,3:4,5:6,7:8"}) {
-    EXPECT_EQ(message_of([&] { parse("--roi " + text); }), "--roi is \"" + text + "\"" + form);
+    EXPECT_EQ(message_of([&] { parse({{"roi", text}}); }), "--roi is \"" + text + "\"" + form);
   }
-  EXPECT_EQ(message_of([] { parse("--roi 1:1,3:4,5:6"); }),
+  EXPECT_EQ(message_of([] {
+              parse({{"roi", "1:1,3:4,5:6"}});
+            }),
             "--roi is \"1:1,3:4,5:6\"" + form + ", with every end above its start");
 }
 
 TEST(InputOptions, DirectIo) {
-  EXPECT_EQ(message_of([] { parse("--direct-io maybe"); }), "--direct-io is \"maybe\", it must be auto, on or off");
+  EXPECT_EQ(message_of([] {
+              parse({{"direct-io", "maybe"}});
+            }),
+            "--direct-io is \"maybe\", it must be auto, on or off");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-#include "ingest/vdb/vdb_tree.h"
-
+// The entry of weir_openvdb.so, and all that is compiled against OpenVDB.
+#include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tree/ValueAccessor.h>
@@ -11,8 +11,9 @@
 #include <type_traits>
 
 #include "format/base/error.h"
-#include "format/base/text.h"
+#include "ingest/drivers/driver.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/vdb/openvdb_library.h"
 
 namespace weir {
 namespace {
@@ -83,9 +84,7 @@ auto with_tree(const VdbType& type, const Use& use) {
   }
 }
 
-}  // namespace
-
-std::uint64_t vdb_tree_bytes(const VdbType& type, const VdbTopology& topology) {
+std::uint64_t tree_bytes_of(const VdbType& type, const VdbTopology& topology) {
   return with_tree(type, [&](auto* of_type) -> std::uint64_t {
     using Tree = std::remove_pointer_t<decltype(of_type)>;
     using Upper = typename Tree::RootNodeType::ChildNodeType;
@@ -99,8 +98,8 @@ std::uint64_t vdb_tree_bytes(const VdbType& type, const VdbTopology& topology) {
   });
 }
 
-std::unique_ptr<LeafTree> load_vdb_tree(std::istream& in, const VdbHeader& header, const VdbGrid& grid,
-                                        const VdbType& type, const std::string& where) {
+std::unique_ptr<LeafTree> load_tree_of(std::istream& in, const VdbHeader& header, const VdbGrid& grid,
+                                       const VdbType& type, const std::string& where) {
   try {
     openvdb::initialize();  // fills the registry, once
     openvdb::io::setVersion(in, openvdb::VersionId(header.library_major, header.library_minor), header.version);
@@ -119,4 +118,37 @@ std::unique_ptr<LeafTree> load_vdb_tree(std::istream& in, const VdbHeader& heade
   }
 }
 
+class Library final : public OpenVdbLibrary {
+ public:
+  std::uint64_t tree_bytes(const VdbType& type, const VdbTopology& topology) const override {
+    return tree_bytes_of(type, topology);
+  }
+  std::unique_ptr<LeafTree> load_tree(std::istream& in, const VdbHeader& header, const VdbGrid& grid,
+                                      const VdbType& type, const std::string& where) const override {
+    return load_tree_of(in, header, grid, type, where);
+  }
+  void write_blosc(std::ostream& out, const char* values, std::size_t value_bytes, std::size_t count) const override {
+    openvdb::io::bloscToStream(out, values, value_bytes, count);
+  }
+  void write_zip(std::ostream& out, const char* values, std::size_t bytes) const override {
+    openvdb::io::zipToStream(out, values, bytes);
+  }
+  std::uint16_t half_of(float value) const override { return ToHalf::convert(value).bits(); }
+  float value_of_half(std::uint16_t half) const override {
+    ToHalf::HalfT value;
+    value.setBits(half);
+    return static_cast<float>(value);
+  }
+
+ private:
+  using ToHalf = openvdb::io::RealToHalf<float>;
+};
+
+}  // namespace
 }  // namespace weir
+
+WEIR_DRIVER_ENTRY;
+WEIR_DRIVER_ENTRY {
+  static const weir::Library library;
+  return static_cast<const weir::OpenVdbLibrary*>(&library);
+}

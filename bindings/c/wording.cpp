@@ -1,0 +1,40 @@
+#include "bindings/c/wording.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace weir::c {
+namespace {
+
+constexpr std::array<std::string_view, 5> kBudgets{"rate", "size", "psnr", "max-error", "lossless"};
+constexpr std::array<std::string_view, 4> kChoices{"encoding", "metric", "fill", "nonfinite"};
+
+bool holds(const auto& keys, const std::string& key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
+
+std::string enumerator_of(std::string_view name) {
+  std::string text(name);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+std::string member_of(const std::string& key) {
+  if (key == "dims") return "extent";
+  if (key == "roi") return "roi_min to roi_max";
+  return key_wording({key, {}});
+}
+
+}  // namespace
+
+std::string c_wording(const OptionName& option) {
+  if (holds(kChoices, option.key) && !option.value.empty()) {
+    return cat("WEIR_", enumerator_of(option.key), "_", enumerator_of(option.value));
+  }
+  const std::string name =
+      holds(kBudgets, option.key) ? "WEIR_BUDGET_" + enumerator_of(option.key) : member_of(option.key);
+  return option.value.empty() ? name : cat(name, " ", option.value);
+}
+
+}  // namespace weir::c

@@ -1,0 +1,14 @@
+// Options as weir.h names them.
+#pragma once
+
+#include <string>
+
+#include "format/base/message.h"
+
+namespace weir::c {
+
+/// "WEIR_BUDGET_PSNR", "WEIR_ENCODING_FLOAT", "extent", "memory 64.0 MiB": budgets and choices by their enumerators,
+/// everything else by its member.
+std::string c_wording(const OptionName& option);
+
+}  // namespace weir::c

@@ -1,0 +1,46 @@
+#include "compressor/options/conversion_request.h"
+
+#include <array>
+
+namespace weir {
+namespace {
+
+std::array<std::span<const ConversionOption>, 3> tables() { return {input_options(), method_options(), run_options()}; }
+
+/// What no option can see of itself.
+void check_method(const GivenOptions& given, const ConversionOptions& options) {
+  const auto encoding = given.find("encoding");
+  if (given.contains("preset") && encoding != given.end() && encoding->second != "float") {
+    throw usage_error(compose(option("preset", "paper"), " sets ", option("encoding"), "; leave one of them out"));
+  }
+  if (options.metric != Metric::sse && options.budget.by_error()) {
+    throw usage_error(compose(option("metric", metric_name(options.metric)), " has no error target; ", option("psnr"),
+                              " and ", option("max-error"), " select by sse"));
+  }
+  if (options.metric == Metric::sse && options.brick != 8) {
+    throw usage_error(compose(option("brick", options.brick), " is for ", option("metric", "farthest"),
+                              ", closest or median; sse chooses single leaves"));
+  }
+}
+
+}  // namespace
+
+const OptionRow& conversion_option(std::string_view key) {
+  for (const auto table : tables()) {
+    for (const ConversionOption& option : table) {
+      if (option.row.key == key) return option.row;
+    }
+  }
+  throw Error(ErrorKind::internal, cat("no option ", key));
+}
+
+ConversionRequest read_conversion_request(const GivenOptions& given) {
+  ConversionRequest request;
+  request.conversion.encoding = Encoding::automatic;
+  for (const auto table : tables()) read_options(table, given, request);
+  check_method(given, request.conversion);
+  request.source.memory = request.conversion.memory;
+  return request;
+}
+
+}  // namespace weir

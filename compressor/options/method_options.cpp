@@ -1,0 +1,172 @@
+// Budget, method and policy of a conversion.
+#include <array>
+#include <cmath>
+
+#include "compressor/options/conversion_request.h"
+
+namespace weir {
+namespace {
+
+using Request = ConversionRequest;
+
+void read_size(const OptionRow& row, const std::string& text, Request& request) {
+  const auto bytes = parse_bytes(text);
+  if (!bytes || *bytes == 0) throw wrong_option(row.key, text, "a size such as 1048577, 64MiB or 1.5GB");
+  request.conversion.budget.kind = Budget::Kind::size;
+  request.conversion.budget.bytes = *bytes;
+}
+
+/// A number from `least` to `most`; NaN is none.
+double read_number(const OptionRow& row, const std::string& text, double least, double most, std::string_view form) {
+  const auto number = parse_double(text);
+  if (!number || !(*number >= least && *number <= most)) throw wrong_option(row.key, text, std::string(form));
+  return *number;
+}
+
+void read_rate(const OptionRow& row, const std::string& text, Request& request) {
+  request.conversion.budget.kind = Budget::Kind::rate;
+  request.conversion.budget.rate =
+      read_number(row, text, kLeastRate, kMostRate, "a positive number: dense float32 bytes / file bytes");
+}
+
+void read_psnr(const OptionRow& row, const std::string& text, Request& request) {
+  request.conversion.budget.kind = Budget::Kind::psnr;
+  request.conversion.budget.target = read_number(row, text, -1000, 1000, "a number of dB, 60 for instance");
+}
+
+void read_max_error(const OptionRow& row, const std::string& text, Request& request) {
+  request.conversion.budget.kind = Budget::Kind::max_error;
+  request.conversion.budget.target = read_number(row, text, 0, 1e300, "a number from 0 on, in the values' own unit");
+}
+
+void read_lossless(const OptionRow& row, const std::string& text, Request& request) {
+  if (read_flag(row, text)) request.conversion.budget.kind = Budget::Kind::lossless;
+}
+
+void read_encoding(const OptionRow& row, const std::string& text, Request& request) {
+  request.conversion.encoding =
+      std::array{Encoding::automatic, Encoding::float32, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16}
+          .at(read_choice(row, text));
+}
+
+void read_background(const OptionRow& row, const std::string& text, Request& request) {
+  if (text == "auto") return;
+  const auto value = parse_double(text);
+  const float rounded = value ? static_cast<float>(*value) : 0.0F;
+  if (!value || !std::isfinite(rounded)) throw wrong_option(row.key, text, "auto or a finite float32");
+  request.conversion.background = rounded;
+}
+
+void read_preset(const OptionRow& row, const std::string& text, Request& request) {
+  read_choice(row, text);
+  ConversionOptions& options = request.conversion;
+  options.encoding = Encoding::float32;
+  options.metric = Metric::farthest;
+  options.fill = FillMode::background;
+  options.paper_background = true;
+}
+
+constexpr ConversionOption kMethodOptions[] = {
+    {{.key = "nonfinite",
+      .argument = "error|background|keep",
+      .unit = "",
+      .standard = "error",
+      .help = "what becomes of NaN and infinite voxels"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.non_finite =
+           std::array{NonFinitePolicy::error, NonFinitePolicy::background, NonFinitePolicy::keep}.at(
+               read_choice(row, text));
+     }},
+    {{.key = "size",
+      .argument = "SIZE",
+      .unit = "bytes",
+      .standard = "",
+      .help = "the file is exactly that long, 64MiB for instance",
+      .group = "budget"},
+     read_size},
+    {{.key = "rate",
+      .argument = "RATE",
+      .unit = "",
+      .standard = "8",
+      .help = "the file is exactly ceil(float32 bytes of the volume / RATE) long",
+      .group = "budget"},
+     read_rate},
+    {{.key = "psnr",
+      .argument = "DB",
+      .unit = "dB",
+      .standard = "",
+      .help = "the smallest file of at least that many dB, checked on decoded values",
+      .group = "budget"},
+     read_psnr},
+    {{.key = "max-error",
+      .argument = "ABS",
+      .unit = "the values'",
+      .standard = "",
+      .help = "the smallest file in which every voxel is within that of its value, checked on decoded values",
+      .group = "budget"},
+     read_max_error},
+    {{.key = "lossless",
+      .argument = "",
+      .unit = "",
+      .standard = "",
+      .help = "the smallest file that preserves every bit of every voxel",
+      .group = "budget"},
+     read_lossless},
+    {{.key = "encoding",
+      .argument = "auto|float|fpn|fp4|fp8|fp16",
+      .unit = "",
+      .standard = "auto",
+      .help = "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, chosen for "
+              "each leaf), fp4, fp8 or fp16"},
+     read_encoding},
+    {{.key = "metric",
+      .argument = "sse|farthest|closest|median",
+      .unit = "",
+      .standard = "sse",
+      .help = "what the budget is spent on: sse (squared error saved per byte), farthest, closest or median (the "
+              "paper's distances from a brick's range to the background)"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.metric =
+           std::array{Metric::sse, Metric::farthest, Metric::closest, Metric::median}.at(read_choice(row, text));
+     }},
+    {{.key = "fill", .argument = "mean|background", .unit = "", .standard = "mean", .help = "what dropped blocks read"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.fill = std::array{FillMode::mean, FillMode::background}.at(read_choice(row, text));
+     }},
+    {{.key = "background",
+      .argument = "VALUE",
+      .unit = "the values'",
+      .standard = "auto",
+      .help = "auto (the most frequent value) or a value"},
+     read_background},
+    {{.key = "brick",
+      .argument = "8|16|32",
+      .unit = "voxels",
+      .standard = "8",
+      .help = "granularity of the paper's metrics in voxels"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.brick = std::array{8, 16, 32}.at(read_choice(row, text));
+     }},
+    {{.key = "preset",
+      .argument = "paper",
+      .unit = "",
+      .standard = "",
+      .help = "paper: --encoding float --metric farthest --fill background and the paper's background",
+      .excludes = "metric,fill,background"},
+     read_preset},
+    {{.key = "scene",
+      .argument = "SCENE.toml",
+      .unit = "",
+      .standard = "",
+      .help = "scene file (as for weir render) that decides what matters: blocks that its opacity, iso value or region "
+              "cannot show become tiles, errors count by what it shows of them"},
+     [](const OptionRow&, const std::string& text, Request& r) {
+       if (!text.empty()) r.conversion.scene = SceneFile{load_scene(text), text};
+     }},
+};
+
+}  // namespace
+
+std::span<const ConversionOption> method_options() { return kMethodOptions; }
+
+}  // namespace weir

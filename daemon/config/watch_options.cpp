@@ -1,0 +1,101 @@
+#include "daemon/config/watch_options.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <map>
+
+#include "compressor/options/conversion_request.h"
+
+namespace weir {
+namespace {
+
+std::string key_of(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+/// The shortest text that parses back to `value`.
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string value_text(const toml::node& node, const std::string& key, const TomlReader& reader) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return std::to_string(number->get());
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty()) {
+    reader.fail(node, cat(key, " must be a string, a number or an array of them"));
+  }
+  std::string joined;
+  for (const toml::node& element : *array) {
+    if (element.is_array()) reader.fail(element, cat(key, " must not be an array of arrays"));
+    joined += cat(joined.empty() ? "" : ",", value_text(element, key, reader));
+  }
+  return joined;
+}
+
+/// What can be said of every file that is watched. A stack is many files; the job of a watch is one.
+std::vector<OptionRow> watch_options() {
+  std::vector<OptionRow> rows;
+  for (const auto table : {input_options(), method_options()}) {
+    for (const ConversionOption& option : table) {
+      if (option.row.key != "stack") rows.push_back(option.row);
+    }
+  }
+  return rows;
+}
+
+/// Throws what is wrong with the given options in terms of keys, at the last of them that the message names: the one
+/// that made it wrong.
+[[noreturn]] void fail_at_key(TomlReader& reader, const toml::table& table, const Message& message,
+                              const std::map<std::string, const toml::node*>& nodes) {
+  const toml::node* place = &table;
+  for (const std::string& key : message.option_keys()) {
+    const auto given = nodes.find(key);
+    if (given == nodes.end()) continue;
+    const bool later = place->is_table() || place->source().begin < given->second->source().begin;
+    if (later) place = given->second;
+  }
+  reader.fail(*place, message.worded(key_wording));
+}
+
+}  // namespace
+
+std::vector<std::string> read_watch_options(TomlReader& reader, const toml::table& table) {
+  std::vector<std::string> arguments;
+  std::map<std::string, const toml::node*> nodes;
+  GivenOptions given;
+  for (const OptionRow& row : watch_options()) {
+    const std::string option(row.key);
+    const std::string key = key_of(option);
+    const toml::node* node = reader.find(key);
+    if (node == nullptr) continue;
+    if (row.flag()) {
+      const auto* set = node->as_boolean();
+      if (set == nullptr) reader.fail(*node, cat(key, " must be true or false"));
+      if (!set->get()) continue;
+      given[option] = "true";
+      arguments.push_back(cat("--", option));
+    } else {
+      std::string value = value_text(*node, key, reader);
+      if (option == "scene") value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
+      given[option] = value;
+      // One word, so that a negative number is never taken for an option.
+      arguments.push_back(cat("--", option, "=", value));
+    }
+    nodes[option] = node;
+  }
+  try {
+    read_conversion_request(given);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::usage) throw;
+    fail_at_key(reader, table, error.message(), nodes);
+  }
+  return arguments;
+}
+
+}  // namespace weir

@@ -1,0 +1,22 @@
+#include "ingest/drivers/hdf5_driver.h"
+
+#include "ingest/drivers/driver.h"
+
+namespace weir {
+namespace {
+
+const Hdf5Driver& driver_for(const std::string& path) {
+  return *static_cast<const Hdf5Driver*>(load_driver("hdf5", path + ": is an HDF5 file"));
+}
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> open_by_hdf5_driver(const std::string& path, const SourceOptions& options) {
+  return driver_for(path).open(path, options);
+}
+
+std::vector<DatasetInfo> list_by_hdf5_driver(const std::string& path, const SourceOptions& options) {
+  return driver_for(path).list(path, options);
+}
+
+}  // namespace weir

@@ -1,0 +1,40 @@
+"""Every front end knows the same options, and refuses the wrong ones for the same reason."""
+
+import inspect
+import json
+import re
+import unittest
+
+import weir
+from support import SOURCE, FolderTest, ramp
+
+WRONG = json.loads((SOURCE / "tests/tools/options/wrong_options.json").read_text())
+
+
+def keyword(option):
+    return option.replace("-", "_")
+
+
+class Options(FolderTest):
+    def test_wrong_options_are_refused_for_the_same_reason(self):
+        refused = 0
+        for wrong in WRONG:
+            if "save-interval" in wrong["given"]:
+                continue  # of the command alone
+            refused += 1
+            reason = re.sub(r"\{([^}]*)\}", lambda option: keyword(option[1]), wrong["reason"])
+            with self.subTest(reason):
+                given = {keyword(key): text for key, text in wrong["given"].items()}
+                message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder / "a.nvdb", **given)
+                self.assertEqual(message, reason)
+        self.assertEqual(refused, len(WRONG) - 1)
+
+    def test_the_keywords_of_convert_are_those_of_the_table(self):
+        page = (SOURCE / "docs/options.md").read_text()
+        table = set(re.findall(r"^\| `--[^|]*(?:\\\|[^|]*)*\| `(\w+)` \|", page, re.MULTILINE))
+        keywords = set(inspect.signature(weir.convert).parameters) - {"source", "output", "progress"}
+        self.assertEqual(keywords, table - {"save_interval"})
+
+
+if __name__ == "__main__":
+    unittest.main()

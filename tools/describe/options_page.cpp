@@ -1,0 +1,47 @@
+#include "tools/describe/options_page.h"
+
+#include <string_view>
+
+#include "compressor/options/conversion_request.h"
+
+namespace weir {
+namespace {
+
+/// Inside a cell of a table.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? "\\|" : std::string(1, c);
+  return escaped;
+}
+
+std::string line_of(const OptionRow& row) {
+  const std::string value = row.flag() ? "" : cat(" `", cell(row.argument), "`");
+  const std::string keyword = key_wording({std::string(row.key), {}});
+  return cat("| `--", row.key, "`", value, " | `", keyword, "` | ", row.unit, " | ", cell(row.standard), " | ",
+             cell(row.help), " |\n");
+}
+
+std::string table(std::string_view title, std::span<const ConversionOption> options) {
+  std::string text =
+      cat("\n## ", title, "\n\n| option | key, keyword | unit | default | meaning |\n|---|---|---|---|---|\n");
+  for (const ConversionOption& option : options) text += line_of(option.row);
+  return text;
+}
+
+}  // namespace
+
+std::string options_page() {
+  return cat(
+      "# Options of a conversion\n\n"
+      "One table in the program, `compressor/options`, says what options there are. The command line, the keys of a\n"
+             "`[[watch]]` table, the keywords of `weir.convert` in Python and this page are made from it. In C they are "
+             "members of\n`weir_convert_options` and `weir_input_options`; `weir.h` describes them. `weir man --options` "
+             "prints this page.\n",
+             table("Input: what a file does not say itself", input_options()),
+      table("Budget, method and policy", method_options()), table("Use of the machine", run_options()),
+      "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
+      "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`; memory, "
+      "threads and the like are the service's\n([operations.md](operations.md)).\n");
+}
+
+}  // namespace weir

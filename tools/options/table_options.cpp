@@ -1,0 +1,39 @@
+#include "tools/options/table_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "compressor/options/conversion_request.h"
+
+namespace weir {
+
+void add_option(CLI::App& command, const OptionRow& row, GivenOptions& given, const std::string& group) {
+  const std::string name = cat("--", row.key);
+  const auto store = [&given, key = std::string(row.key)](const std::string& text) { given[key] = text; };
+  if (row.flag()) {
+    command
+        .add_flag_callback(
+            name, [store] { store("true"); }, row.text())
+        ->group(group);
+  } else {
+    command.add_option_function<std::string>(name, store, row.text())
+        ->type_name(std::string(row.argument))
+        ->group(group);
+  }
+}
+
+void add_input_options(CLI::App& command, GivenOptions& given) {
+  add_options(command, input_options(), given, "Input");
+}
+
+void add_method_options(CLI::App& command, GivenOptions& given) { add_options(command, method_options(), given); }
+
+std::string given_input_option(const GivenOptions& given, std::span<const std::string_view> allowed) {
+  for (const ConversionOption& option : input_options()) {
+    const bool ignored = std::find(allowed.begin(), allowed.end(), option.row.key) != allowed.end();
+    if (!ignored && given.contains(option.row.key)) return std::string(option.row.key);
+  }
+  return {};
+}
+
+}  // namespace weir

@@ -1,0 +1,118 @@
+// The entry of weir_plot.so, and all that is compiled against cairo.
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include "format/base/error.h"
+#include "ingest/drivers/driver.h"
+#include "tools/plot/plot_driver.h"
+
+namespace weir {
+namespace {
+
+cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
+  static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+class CairoCanvas final : public PlotCanvas {
+ public:
+  CairoCanvas(std::int32_t width, std::int32_t height, PlotFormat format, const Float3& paper)
+      : surface_(format == PlotFormat::png
+                     ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)
+                     : cairo_svg_surface_create_for_stream(append, &bytes_, width, height)),
+        cairo_(cairo_create(surface_.get())),
+        format_(format) {
+    if (format == PlotFormat::svg) cairo_svg_surface_set_document_unit(surface_.get(), CAIRO_SVG_UNIT_PX);
+    fill(0, 0, width, height, paper);
+  }
+
+  void fill(double x0, double y0, double x1, double y1, const Float3& ink) override {
+    set(ink);
+    cairo_rectangle(cairo_.get(), x0, y0, x1 - x0, y1 - y0);
+    cairo_fill(cairo_.get());
+  }
+
+  void line(const PlotPoint& from, const PlotPoint& to, double width, const Float3& ink) override {
+    set(ink);
+    cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_width(cairo_.get(), width);
+    cairo_move_to(cairo_.get(), from.x, from.y);
+    cairo_line_to(cairo_.get(), to.x, to.y);
+    cairo_stroke(cairo_.get());
+  }
+
+  void polygon(std::span<const PlotPoint> corners, double width, const Float3& inside,
+               const Float3& outline) override {
+    cairo_new_path(cairo_.get());
+    for (const PlotPoint& corner : corners) cairo_line_to(cairo_.get(), corner.x, corner.y);
+    cairo_close_path(cairo_.get());
+    set(inside);
+    cairo_fill_preserve(cairo_.get());
+    set(outline);
+    cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_width(cairo_.get(), width);
+    cairo_stroke(cairo_.get());
+  }
+
+  void text(const PlotPoint& at, std::string_view text, double size, const Float3& ink, TextAnchor anchor,
+            bool upwards) override {
+    const double width = text_width(text, size);
+    const double left = anchor == TextAnchor::left ? 0 : anchor == TextAnchor::right ? -width : -width / 2;
+    cairo_font_extents_t font;
+    cairo_font_extents(cairo_.get(), &font);
+    set(ink);
+    cairo_save(cairo_.get());
+    cairo_translate(cairo_.get(), at.x, at.y);
+    if (upwards) cairo_rotate(cairo_.get(), -1.5707963267948966);
+    cairo_move_to(cairo_.get(), left, (font.ascent - font.descent) / 2);
+    cairo_show_text(cairo_.get(), std::string(text).c_str());
+    cairo_restore(cairo_.get());
+  }
+
+  double text_width(std::string_view text, double size) override {
+    cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo_.get(), size);
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo_.get(), std::string(text).c_str(), &extents);
+    return extents.x_advance;
+  }
+
+  std::string finish() override {
+    if (format_ == PlotFormat::png) cairo_surface_write_to_png_stream(surface_.get(), append, &bytes_);
+    const cairo_status_t drawing = cairo_status(cairo_.get());
+    cairo_surface_finish(surface_.get());
+    const cairo_status_t status = drawing != CAIRO_STATUS_SUCCESS ? drawing : cairo_surface_status(surface_.get());
+    if (status != CAIRO_STATUS_SUCCESS) {
+      throw Error(ErrorKind::internal, cat("a chart cannot be drawn: ", cairo_status_to_string(status)));
+    }
+    return std::move(bytes_);
+  }
+
+ private:
+  void set(const Float3& ink) {
+    cairo_set_source_rgb(cairo_.get(), static_cast<double>(ink.x), static_cast<double>(ink.y),
+                         static_cast<double>(ink.z));
+  }
+
+  struct Destroy {
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+    void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
+  };
+  std::string bytes_;  // before the surface, which writes to it
+  std::unique_ptr<cairo_surface_t, Destroy> surface_;
+  std::unique_ptr<cairo_t, Destroy> cairo_;
+  PlotFormat format_;
+};
+
+std::unique_ptr<PlotCanvas> make(std::int32_t width, std::int32_t height, PlotFormat format, const Float3& paper) {
+  return std::make_unique<CairoCanvas>(width, height, format, paper);
+}
+
+}  // namespace
+}  // namespace weir
+
+WEIR_DRIVER_ENTRY;
+WEIR_DRIVER_ENTRY {
+  static constexpr weir::PlotDriver kDriver{weir::make};
+  return &kDriver;
+}

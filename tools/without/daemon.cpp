@@ -1,0 +1,25 @@
+// In place of the commands of the service in a build with WEIR_DAEMON=OFF: they say what is missing.
+#include <CLI/CLI.hpp>
+
+#include "format/base/error.h"
+#include "tools/command.h"
+
+namespace weir {
+namespace {
+
+void add_missing(CLI::App& app, const std::string& name, const std::string& text) {
+  CLI::App* command = app.add_subcommand(name, text + " (not in this build)");
+  command->allow_extras();
+  command->callback([name] {
+    throw usage_error(cat(name, ": this weir was built without its service; build it with -DWEIR_DAEMON=ON"));
+  });
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app) { add_missing(app, "watch", "Converts what appears in directories"); }
+void add_jobs(CLI::App& app) { add_missing(app, "jobs", "Lists a service's jobs"); }
+void add_status(CLI::App& app) { add_missing(app, "status", "Shows what a service does"); }
+void add_retry(CLI::App& app) { add_missing(app, "retry", "Has a service convert again"); }
+
+}  // namespace weir
