@@ -12,7 +12,7 @@ namespace weir::test {
 namespace {
 
 TEST_F(ResumeOfHoles, RefusedNonFiniteInputLeavesNoFiles) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   try {
     run(base(), files);
     FAIL();
@@ -27,7 +27,7 @@ constexpr std::string_view kKept =
 
 TEST_F(ResumeTest, InterruptedSurveyReadsTheRestOnly) {
   const Result expected = undisturbed(base());
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   EXPECT_EQ(files.names(), (Names{kHidden + "journal", kHidden + "rows"}));
   const Result result = run(base(), files);
@@ -47,7 +47,7 @@ TEST_F(ResumeTest, InterruptedEncodePassReadsTheRestOnly) {
   options.budget.kind = Budget::Kind::lossless;
   const Result expected = undisturbed(options);
   const std::uint64_t dense = static_cast<std::uint64_t>(kDomain.voxels()) * sizeof(float);
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(options, files, "encode", dense / 2), kKept);
   EXPECT_EQ(files.names(), (Names{kHidden + "journal", kHidden + "records", kHidden + "rows", kHidden + "volume"}));
   files.lose_unflushed();
@@ -70,7 +70,7 @@ TEST_F(ResumeTest, SavesBesideTheWorkCanBeContinuedFrom) {
   const int calls = calls_of(options);
   for (const int part : {1, 2, 3, 4}) {
     SCOPED_TRACE(part);
-    MemoryFileSystem files;
+    CrashFileSystem files;
     if (!killed(options, files, calls * part / 5)) continue;
     files.lose_unflushed();
     options.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
@@ -84,13 +84,13 @@ TEST_F(ResumeTest, SavesBesideTheWorkCanBeContinuedFrom) {
 TEST_F(ResumeTest, AutomaticResume_InterruptedSmallVolume_LeavesNoFiles) {
   ConversionOptions options = base();
   options.resume = Resume::automatic;
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(options, files, "survey", 4 << 20), "interrupted; nothing was written");
   EXPECT_EQ(files.names(), Names{});
 }
 
 TEST_F(ResumeTest, AnotherConversionStartsAnew) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   ConversionOptions options = base();
   options.metric = Metric::median;
@@ -102,7 +102,7 @@ TEST_F(ResumeTest, AnotherConversionStartsAnew) {
 }
 
 TEST_F(ResumeTest, AChangedSourceStartsAnew) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   volume_.info().mtime_ns = 1;
   EXPECT_EQ(run(base(), files).notices, (Names{"out.nvdb: an interrupted conversion of it is not continued: source "
@@ -110,7 +110,7 @@ TEST_F(ResumeTest, AChangedSourceStartsAnew) {
 }
 
 TEST_F(ResumeTest, ResumeOff_RemovesLeftoverFiles) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   ConversionOptions options = base();
   options.resume = Resume::off;
@@ -125,7 +125,7 @@ TEST_F(ResumeTest, ChangedScene_KeepsTheSurveyAndEncodesAgain) {
   scene.volume.range = {-100, 110};
   scene.volume.opacity = {{0, 0}, {0.6, 0}, {0.8, 0.3}, {1, 1}};
   options.scene = SceneFile{scene, "s.toml"};
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(options, files, "encode", 1 << 20), kKept);
   options.scene->scene.volume.opacity = {{0, 1}, {0.2, 0}, {1, 0}};
   const Result result = run(options, files);
@@ -146,7 +146,7 @@ TEST_F(ResumeTest, ChangedScene_ErrorTarget_GivesTheUndisturbedBytes) {
   const Result expected = undisturbed(edited);
   const int calls = calls_of(options);
   for (const int part : {6, 7, 8, 9}) {  // in later attempts, too
-    MemoryFileSystem files;
+    CrashFileSystem files;
     killed(options, files, calls * part / 10);
     edited.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
     run(edited, files);
@@ -157,7 +157,7 @@ TEST_F(ResumeTest, ChangedScene_ErrorTarget_GivesTheUndisturbedBytes) {
 TEST_F(ResumeTest, DamagedStateStartsAnew) {
   const Result expected = undisturbed(base());
   const auto after = [&](const auto& damage) {
-    MemoryFileSystem files;
+    CrashFileSystem files;
     interrupted(base(), files, "survey", 4 << 20);
     damage(files);
     const Result result = run(base(), files);
@@ -168,7 +168,7 @@ TEST_F(ResumeTest, DamagedStateStartsAnew) {
   const std::string begin = "out.nvdb: an interrupted conversion of it is not continued: ";
   const std::string broken = begin + "its journal is damaged or of another version of weir";
   const auto flip = [](std::size_t at) {
-    return [at](MemoryFileSystem& files) {
+    return [at](CrashFileSystem& files) {
       const auto file = files.open(kHidden + "journal");
       std::array<std::byte, 1> byte{};
       const std::uint64_t place = at < file->size() ? at : file->size() - 1;
@@ -178,15 +178,15 @@ TEST_F(ResumeTest, DamagedStateStartsAnew) {
     };
   };
   for (const std::size_t at : {0U, 20U, 50U, 51U, 300U, 4000000U}) EXPECT_EQ(after(flip(at)), broken) << at;
-  EXPECT_EQ(after([](MemoryFileSystem& files) { files.open(kHidden + "journal")->clear(); }), broken);
+  EXPECT_EQ(after([](CrashFileSystem& files) { files.open(kHidden + "journal")->clear(); }), broken);
   const std::string missing = begin + "files that its journal names are missing or shorter";
-  EXPECT_EQ(after([](MemoryFileSystem& files) { files.remove(kHidden + "rows"); }), missing);
-  EXPECT_EQ(after([](MemoryFileSystem& files) { files.open(kHidden + "rows")->clear(); }), missing);
-  EXPECT_EQ(after([](MemoryFileSystem& files) { files.remove(kHidden + "journal"); }), "");
+  EXPECT_EQ(after([](CrashFileSystem& files) { files.remove(kHidden + "rows"); }), missing);
+  EXPECT_EQ(after([](CrashFileSystem& files) { files.open(kHidden + "rows")->clear(); }), missing);
+  EXPECT_EQ(after([](CrashFileSystem& files) { files.remove(kHidden + "journal"); }), "");
 }
 
 TEST_F(ResumeTest, TooLittleMemory_KeepsTheSavedState) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(interrupted(base(), files, "survey", 4 << 20), kKept);
   const Names kept = files.names();
   ConversionOptions options = base();

@@ -2,7 +2,6 @@
 
 #include "format/base/error.h"
 #include "ingest/drivers/driver.h"
-#include "tools/plot/plot_driver.h"
 
 namespace weir {
 

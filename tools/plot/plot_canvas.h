@@ -45,6 +45,11 @@ class PlotCanvas {
   virtual std::string finish() = 0;
 };
 
+/// What weir_plot.so does: make_plot_canvas.
+struct PlotDriver {
+  std::unique_ptr<PlotCanvas> (*make)(std::int32_t width, std::int32_t height, PlotFormat format, const Float3& paper);
+};
+
 /// A sheet of `paper`, pixels. Throws Error(input) where there is no weir_plot.so.
 std::unique_ptr<PlotCanvas> make_plot_canvas(std::int32_t width, std::int32_t height, PlotFormat format,
                                              const Float3& paper);

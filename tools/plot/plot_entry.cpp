@@ -4,7 +4,7 @@
 
 #include "format/base/error.h"
 #include "ingest/drivers/driver.h"
-#include "tools/plot/plot_driver.h"
+#include "tools/plot/plot_canvas.h"
 
 namespace weir {
 namespace {
@@ -17,9 +17,8 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
 class CairoCanvas final : public PlotCanvas {
  public:
   CairoCanvas(std::int32_t width, std::int32_t height, PlotFormat format, const Float3& paper)
-      : surface_(format == PlotFormat::png
-                     ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)
-                     : cairo_svg_surface_create_for_stream(append, &bytes_, width, height)),
+      : surface_(format == PlotFormat::png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)
+                                           : cairo_svg_surface_create_for_stream(append, &bytes_, width, height)),
         cairo_(cairo_create(surface_.get())),
         format_(format) {
     if (format == PlotFormat::svg) cairo_svg_surface_set_document_unit(surface_.get(), CAIRO_SVG_UNIT_PX);
@@ -41,8 +40,7 @@ class CairoCanvas final : public PlotCanvas {
     cairo_stroke(cairo_.get());
   }
 
-  void polygon(std::span<const PlotPoint> corners, double width, const Float3& inside,
-               const Float3& outline) override {
+  void polygon(std::span<const PlotPoint> corners, double width, const Float3& inside, const Float3& outline) override {
     cairo_new_path(cairo_.get());
     for (const PlotPoint& corner : corners) cairo_line_to(cairo_.get(), corner.x, corner.y);
     cairo_close_path(cairo_.get());

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::leaf_record_test {
 namespace {
@@ -59,7 +59,7 @@ TEST(LeafRecord, EmptyBoundsWidenToFiniteValuesOnly) {
 }
 
 TEST(RecordStore, GivesBackRecordsByOrdinal) {
-  RecordStore store(test::MemoryFileSystem().create_unnamed("records"), 10);
+  RecordStore store(test::CrashFileSystem().create_unnamed("records"), 10);
   std::vector<LeafRecord> records(3);
   for (std::size_t i = 0; i < records.size(); ++i) records[i].mean = static_cast<double>(i) + 0.5;
   store.write(7, records);

@@ -14,7 +14,7 @@
 
 #include "compressor/push/spool_source.h"
 #include "format/base/error.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::leaf_spool_test {
 namespace {
@@ -86,7 +86,7 @@ class LeafSpoolTest : public testing::Test {
     expect_reads({{30, 20, 20}, {31, 21, 21}});
   }
 
-  test::MemoryFileSystem files_;
+  test::CrashFileSystem files_;
   std::shared_ptr<File> file_ = files_.create("values");
   LeafSpool spool_{file_, files_.create("states"), make_lattice(kDomain, kLeafDim), ScalarType::float64};
   SourceInfo info_;

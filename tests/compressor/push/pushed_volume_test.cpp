@@ -20,7 +20,7 @@
 #include "format/base/error.h"
 #include "ingest/values/array_source.h"
 #include "tests/compressor/support/hard_cases.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/pushed.h"
 #include "tests/support/temporary_directory.h"
 
@@ -172,7 +172,7 @@ TEST(PushedVolume, TakesAxesInAnyOrder) {
   options.non_finite = NonFinitePolicy::keep;
   const Converted expected = test::convert(*source, options);
 
-  test::MemoryFileSystem files;
+  test::CrashFileSystem files;
   options.output = "out.nvdb";
   PushedVolume pushed(source->info(), options, {}, files);
   for (const auto [z0, nz] : shuffled_slabs(extent.z, 9, 1)) {
@@ -282,7 +282,7 @@ class PushMisuse : public testing::Test {
     return "no error";
   }
 
-  test::MemoryFileSystem files_;
+  test::CrashFileSystem files_;
   SourceInfo info_;
   ConversionOptions options_;
   std::vector<float> values_ = std::vector<float>(static_cast<std::size_t>(volume(kExtent)), 1.5F);

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::journal_test {
 namespace {
 
-using test::MemoryFileSystem;
+using test::CrashFileSystem;
 using Names = std::vector<std::string>;
 
 const ConversionIdentity kIdentity{{"source", "a"}, {"--rate", "8"}};
@@ -32,7 +32,7 @@ void begin_survey(Journal& journal) {
 }
 
 TEST(Journal, WithoutASaveLeavesNothing) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {});
     begin_survey(journal);
@@ -43,7 +43,7 @@ TEST(Journal, WithoutASaveLeavesNothing) {
 }
 
 TEST(Journal, SaveMakesTheDocumentedSequenceOfCalls) {
-  MemoryFileSystem memory;
+  CrashFileSystem memory;
   FaultyFileSystem files(memory, -1, 0);
   Journal journal(files, "o.nvdb", kIdentity, {});
   begin_survey(journal);
@@ -59,7 +59,7 @@ TEST(Journal, SaveMakesTheDocumentedSequenceOfCalls) {
 
 TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
   for (const char* work_dir : {"", "/scratch"}) {
-    MemoryFileSystem files;
+    CrashFileSystem files;
     const JournalOptions options{work_dir, 0, nullptr, nullptr, {}};
     {
       Journal journal(files, "o.nvdb", kIdentity, options);
@@ -74,7 +74,7 @@ TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
 }
 
 TEST(Journal, RestoresOnlyTheSavedState) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {});
     begin_survey(journal);
@@ -98,7 +98,7 @@ TEST(Journal, RestoresOnlyTheSavedState) {
 }
 
 TEST(Journal, EncodedLeaves_KeepTheVolumeAndRecordFiles) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   const Names all{"./.o.nvdb.work/journal", "./.o.nvdb.work/records", "./.o.nvdb.work/rows", "./.o.nvdb.work/volume"};
   {
     Journal journal(files, "o.nvdb", kIdentity, {});
@@ -127,7 +127,7 @@ TEST(Journal, EncodedLeaves_KeepTheVolumeAndRecordFiles) {
 }
 
 TEST(Journal, SpillFilesGoToTheChosenWorkDirectory) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
     begin_survey(journal);
@@ -190,7 +190,7 @@ TEST(Journal, MovedOutput_KeepsTheSpillFilesOfANewOneAtItsOldPath) {
 }
 
 TEST(Journal, RemovesLeftoversOnceAndSaysWhetherThereWereAny) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   {
     Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
     begin_survey(journal);
@@ -204,7 +204,7 @@ TEST(Journal, RemovesLeftoversOnceAndSaysWhetherThereWereAny) {
 }
 
 TEST(Journal, IsDueByTimeAndByCancellation) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   std::atomic<bool> cancel{false};
   Journal journal(files, "o.nvdb", kIdentity, {"", 3600, &cancel, nullptr, {}});
   begin_survey(journal);
@@ -217,7 +217,7 @@ TEST(Journal, IsDueByTimeAndByCancellation) {
 
 // The work goes on meanwhile, and hears of the failure at the next pause.
 TEST(Journal, AFailedSaveIsReportedAndTheOneBeforeCounts) {
-  MemoryFileSystem memory;
+  CrashFileSystem memory;
   int sync = 0;
   {
     FaultyFileSystem none(memory, -1, 0);

@@ -56,7 +56,7 @@ TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
   for (int i = 0; i < kPoints; ++i) {
     const int at = calls * i / kPoints;
     SCOPED_TRACE("call " + std::to_string(at) + " of " + std::to_string(calls));
-    MemoryFileSystem memory;
+    CrashFileSystem memory;
     FaultyFileSystem files(memory, at, ENOSPC);
     std::string message;
     try {
@@ -87,7 +87,7 @@ TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
 TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
   for (const bool overwrite : {false, true}) {
     // Whether it died at call number `at` after the volume got its name.
-    const auto dies = [&](MemoryFileSystem& memory, int at) {
+    const auto dies = [&](CrashFileSystem& memory, int at) {
       ConversionOptions options = base();
       if (overwrite) run(options, memory);
       options.overwrite = overwrite;
@@ -103,7 +103,7 @@ TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
     int left = 0;
     for (int at = 0;; ++at) {
       SCOPED_TRACE(at);
-      MemoryFileSystem memory;
+      CrashFileSystem memory;
       if (!dies(memory, at)) break;
       left += memory.names() == kResult ? 0 : 1;
       clear_leftovers(memory, "out.nvdb");
@@ -111,7 +111,7 @@ TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
       EXPECT_EQ(memory.directories(), Names{});
       EXPECT_FALSE(clear_leftovers(memory, "out.nvdb")) << "nothing is there";
 
-      MemoryFileSystem other;
+      CrashFileSystem other;
       dies(other, at);
       other.make_directory("/scratch");
       ConversionOptions again = base();
@@ -149,7 +149,7 @@ TEST_F(ResumeKillOfHoles, PaperMethod_ResumesToTheSameBytes) {
 TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
   const ConversionOptions options = base();
   for (const int call : {0, 1, 2}) {
-    MemoryFileSystem memory;
+    CrashFileSystem memory;
     FaultyFileSystem files(memory, -1, EIO, FaultyFileSystem::After::fails);
     files.fail_after_rename_to("out.nvdb", call);
     try {
@@ -173,7 +173,7 @@ TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
 // Of an --overwrite that somebody interrupted, and will continue.
 TEST_F(ResumeKill, BeforeTheCommit_ARefusedCommandKeepsWhatIsDone) {
   ConversionOptions options = base();
-  MemoryFileSystem memory;
+  CrashFileSystem memory;
   run(options, memory);
   options.overwrite = true;
   ASSERT_TRUE(killed(options, memory, calls_of(options) / 2));

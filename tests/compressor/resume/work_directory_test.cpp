@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/support/message_of_error.h"
 
 namespace weir::work_directory_test {
@@ -40,7 +40,7 @@ class Directories final : public FileSystem {
   static bool holds(const std::vector<std::string>& list, const std::string& path) {
     return std::find(list.begin(), list.end(), path) != list.end();
   }
-  test::MemoryFileSystem files_;
+  test::CrashFileSystem files_;
 };
 
 std::string message_of(Directories& files, const std::string& output, const std::string& chosen) {

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::leaf_choice_test {
 namespace {
@@ -48,7 +48,7 @@ TEST(LeafPlaces, CountsAgreeWithALinearScan) {
 }
 
 TEST(ChoiceStore, ReadsBackChoicesAndTilesWhereUnwritten) {
-  ChoiceStore store(test::MemoryFileSystem().create_unnamed("choices"), 5);
+  ChoiceStore store(test::CrashFileSystem().create_unnamed("choices"), 5);
   LeafChoices choices;
   choices.set(0, LeafWidth::bits1);
   choices.set(4095, LeafWidth::bits16);

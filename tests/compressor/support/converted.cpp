@@ -7,12 +7,12 @@
 #include <regex>
 
 #include "format/base/error.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::test {
 
 Converted convert(VolumeSource& volume, ConversionOptions options) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   options.output = "out.nvdb";
   if (options.memory == ConversionOptions{}.memory) options.memory = std::uint64_t{4} << 30U;
   if (options.threads == 0) options.threads = 2;

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::test {
 
@@ -29,7 +29,7 @@ std::vector<Slab> shuffled_slabs(std::int64_t planes, std::int64_t highest, std:
 
 Converted push(const SourceInfo& info, std::span<const std::byte> values, ConversionOptions options,
                const std::vector<Slab>& slabs, std::size_t threads) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   options.output = "out.nvdb";
   if (options.memory == ConversionOptions{}.memory) options.memory = std::uint64_t{4} << 30U;
   if (options.threads == 0) options.threads = 2;

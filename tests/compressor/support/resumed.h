@@ -12,14 +12,14 @@
 
 #include "compressor/conversion.h"
 #include "format/base/error.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/sanitized.h"
 
 namespace weir::test {
 
-using Bytes = MemoryFileSystem::Bytes;
+using Bytes = CrashFileSystem::Bytes;
 using Names = std::vector<std::string>;
 
 inline const Names kResult{"out.nvdb", "out.nvdb.json"};
@@ -35,7 +35,7 @@ inline float ripples(const Index3& i) {
 
 // Blocks of the least size there is.
 inline std::uint64_t least_memory(MemoryVolume& volume, std::size_t threads) {
-  MemoryFileSystem files;
+  CrashFileSystem files;
   ConversionOptions options;
   options.output = "out.nvdb";
   options.memory = 1;
@@ -94,7 +94,7 @@ class ResumeTest : public ::testing::Test {
   }
 
   Result undisturbed(ConversionOptions options) {
-    MemoryFileSystem files;
+    CrashFileSystem files;
     options.resume = Resume::off;
     Result result = run(options, files);
     EXPECT_EQ(files.names(), kResult);
@@ -104,7 +104,7 @@ class ResumeTest : public ::testing::Test {
 
   // Number of calls to the file system.
   int calls_of(const ConversionOptions& options) {
-    MemoryFileSystem memory;
+    CrashFileSystem memory;
     FaultyFileSystem files(memory, -1, 0);
     run(options, files);
     EXPECT_EQ(memory.names(), kResult) << "a conversion that ends leaves nothing";
@@ -112,7 +112,7 @@ class ResumeTest : public ::testing::Test {
   }
 
   // Runs until call `at`, as a killed process does; false where it ends before.
-  bool killed(const ConversionOptions& options, MemoryFileSystem& memory, int at) {
+  bool killed(const ConversionOptions& options, CrashFileSystem& memory, int at) {
     FaultyFileSystem files(memory, at, EIO, FaultyFileSystem::After::fails);
     try {
       run(options, files);
@@ -134,7 +134,7 @@ class ResumeTest : public ::testing::Test {
     for (int i = 0; i < points; ++i) {
       const int at = static_cast<int>(static_cast<std::int64_t>(calls) * i / points);
       SCOPED_TRACE("killed at call " + std::to_string(at) + " of " + std::to_string(calls));
-      MemoryFileSystem memory;
+      CrashFileSystem memory;
       if (!killed(options, memory, at)) continue;
       if (i % 2 == 0) memory.lose_unflushed();
       // Every third one is killed a second time. Where it was killed after the last rename, the user is told to pass

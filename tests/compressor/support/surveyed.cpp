@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "tests/compressor/support/converted.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::test {
 
 Surveyed::Surveyed(MemoryVolume& of, std::uint64_t block_bytes, std::int64_t segment_regions)
     : volume(of),
       plan(plan_blocks(of.info().domain(), of.access(), block_bytes)),
-      rows(MemoryFileSystem().create_unnamed("rows"), plan.lattice, segment_regions),
+      rows(CrashFileSystem().create_unnamed("rows"), plan.lattice, segment_regions),
       survey(survey_volume(of, plan, rows, {})) {}
 
 std::vector<LeafRow> Surveyed::all_rows() const {
@@ -28,7 +28,7 @@ Chooser::Chooser(const Surveyed& surveyed, const GainRule& rule)
 
 Choice Chooser::choose(std::uint64_t file_bytes) {
   selection_.choose(file_bytes);
-  ChoiceStore masks(MemoryFileSystem().create_unnamed("masks"), tree_.region_lattice.size());
+  ChoiceStore masks(CrashFileSystem().create_unnamed("masks"), tree_.region_lattice.size());
   Choice choice;
   choice.plan = plan_tree(selection_, rows_, tree_, masks);
   choice.kept.resize(static_cast<std::size_t>(tree_.leaves.size()));

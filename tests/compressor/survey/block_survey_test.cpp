@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/surveyed.h"
 
 namespace weir::block_survey_test {
@@ -33,8 +33,8 @@ TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   ASSERT_GT(order.size(), 20U);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  RowStore rows(test::MemoryFileSystem().create_unnamed("rows"), plan.lattice, 1);
-  LeafStore<LeafFaces> faces(test::MemoryFileSystem().create_unnamed("faces"), plan.lattice);
+  RowStore rows(test::CrashFileSystem().create_unnamed("rows"), plan.lattice, 1);
+  LeafStore<LeafFaces> faces(test::CrashFileSystem().create_unnamed("faces"), plan.lattice);
   BlockSurvey first(volume.info(), rows, &faces, false, nullptr);
   BlockSurvey second(volume.info(), rows, &faces, false, nullptr);
   {

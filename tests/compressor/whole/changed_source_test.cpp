@@ -14,7 +14,7 @@
 #include "format/base/error.h"
 #include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/resumed.h"
 #include "tests/support/temporary_directory.h"
 
@@ -22,7 +22,7 @@ namespace weir::changed_source_test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::MemoryFileSystem;
+using test::CrashFileSystem;
 using test::Names;
 
 constexpr Index3 kExtent{64, 64, 40};
@@ -91,7 +91,7 @@ class ChangedSourceTest : public testing::Test {
 
   // The message; empty where it converted. `pass` gets the one that had begun last.
   std::string convert(VolumeSource& source, std::string* pass = nullptr, const std::function<void()>& at_encode = {}) {
-    MemoryFileSystem files;
+    CrashFileSystem files;
     ConversionOptions options;
     options.output = "out.nvdb";
     options.budget.kind = Budget::Kind::lossless;
@@ -236,14 +236,14 @@ TEST_F(ChangedSourceTest, ResumeOfAnotherFileOfTheSameSizeAndTime_BeginsAnew) {
     }
     return std::pair(digest, notices);
   };
-  MemoryFileSystem files;
+  CrashFileSystem files;
   EXPECT_EQ(run(files, true).first, "");
   const auto time = fs::last_write_time(path_);
   write(directory_ / "b", values_of(2, volume(kExtent)));
   fs::last_write_time(directory_ / "b", time);
   fs::rename(directory_ / "b", path_);
   const auto [digest, notices] = run(files, false);
-  MemoryFileSystem undisturbed;
+  CrashFileSystem undisturbed;
   EXPECT_EQ(digest, run(undisturbed, false).first);
   EXPECT_TRUE(files.content("out.nvdb") == undisturbed.content("out.nvdb"));
   for (const std::string& notice : notices) EXPECT_EQ(notice.find("continues"), std::string::npos) << notice;

@@ -16,7 +16,7 @@
 #include "compressor/leaf/quantised_leaf.h"
 #include "compressor/select/selection.h"
 #include "compressor/select/tree_plan.h"
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 namespace weir::statistics_scale_test {
 namespace {
@@ -79,7 +79,7 @@ constexpr Box kDomain{{0, 0, 0}, {1024, 1024, 1024}};
 
 // The volume, surveyed.
 struct Billion {
-  Billion() : tree(kDomain), rows(test::MemoryFileSystem().create_unnamed("rows"), tree.leaves, 8), kinds(kKinds) {
+  Billion() : tree(kDomain), rows(test::CrashFileSystem().create_unnamed("rows"), tree.leaves, 8), kinds(kKinds) {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
       const LeafValues values = values_of(kind);
       kinds[kind] = summarize_leaf(values, 0);
@@ -129,7 +129,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
 
   // The certificate of the smallest tree: one tile a region, but for the corners' two.
   selection.choose(selection.bytes().minimum.file_bytes);
-  ChoiceStore masks(test::MemoryFileSystem().create_unnamed("masks"), tree.region_lattice.size());
+  ChoiceStore masks(test::CrashFileSystem().create_unnamed("masks"), tree.region_lattice.size());
   const TreePlan plan = plan_tree(selection, rows, tree, masks);
   long double expected = 0;
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -180,7 +180,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
   rule.encoding = Encoding::fp4;
   Selection selection(rule, billion.rows, billion.tree);
   selection.choose(selection.bytes().full.file_bytes);
-  ChoiceStore choices(test::MemoryFileSystem().create_unnamed("choices"), billion.tree.region_lattice.size());
+  ChoiceStore choices(test::CrashFileSystem().create_unnamed("choices"), billion.tree.region_lattice.size());
   const TreePlan plan = plan_tree(selection, billion.rows, billion.tree, choices);
   const auto leaves = static_cast<std::uint64_t>(billion.tree.leaves.size());
   ASSERT_EQ(plan.layout.counts.leaves, leaves);

@@ -1,4 +1,4 @@
-#include "tests/compressor/support/memory_file_system.h"
+#include "tests/compressor/support/crash_file_system.h"
 
 #include <algorithm>
 #include <cstring>
@@ -10,15 +10,15 @@
 
 namespace weir::test {
 
-struct MemoryFileSystem::Stored {
+struct CrashFileSystem::Stored {
   std::mutex mutex;
   Bytes bytes;
   Bytes flushed;
 };
 
-class MemoryFile final : public File {
+class CrashFile final : public File {
  public:
-  MemoryFile(std::shared_ptr<MemoryFileSystem::Stored> stored, std::string path)
+  CrashFile(std::shared_ptr<CrashFileSystem::Stored> stored, std::string path)
       : stored_(std::move(stored)), path_(std::move(path)) {}
 
   const std::string& path() const override { return path_; }
@@ -54,29 +54,29 @@ class MemoryFile final : public File {
   }
 
  private:
-  std::shared_ptr<MemoryFileSystem::Stored> stored_;
+  std::shared_ptr<CrashFileSystem::Stored> stored_;
   std::string path_;
 };
 
-MemoryFileSystem::Bytes MemoryFileSystem::content(const std::string& path) const {
+CrashFileSystem::Bytes CrashFileSystem::content(const std::string& path) const {
   const std::scoped_lock lock(mutex_);
   const auto found = files_.find(path);
   return found == files_.end() ? Bytes{} : found->second->bytes;
 }
 
-std::vector<std::string> MemoryFileSystem::names() const {
+std::vector<std::string> CrashFileSystem::names() const {
   const std::scoped_lock lock(mutex_);
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files_) names.push_back(name);
   return names;
 }
 
-std::vector<std::string> MemoryFileSystem::directories() const {
+std::vector<std::string> CrashFileSystem::directories() const {
   const std::scoped_lock lock(mutex_);
   return {directories_.begin(), directories_.end()};
 }
 
-void MemoryFileSystem::lose_unflushed() {
+void CrashFileSystem::lose_unflushed() {
   const std::scoped_lock lock(mutex_);
   files_ = durable_files_;
   std::erase_if(files_, [&](const auto& file) {
@@ -88,34 +88,34 @@ void MemoryFileSystem::lose_unflushed() {
   for (const auto& [name, stored] : files_) stored->bytes = stored->flushed;
 }
 
-std::unique_ptr<File> MemoryFileSystem::create(const std::string& path) {
+std::unique_ptr<File> CrashFileSystem::create(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   auto stored = std::make_shared<Stored>();
   files_[path] = stored;
-  return std::make_unique<MemoryFile>(stored, path);
+  return std::make_unique<CrashFile>(stored, path);
 }
 
-std::unique_ptr<File> MemoryFileSystem::open(const std::string& path) {
+std::unique_ptr<File> CrashFileSystem::open(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   std::shared_ptr<Stored>& stored = files_[path];
   if (stored == nullptr) stored = std::make_shared<Stored>();
-  return std::make_unique<MemoryFile>(stored, path);
+  return std::make_unique<CrashFile>(stored, path);
 }
 
-std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& directory) {
-  return std::make_unique<MemoryFile>(std::make_shared<Stored>(), directory + " (temporary file)");
+std::unique_ptr<File> CrashFileSystem::create_unnamed(const std::string& directory) {
+  return std::make_unique<CrashFile>(std::make_shared<Stored>(), directory + " (temporary file)");
 }
 
-void MemoryFileSystem::rename(const std::string& from, const std::string& to) {
+void CrashFileSystem::rename(const std::string& from, const std::string& to) {
   if (link(from, to)) remove(from);
 }
 
-void MemoryFileSystem::rename_new(const std::string& from, const std::string& to) {
+void CrashFileSystem::rename_new(const std::string& from, const std::string& to) {
   if (exists(to)) throw Error(ErrorKind::io, cat(to, ": exists"));
   rename(from, to);
 }
 
-bool MemoryFileSystem::link(const std::string& from, const std::string& to) {
+bool CrashFileSystem::link(const std::string& from, const std::string& to) {
   const std::scoped_lock lock(mutex_);
   const auto found = files_.find(from);
   if (found == files_.end()) throw Error(ErrorKind::io, cat(from, ": missing"));
@@ -123,17 +123,17 @@ bool MemoryFileSystem::link(const std::string& from, const std::string& to) {
   return true;
 }
 
-void MemoryFileSystem::remove(const std::string& path) {
+void CrashFileSystem::remove(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   files_.erase(path);
 }
 
-void MemoryFileSystem::make_directory(const std::string& path) {
+void CrashFileSystem::make_directory(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   directories_.insert(path);
 }
 
-void MemoryFileSystem::remove_directory(const std::string& path) {
+void CrashFileSystem::remove_directory(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   for (const auto& [name, stored] : files_) {
     if (directory_of(name) == path) throw Error(ErrorKind::io, cat(path, ": is not empty"));
@@ -141,7 +141,7 @@ void MemoryFileSystem::remove_directory(const std::string& path) {
   directories_.erase(path);
 }
 
-void MemoryFileSystem::sync_directory(const std::string& path) {
+void CrashFileSystem::sync_directory(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   for (const std::string& directory : directories_) {
     if (directory_of(directory) == path) durable_directories_.insert(directory);
@@ -162,12 +162,12 @@ void MemoryFileSystem::sync_directory(const std::string& path) {
   }
 }
 
-bool MemoryFileSystem::exists(const std::string& path) {
+bool CrashFileSystem::exists(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   return path == "." || files_.contains(path) || directories_.contains(path);
 }
 
-bool MemoryFileSystem::is_memory(const std::string&) { return false; }
-std::uint64_t MemoryFileSystem::free_bytes(const std::string&) { return std::uint64_t{1} << 40U; }
+bool CrashFileSystem::is_memory(const std::string&) { return false; }
+std::uint64_t CrashFileSystem::free_bytes(const std::string&) { return std::uint64_t{1} << 40U; }
 
 }  // namespace weir::test

@@ -1,4 +1,4 @@
-// A file system in memory, so that a test can run hundreds of conversions
+// A file system in memory that can lose what was not flushed, so that a test can run hundreds of conversions
 // without a disk.
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace weir::test {
 
 /// Thread-safe. "." exists, and what is made; files may lie in any directory.
-class MemoryFileSystem final : public FileSystem {
+class CrashFileSystem final : public FileSystem {
  public:
   using Bytes = std::vector<std::byte>;
 
@@ -44,7 +44,7 @@ class MemoryFileSystem final : public FileSystem {
   std::uint64_t free_bytes(const std::string& directory) override;
 
  private:
-  friend class MemoryFile;
+  friend class CrashFile;
   struct Stored;
   using Files = std::map<std::string, std::shared_ptr<Stored>>;
 
