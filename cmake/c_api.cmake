@@ -8,7 +8,7 @@ endif()
 add_library(weir_c SHARED ${sources})
 add_library(weir::c ALIAS weir_c)
 target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda>)
-weir_use_drivers(weir_c)
+weir_use_drivers(weir_c ${CMAKE_INSTALL_LIBDIR})
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_definitions(weir_c PRIVATE WEIR_VERSION="${PROJECT_VERSION}")

@@ -2,22 +2,41 @@
 # (ingest/drivers/driver.h). In the build folder's drivers/; installed in the folder weir of the libraries.
 
 include(GNUInstallDirs)
-string(REPLACE "." "_" WEIR_DRIVER_VERSION ${PROJECT_VERSION})
-target_compile_definitions(weir_ingest PUBLIC WEIR_DRIVER_SYMBOL=weir_driver_${WEIR_DRIVER_VERSION}
-                           PRIVATE WEIR_LIBRARY_FOLDER="${CMAKE_INSTALL_LIBDIR}"
-                                   WEIR_ARCHITECTURE="${CMAKE_LIBRARY_ARCHITECTURE}")
+
+# Programs and drivers know each other by a digest of what both are compiled with.
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/format/*.h ${PROJECT_SOURCE_DIR}/ingest/*.h
+                                            ${PROJECT_SOURCE_DIR}/tools/plot/*.h)
+set(digests ${PROJECT_VERSION} ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_FLAGS})
+foreach(header IN LISTS headers)
+  file(SHA256 ${header} digest)
+  string(APPEND digests ${digest})
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${headers})
+string(SHA256 WEIR_DRIVER_DIGEST "${digests}")
+string(SUBSTRING ${WEIR_DRIVER_DIGEST} 0 16 WEIR_DRIVER_DIGEST)
+set_property(SOURCE ingest/drivers/driver.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+             WEIR_DRIVER_SYMBOL=weir_driver_${WEIR_DRIVER_DIGEST})
 
 # weir_driver(NAME source... LINKS library...): weir_NAME.so.
 function(weir_driver name)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
   add_library(weir_${name} MODULE ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(weir_${name} PRIVATE weir_ingest ${ARG_LINKS})
+  target_compile_definitions(weir_${name} PRIVATE WEIR_DRIVER_SYMBOL=weir_driver_${WEIR_DRIVER_DIGEST})
   # Nothing but the entry is to be seen, so that the driver uses its own code and the program its own.
   target_link_options(weir_${name} PRIVATE LINKER:--exclude-libs,ALL)
   set_target_properties(weir_${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                                 LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/drivers)
   set_property(GLOBAL APPEND PROPERTY WEIR_DRIVERS weir_${name})
 endfunction()
+
+# Those of an earlier configuration must not be found.
+foreach(name HDF5 OPENVDB PLOT)
+  if(NOT WEIR_${name})
+    string(TOLOWER ${name} file)
+    file(REMOVE ${CMAKE_BINARY_DIR}/drivers/weir_${file}.so)
+  endif()
+endforeach()
 
 if(WEIR_HDF5)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/ingest/hdf5/*.cpp)
@@ -38,11 +57,18 @@ if(WEIR_PLOT)
 endif()
 get_property(WEIR_DRIVERS GLOBAL PROPERTY WEIR_DRIVERS)
 
-# weir_use_drivers(TARGET): those that the program may load are built before it.
+# weir_use_drivers(TARGET [FOLDER...]): the program or library may load them. They are built before it, and it finds them
+# in the build and, where it is installed in one of the folders, there.
 function(weir_use_drivers target)
-  if(WEIR_DRIVERS)
-    add_dependencies(${target} ${WEIR_DRIVERS})
+  if(NOT WEIR_DRIVERS)
+    return()
   endif()
+  add_dependencies(${target} ${WEIR_DRIVERS})
+  set_property(TARGET ${target} APPEND PROPERTY BUILD_RPATH ${CMAKE_BINARY_DIR}/drivers)
+  foreach(folder IN LISTS ARGN)
+    file(RELATIVE_PATH path /prefix/${folder} /prefix/${CMAKE_INSTALL_LIBDIR}/weir)
+    set_property(TARGET ${target} APPEND PROPERTY INSTALL_RPATH $ORIGIN/${path})
+  endforeach()
 endfunction()
 
 # weir_install_drivers()

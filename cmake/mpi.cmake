@@ -18,7 +18,7 @@ target_compile_definitions(weir_mpi_team PUBLIC OMPI_SKIP_MPICXX MPICH_SKIP_MPIC
 
 add_executable(weir-mpi bindings/mpi/weir_mpi.cpp)
 target_link_libraries(weir-mpi PRIVATE weir_mpi_team weir_tools)
-weir_use_drivers(weir-mpi)
+weir_use_drivers(weir-mpi ${CMAKE_INSTALL_BINDIR})
 target_compile_definitions(weir-mpi PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
 
 # libweir_mpi.so, target weir_mpi, also called weir::mpi: pushes by all processes, with bindings/mpi/weir_mpi.h.

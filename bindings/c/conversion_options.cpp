@@ -105,6 +105,7 @@ std::string joined(const T* values, std::size_t count) {
 
 std::optional<StoredValue> missing_of(const char* text) {
   if (text == nullptr) return std::nullopt;
+  if (*text == '\0') throw wrong_option("missing", text, "a number or nan");  // NULL says that there is none
   return read_conversion_request({{"missing", text}}).source.missing;
 }
 
@@ -162,7 +163,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
   if (o.offset != 0) texts["offset"] = cat(o.offset);
   if (o.dataset != nullptr) texts["dataset"] = o.dataset;
   give_index(o, texts);
-  if (o.missing != nullptr) texts["missing"] = o.missing;
+  if (const auto missing = missing_of(o.missing)) texts["missing"] = stored_value_text(*missing);
   if (!all_zero(o.spacing)) texts["spacing"] = joined(o.spacing, 3);
   if (o.has_origin != 0) {
     texts["origin"] = joined(o.origin, 3);

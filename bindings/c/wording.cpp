@@ -32,8 +32,13 @@ std::string c_wording(const OptionName& option) {
   if (holds(kChoices, option.key) && !option.value.empty()) {
     return cat("WEIR_", enumerator_of(option.key), "_", enumerator_of(option.value));
   }
-  const std::string name =
-      holds(kBudgets, option.key) ? "WEIR_BUDGET_" + enumerator_of(option.key) : member_of(option.key);
+  if (holds(kBudgets, option.key)) {
+    const std::string kind = "WEIR_BUDGET_" + enumerator_of(option.key);
+    if (option.key == "lossless") return kind;
+    return cat(option.key == "size" ? "size" : "budget", " (", kind, ")", option.value.empty() ? "" : " ",
+               option.value);
+  }
+  const std::string name = member_of(option.key);
   return option.value.empty() ? name : cat(name, " ", option.value);
 }
 

@@ -7,8 +7,8 @@
 
 namespace weir::c {
 
-/// "WEIR_BUDGET_PSNR", "WEIR_ENCODING_FLOAT", "extent", "memory 64.0 MiB": budgets and choices by their enumerators,
-/// everything else by its member.
+/// "budget (WEIR_BUDGET_PSNR)", "WEIR_ENCODING_FLOAT", "extent", "memory 64.0 MiB": budgets and choices by their
+/// enumerators, everything else by its member.
 std::string c_wording(const OptionName& option);
 
 }  // namespace weir::c

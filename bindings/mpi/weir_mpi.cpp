@@ -59,7 +59,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     options.output = a.output;
     options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
     options.processors = processors;
-    options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command)};
+    options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command, a.options)};
     request.source.spool_directory = options.work_dir.empty() ? weir::directory_of(a.output) : options.work_dir;
     source = weir::open_source(a.input, request.source);
   });

@@ -7,6 +7,15 @@ namespace {
 
 std::array<std::span<const ConversionOption>, 3> tables() { return {input_options(), method_options(), run_options()}; }
 
+const OptionRow* find_row(std::string_view key) {
+  for (const auto table : tables()) {
+    for (const ConversionOption& option : table) {
+      if (option.row.key == key) return &option.row;
+    }
+  }
+  return nullptr;
+}
+
 /// What no option can see of itself.
 void check_method(const GivenOptions& given, const ConversionOptions& options) {
   const auto encoding = given.find("encoding");
@@ -25,13 +34,12 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
 
 }  // namespace
 
+bool is_conversion_option(std::string_view key) { return find_row(key) != nullptr; }
+
 const OptionRow& conversion_option(std::string_view key) {
-  for (const auto table : tables()) {
-    for (const ConversionOption& option : table) {
-      if (option.row.key == key) return option.row;
-    }
-  }
-  throw Error(ErrorKind::internal, cat("no option ", key));
+  const OptionRow* const row = find_row(key);
+  if (row == nullptr) throw Error(ErrorKind::internal, cat("no option ", key));
+  return *row;
 }
 
 ConversionRequest read_conversion_request(const GivenOptions& given) {

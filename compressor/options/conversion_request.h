@@ -32,6 +32,8 @@ std::span<const ConversionOption> input_options();
 std::span<const ConversionOption> method_options();
 /// How the machine is used and what is kept: memory, threads, resume, overwrite ...
 std::span<const ConversionOption> run_options();
+/// Whether one of the three tables has it.
+bool is_conversion_option(std::string_view key);
 /// The row of an option of one of the three tables, which must exist.
 const OptionRow& conversion_option(std::string_view key);
 

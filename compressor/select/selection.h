@@ -10,7 +10,7 @@
 // the order of keys, so that any larger budget buys a superset: error never grows
 // with size. An error to be met instead of a size ends the same way, with the error
 // saved counted in place of the bytes. The steps: region_keys.h gives regions and upper nodes their keys, cut_search.h
-// finds the cut, and of what has the cut's own key as much is bought as fits: by region index, then by gain, then by
+// finds the cut, and of what has the cut's own key as much is bought as fits: by region index, then by key, then by
 // leaf index (step_keys.h). Memory is that of TreeRegions, for any number of leaves.
 #pragma once
 

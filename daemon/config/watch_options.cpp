@@ -82,7 +82,9 @@ std::vector<std::string> read_watch_options(TomlReader& reader, const toml::tabl
       arguments.push_back(cat("--", option));
     } else {
       std::string value = value_text(*node, key, reader);
-      if (option == "scene") value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
+      if (option == "scene" && !value.empty())
+        value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
+      if (value.empty()) continue;
       given[option] = value;
       // One word, so that a negative number is never taken for an option.
       arguments.push_back(cat("--", option, "=", value));

@@ -1,5 +1,6 @@
-// One option as a row of a table, from which every front end makes what it needs: the command line its options, help,
-// man page and completion, a configuration its keys, C and Python theirs, docs/options.md its lines.
+// One option as a row of a table, from which front ends are made: the command line's options, help, man page and
+// completion, a configuration's keys, the lines of docs/options.md. What C and Python are given goes through the same
+// rows to be read.
 #pragma once
 
 #include <functional>
@@ -48,9 +49,11 @@ std::size_t read_choice(const OptionRow& row, const std::string& text);
 /// Throws Error(usage) where two of the given options exclude each other.
 void check_exclusions(const std::vector<OptionRow>& table, const GivenOptions& given);
 
-/// Reads what is given of `options` into `request`, in the order of the table.
+/// Reads what is given of `options` into `request`, in the order of the table. An empty text is not given: a script may
+/// pass --roi "$ROI".
 template <typename Request>
-void read_options(std::span<const ReadableOption<Request>> options, const GivenOptions& given, Request& request) {
+void read_options(std::span<const ReadableOption<Request>> options, GivenOptions given, Request& request) {
+  std::erase_if(given, [](const auto& option) { return option.second.empty(); });
   std::vector<OptionRow> table;
   for (const auto& option : options) table.push_back(option.row);
   check_exclusions(table, given);

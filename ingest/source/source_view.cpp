@@ -43,10 +43,10 @@ class SourceView final : public VolumeSource {
   SourceInfo info_;
 };
 
-Error unusable(const std::string& path, bool given, std::string_view option, double value, std::string_view rule) {
-  if (given) return {ErrorKind::usage, cat(path, ": --", option, " has ", value, "; each must be ", rule)};
+Error unusable(const std::string& path, bool given, std::string_view key, double value, std::string_view rule) {
+  if (given) return {ErrorKind::usage, compose(path, ": ", option(key), " has ", value, "; each must be ", rule)};
   return {ErrorKind::input,
-          cat(path, ": its ", option, " has ", value, ", which is not ", rule, "; give --", option, " x,y,z")};
+          compose(path, ": its ", key, " has ", value, ", which is not ", rule, "; give ", option(key, "x,y,z"))};
 }
 
 }  // namespace

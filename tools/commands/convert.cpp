@@ -220,7 +220,7 @@ void print_json(std::span<const Sidecar> sidecars) {
 
 void convert(const CLI::App& command, const ConvertArguments& a) {
   auto [source_options, options] = read_conversion_request(a.options);
-  options.provenance = {WEIR_VERSION, build_commit(), given_options(command)};
+  options.provenance = {WEIR_VERSION, build_commit(), given_options(command, a.options)};
   source_options.cancel = &interrupt_flag();
 
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options);

@@ -20,7 +20,9 @@
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/nanovdb/nvdb_header.h"
+#include "format/output/partial_file.h"
 #include "gpu/image/image_output.h"
+#include "ingest/drivers/driver.h"
 #include "tools/command.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
@@ -206,6 +208,7 @@ void run(const InspectArguments& arguments) {
   std::optional<PartialFile> chart;
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot);
+    load_driver("plot", arguments.plot + ": is to be a chart");
     chart.emplace(*files, arguments.plot, true);
   }
   const NvdbFile file(arguments.path);
@@ -233,7 +236,8 @@ void add_inspect(CLI::App& app) {
   command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")
       ->type_name("FILE")
       ->required();
-  command->add_option("--plot", arguments->plot, "also draws the histogram, as FILE.png or FILE.svg")->type_name("FILE");
+  command->add_option("--plot", arguments->plot, "also draws the histogram, as FILE.png or FILE.svg")
+      ->type_name("FILE");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_input_options(*command, arguments->source);
   add_progress_options(*command, arguments->progress);

@@ -36,8 +36,7 @@ void add_man(CLI::App& app) {
   auto a = std::make_shared<ManArguments>();
   CLI::App* command = app.add_subcommand("man", "Writes a manual page for weir and for each of its commands");
   command->group("");
-  CLI::Option* directory =
-      command->add_option("directory", a->directory, "where weir.1, weir-convert.1 and so on go");
+  CLI::Option* directory = command->add_option("directory", a->directory, "where weir.1, weir-convert.1 and so on go");
   command->add_flag("--options", a->options, "prints docs/options.md instead")->excludes(directory);
   command->callback([&app, a] {
     if (a->options) {

@@ -85,7 +85,8 @@ std::string volume_name(const SweepMethod& method, double rate) { return cat(met
 void check_outputs(const ResultDirectory& directory, std::span<const SweepMethod> methods,
                    std::span<const double> rates, const SweepArguments& a) {
   std::vector<std::string> paths;
-  for (const char* name : {"sweep.csv", "sweep.json", "psnr_bits.png", "psnr_bits.svg", "psnr_seconds.png", "psnr_seconds.svg"}) {
+  for (const char* name :
+       {"sweep.csv", "sweep.json", "psnr_bits.png", "psnr_bits.svg", "psnr_seconds.png", "psnr_seconds.svg"}) {
     paths.push_back(directory / name);
   }
   for (const SweepMethod& method : methods) {
@@ -224,16 +225,19 @@ void write_text(FileSystem& files, const std::string& path, const std::string& t
   file.commit();
 }
 
-void draw_charts(FileSystem& files, const ResultDirectory& directory, const SweepReport& report) {
-  if (!driver_is_there("plot")) {
-    spdlog::warn("this weir has no weir_plot.so: no charts are drawn");
-    return;
-  }
-  for (const auto& [name, axis] :
-       {std::pair{"psnr_bits", SweepAxis::bits_per_voxel}, std::pair{"psnr_seconds", SweepAxis::seconds}}) {
+constexpr std::array kCharts{std::pair{"psnr_bits", SweepAxis::bits_per_voxel},
+                             std::pair{"psnr_seconds", SweepAxis::seconds}};
+
+/// Without a driver for charts, those of an earlier sweep go: they are not of this one.
+void draw_charts(FileSystem& files, const ResultDirectory& directory, const SweepReport& report, bool can_draw) {
+  for (const auto& [name, axis] : kCharts) {
     for (const char* ending : {".png", ".svg"}) {
       const std::string path = directory / cat(name, ending);
-      write_text(files, path, psnr_chart(report, axis, plot_format(path)), true);
+      if (can_draw) {
+        write_text(files, path, psnr_chart(report, axis, plot_format(path)), true);
+      } else if (files.exists(path)) {
+        files.remove(path);
+      }
     }
   }
 }
@@ -249,9 +253,11 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   const auto files = make_posix_file_system();
   const ResultDirectory directory(*files, a.output);
   check_outputs(directory, methods, rates, a);
+  const bool can_draw = has_driver("plot");
+  if (!can_draw) spdlog::warn("weir_plot.so cannot be loaded: no charts are drawn");
   const std::unique_ptr<VolumeSource> source = open_source(a.input, source_options);
 
-  std::map<std::string, std::string> given = given_options(command);
+  std::map<std::string, std::string> given = given_options(command, a.options);
   for (const char* own : {"rates", "methods", "output", "keep"}) given.erase(own);
   Sweep sweep(*source, directory, *files, a, given);
   SweepReport report;
@@ -270,7 +276,7 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
 
   write_text(*files, directory / "sweep.csv", csv_text(report), a.overwrite);
   write_text(*files, directory / "sweep.json", json_text(report), a.overwrite);
-  draw_charts(*files, directory, report);
+  draw_charts(*files, directory, report, can_draw);
   std::cout << (a.json ? json_text(report) : table_text(report));
 }
 
@@ -283,7 +289,9 @@ void add_sweep(CLI::App& app) {
   command->add_option("input", a->input, "volume file, NAME_XxYxZ_TYPE.raw for instance")
       ->type_name("INPUT")
       ->required();
-  command->add_option("-o,--output", a->output, "directory for sweep.csv, sweep.json, and charts, psnr_bits and psnr_seconds, as .png and .svg")
+  command
+      ->add_option("-o,--output", a->output,
+                   "directory for sweep.csv, sweep.json, and charts, psnr_bits and psnr_seconds, as .png and .svg")
       ->type_name("DIR")
       ->required();
   command->add_option("--rates", a->rates, "dense float32 bytes / file bytes, between commas")

@@ -21,9 +21,9 @@ std::string line_of(const OptionRow& row) {
              cell(row.help), " |\n");
 }
 
-std::string table(std::string_view title, std::span<const ConversionOption> options) {
+std::string table(std::string_view title, std::string_view names, std::span<const ConversionOption> options) {
   std::string text =
-      cat("\n## ", title, "\n\n| option | key, keyword | unit | default | meaning |\n|---|---|---|---|---|\n");
+      cat("\n## ", title, "\n\n| option | ", names, " | unit | default | meaning |\n|---|---|---|---|---|\n");
   for (const ConversionOption& option : options) text += line_of(option.row);
   return text;
 }
@@ -33,12 +33,13 @@ std::string table(std::string_view title, std::span<const ConversionOption> opti
 std::string options_page() {
   return cat(
       "# Options of a conversion\n\n"
-      "One table in the program, `compressor/options`, says what options there are. The command line, the keys of a\n"
-             "`[[watch]]` table, the keywords of `weir.convert` in Python and this page are made from it. In C they are "
-             "members of\n`weir_convert_options` and `weir_input_options`; `weir.h` describes them. `weir man --options` "
-             "prints this page.\n",
-             table("Input: what a file does not say itself", input_options()),
-      table("Budget, method and policy", method_options()), table("Use of the machine", run_options()),
+      "One table in the program, `compressor/options`, says what options there are: the command line, the keys of a\n"
+      "`[[watch]]` table and this page are made from it, the keywords of `weir.convert` in Python are checked against "
+      "it.\nIn C they are members of `weir_convert_options` and `weir_input_options`; `weir.h` describes them.\n"
+      "`weir man --options` prints this page.\n",
+      table("Input: what a file does not say itself", "key, keyword", input_options()),
+      table("Budget, method and policy", "key, keyword", method_options()),
+      table("Use of the machine", "keyword of Python", run_options()),
       "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
       "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`; memory, "
       "threads and the like are the service's\n([operations.md](operations.md)).\n");

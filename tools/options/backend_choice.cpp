@@ -14,7 +14,8 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
     return make_cuda_backend({.devices = choice.devices, .load = {}});
 #else
   if (choice.name == "cuda") {
-    throw Error(ErrorKind::usage, "--backend cuda: this build has no CUDA renderer; use --backend cpu or auto");
+    throw Error(ErrorKind::usage, compose(option("backend", "cuda"), ": this build has no CUDA renderer; use ",
+                                          option("backend", "cpu"), " or auto"));
   }
 #endif
   return make_cpu_backend(choice.threads);

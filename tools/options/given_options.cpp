@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "compressor/options/conversion_request.h"
+
 namespace weir {
 namespace {
 
@@ -16,14 +18,15 @@ bool silent(std::string_view key) { return std::find(kSilent.begin(), kSilent.en
 
 }  // namespace
 
-std::map<std::string, std::string> given_options(const CLI::App& command) {
+std::map<std::string, std::string> given_options(const CLI::App& command, const GivenOptions& read) {
   std::map<std::string, std::string> given;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->get_lnames().empty()) continue;
     const std::string& name = option->get_lnames().front();
-    if (silent(name)) continue;
+    if (silent(name) || is_conversion_option(name)) continue;
     given[name] = option->get_expected_max() == 0 ? "true" : option->results().back();
   }
+  given.merge(recorded_options(read));
   return given;
 }
 

@@ -36,7 +36,7 @@ class PlotCanvas {
   /// A closed polygon: filled, then outlined.
   virtual void polygon(std::span<const PlotPoint> corners, double width, const Float3& inside,
                        const Float3& outline) = 0;
-  /// UTF-8 in a sans-serif font of `size` pixels, upright or from the bottom up.
+  /// UTF-8, other bytes as "?", in a sans-serif font of `size` pixels, upright or from the bottom up.
   virtual void text(const PlotPoint& at, std::string_view text, double size, const Float3& ink, TextAnchor anchor,
                     bool upwards = false) = 0;
   /// Pixels along x that text() takes.

@@ -14,6 +14,35 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
   return CAIRO_STATUS_SUCCESS;
 }
 
+/// `text` with what is no UTF-8, of which cairo draws nothing at all, as "?": a file's name may hold any bytes.
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80                   ? 1
+                               : byte >= 0xC2 && byte < 0xE0 ? 2
+                               : byte >= 0xE0 && byte < 0xF0 ? 3
+                               : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                             : 0;
+    std::size_t follow = 1;
+    while (follow < length && i + follow < text.size() &&
+           (static_cast<unsigned char>(text[i + follow]) & 0xC0U) == 0x80) {
+      ++follow;
+    }
+    const auto second = follow > 1 ? static_cast<unsigned char>(text[i + 1]) : 0U;
+    const bool outside = (byte == 0xE0 && second < 0xA0) || (byte == 0xED && second > 0x9F) ||
+                         (byte == 0xF0 && second < 0x90) || (byte == 0xF4 && second > 0x8F);
+    const bool good = length > 0 && follow == length && !outside && byte >= ' ';
+    if (good) {
+      valid += text.substr(i, length);
+    } else {
+      valid += '?';
+    }
+    i += good ? length : 1;
+  }
+  return valid;
+}
+
 class CairoCanvas final : public PlotCanvas {
  public:
   CairoCanvas(std::int32_t width, std::int32_t height, PlotFormat format, const Float3& paper)
@@ -63,7 +92,7 @@ class CairoCanvas final : public PlotCanvas {
     cairo_translate(cairo_.get(), at.x, at.y);
     if (upwards) cairo_rotate(cairo_.get(), -1.5707963267948966);
     cairo_move_to(cairo_.get(), left, (font.ascent - font.descent) / 2);
-    cairo_show_text(cairo_.get(), std::string(text).c_str());
+    cairo_show_text(cairo_.get(), valid_utf8(text).c_str());
     cairo_restore(cairo_.get());
   }
 
@@ -71,7 +100,7 @@ class CairoCanvas final : public PlotCanvas {
     cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo_.get(), size);
     cairo_text_extents_t extents;
-    cairo_text_extents(cairo_.get(), std::string(text).c_str(), &extents);
+    cairo_text_extents(cairo_.get(), valid_utf8(text).c_str(), &extents);
     return extents.x_advance;
   }
 

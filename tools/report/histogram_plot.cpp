@@ -96,8 +96,7 @@ std::string histogram_text(const Sidecar::Histogram& histogram) {
   return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
 }
 
-std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background,
-                            PlotFormat format) {
+std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background, PlotFormat format) {
   const std::unique_ptr<PlotCanvas> canvas = make_plot_canvas(kWidth, kHeight, format, kPaper);
   constexpr std::int32_t kFloor = kHeight - kBottom;
   constexpr std::int32_t kBarsWidth = kWidth - kLeft - kRight;

@@ -28,7 +28,6 @@ constexpr std::int32_t kLegendLine = 26;  // from one line of it to the next
 constexpr std::int32_t kLosslessBand = 48;
 constexpr double kLabelSize = 15;
 constexpr double kTitleSize = 18;
-constexpr std::size_t kTitleCharacters = 80;
 constexpr double kLineWidth = 2.4;
 constexpr double kMarkerRadius = 7;
 constexpr Float3 kSheetPaper{1, 1, 1};
@@ -200,7 +199,7 @@ void draw_axes(PlotCanvas& canvas, const Frame& frame, const std::string& x_labe
 std::string psnr_chart(const SweepReport& report, SweepAxis axis, PlotFormat format) {
   const std::unique_ptr<PlotCanvas> sheet = make_plot_canvas(kSheetWidth, kSheetHeight, format, kSheetPaper);
   PlotCanvas& canvas = *sheet;
-  const std::string title = std::filesystem::path(report.source).filename().string().substr(0, kTitleCharacters);
+  const std::string title = std::filesystem::path(report.source).filename().string();
   canvas.text({kSheetLeft, kTitle}, title, kTitleSize, kSheetInk, TextAnchor::left);
   const std::vector<Series> all = series_of(report, axis);
   if (std::none_of(report.rows.begin(), report.rows.end(), shown)) {

@@ -58,6 +58,7 @@ def convert(
     threads: Optional[int] = None,
     work_dir: Optional[Path] = None,
     resume: Optional[str] = None,
+    save_interval: Optional[float] = None,
     overwrite: bool = False,
     progress: Optional[Progress] = None,
 ) -> dict[str, Any]:
@@ -99,6 +100,8 @@ def convert(
     resume
         "auto", "on" or "off": whether what an interrupted conversion of a file did is kept for the next. Never of an
         array.
+    save_interval
+        Seconds between two points that it can be continued from; 0: as many as there are.
     progress
         Called in this thread some twenty times a second at most as progress(pass, done, total), in float32 bytes.
         What it raises, KeyboardInterrupt too, ends the conversion and goes on.
@@ -139,6 +142,7 @@ def convert(
         threads=threads,
         work_dir=work_dir,
         resume=resume,
+        save_interval=save_interval,
         overwrite=overwrite,
     )
     target = b"" if output is None else os.fsencode(output)

@@ -36,10 +36,15 @@ def box_text(box: Any) -> str:
         raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), half open") from None
 
 
+_FLAGS = {"lossless", "stack", "overwrite"}
+
+
 def given_options(**keywords: Any) -> dict[str, str]:
-    """{"max-error": "0.5", "lossless": "true"}: what is None or False is not given."""
-    return {
-        name.replace("_", "-"): "true" if value is True else text_of(value)
-        for name, value in keywords.items()
-        if value is not None and value is not False
-    }
+    """{"max-error": "0.5", "lossless": "true"}: what is None, and a flag that is False, is not given."""
+    given = {}
+    for name, value in keywords.items():
+        if name in _FLAGS and isinstance(value, (bool, int, numpy.bool_)):
+            value = "true" if value else None
+        if value is not None:
+            given[name.replace("_", "-")] = text_of(value)
+    return given

@@ -128,14 +128,14 @@ static void volumes(void) {
 static void options(void) {
   REFUSE_OPTIONS("budget_kind is 6, it must be 0 to 5", o.budget_kind = 6);
   REFUSE_OPTIONS("budget_kind is -1, it must be 0 to 5", o.budget_kind = -1);
-  REFUSE_OPTIONS("WEIR_BUDGET_RATE is \"0\", it must be a positive number: dense float32 bytes / file bytes",
+  REFUSE_OPTIONS("budget (WEIR_BUDGET_RATE) is \"0\", it must be a positive number: dense float32 bytes / file bytes",
                  o.budget_kind = WEIR_BUDGET_RATE);
-  REFUSE_OPTIONS("WEIR_BUDGET_PSNR is \"nan\", it must be a number of dB, 60 for instance", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
-  REFUSE_OPTIONS("WEIR_BUDGET_MAX_ERROR is \"-1\", it must be a number from 0 on, in the values' own unit",
+  REFUSE_OPTIONS("budget (WEIR_BUDGET_PSNR) is \"nan\", it must be a number of dB, 60 for instance", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
+  REFUSE_OPTIONS("budget (WEIR_BUDGET_MAX_ERROR) is \"-1\", it must be a number from 0 on, in the values' own unit",
                  (o.budget_kind = WEIR_BUDGET_MAX_ERROR, o.budget = -1));
   REFUSE_OPTIONS("budget is 8, and budget_kind is not WEIR_BUDGET_RATE, _PSNR or _MAX_ERROR; set one or the other",
                  o.budget = 8);
-  REFUSE_OPTIONS("WEIR_BUDGET_SIZE is \"0\", it must be a size such as 1048577, 64MiB or 1.5GB", o.budget_kind = WEIR_BUDGET_SIZE);
+  REFUSE_OPTIONS("size (WEIR_BUDGET_SIZE) is \"0\", it must be a size such as 1048577, 64MiB or 1.5GB", o.budget_kind = WEIR_BUDGET_SIZE);
   REFUSE_OPTIONS("size is 4096, and budget_kind is not WEIR_BUDGET_SIZE; set one or the other", o.size = 4096);
   REFUSE_OPTIONS("encoding is 6, it must be 0 to 5", o.encoding = 6);
   REFUSE_OPTIONS("metric is 4, it must be 0 to 3", o.metric = 4);
@@ -143,7 +143,7 @@ static void options(void) {
   REFUSE_OPTIONS("nonfinite is 3, it must be 0 to 2", o.nonfinite = 3);
   REFUSE_OPTIONS("brick is \"9\", it must be 8, 16 or 32", o.brick = 9);
   REFUSE_OPTIONS("brick 16 is for WEIR_METRIC_FARTHEST, closest or median; sse chooses single leaves", o.brick = 16);
-  REFUSE_OPTIONS("WEIR_METRIC_FARTHEST has no error target; WEIR_BUDGET_PSNR and WEIR_BUDGET_MAX_ERROR select by sse",
+  REFUSE_OPTIONS("WEIR_METRIC_FARTHEST has no error target; budget (WEIR_BUDGET_PSNR) and budget (WEIR_BUDGET_MAX_ERROR) select by sse",
                  (o.metric = 1, o.budget_kind = WEIR_BUDGET_PSNR, o.budget = 50));
   REFUSE_OPTIONS("background is \"inf\", it must be auto or a finite float32", (o.has_background = 1, o.background = INFINITY));
   REFUSE_OPTIONS("background is 1, and has_background is 0; set it", o.background = 1);

@@ -19,21 +19,29 @@ class Options(FolderTest):
     def test_wrong_options_are_refused_for_the_same_reason(self):
         refused = 0
         for wrong in WRONG:
-            if "save-interval" in wrong["given"]:
-                continue  # of the command alone
             refused += 1
             reason = re.sub(r"\{([^}]*)\}", lambda option: keyword(option[1]), wrong["reason"])
             with self.subTest(reason):
                 given = {keyword(key): text for key, text in wrong["given"].items()}
                 message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder / "a.nvdb", **given)
                 self.assertEqual(message, reason)
-        self.assertEqual(refused, len(WRONG) - 1)
+        self.assertEqual(refused, len(WRONG))
+
+    def test_flags_take_what_is_true_or_false(self):
+        import numpy
+
+        for value in (True, 1, numpy.True_):
+            record = weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=value, overwrite=1)
+            self.assertEqual(record["weir"]["options"]["lossless"], "true")
+        for value in (False, 0, numpy.False_, None):
+            record = weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=value, overwrite=True)
+            self.assertNotIn("lossless", record["weir"]["options"])
 
     def test_the_keywords_of_convert_are_those_of_the_table(self):
         page = (SOURCE / "docs/options.md").read_text()
         table = set(re.findall(r"^\| `--[^|]*(?:\\\|[^|]*)*\| `(\w+)` \|", page, re.MULTILINE))
         keywords = set(inspect.signature(weir.convert).parameters) - {"source", "output", "progress"}
-        self.assertEqual(keywords, table - {"save_interval"})
+        self.assertEqual(keywords, table)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,12 @@ TEST(InputOptions, NoOptionGiven_LeavesAllUnset) {
   EXPECT_EQ(options.direct_io, DirectIo::automatic);
 }
 
+TEST(InputOptions, EmptyTexts_AreNotGiven) {
+  const SourceOptions options = parse({{"dims", ""}, {"roi", ""}, {"index", ""}, {"type", ""}});
+  EXPECT_FALSE(options.extent || options.roi || options.type);
+  EXPECT_TRUE(options.index.empty());
+}
+
 TEST(InputOptions, AllGiven) {
   const SourceOptions options = parse({{"dims", "3,4,5"},
                                        {"type", "uint16"},

@@ -19,8 +19,8 @@
 
 #include "format/base/error.h"
 #include "ingest/values/array_source.h"
-#include "tests/compressor/support/hard_cases.h"
 #include "tests/compressor/support/crash_file_system.h"
+#include "tests/compressor/support/hard_cases.h"
 #include "tests/compressor/support/pushed.h"
 #include "tests/support/temporary_directory.h"
 

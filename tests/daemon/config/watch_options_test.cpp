@@ -55,6 +55,10 @@ TEST(WatchOptions, NumbersKeepAllTheirDigits) {
   EXPECT_EQ(read("roi = ['0:8', '0:8', '2:4']"), Arguments{"--roi=0:8,0:8,2:4"});
 }
 
+TEST(WatchOptions, EmptyTextsAreNotGiven) {
+  EXPECT_EQ(read("dataset = ''\nscene = ''\nrate = 4"), Arguments{"--rate=4"});
+}
+
 TEST(WatchOptions, RefusesWrongTypesAndUnknownKeys) {
   EXPECT_EQ(refusal("lossless = 1"), "/etc/weir/c.toml:1:12: lossless must be true or false");
   EXPECT_EQ(refusal("max_error = true"),

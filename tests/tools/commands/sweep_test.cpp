@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
 
-const Names kResults{"psnr_bits.png",    "psnr_bits.svg", "psnr_seconds.png", "psnr_seconds.svg", "sweep.csv", "sweep.json"};
+const Names kResults{"psnr_bits.png",    "psnr_bits.svg", "psnr_seconds.png",
+                     "psnr_seconds.svg", "sweep.csv",     "sweep.json"};
 
 class SweepCommand : public testing::Test {
  protected:

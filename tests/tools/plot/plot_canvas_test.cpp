@@ -71,6 +71,19 @@ TEST(PlotCanvas, TextStandsWhereItsAnchorIs) {
   EXPECT_GT(canvas()->text_width("wide", 12), canvas()->text_width("ii", 12));
 }
 
+// A name may hold any bytes, of which cairo takes UTF-8 alone.
+TEST(PlotCanvas, TextThatIsNoUtf8_IsDrawnWithQuestionMarks) {
+  const auto drawn = [](std::string_view text) {
+    const auto sheet = canvas();
+    sheet->text({2, 10}, text, 12, kBlack, TextAnchor::left);
+    return sheet->finish();
+  };
+  EXPECT_EQ(drawn("a\xef\x62"), drawn("a?b"));
+  EXPECT_EQ(drawn("a\xc3"), drawn("a?"));
+  EXPECT_EQ(drawn("\xed\xa0\x80"), drawn("???")) << "half a surrogate";
+  EXPECT_NE(drawn("\xc3\xa9"), drawn("??")) << "a letter of two bytes";
+}
+
 TEST(PlotCanvas, SvgHasTheSheetsSize) {
   const auto sheet = canvas(PlotFormat::svg);
   sheet->line({4, 10}, {16, 10}, 2, kBlack);
