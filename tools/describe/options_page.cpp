@@ -35,7 +35,8 @@ std::string options_page() {
       "# Options of a conversion\n\n"
       "One table in the program, `compressor/options`, says what options there are: the command line, the keys of a\n"
       "`[[watch]]` table and this page are made from it, the keywords of `weir.convert` in Python are checked against "
-      "it.\nIn C they are members of `weir_convert_options` and `weir_input_options`; `weir.h` describes them.\n"
+      "it.\nC has most of them as members of `weir_convert_options` and `weir_input_options`; `weir.h` describes "
+      "those.\n"
       "`weir man --options` prints this page.\n",
       table("Input: what a file does not say itself", "key, keyword", input_options()),
       table("Budget, method and policy", "key, keyword", method_options()),

@@ -194,6 +194,42 @@ TEST_F(Installation, TheCommandRuns) {
   }
 }
 
+// Moved to another place, as an archive of an installation is: nothing leads to the build any more.
+TEST_F(Installation, ProgramsFindTheDriversBesideThem) {
+  const TemporaryDirectory work;
+  const std::string moved = work / "opt";
+  fs::copy(prefix(), moved, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+  const std::string grid = work / "a.nvdb";
+  const std::string raw = work / "a_40x30x20_float32.raw";
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"sample", "cloud", "-o", raw},
+                                             {"convert", raw, "--lossless", "-o", grid},
+                                             {"export", grid, "-o", work / "a.vdb"},
+                                             {"convert", work / "a.vdb", "--lossless", "-o", work / "b.nvdb"},
+                                             {"inspect", grid, "--plot", work / "a.svg"}}) {
+    std::vector<std::string> all{moved + "/bin/weir"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    CommandOptions options;
+    options.environment = {"LD_DEBUG=libs", cat("LD_DEBUG_OUTPUT=", work / "loaded")};
+    const CommandResult result = run_command(all, options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+  std::string loaded;
+  for (const std::string& name : list_directory(work.path())) {
+    if (name.starts_with("loaded.")) loaded += read_file(work / name);
+  }
+  for (const char* driver : {"/bin/../lib/weir/weir_openvdb.so", "/bin/../lib/weir/weir_plot.so"}) {
+    EXPECT_NE(loaded.find("calling init: " + moved + driver), std::string::npos) << driver;
+  }
+  if (kPythonFolder.empty()) return;
+  CommandOptions options;
+  options.environment = {"PYTHONPATH=" + moved + '/' + kPythonFolder};
+  const std::string script = "import sys, weir; weir.convert(sys.argv[1], sys.argv[2], lossless=True)";
+  const CommandResult result = run_command({kPython, "-B", "-c", script, work / "a.vdb", work / "c.nvdb"}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_file(work / "c.nvdb"), read_file(work / "b.nvdb"));
+}
+
 TEST_F(Installation, PythonFindsTheModule) {
   if (kPythonFolder.empty()) GTEST_SKIP() << "the Python module is not built";
   CommandOptions options;
