@@ -136,7 +136,7 @@ FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore&
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
     throw Error(ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
                                            " cannot be lossless: ", lossy_leaves_text(candidate), "; use ",
-                                           option("encoding", "auto"), " or ", option("encoding", "float")));
+                                           option("encoding", "auto"), " or float"));
   }
   return candidate.plan(candidate.size_for(request.budget));
 }
@@ -191,7 +191,7 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
   if (request.budget.kind == Budget::Kind::lossless) {
     return {ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
                                        " cannot be lossless: a leaf of it reads other bits; use ",
-                                       option("encoding", "auto"), " or ", option("encoding", "float"))};
+                                       option("encoding", "auto"), " or float")};
   }
   if (psnr && squared_error > 0) {
     const double short_by = 10 * std::log10(squared_error / request.squared_error);
@@ -201,7 +201,7 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
   }
   return {ErrorKind::budget, compose(request.path, ": ", option(psnr ? "psnr" : "max-error", request.budget.target),
                                      " cannot be met: ", option("encoding", encoding_name(encoding)), best, "; use ",
-                                     option("encoding", "auto"), " or ", option("encoding", "float"))};
+                                     option("encoding", "auto"), " or float")};
 }
 
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
