@@ -14,18 +14,25 @@ namespace fs = std::filesystem;
 using Inspect = ConvertedVolume;
 
 TEST_F(Inspect, ShowsVolumeAndCertificate) {
-  const CommandResult text = run_weir({"inspect", volume_, "--plot", directory_ / "h.png"});
+  const CommandResult text = run_weir({"inspect", volume_});
   EXPECT_EQ(text.exit_code, 0) << text.err;
   EXPECT_EQ(text.err, "");
   EXPECT_NE(text.out.find("450001 bytes (439.5 KiB), grid at 4096, "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("grid        \"density\" float32, 40 x 30 x 20 voxels from (0, 0, 0)\n"), std::string::npos);
   EXPECT_NE(text.out.find("budget      size 450001: 450001 of 96000 bytes"), std::string::npos) << text.out;
-  EXPECT_EQ(read_file(directory_ / "h.png").substr(0, 4), "\x89PNG");
   const auto report = nlohmann::json::parse(run_weir({"inspect", volume_, "--json"}).out);
   EXPECT_EQ(report["file"]["head_checksum_state"], "ok");
   EXPECT_EQ(report["tree"]["active_voxels"], open().grid().active_voxels());
   EXPECT_EQ(report["sidecar"]["file"]["bytes"], 450001);
   EXPECT_EQ(report["sidecar_matches"], true);
+}
+
+TEST_F(Inspect, DrawsTheHistogramAsPngAndSvg) {
+  for (const auto& [name, begin] : {std::pair{"h.png", "\x89PNG"}, std::pair{"h.svg", "<?xml"}}) {
+    const CommandResult result = run_weir({"inspect", volume_, "--plot", directory_ / name});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(read_file(directory_ / name).starts_with(begin)) << name;
+  }
 }
 
 TEST_F(Inspect, WorksWithoutSidecar) {
