@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -19,7 +18,6 @@
 namespace weir::c {
 namespace {
 
-constexpr std::uint64_t kDefaultMemory = std::uint64_t{512} << 20U;
 constexpr std::uint64_t kMaxMemory = std::uint64_t{1} << 50U;
 constexpr std::size_t kMaxNameBytes = 255;
 
@@ -150,7 +148,7 @@ ConversionOptions read_options(const weir_convert_options& o) {
   ConversionOptions options = read_conversion_request(given).conversion;
   // Of a library, what it takes besides the process: any size that the volume's own check (plan_memory) lets pass.
   if (o.memory > kMaxMemory) throw usage(cat("memory is ", o.memory, " bytes, it must be at most 2^50"));
-  options.memory = o.memory == 0 ? kDefaultMemory : o.memory;
+  if (o.memory != 0) options.memory = o.memory;
   options.provenance = {WEIR_VERSION, build_commit(), {method.begin(), method.end()}};
   return options;
 }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
+
+#include "format/base/ascii.h"
 
 namespace weir::c {
 namespace {
@@ -13,12 +14,7 @@ constexpr std::array<std::string_view, 4> kChoices{"encoding", "metric", "fill",
 
 bool holds(const auto& keys, const std::string& key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
 
-std::string enumerator_of(std::string_view name) {
-  std::string text(name);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::toupper(c)); });
-  return text;
-}
+std::string enumerator_of(std::string_view name) { return upper_case(key_wording({std::string(name), {}})); }
 
 std::string member_of(const std::string& key) {
   if (key == "dims") return "extent";

@@ -44,19 +44,16 @@ constexpr ConversionOption kRunOptions[] = {
      read_memory},
     {{.key = "threads",
       .argument = "N",
-      .unit = "",
       .standard = "0",
       .help = "0: all of the machine's, for convert as many of them as --memory holds"},
      read_threads},
     {{.key = "work-dir",
       .argument = "DIRECTORY",
-      .unit = "",
       .standard = "a hidden directory beside the output",
       .help = "for spill files, on a disk"},
      [](const OptionRow&, const std::string& text, Request& r) { r.conversion.work_dir = text; }},
     {{.key = "resume",
       .argument = "auto|on|off",
-      .unit = "",
       .standard = "auto",
       .help = "keep the work of an interrupted or failed conversion in a hidden directory beside the output "
               "(.OUT.nvdb.work): the same command continues it, with the same bytes in the end. auto: for volumes of "
@@ -70,7 +67,7 @@ constexpr ConversionOption kRunOptions[] = {
       .standard = "5",
       .help = "between two points that an interrupted conversion can be continued from; 0: as many as there are"},
      read_save_interval},
-    {{.key = "overwrite", .argument = "", .unit = "", .standard = "", .help = "replace an existing output"},
+    {{.key = "overwrite", .help = "replace an existing output"},
      [](const OptionRow& row, const std::string& text, Request& r) { r.conversion.overwrite = read_flag(row, text); }},
 };
 

@@ -9,6 +9,7 @@
 #include <ios>
 #include <string_view>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 
@@ -45,9 +46,7 @@ constexpr std::array kKnown{
 FileSystemKind file_system_kind(std::uint64_t statfs_type) {
   const auto* known = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& k) { return k.type == statfs_type; });
   if (known == kKnown.end()) {
-    std::string type = hex(statfs_type);
-    for (char& digit : type) digit = static_cast<char>(std::toupper(digit));
-    return {"type 0x" + type, false};
+    return {"type 0x" + upper_case(hex(statfs_type)), false};
   }
   return {std::string(known->name), known->local};
 }

@@ -25,4 +25,11 @@ inline std::string lower_case(std::string_view text) {
   return lower;
 }
 
+/// Letters in upper case.
+inline std::string upper_case(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return upper;
+}
+
 }  // namespace weir

@@ -16,12 +16,13 @@
 namespace weir {
 
 struct OptionRow {
-  std::string_view key;         ///< as on the command line, without dashes: "max-error"
-  std::string_view argument;    ///< what stands for its value, "X,Y,Z", or all there are, "auto|on|off"; empty: a flag
-  std::string_view unit;        ///< of the value; empty: none
-  std::string_view standard;    ///< the value where none is given, or what takes its place; empty: nothing to say
-  std::string_view help;        ///< half a sentence
-  std::string_view group = {};  ///< of the options of one group at most one may be given; empty: no group
+  std::string_view key;  ///< as on the command line, without dashes: "max-error"
+  std::string_view argument =
+      {};                      ///< what stands for its value, "X,Y,Z", or all there are, "auto|on|off"; empty: a flag
+  std::string_view unit = {};  ///< of the value; empty: none
+  std::string_view standard = {};  ///< the value where none is given, or what takes its place; empty: nothing to say
+  std::string_view help;           ///< half a sentence
+  std::string_view group = {};     ///< of the options of one group at most one may be given; empty: no group
   std::string_view excludes = {};  ///< keys that must not be given with it, commas between
   bool flag() const { return argument.empty(); }
   /// help and standard.

@@ -2,12 +2,11 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 
 #define WEIR_TEXT_OF(symbol) #symbol
@@ -25,12 +24,6 @@ std::string place_of(const std::string& file, const std::string& what) {
                 cat(what, ", and WEIR_DRIVERS is \"", folder, "\", it must be an absolute path; unset it or mend it"));
   }
   return cat(folder, "/", file);
-}
-
-std::string upper_case(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return name;
 }
 
 const void* open_driver(const std::string& name, const std::string& what) {

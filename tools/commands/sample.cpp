@@ -59,9 +59,8 @@ Error contradiction(const std::string& path, const Message& given, const std::st
 }
 
 // A name of the pattern NAME_XxYxZ_TYPE.raw is believed by whoever reads the file.
-Shape resolve_shape(const SampleArguments& arguments) {
+Shape resolve_shape(const SampleArguments& arguments, const SourceOptions& options) {
   const std::string& path = arguments.output;
-  const SourceOptions options = read_conversion_request(arguments.options).source;
   const auto given = [&](const char* key) { return option(key, arguments.options.at(key)); };
   const auto name = parse_raw_name(path);
   if (!name && !options.extent) {
@@ -141,10 +140,10 @@ class SlabWriter {
 
 void sample(const SampleArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const Shape shape = resolve_shape(arguments);
+  const auto [given, run] = read_conversion_request(arguments.options);
+  const Shape shape = resolve_shape(arguments, given);
   const SyntheticKind& kind = find_synthetic_kind(arguments.kind);
   const ValuePacker packer(kind, shape.type, shape.big_endian);
-  const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto source = open_synthetic(kind.name, {shape.extent, arguments.seed});
   const std::int64_t voxels = volume(shape.extent);
   const std::uint64_t value_bytes = scalar_bytes(shape.type);

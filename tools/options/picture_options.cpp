@@ -106,18 +106,12 @@ std::uint32_t default_samples(RenderMode mode) { return mode == RenderMode::path
 
 // The scene is the first, so that the options after it change it.
 constexpr ReadableOption<Request> kPictureOptions[] = {
-    {{.key = "scene",
-      .argument = "SCENE.toml",
-      .unit = "",
-      .standard = "",
-      .help = "camera, transfer function, medium, light"},
+    {{.key = "scene", .argument = "SCENE.toml", .help = "camera, transfer function, medium, light"},
      [](const OptionRow&, const std::string& text, Request& r) {
        if (!text.empty()) r.scene = load_scene(text);
      }},
     {{.key = "mode",
       .argument = "path|dvr|iso|mip",
-      .unit = "",
-      .standard = "",
       .help = "path: multiple scattering; dvr: emission and absorption; iso: surface; mip: largest value"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.scene.mode =
@@ -125,31 +119,21 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
      }},
     {{.key = "backend",
       .argument = "auto|cpu|cuda",
-      .unit = "",
       .standard = "auto",
       .help = "what renders; auto: cuda where there is a device"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        read_choice(row, text);
        r.backend.name = text;
      }},
-    {{.key = "devices",
-      .argument = "N,N,...",
-      .unit = "",
-      .standard = "0",
-      .help = "CUDA devices that share the samples"},
+    {{.key = "devices", .argument = "N,N,...", .standard = "0", .help = "CUDA devices that share the samples"},
      read_devices},
     {{.key = "size", .argument = "WxH", .unit = "pixels", .standard = "960x720", .help = "in pixels"}, read_size},
-    {{.key = "spp",
-      .argument = "N",
-      .unit = "",
-      .standard = "32 for path, 4 for the others",
-      .help = "samples a pixel"},
+    {{.key = "spp", .argument = "N", .standard = "32 for path, 4 for the others", .help = "samples a pixel"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.sampling.samples = static_cast<std::uint32_t>(read_count(row, text, 1, kMaxSamples));
      }},
     {{.key = "seed",
       .argument = "N",
-      .unit = "",
       .standard = "0",
       .help = "of the random numbers; the same seed gives the same picture"},
      [](const OptionRow& row, const std::string& text, Request& r) {
@@ -157,13 +141,12 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
      }},
     {{.key = "filter",
       .argument = "trilinear|stochastic|nearest",
-      .unit = "",
       .standard = "trilinear",
       .help = "stochastic: one voxel a look-up, drawn by its weight"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.options.filter = std::array{Filter::trilinear, Filter::stochastic, Filter::nearest}.at(read_choice(row, text));
      }},
-    {{.key = "colormap", .argument = kColormapNames, .unit = "", .standard = "", .help = "of the values"},
+    {{.key = "colormap", .argument = kColormapNames, .help = "of the values"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        read_choice(row, text);
        r.scene.volume.colormap = text;
@@ -187,7 +170,7 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
       .standard = "35,20,1",
       .help = "where it stands, in degrees"},
      read_camera},
-    {{.key = "threads", .argument = "N", .unit = "", .standard = "0", .help = "0: all of the machine's"},
+    {{.key = "threads", .argument = "N", .standard = "0", .help = "0: all of the machine's"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.backend.threads = static_cast<int>(read_count(row, text, 0, kMaxThreads));
      }},
