@@ -29,12 +29,7 @@ class DifferenceTally {
     const Box node = leaves.node_box(leaf);
     const Box inside = leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node, inside, 0.0F, source_);
-    const GridBlock covering = grid.block_at(node.lo);
-    if (covering.leaf != nullptr) {
-      grid.decode_leaf(covering.leaf, decoded_);
-    } else {
-      decoded_.fill(covering.value);
-    }
+    grid.decode_block(grid.block_at(node.lo), decoded_);
     if (inside != node) hide_outside(node, inside);
     const LeafDifference difference = difference_of(source_, decoded_);
     squared_error_.add(difference.squared_error);

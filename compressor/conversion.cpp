@@ -48,7 +48,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const Box domain = info.domain();
   const std::size_t processors = processors_or_all(options.processors);
   const std::uint64_t resident = held + source.working_bytes();
-  std::size_t threads = choose_threads(options.threads, processors, options.memory, resident, domain);
+  std::size_t threads =
+      choose_threads(options.threads, processors, options.memory, resident, domain, region_bytes(options));
   if (options.threads == 0 && threads < processors && control.notice) {
     control.notice(fewer_threads_notice(threads, processors, options.memory));
   }
@@ -58,7 +59,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   MemoryPlan memory;
   ReadingPlan reading;
   team.run([&] {
-    memory = plan_memory(options.memory, resident, threads, domain);
+    memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options));
     reading = plan_reading(source, memory);
   });
   const StreamOptions stream = stream_options(control);
@@ -86,10 +87,12 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   };
   SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions, team), {}};
   if (visibility) stores.faces.emplace(spill("faces"), leaves);
+  const std::optional<LadderAim> ladders = surveyed_ladders(options, info);
+  if (ladders) stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
     return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),
-                         stores.faces ? &*stores.faces : nullptr, &surveyed, pauses);
+                         stores.faces ? &*stores.faces : nullptr, &surveyed, pauses, ladders);
   }();
   check_source(source, team);  // before an encode pass is spent on it
   return convert_surveyed({source, options, control, output, work, journal, visibility}, reading, survey, stores,

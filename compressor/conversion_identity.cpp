@@ -91,6 +91,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"value mapping", mapping_text(source.mapping)},
       {"budget", budget_text(options.budget)},
       {"encoding", encoding_name(options.encoding)},
+      {"preview", preview_name(options.preview)},
       {"metric", metric_name(options.metric)},
       {"fill", fill_name(options.fill)},
       {"brick", cat(options.brick)},

@@ -20,6 +20,18 @@ std::string metric_name(Metric metric) {
 
 std::string fill_name(FillMode fill) { return fill == FillMode::mean ? "mean" : "background"; }
 
+std::string preview_name(Preview preview) {
+  switch (preview) {
+    case Preview::automatic:
+      return "auto";
+    case Preview::on:
+      return "on";
+    case Preview::off:
+      return "off";
+  }
+  throw Error(ErrorKind::internal, "unknown choice of a preview");
+}
+
 std::string policy_name(NonFinitePolicy policy) {
   switch (policy) {
     case NonFinitePolicy::error:

@@ -10,6 +10,7 @@
 #include "compressor/leaf/fill.h"
 #include "compressor/leaf/metric.h"
 #include "compressor/select/budget.h"
+#include "compressor/select/preview.h"
 #include "format/sidecar/scene.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/plan/block_plan.h"
@@ -31,6 +32,7 @@ struct ConversionOptions {
   bool overwrite = false;  ///< replace an existing output
   Budget budget;
   Encoding encoding = Encoding::float32;  ///< automatic: the better of float32 and fpn at the asked size
+  Preview preview = Preview::automatic;   ///< of a packed file
   Metric metric = Metric::sse;            ///< what the budget is spent on
   FillMode fill = FillMode::mean;
   std::int64_t brick = 8;           ///< voxels; granularity of the paper's metrics: 8, 16 or 32
@@ -50,6 +52,7 @@ struct ConversionOptions {
 /// Names as on the command line and in the sidecar.
 std::string metric_name(Metric metric);
 std::string fill_name(FillMode fill);
+std::string preview_name(Preview preview);
 std::string policy_name(NonFinitePolicy policy);
 
 }  // namespace weir

@@ -62,7 +62,6 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
                    const Background& background, const GridHead& head, const EncodedFile& encoded, const Shown& shown) {
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
-  const TreeLayout& layout = file.plan.layout;
   const std::uint64_t dense_bytes = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float);
   sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, info.domain()};
   sidecar.background = {static_cast<double>(background.value), background.method, background.share};
@@ -77,13 +76,20 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
                        fill_name(options.fill),
                        options.brick,
                        static_cast<std::uint64_t>(file.tree->leaves.size()),
-                       layout.counts.leaves,
+                       file.plan.kept,
                        file.plan.leaves_by_width};
   sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
   if (options.scene) {
     sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
                        describe_error(file.plan.seen_tiles, encoded.seen_errors, shown.finite, survey),
                        scene_digest(options.scene->scene)};
+  }
+  if (file.packed) {
+    const auto& blocks = file.plan.blocks;
+    sidecar.packed =
+        Sidecar::Packed{file.packed->preview,
+                        {sidecar.selection.leaves_total - file.plan.kept, blocks[0], blocks[1], blocks[2], blocks[3]},
+                        describe_error(file.plan.preview, {}, survey.finite, survey)};
   }
   sidecar.macrocells = {kMacrocell, make_lattice(info.domain(), kMacrocell).count, kMacrocellApron};
 }

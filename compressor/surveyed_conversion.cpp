@@ -24,6 +24,7 @@
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
+#include "format/packed/block_encode.h"
 #include "ingest/files/file_state.h"
 
 namespace weir {
@@ -83,6 +84,25 @@ FileRequest request_for(const ConversionOptions& options, const Survey& survey, 
   return request;
 }
 
+PackedRequest packed_request(const ConversionOptions& options, const Survey& survey, const SourceInfo& info) {
+  PackedRequest packed;
+  packed.preview = options.preview;
+  packed.lattice = lattice_of(info);
+  BlockConstants& c = packed.constants;
+  c.minimum = survey.min;
+  c.maximum = survey.max;
+  c.coarsest = coarsest_step(survey.min, survey.max);
+  if (packed.lattice) {
+    c.lattice_minimum = packed.lattice->minimum;
+    c.lattice_quantum = packed.lattice->quantum;
+    c.lattice_bits = packed.lattice->bits;
+  }
+  c.below_one = kBelowOne;
+  c.below_more = kBelowMore;
+  c.tables = built_in_tables();
+  return packed;
+}
+
 // What the squares over `finite` voxels may sum up to for a PSNR.
 double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
   const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
@@ -108,7 +128,21 @@ void check_source(const VolumeSource& source, Team& team) {
 }
 
 bool surveys_widths(const ConversionOptions& options) {
-  return options.encoding != Encoding::float32 && options.metric == Metric::sse;
+  return options.encoding != Encoding::float32 && options.encoding != Encoding::packed && options.metric == Metric::sse;
+}
+
+std::uint64_t region_bytes(const ConversionOptions& options) {
+  return kRegionRowsBytes + (options.encoding == Encoding::packed ? kRegionLaddersBytes : 0);
+}
+
+std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source) {
+  if (options.encoding != Encoding::packed) return std::nullopt;
+  LadderAim aim;
+  aim.lossless = options.budget.kind == Budget::Kind::lossless;
+  if (options.budget.kind == Budget::Kind::max_error) aim.max_error = options.budget.target;
+  aim.keeps_non_finite = options.non_finite == NonFinitePolicy::keep;
+  aim.lattice = lattice_of(source);
+  return aim;
 }
 
 namespace {
@@ -177,6 +211,7 @@ class SurveyedConversion {
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.
   FileRequest make_request() {
     FileRequest request = request_for(options_, survey_, background_.value, info_.domain());
+    request.packed = packed_request(options_, survey_, info_);
     if (parts_.seen) {
       shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.work, stores_.rows);
       stores_.faces.reset();
@@ -213,7 +248,8 @@ class SurveyedConversion {
     head_.voxel_size = info_.spacing;
     head_.origin = info_.origin;
     team_.lead([&] {
-      checksum_ = write_tree({*file.tree, stores_.rows, *file.choices, *encoded.records, file.fill, file.plan.layout},
+      checksum_ = write_tree({*file.tree, stores_.rows, *file.choices, *encoded.records, file.fill, file.plan.layout,
+                              encoded.packed.get()},
                              head_, parts_.output.volume());
     });
     team_.follow(checksum_);

@@ -7,6 +7,7 @@
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_options.h"
+#include "compressor/packed/ladder_builder.h"
 #include "compressor/plan/reading_plan.h"
 #include "compressor/resume/journal.h"
 #include "compressor/resume/work_directory.h"
@@ -42,6 +43,12 @@ void check_source(const VolumeSource& source, Team& team);
 
 /// Whether the survey is to look at the widths of quantised leaves (survey.h).
 bool surveys_widths(const ConversionOptions& options);
+
+/// What the survey is to look for in blocks that are packed; none where none is.
+std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source);
+
+/// Of the rows of a region that selection holds (memory_plan.h).
+std::uint64_t region_bytes(const ConversionOptions& options);
 
 /// The files that a survey fills.
 struct SurveyStores {

@@ -70,6 +70,7 @@ GivenOptions given_method(const weir_convert_options& o) {
   GivenOptions given;
   give_budget(o, given);
   given["encoding"] = choice("encoding", o.encoding);
+  if (o.preview != WEIR_PREVIEW_AUTO) given["preview"] = choice("preview", o.preview);
   given["metric"] = choice("metric", o.metric);
   given["fill"] = choice("fill", o.fill);
   given["nonfinite"] = choice("nonfinite", o.nonfinite);
@@ -146,6 +147,7 @@ ConversionOptions read_options(const weir_convert_options& o) {
   if (o.overwrite != 0) given["overwrite"] = "true";
   if (o.work_dir != nullptr) given["work-dir"] = o.work_dir;
   ConversionOptions options = read_conversion_request(given).conversion;
+  if (o.reserved != 0) throw usage(cat("reserved is ", o.reserved, ", it must be 0"));
   // Of a library, what it takes besides the process: any size that the volume's own check (plan_memory) lets pass.
   if (o.memory > kMaxMemory) throw usage(cat("memory is ", o.memory, " bytes, it must be at most 2^50"));
   if (o.memory != 0) options.memory = o.memory;

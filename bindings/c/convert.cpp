@@ -7,6 +7,7 @@
 #include "bindings/c/versioned_struct.h"
 #include "bindings/c/weir.h"
 #include "compressor/plan/memory_plan.h"
+#include "compressor/surveyed_conversion.h"
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/memory_file_system.h"
@@ -35,8 +36,8 @@ void convert(VolumeSource& source, ConversionOptions options, const weir_convert
   // What the process has already is the caller's; that the rest is too little is said in the caller's figures.
   const Box domain = source.info().domain();
   const std::size_t threads = choose_threads(options.threads, processors_or_all(options.processors), options.memory,
-                                             source.working_bytes(), domain);
-  plan_memory(options.memory, source.working_bytes(), threads, domain);
+                                             source.working_bytes(), domain, region_bytes(options));
+  plan_memory(options.memory, source.working_bytes(), threads, domain, region_bytes(options));
   options.memory += resident_bytes();
   options.resume = Resume::off;
   Callbacks callbacks(given);

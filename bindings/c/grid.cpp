@@ -16,8 +16,9 @@
 namespace weir::c {
 namespace {
 
-std::int32_t encoding_of(GridType type) {
-  switch (type) {
+std::int32_t encoding_of(const NvdbGrid& grid) {
+  if (grid.packed() != nullptr) return WEIR_ENCODING_PACKED;
+  switch (grid.type()) {
     case GridType::float32:
       return WEIR_ENCODING_FLOAT;
     case GridType::fp4:
@@ -65,7 +66,7 @@ weir_grid_info describe(const weir_grid& handle) {
   info.grid_offset = grid.grid_offset();
   info.grid_bytes = grid.grid_bytes();
   info.data_bytes = grid.data_bytes();
-  info.encoding = encoding_of(grid.type());
+  info.encoding = encoding_of(grid);
   if (handle.sidecar() != nullptr) certify(*handle.sidecar(), info);
   return info;
 }

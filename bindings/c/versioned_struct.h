@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "bindings/c/status.h"
+#include "bindings/c/weir.h"
 #include "format/base/text.h"
 
 namespace weir::c {
@@ -16,6 +17,9 @@ inline constexpr std::size_t kMaxStructBytes = 4096;
 /// What the first version of the library had; a struct that grows gets a number of its own here.
 template <typename T>
 inline constexpr std::size_t kFirstBytes = sizeof(T);
+
+template <>
+inline constexpr std::size_t kFirstBytes<weir_convert_options> = offsetof(weir_convert_options, preview);
 
 /// Zeros but for struct_size.
 template <typename T>

@@ -106,7 +106,14 @@ enum {
   WEIR_ENCODING_FPN = 2,   /* 1, 2, 4, 8 or 16 bits a voxel, chosen for each leaf */
   WEIR_ENCODING_FP4 = 3,
   WEIR_ENCODING_FP8 = 4,
-  WEIR_ENCODING_FP16 = 5
+  WEIR_ENCODING_FP16 = 5,
+  WEIR_ENCODING_PACKED = 6 /* each 8^3 block coded as a whole, for weir's own readers; others see the blocks' means */
+};
+/* Of a packed file: whether its tree holds each block's mean, for readers of others. */
+enum {
+  WEIR_PREVIEW_AUTO = 0, /* where that takes at most a tenth of the file */
+  WEIR_PREVIEW_ON = 1,
+  WEIR_PREVIEW_OFF = 2
 };
 /* What the budget is spent on: squared error, or the distances of a brick's range to the background. */
 enum { WEIR_METRIC_SSE = 0, WEIR_METRIC_FARTHEST = 1, WEIR_METRIC_CLOSEST = 2, WEIR_METRIC_MEDIAN = 3 };
@@ -139,6 +146,9 @@ typedef struct weir_convert_options {
   float background;  /* finite; without has_background the most frequent value is found */
   int32_t overwrite; /* not 0: replace an existing output */
   int32_t threads;   /* 0: one per core */
+  /* Since 0.2. */
+  int32_t preview;  /* WEIR_PREVIEW_...; for WEIR_ENCODING_PACKED */
+  int32_t reserved; /* 0 */
 } weir_convert_options;
 WEIR_API weir_status weir_convert_options_init(weir_convert_options* options, size_t struct_size);
 

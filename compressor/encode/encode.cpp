@@ -4,16 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <memory>
 #include <vector>
 
-#include "compressor/leaf/quantised_leaf.h"
+#include "compressor/encode/leaf_encoder.h"
+#include "compressor/encode/packed_encoder.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
-#include "format/base/simd.h"
-#include "format/leaf/leaf_codec.h"
-#include "format/leaf/quantised_codec.h"
 
 namespace weir {
 namespace {
@@ -55,129 +52,19 @@ Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& b
   return kept;
 }
 
-WEIR_SIMD bool all_finite(const LeafValues& values) {
-  std::uint32_t others = 0;
-  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // NaN for what is not finite
-  return others == 0;
+RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
+  RegionPlaces places;
+  if (target.packed != nullptr) {
+    places.streams.emplace(target.packed->streams.read(region));
+  } else {
+    places.leaves.emplace(target.choices.read(region));
+  }
+  return places;
 }
 
-// Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
-// follow each other in the file. One per thread.
-class LeafEncoder {
- public:
-  // The kept leaves of one x layer of one region, as far as they lie in the block.
-  void add_layer(const EncodeTarget& target, const Block& block, const Box& leaf_box, std::int64_t region_index,
-                 const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
-    const TreeRegions& tree = target.tree;
-    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
-    const Box box = intersect(tree.leaf_box(region_index), leaf_box);
-    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-        const Index3 leaf{x, y, z};
-        const std::size_t position = tree.mask_position(leaf);
-        if (!places.kept(position)) continue;
-        surveyed.check(leaf, block.values, block.voxels);
-        const LeafPlaces::Place before = places.before(position);
-        const LeafWidth width = places.width(position);
-        gather(target, block, leaf,
-               {region.first_leaf + before.leaves, target.layout.leaves + region.first_byte + before.bytes, width});
-      }
-    }
-  }
-
-  // Writes what is still held; call before the thread turns to another block.
-  void finish(const EncodeTarget& target) {
-    encode_batch(target);
-    const std::span<const std::byte> bytes(bytes_);
-    std::size_t at = 0;
-    for (std::size_t first = 0; first < leaves_.size();) {
-      std::size_t end = first;
-      std::size_t size = 0;
-      do {
-        size += leaf_bytes(leaves_[end++].width);
-      } while (end < leaves_.size() && leaves_[end].ordinal == leaves_[end - 1].ordinal + 1);
-      const TraceSpan span(target.trace, "write", size);
-      target.out.write_at(leaves_[first].offset, bytes.subspan(at, size));
-      target.records.write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
-      at += size;
-      first = end;
-    }
-    bytes_.clear();
-    records_.clear();
-    leaves_.clear();
-  }
-
- private:
-  static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
-
-  // A kept leaf's place in the file.
-  struct Leaf {
-    std::uint64_t ordinal;
-    std::uint64_t offset;
-    LeafWidth width;
-  };
-
-  void gather(const EncodeTarget& target, const Block& block, const Index3& leaf, const Leaf& place) {
-    const Box node = target.tree.leaves.node_box(leaf);
-    const Box inside = target.tree.leaves.voxels(leaf);
-    LeafValues& values = values_[batch_];
-    gather_leaf(block.values, block.voxels, node, inside, target.fill.background, values);
-    finite_[batch_] = all_finite(values);
-    if (!finite_[batch_] && target.fill.non_finite != NonFinitePolicy::keep) {
-      sources_[batch_] = values;
-      for (float& v : values) v = std::isfinite(v) ? v : target.fill.background;
-    }
-    nodes_[batch_] = node;
-    insides_[batch_] = inside;
-    leaves_.push_back(place);
-    if (++batch_ == kLeafBatch) encode_batch(target);
-    if (leaves_.size() >= kHeldLeaves) finish(target);
-  }
-
-  void encode_batch(const EncodeTarget& target) {
-    const std::size_t first = leaves_.size() - batch_;
-    if (target.type != GridType::float32) {
-      for (std::size_t i = 0; i < batch_; ++i) {
-        const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
-        const Leaf& leaf = leaves_[first + i];
-        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target.fit);
-        values_[i] = quantised_[i].decoded;
-      }
-    }
-    const std::span<NodeStatistics> statistics(statistics_.data(), batch_);
-    full_leaf_statistics({values_.data(), batch_}, {nodes_.data(), batch_}, statistics);
-    for (std::size_t i = 0; i < batch_; ++i) {
-      if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
-      const std::size_t at = bytes_.size();
-      bytes_.resize(at + leaf_bytes(leaves_[first + i].width));
-      const std::span<std::byte> image = std::span(bytes_).subspan(at);
-      records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
-      if (target.type == GridType::float32) {
-        encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i], image.first<nvdb::kFloatLeafBytes>());
-      } else {
-        const QuantisedLeaf& leaf = quantised_[i];
-        encode_quantised_leaf(target.type, leaf.codes, leaf.bits_log2, leaf.quantiser.minimum, leaf.quantiser.quantum,
-                              nodes_[i], insides_[i], statistics[i], image);
-        records_.back().squared_error = leaf.squared_error;
-        records_.back().max_abs = leaf.max_abs;
-        records_.back().exact = leaf.exact ? 1 : 0;
-      }
-    }
-    batch_ = 0;
-  }
-
-  std::size_t batch_ = 0;  // leaves gathered and not yet encoded: the last ones of leaves_
-  std::array<LeafValues, kLeafBatch> values_{};
-  std::array<LeafValues, kLeafBatch> sources_{};  // before non-finite values were replaced; where there are any
-  std::array<bool, kLeafBatch> finite_{};
-  std::array<QuantisedLeaf, kLeafBatch> quantised_{};
-  std::array<Box, kLeafBatch> nodes_{};
-  std::array<Box, kLeafBatch> insides_{};
-  std::array<NodeStatistics, kLeafBatch> statistics_{};
-  std::vector<Leaf> leaves_;  // held, encoded or not
-  std::vector<std::byte> bytes_;
-  std::vector<LeafRecord> records_;
-};
+std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
+  return target.packed != nullptr ? make_packed_encoder(target) : make_leaf_encoder(target);
+}
 
 // Calls visit(region, places, surveyed, x) for every x layer of every region of a block that holds kept leaves;
 // `for_each(begin, end, action)` is the loop to use.
@@ -189,7 +76,7 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bo
   for_each(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
     const std::int64_t region = tree.region_lattice.linear(regions.lo + index_at(i, regions.extent()));
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
-    const LeafPlaces places(target.choices.read(region));
+    const RegionPlaces places = places_of(target, region);
     const Box box = intersect(tree.leaf_box(region), leaf_box);
     const SurveyedLeaves surveyed(target.rows, box, info);
     for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x); });
@@ -233,21 +120,21 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       pauses.save();
     };
   }
-  tbb::enumerable_thread_specific<LeafEncoder> encoders;
+  tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>> encoders([&] { return make_encoder(target); });
   if (reading == Reading::in_place) {
     const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
       for (std::int64_t i = begin; i < end; ++i) action(i);
     };
     work_in_place(source, voxel_boxes, stream, [&](const Block& block) {
       const Box& leaf_box = leaf_boxes[block.index];
-      LeafEncoder& encoder = encoders.local();
+      LayerEncoder& encoder = *encoders.local();
       for_each_layer(
           target, source.info(), leaf_box, in_turn,
-          [&](std::int64_t region, const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
+          [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
             const TraceSpan span(target.trace, "encode");
-            encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);
+            encoder.add_layer(block, leaf_box, region, places, surveyed, x);
           });
-      encoder.finish(target);
+      encoder.finish();
     });
     tell(voxel_boxes.size());
     return;
@@ -257,13 +144,14 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   };
   stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
-    for_each_layer(target, source.info(), leaf_box, in_parallel,
-                   [&](std::int64_t region, const LeafPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
-                     const TraceSpan span(target.trace, "encode");
-                     LeafEncoder& encoder = encoders.local();
-                     encoder.add_layer(target, block, leaf_box, region, places, surveyed, x);
-                     encoder.finish(target);
-                   });
+    for_each_layer(
+        target, source.info(), leaf_box, in_parallel,
+        [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
+          const TraceSpan span(target.trace, "encode");
+          LayerEncoder& encoder = *encoders.local();
+          encoder.add_layer(block, leaf_box, region, places, surveyed, x);
+          encoder.finish();
+        });
   });
   tell(voxel_boxes.size());
 }

@@ -23,7 +23,10 @@ Digest plan_digest(const FilePlan& file) {
     digest.update(piece_digest(std::as_bytes(std::span(&choices, 1))));
   }
   const TreeLayout& layout = file.plan.layout;
-  const std::array<std::uint64_t, 5> places{layout.leaves, layout.counts.leaves, layout.file_bytes,
+  const std::array<std::uint64_t, 6> places{layout.leaves,
+                                            layout.counts.leaves,
+                                            layout.packed_data,
+                                            layout.file_bytes,
                                             std::bit_cast<std::uint32_t>(file.fill.background),
                                             static_cast<std::uint64_t>(file.encoding)};
   digest.update(piece_digest(std::as_bytes(std::span(places))));
@@ -71,7 +74,13 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
     job.notice(
         cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
   }
-  encoded.records = std::make_unique<RecordStore>(std::move(records), file.plan.layout.counts.leaves);
+  encoded.records = std::make_unique<RecordStore>(std::move(records), file.plan.kept);
+  if (file.packed) {
+    const bool bounded = request.budget.kind == Budget::Kind::max_error;
+    encoded.packed = std::make_unique<PackedTarget>(
+        PackedTarget{*file.streams, *file.packed, request.packed.constants, request.packed.lattice,
+                     bounded ? std::optional(request.budget.target) : std::nullopt});
+  }
   job.pass_started();
   const TraceSpan span(job.stream.trace, "encode pass");
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
@@ -81,7 +90,7 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
   team.run([&] {
     encode_leaves(job.source, job.plan,
                   {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                   job.output.volume(), *encoded.records, job.rows, job.stream.trace},
+                   job.output.volume(), *encoded.records, job.rows, job.stream.trace, encoded.packed.get()},
                   job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
   });
   encoded.records->publish(team);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "compressor/encode/layer_encoder.h"
 #include "compressor/encode/leaf_errors.h"
 #include "compressor/encode/leaf_record.h"
 #include "compressor/resume/journal.h"
@@ -23,6 +24,7 @@ namespace weir {
 struct EncodedFile {
   FilePlan file;
   std::unique_ptr<RecordStore> records;
+  std::unique_ptr<PackedTarget> packed;  ///< of a packed file
   LeafErrors errors;
   LeafErrors seen_errors;  ///< of those that can be seen
 };

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "compressor/encode/macrocell_builder.h"
+#include "compressor/encode/packed_writer.h"
 #include "compressor/select/region_rows.h"
 #include "format/base/little_endian.h"
 #include "format/nanovdb/node_image.h"
@@ -62,6 +64,8 @@ class LowerWriter {
   }
 
   std::uint64_t active_tiles() const { return active_tiles_; }
+  /// Of all voxels of a packed file.
+  const MinMax& decoded() const { return decoded_; }
 
  private:
   void write_region(std::int64_t index, const RegionRows& rows) {
@@ -69,7 +73,9 @@ class LowerWriter {
     const Region& region = tree.regions[static_cast<std::size_t>(index)];
     const Index3 at = tree.region_lattice.position(index);
     RegionCells cells(tree.region_lattice.first + at);
-    if (region.open) {
+    if (parts_.packed != nullptr) {
+      write_packed(index, region, rows, cells);
+    } else if (region.open) {
       write_lower(index, region, rows, cells);
     } else {
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
@@ -122,6 +128,81 @@ class LowerWriter {
     active_tiles_ += table.active_tiles();
   }
 
+  // The region's directory, and its lower node where the tree has the preview.
+  void write_packed(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
+    const TreeRegions& tree = parts_.tree;
+    if (!region.open) {
+      write_empty_region(parts_.layout, index, region.packed_value, out_);
+      cells.add_tile(tree.region_lattice.voxels(tree.region_lattice.position(index)), region.packed_value);
+      widen_decoded({region.packed_value, region.packed_value});
+      return;
+    }
+    const StreamPlaces places(parts_.packed->streams.read(index));
+    write_directory(parts_.layout, tree.regions.size(), index, region, places, out_);
+    const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
+    MinMax decoded = kNoBounds;
+    for_each_in_mask_order(rows.leaf_box(), [&](const Index3& leaf) {
+      const std::size_t position = tree.mask_position(leaf);
+      if (places.kept(position)) {
+        const LeafRecord& record = records[places.ordinal(position)];
+        cells.add_leaf(tree.leaves.node_box(leaf), record);
+        widen(decoded, record.bounds);
+      } else {
+        cells.add_tile(tree.leaves.voxels(leaf), region.packed_value);
+        widen(decoded, {region.packed_value, region.packed_value});
+      }
+    });
+    widen_decoded(decoded);
+    if (parts_.packed->rule.preview) write_preview(index, region, rows, places, records);
+  }
+
+  // Each block's mean, and the two corner leaves.
+  void write_preview(std::int64_t index, const Region& region, const RegionRows& rows, const StreamPlaces& places,
+                     const std::vector<LeafRecord>& records) {
+    const TreeRegions& tree = parts_.tree;
+    const std::uint64_t node = parts_.layout.lower_offset(region.node);
+    const Index3 last = tree.leaves.count - Index3{1, 1, 1};
+    NodeImage& image = images_.local();
+    image.reset();
+    TableStatistics table;
+    for_each_in_mask_order(rows.leaf_box(), [&](const Index3& leaf) {
+      const std::size_t position = tree.mask_position(leaf);
+      const auto bits = static_cast<std::int64_t>(position);
+      const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
+      const Box voxels = tree.leaves.voxels(leaf);
+      const Box leaf_node = tree.leaves.node_box(leaf);
+      if (leaf == Index3{0, 0, 0} || leaf == last) {
+        const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
+        image.set_child(entry, parts_.layout.leaves + ordinal * nvdb::kFloatLeafBytes - node);
+        table.add_child(record_statistics(records[places.ordinal(position)], voxels));
+        return;
+      }
+      const float value = parts_.fill.leaf_value(rows.at(leaf));
+      const bool active = voxels == leaf_node;
+      image.set_tile(entry, value, active);
+      if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
+    });
+    const NodeStatistics total = table.total();
+    image.set_statistics(total);
+    out_.write_at(node, image.bytes());
+    statistics[static_cast<std::size_t>(index)] = total;
+    active_tiles_ += table.active_tiles();
+  }
+
+  void widen_decoded(const MinMax& bounds) {
+    const std::lock_guard lock(mutex_);
+    widen(decoded_, bounds);
+  }
+
+  template <typename Visit>
+  static void for_each_in_mask_order(const Box& box, const Visit& visit) {
+    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(Index3{x, y, z});
+      }
+    }
+  }
+
   static NodeStatistics record_statistics(const LeafRecord& record, const Box& voxels) {
     NodeStatistics statistics;
     statistics.min = std::min(statistics.min, record.bounds.min);
@@ -143,6 +224,8 @@ class LowerWriter {
   MacrocellBuilder macrocells_;
   tbb::enumerable_thread_specific<NodeImage> images_;
   std::atomic<std::uint64_t> active_tiles_{0};
+  std::mutex mutex_;
+  MinMax decoded_ = kNoBounds;
 };
 
 // One upper node; returns its statistics and adds its active tiles to `active_tiles`.
@@ -181,6 +264,7 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
   head.active_tiles = {lowers.active_tiles(), 0, 0};
 
   const TreeRegions& tree = parts.tree;
+  const bool has_nodes = parts.packed == nullptr || parts.packed->rule.preview;
   NodeImage image(NodeImage::Level::upper, parts.fill.background);
   NodeStatistics total;
   tree.for_each_upper([&](std::int64_t u) {
@@ -188,12 +272,12 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     const Index3 at = tree.upper_lattice.position(u);
     RootTile tile;
     tile.origin = tree.upper_lattice.node_box(at).lo;
-    if (upper.open) {
+    if (upper.open && has_nodes) {
       tile.child = parts.layout.upper_offset(upper.node);
       total.add(write_upper(parts, u, lowers.statistics, image, out, head.active_tiles[1]));
     } else {
       tile.value = tile_value(parts.fill, upper.sums);
-      tile.active = parts.fill.active() && !tree.upper_lattice.overhangs(at);
+      tile.active = has_nodes && parts.fill.active() && !tree.upper_lattice.overhangs(at);
       if (tile.active) {
         total.add_tile(tile.value, static_cast<std::uint64_t>(kUpperDim * kUpperDim * kUpperDim),
                        tree.upper_lattice.node_box(at));
@@ -203,8 +287,15 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     head.tiles.push_back(tile);
   });
   head.background = parts.fill.background;
+  if (parts.packed != nullptr) {
+    write_packed_head(*parts.packed, tree, parts.layout, out);
+    // The box is the domain, the range that of decoded values, whatever the tree holds of them.
+    total.bbox = tree.leaves.domain;
+    total.min = lowers.decoded().min;
+    total.max = lowers.decoded().max;
+  }
   head.statistics = total;
-  out.write_at(parts.layout.blind_meta, encode_macrocell_record(parts.layout));
+  out.write_at(parts.layout.blind_meta, encode_blind_records(parts.layout));
   const std::vector<std::byte> bytes = encode_head(head, parts.layout);
   out.write_at(0, bytes);
   return load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);

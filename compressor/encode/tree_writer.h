@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "compressor/encode/layer_encoder.h"
 #include "compressor/encode/leaf_record.h"
 #include "compressor/leaf/fill.h"
 #include "compressor/select/leaf_choice.h"
@@ -23,12 +24,13 @@ struct TreeParts {
   const ChoiceStore& choices;
   const RecordStore& records;
   Fill fill;
-  TreeLayout layout;  ///< padded to the file's size
+  TreeLayout layout;                     ///< padded to the file's size
+  const PackedTarget* packed = nullptr;  ///< of a packed file
 };
 
-/// Writes everything but the leaves to `out`, which has the file's size and reads zero where nothing
-/// was written. `head` carries name, type, voxel size and origin; the rest of it is filled in.
-/// Returns the head's checksum.
+/// Writes everything but the leaves, and of a packed file the streams with their ends, to `out`, which has the file's
+/// size and reads zero where nothing was written. `head` carries name, type, voxel size and origin; the rest of it is
+/// filled in. Returns the head's checksum.
 std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out);
 
 }  // namespace weir

@@ -18,6 +18,8 @@ std::string encoding_name(Encoding encoding) {
       return "fp8";
     case Encoding::fp16:
       return "fp16";
+    case Encoding::packed:
+      return "packed";
   }
   throw Error(ErrorKind::internal, "unknown encoding");
 }
@@ -25,6 +27,7 @@ std::string encoding_name(Encoding encoding) {
 GridType grid_type_of(Encoding encoding) {
   switch (encoding) {
     case Encoding::float32:
+    case Encoding::packed:
       return GridType::float32;
     case Encoding::fpn:
       return GridType::fpn;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 
+#include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/leaf_difference.h"
 #include "compressor/leaf/leaf_lattice.h"
 #include "compressor/leaf/leaf_summary.h"
@@ -12,18 +13,6 @@
 
 namespace weir {
 namespace {
-
-// Calls visit(i) for every in-domain voxel of a leaf, in leaf order.
-template <typename Visit>
-void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
-  const Index3 lo = inside.lo - node.lo;
-  const Index3 hi = inside.hi - node.lo;
-  for (std::int64_t x = lo.x; x < hi.x; ++x) {
-    for (std::int64_t y = lo.y; y < hi.y; ++y) {
-      for (std::int64_t z = lo.z; z < hi.z; ++z) visit(static_cast<std::size_t>(x << 6 | y << 3 | z));
-    }
-  }
-}
 
 // Gives voxels outside the domain the code of the nearest one inside: every layer of the leaf then stays within the
 // bounds of its part inside, which the macrocells that reach into it know.

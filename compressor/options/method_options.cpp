@@ -44,9 +44,9 @@ void read_lossless(const OptionRow& row, const std::string& text, Request& reque
 }
 
 void read_encoding(const OptionRow& row, const std::string& text, Request& request) {
-  request.conversion.encoding =
-      std::array{Encoding::automatic, Encoding::float32, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16}
-          .at(read_choice(row, text));
+  request.conversion.encoding = std::array{Encoding::automatic, Encoding::float32, Encoding::fpn,   Encoding::fp4,
+                                           Encoding::fp8,       Encoding::fp16,    Encoding::packed}
+                                    .at(read_choice(row, text));
 }
 
 void read_background(const OptionRow& row, const std::string& text, Request& request) {
@@ -103,11 +103,22 @@ constexpr ConversionOption kMethodOptions[] = {
     {{.key = "lossless", .help = "the smallest file that preserves every bit of every voxel", .group = "budget"},
      read_lossless},
     {{.key = "encoding",
-      .argument = "auto|float|fpn|fp4|fp8|fp16",
+      .argument = "auto|float|fpn|fp4|fp8|fp16|packed",
       .standard = "auto",
       .help = "leaves: auto (float or fpn, whichever has less error), float, fpn (1 to 16 bits a voxel, chosen for "
-              "each leaf), fp4, fp8 or fp16"},
+              "each leaf), fp4, fp8 or fp16; packed: each 8^3 block coded as a whole, about a fifth of the bytes at "
+              "the same "
+              "error, for weir's own readers (others see the blocks' means)"},
      read_encoding},
+    {{.key = "preview",
+      .argument = "auto|on|off",
+      .standard = "auto",
+      .help =
+          "of --encoding packed, for readers of others: on keeps each block's mean in the tree; auto: where that takes "
+          "at most a tenth of the file"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.preview = std::array{Preview::automatic, Preview::on, Preview::off}.at(read_choice(row, text));
+     }},
     {{.key = "metric",
       .argument = "sse|farthest|closest|median",
       .standard = "sse",

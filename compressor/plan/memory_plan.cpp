@@ -43,11 +43,11 @@ std::size_t processors_or_all(std::size_t given) {
 }
 
 std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
-                           const Box& domain) {
+                           const Box& domain, std::uint64_t region_bytes) {
   if (asked > 0) return asked;
   const std::size_t most = std::max<std::size_t>(1, processors);
   const std::uint64_t others = shared_bytes(resident, domain) + 2 * kLeastBlockBytes;
-  const std::uint64_t each = kWorkerBytes + kRegionRowsBytes;
+  const std::uint64_t each = kWorkerBytes + region_bytes;
   if (others + most * each <= ceiling) return most;
   const std::uint64_t free = ceiling > others ? ceiling - others : 0;
   return std::clamp<std::size_t>(free / 4 * 3 / each, 1, most);
@@ -58,9 +58,10 @@ Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::u
                  " threads; give more to use them all");
 }
 
-MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain) {
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
+                       std::uint64_t region_bytes) {
   const std::uint64_t fixed = shared_bytes(resident, domain) + threads * kWorkerBytes;
-  const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * kRegionRowsBytes;
+  const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * region_bytes;
   if (ceiling < least) {
     throw Error(ErrorKind::usage,
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
@@ -71,7 +72,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
   plan.worker_bytes = 2 * plan.block_bytes / threads;
   plan.segment_regions =
-      std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * kRegionRowsBytes)), 1, 64);
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * region_bytes)), 1, 64);
   return plan;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "compressor/select/region_rows.h"
 #include "format/base/index.h"
 #include "format/base/message.h"
 
@@ -19,8 +20,10 @@ struct MemoryPlan {
 };
 
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
-/// Throws Error(usage) naming a sufficient --memory where it is too small.
-MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain);
+/// A walk over regions holds `region_bytes` of rows for each. Throws Error(usage) naming a sufficient --memory where it
+/// is too small.
+MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
+                       std::uint64_t region_bytes = kRegionRowsBytes);
 
 /// `given`, or where that is 0 those of the machine; at least 1.
 std::size_t processors_or_all(std::size_t given);
@@ -28,7 +31,7 @@ std::size_t processors_or_all(std::size_t given);
 /// Workers of a conversion: `asked`, or where that is 0 one for each of the machine's `processors`, and fewer where
 /// `ceiling` does not hold them: then a quarter of what they share stays for the blocks. At least 1.
 std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
-                           const Box& domain);
+                           const Box& domain, std::uint64_t region_bytes = kRegionRowsBytes);
 
 /// One line for the user where it chose fewer.
 Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::uint64_t ceiling);

@@ -43,7 +43,7 @@ SourceInfo as_pushed(SourceInfo info) {
 
 // What the process holds besides is the simulation's, and no part of the ceiling.
 MemoryPlan memory_for(const ConversionOptions& options, std::size_t threads, const Box& domain) {
-  return plan_memory(options.memory, 0, threads, domain);
+  return plan_memory(options.memory, 0, threads, domain, region_bytes(options));
 }
 
 // Slices that a worker's cache holds, of which some fit `bytes`: whole rows of leaves where that is so.
@@ -75,7 +75,10 @@ struct PushedFiles {
     stores.emplace(SurveyStores{RowStore(work.spill(), leaves, segment_regions), {}});
     if (faces) stores->faces.emplace(work.spill(), leaves);
     spool.emplace(work.spill(), work.spill(), leaves, info.type);
-    survey.emplace(info, stores->rows, faces ? &*stores->faces : nullptr, surveys_widths(options), control.trace);
+    const std::optional<LadderAim> ladders = surveyed_ladders(options, info);
+    if (ladders) stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill(), leaves));
+    survey.emplace(info, stores->rows, faces ? &*stores->faces : nullptr, surveys_widths(options), control.trace,
+                   ladders);
   }
 
   OutputFiles output;
@@ -94,8 +97,8 @@ class PushedVolume::State {
       : info_(as_pushed(std::move(info))),
         options_(options),
         control_(control),
-        threads_(
-            choose_threads(options.threads, processors_or_all(options.processors), options.memory, 0, info_.domain())),
+        threads_(choose_threads(options.threads, processors_or_all(options.processors), options.memory, 0,
+                                info_.domain(), region_bytes(options))),
         memory_(memory_for(options, std::max(threads_, workers), info_.domain())),
         seen_(visibility_of(options, info_.domain())),
         files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_.segment_regions, files),

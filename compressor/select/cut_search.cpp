@@ -22,9 +22,9 @@ template <typename Visit>
 void CutSearch::for_each_key(const Visit& visit) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
-    visit(region.key, nvdb::kLowerBytes, region.opening_gain);
+    visit(region.key, rule_.region_bytes(), region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
-    std::vector<LeafGain> gains;
+    RegionGains gains;
     rule_.gains(tree_, rows, gains);
     for (const LeafGain& leaf : gains) {
       for (std::uint32_t i = 0; i < leaf.step_count; ++i) {
@@ -76,7 +76,7 @@ double CutSearch::find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight&
     rows_.team().sum<PurchaseGoal::Weight>({&all_required, 1});
     required.clear();
     for (const Upper& upper : tree_.uppers) {
-      count(total, upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain));
+      count(total, upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
     }
     if (prefix == 0 && shift == 64 - kDigit) {
       above += all_required + required.combine(std::plus<>());
@@ -108,7 +108,7 @@ double CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weigh
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);
   for (const Upper& upper : tree_.uppers) {
-    if (matches(upper.key)) items.push_back({upper.key, goal.weight(nvdb::kUpperBytes, upper.opening_gain)});
+    if (matches(upper.key)) items.push_back({upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain)});
   }
   std::sort(items.begin(), items.end(), [](const Purchase& a, const Purchase& b) { return a.key > b.key; });
   for (std::size_t i = 0; i < items.size();) {

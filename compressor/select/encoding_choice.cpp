@@ -12,19 +12,27 @@ namespace {
 // One encoding's selection, before and after the size is known.
 class Candidate {
  public:
-  Candidate(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work)
+  Candidate(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work,
+            bool preview = true)
       : request_(request),
         rows_(rows),
         work_(work),
         encoding_(encoding),
         tree_(std::make_unique<TreeRegions>(request.domain)),
-        selection_(rule_of(request, encoding), rows, *tree_) {}
+        selection_(rule_of(request, encoding, preview), rows, *tree_) {}
 
   const SelectionBytes& bytes() const { return bytes_; }
   bool lossless() const { return bytes_.lossy_leaves == 0; }
   FileSize size_for(const Budget& budget) const {
     const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
     return file_size_for(budget, dense, bytes_, request_.path);
+  }
+
+  /// Whether the smallest file is as small as the budget, which is a size.
+  bool fits(const Budget& budget) const {
+    const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
+    const std::uint64_t asked = budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense, budget.rate);
+    return bytes_.minimum.file_bytes <= asked;
   }
 
   FilePlan plan(const FileSize& size) {
@@ -74,7 +82,11 @@ class Candidate {
     file.encoding = encoding_;
     file.fill = request_.rule.fill;
     file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
-    file.plan = plan_tree(selection_, rows_, *tree_, *file.choices);
+    file.packed = selection_.rule().packed;
+    if (file.packed) {
+      file.streams = std::make_unique<PlannedStreamsStore>(work_.spill(), tree_->region_lattice.size());
+    }
+    file.plan = plan_tree(selection_, rows_, *tree_, *file.choices, file.streams.get());
     file.size = size;
     if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
     file.plan.layout = padded_to(file.plan.layout, file.size.bytes);
@@ -82,9 +94,10 @@ class Candidate {
     return file;
   }
 
-  static GainRule rule_of(const FileRequest& request, Encoding encoding) {
+  static GainRule rule_of(const FileRequest& request, Encoding encoding, bool preview) {
     GainRule rule = request.rule;
     rule.encoding = encoding;
+    if (encoding == Encoding::packed) rule.packed = PackedRule{preview, request.packed.constants.coarsest};
     if (request.budget.kind == Budget::Kind::max_error) rule.max_error = request.budget.target;
     return rule;
   }
@@ -117,16 +130,8 @@ bool meets(const FileRequest& request, const Candidate& candidate, const FilePla
                                                    : candidate.lossless();
 }
 
-FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
-  if (encoding != Encoding::float32 && !can_quantise(request)) {
-    throw Error(ErrorKind::usage,
-                compose(option("encoding", encoding_name(encoding)),
-                        request.keeps_non_finite ? compose(" holds no NaN or infinite voxels, which ",
-                                                           option("nonfinite", "keep"), " asks for")
-                                                 : compose(" selects by ", option("metric", "sse"), " only"),
-                        "; use ", option("encoding", "float")));
-  }
-  Candidate candidate(request, encoding, rows, work);
+// The file of one encoding, by the budget.
+FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
   if (request.budget.by_error()) {
     FilePlan file = candidate.plan_for_error();
     const bool first = request.planned_error >= request.squared_error;  // before any file was made
@@ -139,6 +144,51 @@ FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore&
                                            option("encoding", "auto"), " or float"));
   }
   return candidate.plan(candidate.size_for(request.budget));
+}
+
+// What the tree takes of a packed file.
+std::uint64_t preview_bytes(const TreeLayout& layout) { return layout.blind_meta - layout.uppers; }
+
+FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  if (request.rule.metric != Metric::sse) {
+    throw Error(ErrorKind::usage, compose(option("encoding", "packed"), " selects by ", option("metric", "sse"),
+                                          " only; use ", option("encoding", "float")));
+  }
+  if (request.rule.fill.mode != FillMode::mean) {
+    throw Error(ErrorKind::usage, compose(option("encoding", "packed"), " drops no block to the background; leave out ",
+                                          option("fill", "background")));
+  }
+  constexpr std::uint64_t kLeastOfPreview = 10;  // a file is this many times as long as its preview
+  const auto plan_with = [&](bool preview) {
+    Candidate candidate(request, Encoding::packed, rows, work, preview);
+    return plan_by_budget(request, Encoding::packed, candidate);
+  };
+  if (request.packed.preview == Preview::automatic) {
+    Candidate candidate(request, Encoding::packed, rows, work, true);
+    const bool asks_size = request.budget.kind == Budget::Kind::size || request.budget.kind == Budget::Kind::rate ||
+                           request.budget.kind == Budget::Kind::automatic;
+    const bool fits = !asks_size || candidate.fits(request.budget);
+    if (fits) {
+      FilePlan file = plan_by_budget(request, Encoding::packed, candidate);
+      if (file.size.bytes >= kLeastOfPreview * preview_bytes(file.plan.layout)) return file;
+    }
+    return plan_with(false);
+  }
+  return plan_with(request.packed.preview == Preview::on);
+}
+
+FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
+  if (encoding == Encoding::packed) return plan_packed(request, rows, work);
+  if (encoding != Encoding::float32 && !can_quantise(request)) {
+    throw Error(ErrorKind::usage,
+                compose(option("encoding", encoding_name(encoding)),
+                        request.keeps_non_finite ? compose(" holds no NaN or infinite voxels, which ",
+                                                           option("nonfinite", "keep"), " asks for")
+                                                 : compose(" selects by ", option("metric", "sse"), " only"),
+                        "; use ", option("encoding", "float")));
+  }
+  Candidate candidate(request, encoding, rows, work);
+  return plan_by_budget(request, encoding, candidate);
 }
 
 FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {

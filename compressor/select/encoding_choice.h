@@ -12,12 +12,23 @@
 #include "compressor/select/file_size.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/leaf_gain.h"
+#include "compressor/select/packed_region.h"
+#include "compressor/select/preview.h"
 #include "compressor/select/tree_plan.h"
 #include "compressor/select/tree_regions.h"
 #include "compressor/survey/row_store.h"
 #include "format/base/error.h"
+#include "format/packed/block_constants.h"
+#include "format/packed/lattice_block.h"
 
 namespace weir {
+
+/// What a packed file is made with.
+struct PackedRequest {
+  Preview preview = Preview::automatic;
+  BlockConstants constants;        ///< but for `coarsest`, its tables outlive the file
+  std::optional<Lattice> lattice;  ///< of the whole volume
+};
 
 /// A file, planned to its last offset.
 struct FilePlan {
@@ -25,6 +36,8 @@ struct FilePlan {
   Fill fill;
   std::unique_ptr<TreeRegions> tree;
   std::unique_ptr<ChoiceStore> choices;
+  std::optional<PackedRule> packed;                ///< of a packed file
+  std::unique_ptr<PlannedStreamsStore> streams{};  ///< of a packed file
   FileSize size;
   TreePlan plan;  ///< its layout is padded to the size
   /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
@@ -40,6 +53,7 @@ struct FileRequest {
   /// For a PSNR: the error to plan quantised leaves for, since theirs is estimated. At first the same as squared_error,
   /// then adjusted by what their files lose. Float leaves are never planned for more than squared_error.
   double planned_error = std::numeric_limits<double>::infinity();
+  PackedRequest packed;  ///< for Encoding::packed
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
   std::string path;               ///< of the output, for messages

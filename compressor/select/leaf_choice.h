@@ -1,4 +1,4 @@
-// What becomes of the leaves of a 128^3 region: each a tile, or kept at some width,
+// What becomes of the leaves of a 128^3 region: each a tile, or kept at some level,
 // in the order of the lower node's masks (x<<8 | y<<4 | z), and a spill file of them.
 #pragma once
 
@@ -27,34 +27,37 @@ constexpr std::uint32_t leaf_bytes(LeafWidth width) {
 }
 static_assert(leaf_bytes(LeafWidth::float32) == nvdb::kFloatLeafBytes);
 
-/// Besides a leaf's width, whether anything of it can be seen: by a scene, if one decides what matters.
+/// How a block is kept: a LeafWidth, or of a packed block a level of its ladder (compressor/packed/packed_ladder.h).
+/// 0: as a tile, or without a stream.
+using KeptLevel = std::uint8_t;
+
+/// Besides a leaf's level, whether anything of it can be seen: by a scene, if one decides what matters.
 class LeafChoices {
  public:
   static constexpr std::size_t kLeaves = 4096;
 
-  void set(std::size_t position, LeafWidth width) {
-    const unsigned shift = shift_of(position);
-    std::uint8_t& pair = pairs_[position / 2];
-    pair = static_cast<std::uint8_t>((pair & ~(kWidthBits << shift)) | static_cast<unsigned>(width) << shift);
+  /// `level` is below 128.
+  void set(std::size_t position, KeptLevel level) {
+    std::uint8_t& leaf = leaves_[position];
+    leaf = static_cast<std::uint8_t>((leaf & kSeenBit) | level);
   }
-  LeafWidth width(std::size_t position) const {
-    return static_cast<LeafWidth>(pairs_[position / 2] >> shift_of(position) & kWidthBits);
-  }
+  void set(std::size_t position, LeafWidth width) { set(position, static_cast<KeptLevel>(width)); }
+  KeptLevel level(std::size_t position) const { return leaves_[position] & kLevelBits; }
+  LeafWidth width(std::size_t position) const { return static_cast<LeafWidth>(level(position)); }
   void set_seen(std::size_t position) {
-    std::uint8_t& pair = pairs_[position / 2];
-    pair = static_cast<std::uint8_t>(pair | kSeenBit << shift_of(position));
+    std::uint8_t& leaf = leaves_[position];
+    leaf = static_cast<std::uint8_t>(leaf | kSeenBit);
   }
-  bool seen(std::size_t position) const { return (pairs_[position / 2] >> shift_of(position) & kSeenBit) != 0; }
-  bool kept(std::size_t position) const { return width(position) != LeafWidth::tile; }
+  bool seen(std::size_t position) const { return (leaves_[position] & kSeenBit) != 0; }
+  bool kept(std::size_t position) const { return level(position) != 0; }
 
  private:
-  static constexpr unsigned kWidthBits = 7;
-  static constexpr unsigned kSeenBit = 8;
-  static constexpr unsigned shift_of(std::size_t position) { return 4 * (position & 1U); }
+  static constexpr std::uint8_t kLevelBits = 127;
+  static constexpr std::uint8_t kSeenBit = 128;
 
-  std::array<std::uint8_t, kLeaves / 2> pairs_{};
+  std::array<std::uint8_t, kLeaves> leaves_{};
 };
-static_assert(sizeof(LeafChoices) == 2048, "choices are spilled as they are");
+static_assert(sizeof(LeafChoices) == 4096, "choices are spilled as they are");
 
 /// Where the kept leaves of a region lie among each other.
 class LeafPlaces {

@@ -7,6 +7,7 @@
 
 #include "compressor/leaf/bounds.h"
 #include "compressor/leaf/leaf_quantiser.h"
+#include "format/packed/block_decode.h"
 
 namespace weir {
 namespace {
@@ -37,7 +38,7 @@ double distance(Metric metric, const BrickRange& range, float background) {
 
 LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
   const std::uint32_t bytes = leaf_bytes(width) - leaf_bytes(from);
-  return {gain, gain / static_cast<double>(bytes), bytes, width};
+  return {gain, gain / static_cast<double>(bytes), bytes, static_cast<KeptLevel>(width)};
 }
 
 // The widest width of FpN that can be of use to a leaf: what is exact needs no more bits.
@@ -51,7 +52,7 @@ LeafWidth widest(const LeafRow& row) {
 
 // Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`; error_at(width).
 template <typename ErrorAt>
-void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf) {
+void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf, RegionGains& out) {
   std::array<double, 5> errors{};
   for (unsigned log2 = 0; log2 <= bits_log2_of(last); ++log2) errors[log2] = error_at(width_of(log2));
   while (from != last) {
@@ -60,11 +61,16 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
       const LeafStep step = step_to(width_of(log2), from, error - errors[log2]);
       if (step.gain > 0 && step.key > best.key) best = step;
     }
-    if (best.width == LeafWidth::tile) return;
+    if (best.level == 0) return;
     error -= best.gain;
-    from = best.width;
-    leaf.add(best);
+    from = static_cast<LeafWidth>(best.level);
+    out.add(leaf, best);
   }
+}
+
+// What the leaf's last step keeps it at.
+LeafWidth last_width(const LeafGain& leaf) {
+  return leaf.step_count == 0 ? LeafWidth::tile : static_cast<LeafWidth>(leaf.steps[leaf.step_count - 1].level);
 }
 
 // The least squared error that the survey estimated for a leaf of finite values at less than 1 << below_log2 bits,
@@ -133,6 +139,7 @@ std::vector<LeafWidth> widths_of(Encoding encoding) {
       return {LeafWidth::bits16};
     case Encoding::automatic:
     case Encoding::float32:
+    case Encoding::packed:
       break;
   }
   return {LeafWidth::float32};
@@ -145,7 +152,7 @@ double GainRule::tile_weight(const MinMax& reach, float tile) const {
 }
 
 void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
-                                LeafGain& leaf) const {
+                                LeafGain& leaf, RegionGains& out) const {
   const bool seen = weights.tile > 0;
   leaf.required = leaf.required || (seen && row.max_abs_about(tile) > *max_error);
   leaf.lossless = !leaf.required;  // met by the tile
@@ -157,12 +164,12 @@ void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float t
                     bounded_error(row, voxels, fill.background, candidate) <= *max_error;
     if (leaf.lossless) break;
   }
-  leaf.add(step_to(width, LeafWidth::tile, row.sse_about(tile)));
+  out.add(leaf, step_to(width, LeafWidth::tile, row.sse_about(tile)));
 }
 
-void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
-                         LeafGain& leaf) const {
-  if (max_error) return add_bounded_step(row, voxels, tile, weights, leaf);
+void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
+                         RegionGains& out) const {
+  if (max_error) return add_bounded_step(row, voxels, tile, weights, leaf, out);
   const bool tile_does = leaf.exact || !(weights.tile > 0);
   leaf.lossless = tile_does;
   if (tile_does && !leaf.required) return;
@@ -173,7 +180,8 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
   switch (encoding) {
     case Encoding::automatic:
     case Encoding::float32:
-      leaf.add(step_to(LeafWidth::float32, LeafWidth::tile, error));
+    case Encoding::packed:
+      out.add(leaf, step_to(LeafWidth::float32, LeafWidth::tile, error));
       break;
     case Encoding::fp4:
     case Encoding::fp8:
@@ -183,7 +191,7 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
                                                           : LeafWidth::bits16;
       const double gain = std::max(0.0, error - error_at(width));
       if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, width)) {
-        leaf.add(step_to(width, LeafWidth::tile, gain));
+        out.add(leaf, step_to(width, LeafWidth::tile, gain));
       }
       break;
     }
@@ -194,21 +202,102 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
       if (leaf.required) {
         from = LeafWidth::bits1;
         left = std::min(error, error_at(from));
-        leaf.add(step_to(from, LeafWidth::tile, error - left));
+        out.add(leaf, step_to(from, LeafWidth::tile, error - left));
       }
-      add_hull(error_at, from, left, last, leaf);
+      add_hull(error_at, from, left, last, leaf, out);
       // Saves nothing that can be measured, but without it not every bit is kept.
-      const LeafWidth reached = leaf.step_count > 0 ? leaf.steps[leaf.step_count - 1].width : LeafWidth::tile;
-      if (!tile_does && reached != last && keeps_every_bit(row, voxels, last)) leaf.add(step_to(last, reached, 0));
+      const LeafWidth reached = last_width(leaf);
+      if (!tile_does && reached != last && keeps_every_bit(row, voxels, last)) out.add(leaf, step_to(last, reached, 0));
       break;
     }
   }
   if (leaf.step_count > 0) {
-    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, leaf.steps[leaf.step_count - 1].width);
+    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, last_width(leaf));
   }
 }
 
-void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const {
+std::uint64_t GainRule::region_bytes() const {
+  if (!packed) return nvdb::kLowerBytes;
+  return kChunkCost + (packed->preview ? nvdb::kLowerBytes : 0);
+}
+
+namespace {
+
+// A way to keep a packed block.
+struct PackedPoint {
+  std::uint32_t bytes = 0;
+  double error = 0;
+  KeptLevel level = 0;
+};
+
+// The lower convex hull of error over bytes, grown from few bytes to many.
+class PackedHull {
+ public:
+  explicit PackedHull(double error_of_none) { points_[count_++] = {0, error_of_none, 0}; }
+
+  void add(const PackedPoint& point) {
+    while (count_ > 1 && point.bytes <= last().bytes && point.error <= last().error) --count_;
+    if (point.bytes <= last().bytes || point.error >= last().error) return;
+    while (count_ > 1 && slope(points_[count_ - 2], last()) <= slope(last(), point)) --count_;
+    points_[count_++] = point;
+  }
+  const PackedPoint& last() const { return points_[count_ - 1]; }
+  std::span<const PackedPoint> points() const { return {points_.data(), count_}; }
+
+ private:
+  static double slope(const PackedPoint& from, const PackedPoint& to) {
+    return (from.error - to.error) / static_cast<double>(to.bytes - from.bytes);
+  }
+
+  std::array<PackedPoint, PackedLadder::kMostRungs + 2> points_;
+  std::size_t count_ = 0;
+};
+
+constexpr auto kEndBytes = static_cast<std::uint32_t>(packed::chunk::kEndBytes);
+
+LeafStep packed_step(const PackedPoint& from, const PackedPoint& to) {
+  const std::uint32_t bytes = to.bytes - from.bytes;
+  const double gain = from.error - to.error;
+  return {gain, gain / static_cast<double>(bytes), bytes, to.level};
+}
+
+}  // namespace
+
+void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row,
+                                std::int64_t voxels, const Weights& weights, LeafGain& leaf, RegionGains& out) const {
+  const double none = leaf.exact ? 0 : weights.tile * row.sse_about(region.value);
+  const auto stream = [&](KeptLevel level) {
+    const std::uint32_t bytes = packed_stream_bytes(ladder, level, region.means, *packed);
+    return bytes == 0 ? 0 : bytes + kEndBytes;
+  };
+  const PackedPoint exact{stream(kExactLevel), 0, kExactLevel};
+  if (max_error) {
+    leaf.required = leaf.required || (weights.tile > 0 && row.max_abs_about(region.value) > *max_error);
+    leaf.lossless = true;
+    if (!leaf.required) return;
+    const PackedPoint rung{ladder.count > 0 ? stream(1) : 0, 0, 1};
+    out.add(leaf, packed_step({0, none, 0}, rung.bytes > 0 && rung.bytes < exact.bytes ? rung : exact));
+    return;
+  }
+  const bool nothing_does = leaf.exact || !(weights.tile > 0);
+  leaf.lossless = true;
+  if (nothing_does && !leaf.required) return;
+  PackedHull hull(none);
+  for (std::uint8_t rung = 0; rung < ladder.count; ++rung) {
+    const auto level = static_cast<KeptLevel>(rung + 1);
+    const std::uint32_t bytes = stream(level);
+    if (bytes == 0) continue;
+    hull.add({bytes, weights.kept * packed_error(ladder, level, row, voxels), level});
+  }
+  hull.add(exact);
+  const std::span<const PackedPoint> points = hull.points();
+  for (std::size_t i = 1; i < points.size(); ++i) out.add(leaf, packed_step(points[i - 1], points[i]));
+  // Saves nothing that can be measured, but without it not every bit is kept.
+  if (hull.last().level != kExactLevel && exact.bytes > hull.last().bytes)
+    out.add(leaf, packed_step(hull.last(), exact));
+}
+
+void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const {
   const NodeLattice& leaves = tree.leaves;
   const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
   const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
@@ -217,6 +306,8 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
   const bool whole =
       leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
       leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
+  SharedValues region;
+  if (packed) region = shared_values(rows, leaves, fill);
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const Index3 node = leaves.first + leaf;
     const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
@@ -225,22 +316,28 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, std::vecto
     gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
     gain.brick = static_cast<std::uint32_t>(
         linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
-    gain.required = leaf == Index3{0, 0, 0} || leaf == last_leaf ||
-                    (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
-    const float tile = fill.leaf_value(row);
+    const bool corner = leaf == Index3{0, 0, 0} || leaf == last_leaf;
+    gain.required =
+        (corner && (!packed || packed->preview)) || (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
+    const float tile = packed ? region.value : fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);
     Weights weights;
     if (visibility != nullptr) {
       const MinMax& reach = rows.reach(leaf);
       weights = {tile_weight(reach, tile), visibility->weight(reach)};
     }
-    add_steps(row, voxels, tile, weights, gain);
-    out.push_back(gain);
+    out.begin(gain);
+    if (packed) {
+      add_packed_steps(rows.ladder(leaf), region, row, voxels, weights, gain, out);
+    } else {
+      add_steps(row, voxels, tile, weights, gain, out);
+    }
+    out.end(gain);
   });
   if (metric != Metric::sse) rank_bricks(rows, out);
 }
 
-void GainRule::rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const {
+void GainRule::rank_bricks(const RegionRows& rows, RegionGains& leaves) const {
   std::vector<BrickRange> ranges(kLowerLeaves * kLowerLeaves * kLowerLeaves);
   auto leaf = leaves.begin();
   rows.for_each([&](const Index3&, const LeafRow& row) {

@@ -2,15 +2,18 @@
 // so the order in which leaves are bought.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compressor/leaf/encoding.h"
 #include "compressor/leaf/fill.h"
 #include "compressor/leaf/metric.h"
+#include "compressor/packed/packed_rule.h"
 #include "compressor/select/leaf_choice.h"
+#include "compressor/select/packed_region.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/survey/visibility.h"
 
@@ -21,13 +24,13 @@ struct LeafStep {
   double gain = 0;          ///< squared error saved, or the brick's distance
   double key = 0;           ///< for sse gain / bytes, else gain: steps are bought by falling key
   std::uint32_t bytes = 0;  ///< what the file grows by
-  LeafWidth width = LeafWidth::tile;
+  KeptLevel level = 0;
 };
 
 struct LeafGain {
   /// In the order they are bought, keys falling: the convex hull of error over bytes. None where the tile
-  /// reads the same bits.
-  std::array<LeafStep, 5> steps{};
+  /// reads the same bits. They live in the RegionGains.
+  LeafStep* steps = nullptr;
   std::uint32_t step_count = 0;
   std::uint32_t brick = 0;     ///< rank of its brick in the region; of itself for sse
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
@@ -35,7 +38,43 @@ struct LeafGain {
   bool required = false;       ///< always a leaf: its first step is taken whatever it saves
   bool lossless = false;  ///< the last step, or the tile, reads the same bits (within max_error, or cannot be seen)
 
-  void add(const LeafStep& step) { steps[step_count++] = step; }
+  std::span<const LeafStep> all_steps() const { return {steps, step_count}; }
+  /// Of the first step; 0 where there is none.
+  double first_gain() const { return step_count == 0 ? 0 : steps[0].gain; }
+};
+
+/// The gains of a region's leaves, in leaf-index order. Movable, not copyable: leaves point to their steps.
+class RegionGains {
+ public:
+  /// Most steps of one leaf.
+  static constexpr std::size_t kMostSteps = 24;
+
+  RegionGains() { steps_.reserve(LeafChoices::kLeaves * kMostSteps); }  // pages that no step touches cost nothing
+  RegionGains(RegionGains&&) = default;
+  RegionGains& operator=(RegionGains&&) = default;
+
+  void clear() {
+    leaves_.clear();
+    steps_.clear();
+  }
+  /// The steps that come are those of `leaf`.
+  void begin(LeafGain& leaf) { leaf.steps = steps_.data() + steps_.size(); }
+  void add(LeafGain& leaf, const LeafStep& step) {
+    steps_.push_back(step);
+    ++leaf.step_count;
+  }
+  void end(const LeafGain& leaf) { leaves_.push_back(leaf); }
+
+  auto begin() const { return leaves_.begin(); }
+  auto end() const { return leaves_.end(); }
+  auto begin() { return leaves_.begin(); }
+  auto end() { return leaves_.end(); }
+  std::size_t size() const { return leaves_.size(); }
+  const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
+
+ private:
+  std::vector<LeafGain> leaves_;
+  std::vector<LeafStep> steps_;
 };
 
 /// Decides gains; the same for every thread, plan and memory ceiling.
@@ -51,13 +90,19 @@ struct GainRule {
   /// Where a scene decides what matters: errors are weighted by what it shows of them, and what it cannot show is
   /// never worth a byte. For Metric::sse, over rows with reaches.
   const Visibility* visibility = nullptr;
+  /// Blocks are packed: the steps of each are those of its ladder, over rows that have one.
+  std::optional<PackedRule> packed = std::nullopt;
+
+  /// What opening a region takes in the file, and opening an upper node.
+  std::uint64_t region_bytes() const;
+  std::uint64_t upper_bytes() const { return packed ? 0 : nvdb::kUpperBytes; }
 
   /// Weight of the error where a block of that reach reads `tile`.
   double tile_weight(const MinMax& reach, float tile) const;
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
   /// hold non-finite values to keep, are required.
-  void gains(const TreeRegions& tree, const RegionRows& rows, std::vector<LeafGain>& out) const;
+  void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const;
 
  private:
   // What a squared error counts where the leaf reads its tile, and where it is kept.
@@ -65,11 +110,14 @@ struct GainRule {
     double tile = 1;
     double kept = 1;
   };
-  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
-                        LeafGain& leaf) const;
-  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf) const;
+  void add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
+                        RegionGains& out) const;
+  void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
+                 RegionGains& out) const;
+  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row, std::int64_t voxels,
+                        const Weights& weights, LeafGain& leaf, RegionGains& out) const;
   // The paper's metrics: gain of each leaf from its brick's range.
-  void rank_bricks(const RegionRows& rows, std::vector<LeafGain>& leaves) const;
+  void rank_bricks(const RegionRows& rows, RegionGains& leaves) const;
 };
 
 /// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced

@@ -8,15 +8,12 @@
 namespace weir {
 namespace {
 
-constexpr auto kLowerCost = static_cast<double>(nvdb::kLowerBytes);
-constexpr auto kUpperCost = static_cast<double>(nvdb::kUpperBytes);
-
 // The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves.
-double hull_step(double opening_gain, std::vector<LeafStep>& steps) {
+double hull_step(double opening_gain, std::uint64_t opening_bytes, std::vector<LeafStep>& steps) {
   // Equal keys in any order: the best ratio is at the end of a run of them.
   std::sort(steps.begin(), steps.end(), [](const LeafStep& a, const LeafStep& b) { return a.key > b.key; });
   double saved = opening_gain;
-  double cost = kLowerCost;
+  auto cost = static_cast<double>(opening_bytes);
   double best = saved / cost;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     saved += steps[i].gain;
@@ -28,7 +25,7 @@ double hull_step(double opening_gain, std::vector<LeafStep>& steps) {
 
 }  // namespace
 
-void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains) {
+void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, const RegionGains& gains) {
   Region& region = tree_.regions[static_cast<std::size_t>(index)];
   TileSumsBuilder builder;
   rows.for_each([&](const Index3&, const LeafRow& row) {
@@ -38,18 +35,23 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   // A region of one value keeps its very bits: a mean of -0.0 would be +0.0.
   const LeafRow& first = rows.at(rows.leaf_box().lo);
   if (first.uniform() && builder.sums.min == builder.sums.max) builder.sums.mean = first.mean;
-  const float tile = tile_value(rule_.fill, builder.sums);
+  // Packed blocks without a stream, and regions without any, read one value.
+  const std::optional<float> packed =
+      rule_.packed ? std::optional(shared_values(rows, tree_.leaves, rule_.fill).value) : std::nullopt;
+  const float tile = packed ? *packed : tile_value(rule_.fill, builder.sums);
+  region.packed_value = tile;
+  const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };
   bool exact = true;
   double dropped_leaves = 0;  // squared error once the region is open and before any leaf is kept
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     builder.add_squares(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.sse);
     exact = exact && rule_.fill.exact(row, tree_.leaves.voxels(leaf).voxels(), tile);
-    dropped_leaves += row.sse_about(rule_.fill.leaf_value(row));
+    dropped_leaves += row.sse_about(dropped_value(row));
   });
   region.sums = builder.sums;
   region.sums.exact = exact;
   region.tile_error = region.sums.sse_about(tile);
-  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile);
+  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
   std::vector<LeafStep> steps;
@@ -57,29 +59,30 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
-    highest = std::max(highest, leaf.steps[0].gain);
-    steps.insert(steps.end(), leaf.steps.begin(), leaf.steps.begin() + leaf.step_count);
+    highest = std::max(highest, leaf.first_gain());
+    steps.insert(steps.end(), leaf.all_steps().begin(), leaf.all_steps().end());
   }
   if (required || (rule_.max_error && exceeds(*rule_.max_error, region, tile))) {
     region.key = kRequiredKey;
   } else if (exact || rule_.max_error || !sees(region, tile)) {
     region.key = 0;
   } else if (rule_.metric == Metric::sse) {
-    region.key = std::max(kLastKey, hull_step(region.opening_gain, steps));
+    region.key = std::max(kLastKey, hull_step(region.opening_gain, rule_.region_bytes(), steps));
   } else {
     region.key = std::max(kLastKey, highest);
   }
 }
 
 // The weighted errors of a region: sets that of its one tile, returns that of its leaves' tiles.
-double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float tile) const {
+double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float tile,
+                                std::optional<float> dropped) const {
   region.tile_error = 0;
   double dropped_leaves = 0;
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const MinMax& reach = rows.reach(leaf);
     widen(region.reach, reach);
     region.tile_error += rule_.tile_weight(reach, tile) * row.sse_about(tile);
-    const float leaf_tile = rule_.fill.leaf_value(row);
+    const float leaf_tile = dropped ? *dropped : rule_.fill.leaf_value(row);
     dropped_leaves += rule_.tile_weight(reach, leaf_tile) * row.sse_about(leaf_tile);
   });
   return dropped_leaves;
@@ -121,7 +124,7 @@ void RegionKeys::summarize_uppers() {
       const float region_tile = tile_value(rule_.fill, sums);
       builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
       exact = exact && sums.exact && key_bits(static_cast<double>(region_tile)) == key_bits(static_cast<double>(tile));
-      tiles += rule_.visibility == nullptr ? sums.sse_about(region_tile) : region.tile_error;
+      tiles += rule_.visibility == nullptr && !rule_.packed ? sums.sse_about(region_tile) : region.tile_error;
       upper.key = std::max(upper.key, region.key);
       seen = seen || sees(region, tile);
       exceeded = exceeded || (rule_.max_error && exceeds(*rule_.max_error, region, tile));
@@ -130,13 +133,20 @@ void RegionKeys::summarize_uppers() {
     upper.sums = builder.sums;
     upper.sums.exact = exact;
     upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
+    if (rule_.packed) {
+      upper.tile_error = tiles;
+      upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
+      continue;
+    }
     if (exact || !seen) continue;
     if (rule_.max_error) {
       if (exceeded) upper.key = kRequiredKey;
       continue;
     }
     upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
-    upper.key = std::max({upper.key, kLastKey, rule_.metric == Metric::sse ? upper.opening_gain / kUpperCost : 0.0});
+    upper.key =
+        std::max({upper.key, kLastKey,
+                  rule_.metric == Metric::sse ? upper.opening_gain / static_cast<double>(rule_.upper_bytes()) : 0.0});
   }
 }
 

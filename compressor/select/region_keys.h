@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compressor/select/leaf_gain.h"
@@ -18,12 +19,12 @@ class RegionKeys {
 
   /// Sums, tile error, opening gain and key of the region, whose leaves have those rows and gains. Thread-safe for
   /// different regions.
-  void summarize_region(std::int64_t index, const RegionRows& rows, const std::vector<LeafGain>& gains);
+  void summarize_region(std::int64_t index, const RegionRows& rows, const RegionGains& gains);
   /// The same of all upper nodes, from their regions.
   void summarize_uppers();
 
  private:
-  double weigh_region(Region& region, const RegionRows& rows, float tile) const;
+  double weigh_region(Region& region, const RegionRows& rows, float tile, std::optional<float> dropped) const;
   bool sees(const Region& region, float tile) const;
   bool exceeds(double max_error, const Region& region, float tile) const;
 

@@ -14,14 +14,22 @@ namespace {
 void read_box(const RowStore& store, const Box& box, RowBuffers& buffers) {
   store.read_box(box, buffers.rows);
   if (store.reaches() != nullptr) store.reaches()->read_box(box, buffers.reaches);
+  if (store.ladders() != nullptr) store.ladders()->read_box(box, buffers.ladders);
+}
+
+// Of the leaf `first` in boxes of rows.
+RegionRows rows_from(const RowStore& store, const RowBuffers& buffers, std::size_t first, const Index3& row_extent,
+                     const Box& leaf_box) {
+  return {buffers.rows.data() + first, row_extent, leaf_box,
+          store.reaches() == nullptr ? nullptr : buffers.reaches.data() + first,
+          store.ladders() == nullptr ? nullptr : buffers.ladders.data() + first};
 }
 
 }  // namespace
 
 RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers) {
   read_box(store, leaf_box, buffers);
-  return {buffers.rows.data(), leaf_box.extent(), leaf_box,
-          store.reaches() == nullptr ? nullptr : buffers.reaches.data()};
+  return rows_from(store, buffers, 0, leaf_box.extent(), leaf_box);
 }
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
@@ -42,9 +50,8 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
     read_box(store, box, local);
     for (std::int64_t region = begin; region <= last; ++region) {
       const Box leaf_box = tree.leaf_box(region);
-      const std::int64_t first_row = leaf_box.lo.x - box.lo.x;
-      visit(region, RegionRows(local.rows.data() + first_row, box.extent(), leaf_box,
-                               store.reaches() == nullptr ? nullptr : local.reaches.data() + first_row));
+      const auto first_row = static_cast<std::size_t>(leaf_box.lo.x - box.lo.x);
+      visit(region, rows_from(store, local, first_row, box.extent(), leaf_box));
     }
   });
 }

@@ -13,9 +13,10 @@ namespace weir {
 /// The rows of one 128^3 region; valid during the visit only.
 class RegionRows {
  public:
-  /// `rows` and, where given, `reaches` begin at the region's first leaf in arrays of `row_extent`.
-  RegionRows(const LeafRow* rows, const Index3& row_extent, const Box& leaf_box, const MinMax* reaches = nullptr)
-      : rows_(rows), reaches_(reaches), row_extent_(row_extent), leaf_box_(leaf_box) {}
+  /// `rows` and, where given, `reaches` and `ladders` begin at the region's first leaf in arrays of `row_extent`.
+  RegionRows(const LeafRow* rows, const Index3& row_extent, const Box& leaf_box, const MinMax* reaches = nullptr,
+             const PackedLadder* ladders = nullptr)
+      : rows_(rows), reaches_(reaches), ladders_(ladders), row_extent_(row_extent), leaf_box_(leaf_box) {}
 
   /// Lattice positions of its leaves.
   const Box& leaf_box() const { return leaf_box_; }
@@ -24,6 +25,11 @@ class RegionRows {
 
   /// Values that lookups in or next to that leaf can give; only where the store has reaches.
   const MinMax& reach(const Index3& leaf) const { return reaches_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
+
+  /// Of the block at lattice position `leaf`; only where the store has ladders.
+  const PackedLadder& ladder(const Index3& leaf) const {
+    return ladders_[linear_index(leaf - leaf_box_.lo, row_extent_)];
+  }
 
   /// Calls visit(position, row) with x fastest, then y, then z: the order of the leaf index.
   template <typename Visit>
@@ -38,17 +44,20 @@ class RegionRows {
  private:
   const LeafRow* rows_;
   const MinMax* reaches_;
+  const PackedLadder* ladders_;
   Index3 row_extent_;
   Box leaf_box_;
 };
 
-/// Bytes of the rows of one region, with their reaches.
+/// Bytes of the rows of one region, with their reaches, and of their ladders where blocks are packed.
 inline constexpr std::uint64_t kRegionRowsBytes = 16ULL * 16 * 16 * (sizeof(LeafRow) + sizeof(MinMax));
+inline constexpr std::uint64_t kRegionLaddersBytes = 16ULL * 16 * 16 * sizeof(PackedLadder);
 
 /// Memory for the rows of a box of leaves.
 struct RowBuffers {
   std::vector<LeafRow> rows;
   std::vector<MinMax> reaches;
+  std::vector<PackedLadder> ladders;
 };
 
 /// The rows of one region, read into `buffers`.

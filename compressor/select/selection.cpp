@@ -26,7 +26,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
-    std::vector<LeafGain> gains;
+    RegionGains gains;
     rule_.gains(tree_, region_rows, gains);
     keys.summarize_region(region, region_rows, gains);
     Totals& total = totals.local();
@@ -52,28 +52,38 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
     sums[4] += total.lossy;
   }
   rows_.team().sum<std::uint64_t>(sums);
-  NodeCounts minimum;
-  NodeCounts full;
-  minimum.leaves = sums[0];
-  minimum.leaf_bytes = sums[1];
-  full.leaves = sums[2];
-  full.leaf_bytes = sums[3];
+  Purchases minimum{0, 0, sums[0], sums[1]};
+  Purchases full{0, 0, sums[2], sums[3]};
   bytes_.lossy_leaves = sums[4];
   for (const Region& region : tree_.regions) {
-    minimum.lowers += region.key == kRequiredKey ? 1 : 0;
-    full.lowers += region.key > 0 ? 1 : 0;
+    minimum.regions += region.key == kRequiredKey ? 1 : 0;
+    full.regions += region.key > 0 ? 1 : 0;
   }
   for (const Upper& upper : tree_.uppers) {
     minimum.uppers += upper.key == kRequiredKey ? 1 : 0;
     full.uppers += upper.key > 0 ? 1 : 0;
   }
-  for (NodeCounts* counts : {&minimum, &full}) {
-    counts->root_tiles = tree_.uppers.size();
-    counts->macrocells = static_cast<std::uint64_t>(make_lattice(tree_.leaves.domain, kMacrocell).size());
-  }
-  bytes_.minimum = make_layout(minimum);
-  bytes_.full = make_layout(full);
+  bytes_.minimum = layout_of(minimum);
+  bytes_.full = layout_of(full);
+  required_bytes_ = minimum.uppers * rule_.upper_bytes() + minimum.regions * rule_.region_bytes() + minimum.leaf_bytes;
   bytes_.by_scene = rule_.visibility != nullptr;
+}
+
+// Of a file in which so much is bought.
+TreeLayout Selection::layout_of(const Purchases& bought) const {
+  NodeCounts counts;
+  counts.root_tiles = tree_.uppers.size();
+  counts.macrocells = static_cast<std::uint64_t>(make_lattice(tree_.leaves.domain, kMacrocell).size());
+  if (rule_.packed) {
+    set_packed_counts(*rule_.packed, tree_, bought.regions, counts);
+    counts.packed_bytes += bought.regions * kChunkCost + bought.leaf_bytes;
+  } else {
+    counts.uppers = bought.uppers;
+    counts.lowers = bought.regions;
+    counts.leaves = bought.leaves;
+    counts.leaf_bytes = bought.leaf_bytes;
+  }
+  return make_layout(counts);
 }
 
 void Selection::resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought) {
@@ -85,7 +95,7 @@ void Selection::resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight boug
     return true;
   };
   RowBuffers buffers;
-  std::vector<LeafGain> gains;
+  RegionGains gains;
   for (std::int64_t index = 0; index < static_cast<std::int64_t>(tree_.regions.size()); ++index) {
     Region& region = tree_.regions[static_cast<std::size_t>(index)];
     if (region.key < cut_.threshold) continue;
@@ -95,11 +105,11 @@ void Selection::resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight boug
       cut_.tie_steps = static_cast<std::uint32_t>(steps);
     };
     if (!upper.open) {
-      if (!buy(nvdb::kUpperBytes, upper.opening_gain)) return stop(0);
+      if (!buy(rule_.upper_bytes(), upper.opening_gain)) return stop(0);
       upper.open = true;
     }
     if (!region.open) {
-      if (!buy(nvdb::kLowerBytes, region.opening_gain)) return stop(0);
+      if (!buy(rule_.region_bytes(), region.opening_gain)) return stop(0);
       region.open = true;
     }
     rule_.gains(tree_, read_region(rows_, tree_.leaf_box(index), buffers), gains);
@@ -119,7 +129,7 @@ void Selection::resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight boug
   }
   // What is left are upper nodes that save error by themselves, with one tile per region.
   for (Upper& upper : tree_.uppers) {
-    if (upper.key == cut_.threshold && !upper.open) upper.open = buy(nvdb::kUpperBytes, upper.opening_gain);
+    if (upper.key == cut_.threshold && !upper.open) upper.open = buy(rule_.upper_bytes(), upper.opening_gain);
     if (upper.key == cut_.threshold && !upper.open) return;
   }
 }
@@ -134,11 +144,8 @@ void Selection::choose(std::uint64_t file_bytes) {
     for (Upper& upper : tree_.uppers) upper.open = upper.key > 0;
     return;
   }
-  // Everything but nodes and leaves has the same size in every file of this domain.
-  const NodeCounts& minimum = bytes_.minimum.counts;
-  const std::uint64_t nodes =
-      minimum.uppers * nvdb::kUpperBytes + minimum.lowers * nvdb::kLowerBytes + minimum.leaf_bytes;
-  const std::uint64_t fixed = bytes_.minimum.content_end - nodes;
+  // Everything but what is bought has the same size in every file of this domain.
+  const std::uint64_t fixed = bytes_.minimum.content_end - required_bytes_;
   buy_for({0, file_bytes - fixed});
 }
 
@@ -172,18 +179,18 @@ LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows) const
   LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
   if (!region.open) return choices;
-  std::vector<LeafGain> gains;
+  RegionGains gains;
   rule_.gains(tree_, rows, gains);
   for (const LeafGain& leaf : gains) {
     // Keys fall from step to step: the last one above the cut is the width.
     for (std::uint32_t i = 0; i < leaf.step_count && step_key(leaf, i, region.key) > cut_.threshold; ++i) {
-      choices.set(leaf.position, leaf.steps[i].width);
+      choices.set(leaf.position, leaf.steps[i].level);
     }
   }
   if (cut_.threshold == 0 || index > cut_.tie_region) return choices;
   std::vector<LeafPurchase> ties = tied_steps(gains, region.key, cut_.threshold);
   if (index == cut_.tie_region) ties.resize(std::min<std::size_t>(ties.size(), cut_.tie_steps));
-  for (const LeafPurchase& tie : ties) choices.set(tie.leaf->position, tie.leaf->steps[tie.step].width);
+  for (const LeafPurchase& tie : ties) choices.set(tie.leaf->position, tie.leaf->steps[tie.step].level);
   return choices;
 }
 

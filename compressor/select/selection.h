@@ -63,6 +63,13 @@ class Selection {
   const GainRule& rule() const { return rule_; }
 
  private:
+  struct Purchases {
+    std::uint64_t uppers = 0;
+    std::uint64_t regions = 0;
+    std::uint64_t leaves = 0;
+    std::uint64_t leaf_bytes = 0;
+  };
+  TreeLayout layout_of(const Purchases& bought) const;
   void buy_for(const PurchaseGoal& goal);
   void resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought);
 
@@ -70,6 +77,7 @@ class Selection {
   const RowStore& rows_;
   TreeRegions& tree_;
   SelectionBytes bytes_;
+  std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
   Cut cut_;
 };
 

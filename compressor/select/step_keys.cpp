@@ -20,7 +20,7 @@ double step_key(const LeafGain& leaf, std::uint32_t i, double region_key) {
   return std::max(kLastKey, std::min(leaf.steps[i].key, region_key));
 }
 
-std::vector<LeafPurchase> tied_steps(const std::vector<LeafGain>& gains, double region_key, double threshold) {
+std::vector<LeafPurchase> tied_steps(const RegionGains& gains, double region_key, double threshold) {
   std::vector<LeafPurchase> ties;
   for (const LeafGain& leaf : gains) {
     for (std::uint32_t i = 0; i < leaf.step_count; ++i) {

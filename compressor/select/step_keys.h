@@ -30,6 +30,6 @@ struct LeafPurchase {
 
 /// The steps of a region's leaves whose key is `threshold`, in the order they are bought: the higher own key first,
 /// which is a leaf's earlier step too, then whole bricks, then the leaf index.
-std::vector<LeafPurchase> tied_steps(const std::vector<LeafGain>& gains, double region_key, double threshold);
+std::vector<LeafPurchase> tied_steps(const RegionGains& gains, double region_key, double threshold);
 
 }  // namespace weir

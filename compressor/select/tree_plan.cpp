@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "format/nanovdb/macrocells.h"
@@ -19,6 +21,7 @@ struct PlanTally {
   bool seen_exact = true;    // those that can be seen
   bool leaves_exact = true;  // at their widths, where they can be seen
   std::array<std::uint64_t, 6> leaves_by_width{};
+  std::array<std::uint64_t, kPackedKinds> blocks{};
 
   void add(const PlanTally& other) {
     max_abs = std::max(max_abs, other.max_abs);
@@ -27,6 +30,7 @@ struct PlanTally {
     seen_exact = seen_exact && other.seen_exact;
     leaves_exact = leaves_exact && other.leaves_exact;
     for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
+    for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] += other.blocks[i];
   }
 };
 
@@ -34,6 +38,9 @@ struct PlanTally {
 struct RegionErrors {
   double seen = 0;      // of what reads a tile and can be seen
   double expected = 0;  // of kept leaves and, where a scene weighs, tiles; weighted
+  // Of what other readers see of a packed region.
+  double preview = 0;
+  double preview_max_abs = 0;
 };
 
 // Plans one region after the other; different regions on different threads.
@@ -58,13 +65,21 @@ class RegionPlanner {
       const LeafWidth width = choices.width(position);
       const std::int64_t voxels = tree_.leaves.voxels(leaf).voxels();
       if (width != LeafWidth::tile) {
-        ++tally.leaves_by_width[bits_log2_of(width)];
         const double weight = rule_.visibility == nullptr ? 1 : rule_.visibility->weight(rows.reach(leaf));
+        if (rule_.packed) {
+          const KeptLevel level = choices.level(position);
+          expected.add(weight * packed_error(rows.ladder(leaf), level, row, voxels));
+          const bool exact = level == kExactLevel && rows.ladder(leaf).bounded == 0;
+          ++tally.blocks[static_cast<std::size_t>(packed_kind(rows.ladder(leaf), level))];
+          tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || exact);
+          return;
+        }
+        ++tally.leaves_by_width[bits_log2_of(width)];
         expected.add(weight * quantised_error(row, voxels, rule_.fill.background, width));
         tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || keeps_every_bit(row, voxels, width));
         return;
       }
-      const float value = rule_.fill.leaf_value(row);
+      const float value = rule_.packed ? region.packed_value : rule_.fill.leaf_value(row);
       const bool exact = rule_.fill.exact(row, voxels, value);
       squares.add(row.sse_about(value));
       tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
@@ -90,6 +105,17 @@ class RegionPlanner {
     return {seen_squares.value(), expected.value()};
   }
 
+  // What a reader of the tree alone sees: in an open region each block's mean, else `value`.
+  void add_preview(const RegionRows& rows, bool means, float value, RegionErrors& errors) const {
+    CompensatedSum squares;
+    rows.for_each([&](const Index3&, const LeafRow& row) {
+      const float seen_value = means ? rule_.fill.leaf_value(row) : value;
+      squares.add(row.sse_about(seen_value));
+      errors.preview_max_abs = std::max(errors.preview_max_abs, row.max_abs_about(seen_value));
+    });
+    errors.preview = squares.value();
+  }
+
  private:
   bool seen(const RegionRows& rows, const Index3& leaf) const {
     return rule_.visibility == nullptr || rule_.visibility->shows(rows.reach(leaf));
@@ -109,6 +135,32 @@ class RegionPlanner {
   const TreeRegions& tree_;
 };
 
+// Of a packed file: chunks in the order of the nodes they would be. Returns the streams.
+std::uint64_t number_chunks(const PackedRule& rule, TreeRegions& tree, NodeCounts& counts) {
+  std::uint64_t streams = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t uppers = 0;
+  std::uint64_t regions = 0;
+  std::uint64_t tiles = 0;
+  tree.for_each_upper([&](std::int64_t u) {
+    tree.uppers[static_cast<std::size_t>(u)].node = uppers++;
+    tree.for_each_region_of(u, [&](std::int64_t r) {
+      Region& region = tree.regions[static_cast<std::size_t>(r)];
+      if (!region.open) return;
+      region.node = regions++;
+      region.first_leaf = streams;
+      region.first_byte = bytes;
+      streams += region.leaves;
+      bytes += region.leaf_bytes;
+      tiles += static_cast<std::uint64_t>(tree.leaf_box(r).voxels());
+    });
+  });
+  set_packed_counts(rule, tree, regions, counts);
+  counts.packed_bytes += bytes;
+  counts.leaf_tiles = rule.preview ? tiles - counts.leaves : 0;
+  return streams;
+}
+
 void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
   tree.for_each_upper([&](std::int64_t u) {
     Upper& upper = tree.uppers[static_cast<std::size_t>(u)];
@@ -127,9 +179,22 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
   });
 }
 
+// The streams of a region: `leaves` and `leaf_bytes` become those of its chunk.
+void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const LeafChoices& choices,
+                 std::int64_t index, PlannedStreamsStore& streams) {
+  Region& region = tree.regions[static_cast<std::size_t>(index)];
+  if (!region.open) return;
+  auto planned = std::make_unique<PlannedStreams>(plan_streams(rows, tree, rule.fill, *rule.packed, choices));
+  streams.write(index, *planned);
+  const StreamPlaces places(std::move(planned));
+  region.leaves = places.streams();
+  region.leaf_bytes = places.chunk_bytes();
+}
+
 }  // namespace
 
-TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store) {
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store,
+                   PlannedStreamsStore* streams) {
   const GainRule& rule = selection.rule();
   const RegionPlanner planner(rule, tree);
   tbb::enumerable_thread_specific<PlanTally> tallies;
@@ -138,18 +203,30 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     Region& region = tree.regions[static_cast<std::size_t>(index)];
     LeafChoices choices = selection.choices(index, region_rows);
     planner.mark(region_rows, choices);
-    const LeafPlaces::Place total = LeafPlaces(choices).total();
-    region.leaves = total.leaves;
-    region.leaf_bytes = total.bytes;
     store.write(index, choices);
     RegionErrors& of_region = errors[static_cast<std::size_t>(index)];
+    if (rule.packed) {
+      plan_packed(rule, tree, region_rows, choices, index, *streams);
+    } else {
+      const LeafPlaces::Place total = LeafPlaces(choices).total();
+      region.leaves = total.leaves;
+      region.leaf_bytes = total.bytes;
+    }
     if (region.open) {
       of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
+    } else if (rule.packed) {
+      of_region = planner.add_tile(region_rows, region.packed_value, region.sums.exact, region, tallies.local());
     } else {
       // One tile, of this region or of the whole upper node.
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
       const TileSums& sums = upper.open ? region.sums : upper.sums;
       of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), sums.exact, region, tallies.local());
+    }
+    if (rule.packed) {
+      const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
+      const bool nodes = rule.packed->preview;
+      planner.add_preview(region_rows, nodes && region.open, tile_value(rule.fill, nodes ? region.sums : upper.sums),
+                          of_region);
     }
   });
 
@@ -157,6 +234,7 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   team.gather(tree.regions);
   team.gather(errors);
   store.publish(team);
+  if (streams != nullptr) streams->publish(team);
   std::vector<PlanTally> parts(tallies.begin(), tallies.end());
   team.concatenate(parts);
   TreePlan plan;
@@ -166,22 +244,33 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   for (const Region& region : tree.regions) squares.add(region.squared_error);
   CompensatedSum seen;
   CompensatedSum expected;
+  CompensatedSum preview;
   for (const RegionErrors& of_region : errors) {
     seen.add(of_region.seen);
     expected.add(of_region.expected);
+    preview.add(of_region.preview);
+    plan.preview.max_abs = std::max(plan.preview.max_abs, of_region.preview_max_abs);
   }
+  plan.preview.squared = preview.value();
+  plan.preview.exact = plan.preview.squared == 0 && plan.preview.max_abs == 0 && rule.packed.has_value();
   plan.tiles = {squares.value(), total.max_abs, total.exact};
   const bool weighed = rule.visibility != nullptr;
   plan.seen_tiles = weighed ? TileErrors{seen.value(), total.seen_max_abs, total.seen_exact} : plan.tiles;
   plan.expected_error = weighed ? expected.value() : plan.tiles.squared + expected.value();
   plan.loses_nothing = plan.seen_tiles.exact && total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;
+  plan.blocks = total.blocks;
 
   NodeCounts counts;
   counts.root_tiles = tree.uppers.size();
   counts.macrocells = static_cast<std::uint64_t>(make_lattice(tree.leaves.domain, kMacrocell).size());
-  number_in_file_order(tree, counts);
-  if (!rule.fill.active()) counts.leaf_tiles = 0;
+  if (rule.packed) {
+    plan.kept = number_chunks(*rule.packed, tree, counts);
+  } else {
+    number_in_file_order(tree, counts);
+    plan.kept = counts.leaves;
+    if (!rule.fill.active()) counts.leaf_tiles = 0;
+  }
   plan.layout = make_layout(counts);
   return plan;
 }

@@ -29,10 +29,15 @@ struct TreePlan {
   bool loses_nothing = false;  ///< every bit that can be seen is read
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
+  std::array<std::uint64_t, kPackedKinds> blocks{};  ///< with a stream, by PackedKind
+  std::uint64_t kept = 0;  ///< kept leaves, or blocks with a stream: as many records does the encode pass write
+  TileErrors preview;      ///< of a packed file: of what other readers see in the tree
 };
 
 /// One pass over the rows after Selection::choose: writes the choices, fills `leaves`, `leaf_bytes`, `node`,
 /// `first_leaf`, `first_byte` and `squared_error` of the regions and `node` of the upper nodes.
-TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& choices);
+/// Of a packed file the streams go to `streams`.
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& choices,
+                   PlannedStreamsStore* streams = nullptr);
 
 }  // namespace weir

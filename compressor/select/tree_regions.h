@@ -45,7 +45,8 @@ struct Region {
   std::uint64_t node = 0;        ///< ordinal of the lower node in the file
   std::uint64_t first_leaf = 0;  ///< ordinal of its first kept leaf in the file
   std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
-  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves
+  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves; of a packed region its chunk
+  float packed_value = 0;        ///< of a packed file: what its blocks read that have no stream
   double squared_error = 0;      ///< of the finite voxels that read a tile
 };
 

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "compressor/packed/block_values.h"
+
 namespace weir {
 
 BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
@@ -31,17 +33,19 @@ BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
 // Surveys the leaves of one block.
 class BlockSurvey::Leaves {
  public:
-  // `faces` is empty where they are not asked for.
-  Leaves(const NodeLattice& leaves, const ValueTable& table, bool widths, bool has_missing, const Block& block,
-         const Box& leaf_box, std::span<LeafRow> rows, std::span<LeafFaces> faces)
-      : leaves_(leaves),
-        table_(table),
-        widths_(widths),
-        has_missing_(has_missing),
+  // `faces` and `ladders` are empty where they are not asked for.
+  Leaves(const BlockSurvey& survey, const Block& block, const Box& leaf_box, std::span<LeafRow> rows,
+         std::span<LeafFaces> faces, std::span<PackedLadder> ladders)
+      : leaves_(survey.rows_.leaves()),
+        table_(survey.table_),
+        widths_(survey.widths_),
+        aim_(survey.ladders_),
+        has_missing_(survey.has_missing_),
         block_(block),
         leaf_box_(leaf_box),
         rows_(rows),
-        faces_(faces) {}
+        faces_(faces),
+        ladders_(ladders) {}
 
   // All leaves of one row along x; `row` is relative to the block.
   void leaf_row(std::int64_t y, std::int64_t z, Tally& tally) const {
@@ -49,12 +53,13 @@ class BlockSurvey::Leaves {
     for (std::int64_t x = 0; x < extent.x; ++x) {
       const Index3 leaf = leaf_box_.lo + Index3{x, y, z};
       const auto at = static_cast<std::size_t>(linear_index({x, y, z}, extent));
-      rows_[at] = survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], tally);
+      rows_[at] =
+          survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], ladders_.empty() ? nullptr : &ladders_[at], tally);
     }
   }
 
  private:
-  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, Tally& tally) const {
+  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, PackedLadder* ladder, Tally& tally) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
     const Index3 block_extent = block_.voxels.extent();
@@ -76,6 +81,7 @@ class BlockSurvey::Leaves {
     const std::span<const float> seen(values.data(), count);
     LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
     if (faces != nullptr) *faces = faces_of(seen, extent);
+    if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
     if (row.finite == count) {
       count_values(seen, row, tally);
@@ -84,6 +90,16 @@ class BlockSurvey::Leaves {
       count_non_finite(seen, inside, row, tally);
     }
     return row;
+  }
+
+  PackedLadder ladder_of(const Index3& leaf, std::span<const float> values, const LeafRow& row, Tally& tally) const {
+    const bool all = row.finite == values.size();
+    if (all && row.uniform()) return LadderBuilder::uniform();
+    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
+    if (!all) return tally.ladders->non_finite(row.finite == 0);
+    LeafValues block;
+    block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
+    return tally.ladders->build(block, row);
   }
 
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
@@ -134,17 +150,21 @@ class BlockSurvey::Leaves {
   const NodeLattice& leaves_;
   const ValueTable& table_;
   bool widths_;
+  const std::optional<LadderAim>& aim_;
   bool has_missing_;
   const Block& block_;
   const Box& leaf_box_;
   std::span<LeafRow> rows_;
   std::span<LeafFaces> faces_;
+  std::span<PackedLadder> ladders_;
 };
 
-BlockSurvey::BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace)
+BlockSurvey::BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
+                         const std::optional<LadderAim>& ladders)
     : rows_(rows),
       faces_(faces),
       widths_(widths),
+      ladders_(ladders),
       has_missing_(!info.mapping.missing.empty()),
       trace_(trace),
       table_(value_table(info)),
@@ -159,7 +179,8 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   const Index3 extent = leaf_box.extent();
   std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
   std::vector<LeafFaces> block_faces(faces_ == nullptr ? 0 : block_rows.size());
-  const Leaves leaves(rows_.leaves(), table_, widths_, has_missing_, block, leaf_box, block_rows, block_faces);
+  std::vector<PackedLadder> block_ladders(ladders_ ? block_rows.size() : 0);
+  const Leaves leaves(*this, block, leaf_box, block_rows, block_faces, block_ladders);
   const auto survey = [&](std::int64_t first, std::int64_t end) {
     const TraceSpan span(trace_, "survey");
     Tally& tally = tallies_.local();
@@ -175,6 +196,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   const TraceSpan span(trace_, "write", std::span(block_rows).size_bytes());
   rows_.write_box(leaf_box, block_rows);
   if (faces_ != nullptr) faces_->write_box(leaf_box, block_faces);
+  if (ladders_) rows_.ladders()->write_box(leaf_box, block_ladders);
   tallies_.local().loss.add(block.loss);
 }
 

@@ -5,8 +5,11 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstddef>
+#include <memory>
+#include <optional>
 
 #include "compressor/leaf/leaf_summary.h"
+#include "compressor/packed/ladder_builder.h"
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/survey/row_store.h"
@@ -21,9 +24,10 @@ namespace weir {
 /// Thread-safe but for tally().
 class BlockSurvey {
  public:
-  /// `rows` and, where not null, `faces` get what is kept of each leaf; all must outlive the object. `widths` as for
-  /// survey_volume.
-  BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace);
+  /// `rows` and, where not null, `faces` get what is kept of each leaf; all must outlive the object. `widths` and
+  /// `ladders` as for survey_volume.
+  BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
+              const std::optional<LadderAim>& ladders = std::nullopt);
 
   /// Who surveys the leaves of a block: the calling thread, or TBB's workers too.
   enum class Sharing { alone, shared };
@@ -43,9 +47,13 @@ class BlockSurvey {
     int offset = 0;
     std::size_t size = 0;
   };
-  // What one thread has seen.
+  // What one thread has seen. Copies begin with no builder.
   struct Tally : SurveyTally {
+    Tally() = default;
+    Tally(const Tally& other) : SurveyTally(other), uniform(other.uniform) {}
+    Tally& operator=(const Tally&) = delete;
     UniformDigest uniform;
+    std::unique_ptr<LadderBuilder> ladders;  // made where first needed
   };
   class Leaves;
   static ValueTable value_table(const SourceInfo& info);
@@ -53,6 +61,7 @@ class BlockSurvey {
   RowStore& rows_;
   LeafStore<LeafFaces>* faces_;
   bool widths_;
+  std::optional<LadderAim> ladders_;
   bool has_missing_;  // some values of the source stand for "no data"
   Trace* trace_;
   ValueTable table_;

@@ -1,5 +1,5 @@
 // The survey's rows, 64 bytes a leaf, and, where a scene decides what matters,
-// which values can be seen around each.
+// which values can be seen around each, and of packed files the blocks' ladders.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "compressor/leaf/leaf_row.h"
+#include "compressor/packed/packed_ladder.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/team/team.h"
 #include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 
-/// Thread-safe but for set_reaches.
+/// Thread-safe but for set_reaches and set_ladders.
 class RowStore : public LeafStore<LeafRow> {
  public:
   /// A walk over regions holds the rows of up to `segment_regions` of them per thread. `team` are the processes that
@@ -28,10 +29,15 @@ class RowStore : public LeafStore<LeafRow> {
   const LeafStore<MinMax>* reaches() const { return reaches_.get(); }
   void set_reaches(std::unique_ptr<LeafStore<MinMax>> reaches) { reaches_ = std::move(reaches); }
 
+  /// Of each block; null where none is packed.
+  LeafStore<PackedLadder>* ladders() const { return ladders_.get(); }
+  void set_ladders(std::unique_ptr<LeafStore<PackedLadder>> ladders) { ladders_ = std::move(ladders); }
+
  private:
   std::int64_t segment_regions_;
   Team& team_;
   std::unique_ptr<LeafStore<MinMax>> reaches_;
+  std::unique_ptr<LeafStore<PackedLadder>> ladders_;
 };
 
 }  // namespace weir

@@ -32,8 +32,8 @@ void merge_tallies(SurveyTally& tally, Team& team) {
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
-                     const Pauses& pauses) {
-  BlockSurvey survey(source.info(), rows, faces, widths, options.trace);
+                     const Pauses& pauses, const std::optional<LadderAim>& ladders) {
+  BlockSurvey survey(source.info(), rows, faces, widths, options.trace, ladders);
   SurveyState from_nothing;
   SurveyState& known = state == nullptr ? from_nothing : *state;
   const SurveyTally before = known.tally;
@@ -74,6 +74,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
   merge_tallies(known.tally, team);
   team.publish(rows.file());
   if (faces != nullptr) team.publish(faces->file());
+  if (ladders) team.publish(rows.ladders()->file());
   return survey.result(known.tally);
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "compressor/packed/ladder_builder.h"
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/survey/pauses.h"
@@ -18,13 +19,14 @@ namespace weir {
 
 /// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
 /// number of threads, nor on the way of reading. `widths` asks for what each
-/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `faces`, where
-/// given, gets the outer layers of each leaf (leaf_reach.h). `state`, where given, says what of all this is done
-/// already, by any plan; it is updated when `pauses` ask for it, and covers the whole volume in the end. Each rank of
-/// the rows' team reads its own part.
+/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `ladders`,
+/// where given, that the rows' ladders are filled. `faces`, where given, gets the outer layers of each leaf
+/// (leaf_reach.h). `state`, where given, says what of all this is done already, by any plan; it is updated when
+/// `pauses` ask for it, and covers the whole volume in the end. Each rank of the rows' team reads its own part.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr,
-                     SurveyState* state = nullptr, const Pauses& pauses = {});
+                     SurveyState* state = nullptr, const Pauses& pauses = {},
+                     const std::optional<LadderAim>& ladders = std::nullopt);
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

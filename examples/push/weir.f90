@@ -33,6 +33,7 @@ module weir
     integer(c_int32_t) :: budget_kind, encoding, metric, brick, fill, nonfinite, has_background
     real(c_float) :: background
     integer(c_int32_t) :: overwrite, threads
+    integer(c_int32_t) :: preview, reserved
   end type
 
   interface

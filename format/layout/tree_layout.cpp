@@ -31,8 +31,9 @@ TreeLayout make_layout(const NodeCounts& counts) {
   layout.lowers = layout.uppers + counts.uppers * nvdb::kUpperBytes;
   layout.leaves = layout.lowers + counts.lowers * nvdb::kLowerBytes;
   layout.blind_meta = layout.leaves + counts.leaf_bytes;
-  layout.blind_data = layout.blind_meta + nvdb::kBlindMetaBytes;
-  layout.content_end = align(layout.blind_data + counts.macrocells * 2 * sizeof(float));
+  layout.blind_data = layout.blind_meta + layout.blind_records() * nvdb::kBlindMetaBytes;
+  layout.packed_data = layout.blind_data + counts.macrocells * 2 * sizeof(float);
+  layout.content_end = counts.packed_bytes > 0 ? layout.packed_data + counts.packed_bytes : align(layout.packed_data);
   layout.file_bytes = layout.content_end;
   return layout;
 }

@@ -1,6 +1,6 @@
 // Where everything lies in the file: from node counts to byte offsets. Order
 // inside the grid: GridData, tree, root and its tiles, upper nodes, lower nodes,
-// leaves, the macrocells' blind record and data, padding to the asked size.
+// leaves, the blind records, the macrocells, packed data, padding to the asked size.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ struct NodeCounts {
   std::uint64_t leaves = 0;
   std::uint64_t leaf_bytes = 0;  ///< of all leaves together
   std::uint64_t macrocells = 0;
-  std::uint64_t leaf_tiles = 0;  ///< active tiles of 8^3 voxels, in lower nodes
+  std::uint64_t leaf_tiles = 0;    ///< active tiles of 8^3 voxels, in lower nodes
+  std::uint64_t packed_bytes = 0;  ///< of the packed data, a multiple of 4; 0: there is none
 };
 
 /// Byte offsets from the file's start, and sizes.
@@ -28,10 +29,13 @@ struct TreeLayout {
   std::uint64_t lowers = 0;
   std::uint64_t leaves = 0;
   std::uint64_t blind_meta = 0;
-  std::uint64_t blind_data = 0;
+  std::uint64_t blind_data = 0;   ///< of the macrocells
+  std::uint64_t packed_data = 0;  ///< where there is any
   std::uint64_t content_end = 0;  ///< padding begins here
   std::uint64_t file_bytes = 0;
 
+  /// Records of blind data: the macrocells', and that of packed data where there is any.
+  std::uint32_t blind_records() const { return counts.packed_bytes > 0 ? 2 : 1; }
   std::uint64_t grid_bytes() const { return file_bytes - grid; }
   std::uint64_t upper_offset(std::uint64_t i) const { return uppers + i * nvdb::kUpperBytes; }
   std::uint64_t lower_offset(std::uint64_t i) const { return lowers + i * nvdb::kLowerBytes; }

@@ -9,6 +9,7 @@
 #include "format/base/little_endian.h"
 #include "format/base/text.h"
 #include "format/nanovdb/macrocells.h"
+#include "format/packed/packed_layout.h"
 
 namespace weir {
 namespace {
@@ -127,7 +128,7 @@ void store_grid(Image grid, const GridHead& head, const TreeLayout& layout) {
   store(grid, kGridClass, std::uint32_t{0});
   store(grid, kGridType, static_cast<std::uint32_t>(head.type));
   store(grid, kBlindOffset, layout.blind_meta - layout.grid);
-  store(grid, kBlindCount, std::uint32_t{1});
+  store(grid, kBlindCount, layout.blind_records());
   store_tree(grid.subspan(nvdb::kTreeOffset, nvdb::kTreeBytes), head, layout);
   store_root(grid.subspan(nvdb::kRootOffset), head, layout);
   store(grid, kChecksum, head_checksum(grid));
@@ -154,9 +155,20 @@ void store_file_meta(Image file, const GridHead& head, const TreeLayout& layout)
     store_count(file, meta::kTileCount + 4 * i, head.active_tiles[i]);
   }
   // Bytes 186..187 are the blind-data count in current NanoVDB and unused in 10.0.1.
-  store(file, meta::kBlindCount, std::uint16_t{1});
+  store(file, meta::kBlindCount, static_cast<std::uint16_t>(layout.blind_records()));
   store(file, meta::kVersion, nvdb::kVersion);
   std::memcpy(file.data() + nvdb::kNameOffset, head.name.data(), head.name.size());
+}
+
+// Of an array of floats that begins `offset` bytes after the record.
+void store_blind_record(Image record, std::uint64_t offset, std::uint64_t count, const std::string& name) {
+  using namespace nvdb::blind;
+  store(record, kDataOffset, offset);
+  store(record, kCount, count);
+  store(record, kElementSize, std::uint32_t{4});  // "flags" in 10.0.1, the element size in current NanoVDB
+  store(record, kClass, std::uint32_t{2});        // attribute array
+  store(record, kType, static_cast<std::uint32_t>(GridType::float32));
+  std::memcpy(record.data() + kName, name.data(), name.size());
 }
 
 }  // namespace
@@ -183,17 +195,16 @@ std::vector<std::byte> encode_head(const GridHead& head, const TreeLayout& layou
   return file;
 }
 
-std::vector<std::byte> encode_macrocell_record(const TreeLayout& layout) {
-  using namespace nvdb::blind;
-  std::vector<std::byte> record(nvdb::kBlindMetaBytes);
-  store(Image(record), kDataOffset, layout.blind_data - layout.blind_meta);
-  store(Image(record), kCount, layout.counts.macrocells * 2);
-  store(Image(record), kElementSize, std::uint32_t{4});  // "flags" in 10.0.1, the element size in current NanoVDB
-  store(Image(record), kClass, std::uint32_t{2});        // attribute array
-  store(Image(record), kType, static_cast<std::uint32_t>(GridType::float32));
-  const std::string name = macrocell_name({});
-  std::memcpy(record.data() + kName, name.data(), name.size());
-  return record;
+std::vector<std::byte> encode_blind_records(const TreeLayout& layout) {
+  std::vector<std::byte> records(layout.blind_records() * nvdb::kBlindMetaBytes);
+  store_blind_record(Image(records).first(nvdb::kBlindMetaBytes), layout.blind_data - layout.blind_meta,
+                     layout.counts.macrocells * 2, macrocell_name({}));
+  if (layout.counts.packed_bytes > 0) {
+    store_blind_record(Image(records).last(nvdb::kBlindMetaBytes),
+                       layout.packed_data - layout.blind_meta - nvdb::kBlindMetaBytes,
+                       layout.counts.packed_bytes / sizeof(float), packed::kRecordName);
+  }
+  return records;
 }
 
 }  // namespace weir

@@ -38,8 +38,8 @@ struct GridHead {
 /// The bytes [0, layout.uppers) of the file.
 std::vector<std::byte> encode_head(const GridHead& head, const TreeLayout& layout);
 
-/// The macrocells' blind-data record (288 bytes), followed in the file by the data.
-std::vector<std::byte> encode_macrocell_record(const TreeLayout& layout);
+/// The blind-data records, 288 bytes each: that of the macrocells, and that of packed data where there is any.
+std::vector<std::byte> encode_blind_records(const TreeLayout& layout);
 
 /// CRC-32 (0xEDB88320) over the head of a 32.4.2 grid: bytes [16, end of the root tiles) of the grid.
 std::uint32_t head_checksum(std::span<const std::byte> grid_head);

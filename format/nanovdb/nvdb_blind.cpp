@@ -6,11 +6,14 @@
 
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/macrocells.h"
+#include "format/packed/packed_layout.h"
 
 namespace weir {
 namespace {
 
 constexpr std::uint32_t kFloatType = 1;
+constexpr std::uint64_t kFloatBytes = 4;
+constexpr std::string_view kPackedPrefix = "weir_packed:";
 
 // By grid type as on disk; 0 where NanoVDB defines no fixed size.
 constexpr std::array<std::uint64_t, 19> kElementBytes{0, 4, 8, 2, 4, 8, 12, 24, 0, 2, 4, 1, 4, 0, 0, 0, 0, 16, 32};
@@ -67,11 +70,26 @@ MacrocellView read_macrocells(const NvdbBytes& grid, const Record& record, const
   return view;
 }
 
+void read_packed(const NvdbBytes& grid, const Record& record, NvdbBlindData& blind) {
+  if (record.name != packed::kRecordName) {
+    grid.fail(record.offset + nvdb::blind::kName, "packed data \"", record.name.substr(0, 32),
+              "\", and this weir reads \"", packed::kRecordName, "\"; use a newer one");
+  }
+  if (record.type != kFloatType) {
+    grid.fail(record.offset + nvdb::blind::kType, "packed data of type ", record.type, " instead of float");
+  }
+  if (blind.packed_bytes != 0) grid.fail(record.offset, "a second record of packed data");
+  if (record.count == 0) grid.fail(record.offset + nvdb::blind::kCount, "packed data of 0 bytes");
+  blind.packed = record.data;
+  blind.packed_bytes = record.count * kFloatBytes;
+}
+
 }  // namespace
 
 NvdbBlindData read_nvdb_blind_data(const NvdbBytes& grid, std::uint64_t tree_end, const Box& bbox) {
   const auto count = grid.get<std::uint32_t>(nvdb::grid::kBlindCount);
-  NvdbBlindData blind{{}, tree_end};
+  NvdbBlindData blind;
+  blind.end = tree_end;
   if (count == 0) return blind;
   const auto first = grid.get<std::uint64_t>(nvdb::grid::kBlindOffset);
   if (first < tree_end || !grid.holds(first, count * nvdb::kBlindMetaBytes)) {
@@ -84,6 +102,8 @@ NvdbBlindData read_nvdb_blind_data(const NvdbBytes& grid, std::uint64_t tree_end
     blind.end = std::max(blind.end, data_end(grid, record));
     if (const auto shape = parse_macrocell_name(record.name); shape && blind.macrocells.cells.empty()) {
       blind.macrocells = read_macrocells(grid, record, *shape, bbox);
+    } else if (record.name.starts_with(kPackedPrefix)) {
+      read_packed(grid, record, blind);
     }
   }
   return blind;

@@ -1,5 +1,5 @@
 // Part of a file under validation: loads by offset, and the one form of message
-// for what is wrong in it. Used by the nvdb_* readers only.
+// for what is wrong in it. Used by the nvdb_* readers and those of packed data only.
 #pragma once
 
 #include <bit>

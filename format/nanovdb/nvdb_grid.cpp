@@ -1,5 +1,6 @@
 #include "format/nanovdb/nvdb_grid.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "format/layout/nanovdb_layout.h"
@@ -7,6 +8,7 @@
 #include "format/nanovdb/nvdb_blind.h"
 #include "format/nanovdb/nvdb_bytes.h"
 #include "format/nanovdb/nvdb_tree.h"
+#include "format/nanovdb/packed_blocks.h"
 
 namespace weir {
 namespace {
@@ -46,6 +48,11 @@ const std::byte* child_of(const std::byte* node, const InternalLayout& layout, u
   return node + load<std::int64_t>(node + layout.table + 8 * std::size_t{n});
 }
 
+void check_packable(const NvdbBytes& grid, GridType type) {
+  if (type == GridType::float32) return;
+  grid.fail(nvdb::grid::kGridType, "packed data in a grid of type ", grid_type_name(type), " instead of float32");
+}
+
 }  // namespace
 
 NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path) {
@@ -80,10 +87,19 @@ NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path
   grid.root_tiles_ = tree.root_tiles;
   grid.head_checksum_ = bytes.get<std::uint32_t>(nvdb::grid::kChecksum);
   grid.macrocells_ = blind.macrocells;
+  if (blind.packed_bytes != 0) {
+    check_packable(bytes, header.type);
+    const std::uint64_t at = header.grid_offset + blind.packed;
+    grid.packed_ = std::make_shared<const PackedData>(file.subspan(at, blind.packed_bytes), at, path, tree.bbox);
+  }
   return grid;
 }
 
 GridBlock NvdbGrid::block_at(const Index3& i) const {
+  return packed_ ? packed_block_at(*packed_, background_, i) : tree_block_at(i);
+}
+
+GridBlock NvdbGrid::tree_block_at(const Index3& i) const {
   const std::byte* grid = data().data();
   const GridBlock outside{floor_div(i, kUpperDim) * kUpperDim, kUpperDim, false, background_, nullptr};
   if (!int32_range(i)) return outside;
@@ -110,10 +126,23 @@ GridBlock NvdbGrid::block_at(const Index3& i) const {
 }
 
 float NvdbGrid::value(const Index3& i) const {
+  if (packed_ && !bbox_.contains(i)) return background_;
   const GridBlock block = block_at(i);
-  if (block.leaf == nullptr) return block.value;
-  leaf_bits(block.leaf);
-  return leaf_value(type_, block.leaf, entry_index(i, 1, kLeafDim));
+  if (!block.coded()) return block.value;
+  const unsigned at = entry_index(i, 1, kLeafDim);
+  if (block.leaf != nullptr) {
+    leaf_bits(block.leaf);
+    return leaf_value(type_, block.leaf, at);
+  }
+  std::array<float, kLeafVoxels> values;
+  packed_->decode(block.stream, values);
+  return values[at];
+}
+
+void NvdbGrid::decode_block(const GridBlock& block, std::span<float, 512> values) const {
+  if (block.leaf != nullptr) return decode_leaf(block.leaf, values);
+  if (block.stream.data != nullptr) return packed_->decode(block.stream, values);
+  std::ranges::fill(values, block.value);
 }
 
 unsigned NvdbGrid::leaf_bits(const std::byte* leaf) const {
@@ -153,6 +182,11 @@ void NvdbGrid::for_each_root_entry(const std::function<void(const RootEntry&)>& 
 }
 
 void NvdbGrid::for_each_block(const std::function<void(const GridBlock&)>& visit) const {
+  if (packed_) return for_each_packed_block(*packed_, visit);
+  for_each_tree_block(visit);
+}
+
+void NvdbGrid::for_each_tree_block(const std::function<void(const GridBlock&)>& visit) const {
   for_each_root_entry([&](const RootEntry& entry) {
     if (entry.upper != nullptr) {
       visit_upper(entry.origin, entry.upper, visit);

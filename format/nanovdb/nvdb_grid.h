@@ -9,26 +9,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
 #include "format/base/index.h"
 #include "format/layout/nvdb_type.h"
+#include "format/nanovdb/grid_block.h"
 #include "format/nanovdb/macrocells.h"
 #include "format/nanovdb/nvdb_header.h"
+#include "format/nanovdb/packed_data.h"
 
 namespace weir {
-
-/// What covers a voxel: a leaf, or a value tile of 8, 128 or 4096 voxels, or nothing (background).
-struct GridBlock {
-  Index3 origin;         ///< lowest voxel
-  std::int64_t dim = 0;  ///< voxels along an edge: 8, 128 or 4096
-  bool active = false;   ///< tile state; true for leaves
-  float value = 0;       ///< tile value or background; unused for leaves
-  /// Leaf node, null for tiles; 32-byte aligned relative to the grid, which a foreign file may hold
-  /// at any offset: read it through format/leaf/leaf_decode.h.
-  const std::byte* leaf = nullptr;
-};
 
 /// An entry of the root's table: an upper node of 4096^3 voxels, or a value tile of that size.
 struct RootEntry {
@@ -71,22 +63,35 @@ class NvdbGrid {
   std::uint32_t head_checksum() const { return head_checksum_; }             ///< all bits set where absent
   MacrocellView macrocells() const { return macrocells_; }
 
-  /// What covers voxel `i` (any coordinates).
+  /// The packed data, or null. Where there is some, it holds the volume; the tree is what readers see that do not
+  /// know it. Then value_min, value_max and the macrocells are of the decoded values, node and tile counts and
+  /// active_voxels those of the tree, and all voxels inside index_bbox() are active.
+  const PackedData* packed() const { return packed_.get(); }
+
+  /// What covers voxel `i` (any coordinates). Of the packed data where there is some; throws as PackedData::stream.
   GridBlock block_at(const Index3& i) const;
-  /// Decoded value of voxel `i`: what a stock accessor returns. Throws as decode_leaf.
+  /// Decoded value of voxel `i`: what a stock accessor returns, of a packed grid the background outside index_bbox().
+  /// Decodes the whole block where it is packed: right, and slow. Throws as decode_block.
   float value(const Index3& i) const;
-  /// Decodes leaf `block.leaf` into 512 values, index x<<6 | y<<3 | z (z fastest). Throws Error(input)
+  /// The 512 values of a block of dim 8, index x<<6 | y<<3 | z (z fastest), or of any 8^3 voxels of a larger one: of
+  /// its leaf or stream, or its one value. Those of a packed grid outside index_bbox() mean nothing. Throws
+  /// as decode_leaf and PackedData::decode.
+  void decode_block(const GridBlock& block, std::span<float, 512> values) const;
+  /// Decodes leaf `block.leaf` into 512 values in that order. Throws Error(input)
   /// where the width of an FpN leaf is invalid, which open leaves unread.
   void decode_leaf(const std::byte* leaf, std::span<float, 512> values) const;
   /// Bits a voxel of a leaf: 1, 2, 4, 8, 16 or 32. Throws as decode_leaf.
   unsigned leaf_bits(const std::byte* leaf) const;
   /// True where voxel (x<<6 | y<<3 | z) of a leaf is active.
   static bool leaf_voxel_active(const std::byte* leaf, unsigned offset);
-  /// Calls `visit` for every entry of the root's table, in file order.
+  /// Calls `visit` for every entry of the root's table, in file order; of the tree also where the grid is packed.
   void for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const;
   /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper
-  /// node its tiles and children. Tiles of background value that are inactive are visited too.
+  /// node its tiles and children. Tiles of background value that are inactive are visited too. Of a packed grid: for
+  /// the blocks of its packed data that touch index_bbox(); throws as PackedData::stream.
   void for_each_block(const std::function<void(const GridBlock&)>& visit) const;
+  /// The same, of the tree also where the grid is packed: what other readers see.
+  void for_each_tree_block(const std::function<void(const GridBlock&)>& visit) const;
 
   std::span<const std::byte> bytes() const { return file_; }  ///< the whole file
   /// The grid less its padding: what a copy of the grid needs.
@@ -95,6 +100,7 @@ class NvdbGrid {
  private:
   NvdbGrid() = default;
 
+  GridBlock tree_block_at(const Index3& i) const;
   static void visit_upper(const Index3& origin, const std::byte* upper,
                           const std::function<void(const GridBlock&)>& visit);
 
@@ -119,6 +125,7 @@ class NvdbGrid {
   std::uint32_t root_tiles_ = 0;
   std::uint32_t head_checksum_ = 0;
   MacrocellView macrocells_;
+  std::shared_ptr<const PackedData> packed_;
 };
 
 }  // namespace weir

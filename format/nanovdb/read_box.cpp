@@ -6,32 +6,51 @@
 
 namespace weir {
 
-void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values) {
-  if (box.empty()) return;
-  const NodeLattice leaves = make_lattice(box, kLeafDim);
-  std::array<float, kLeafVoxels> decoded;
-  for_each_index({{}, leaves.count}, [&](const Index3& at) {
-    const Box part = leaves.voxels(at);
-    const Index3 corner = leaves.node_box(at).lo;
-    const GridBlock block = grid.block_at(corner);
-    if (block.leaf != nullptr) grid.decode_leaf(block.leaf, decoded);
-    const auto run = static_cast<std::size_t>(part.extent().x);
-    for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
-      for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {
-        const auto first = static_cast<std::size_t>(linear_index(Index3{part.lo.x, y, z} - box.lo, box.extent()));
-        const std::span<float> row = values.subspan(first, run);
-        if (block.leaf == nullptr) {
-          std::fill(row.begin(), row.end(), block.value);
-          continue;
-        }
-        const Index3 in_leaf = Index3{part.lo.x, y, z} - corner;
-        auto from = static_cast<std::size_t>(in_leaf.x << 6 | in_leaf.y << 3 | in_leaf.z);
-        for (float& value : row) {
-          value = decoded[from];
-          from += kLeafDim * kLeafDim;
-        }
+namespace {
+
+// One value in the part of `box` that `part` is.
+void fill_part(const Box& box, const Box& part, float value, std::span<float> values) {
+  const auto run = static_cast<std::size_t>(part.extent().x);
+  for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
+    for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {
+      const auto first = static_cast<std::size_t>(linear_index(Index3{part.lo.x, y, z} - box.lo, box.extent()));
+      std::ranges::fill(values.subspan(first, run), value);
+    }
+  }
+}
+
+// The voxels `part` of the block at `corner`, whose values are `decoded`.
+void copy_part(const Box& box, const Box& part, const Index3& corner, const std::array<float, kLeafVoxels>& decoded,
+               std::span<float> values) {
+  const auto run = static_cast<std::size_t>(part.extent().x);
+  for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
+    for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {
+      const auto first = static_cast<std::size_t>(linear_index(Index3{part.lo.x, y, z} - box.lo, box.extent()));
+      const Index3 in_block = Index3{part.lo.x, y, z} - corner;
+      auto from = static_cast<std::size_t>(in_block.x << 6 | in_block.y << 3 | in_block.z);
+      for (float& value : values.subspan(first, run)) {
+        value = decoded[from];
+        from += kLeafDim * kLeafDim;
       }
     }
+  }
+}
+
+}  // namespace
+
+void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values) {
+  if (box.empty()) return;
+  const Box inside = grid.packed() != nullptr ? intersect(box, grid.index_bbox()) : box;
+  if (inside != box) std::ranges::fill(values, grid.background());
+  if (inside.empty()) return;
+  const NodeLattice blocks = make_lattice(inside, kLeafDim);
+  std::array<float, kLeafVoxels> decoded;
+  for_each_index({{}, blocks.count}, [&](const Index3& at) {
+    const Index3 corner = blocks.node_box(at).lo;
+    const GridBlock block = grid.block_at(corner);
+    if (!block.coded()) return fill_part(box, blocks.voxels(at), block.value, values);
+    grid.decode_block(block, decoded);
+    copy_part(box, blocks.voxels(at), corner, decoded, values);
   });
 }
 

@@ -9,7 +9,7 @@
 namespace weir {
 
 /// What NvdbGrid::value gives for every voxel of `box`, in and outside the domain, x fastest, into `values`, which has
-/// box.voxels() floats. A leaf is decoded once. Throws as NvdbGrid::decode_leaf.
+/// box.voxels() floats. A block is decoded once. Throws as NvdbGrid::block_at and decode_block.
 void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values);
 
 }  // namespace weir

@@ -14,6 +14,7 @@ namespace weir {
 namespace {
 
 constexpr std::array<const char*, 6> kBitKeys{"1", "2", "4", "8", "16", "32"};
+constexpr std::array<const char*, 5> kBlockKeys{"none", "mean", "transform", "lattice", "raw"};
 
 template <typename Archive, typename E>
 void describe_error(Archive& archive, E& error) {
@@ -101,6 +102,13 @@ void describe(Archive& archive, S& s) {
     archive.field("voxels", visible.voxels);
     describe_error(archive, visible.error);
     archive.optional_field("scene_digest", visible.scene_digest);
+  });
+  archive.optional_object("packed", s.packed, [&](auto& packed) {
+    archive.field("preview", packed.preview);
+    archive.object("blocks", [&] {
+      for (std::size_t i = 0; i < kBlockKeys.size(); ++i) archive.field(kBlockKeys[i], packed.blocks[i]);
+    });
+    archive.object("error_preview", [&] { describe_error(archive, packed.error_preview); });
   });
   archive.object("macrocells", [&] {
     archive.field("cell", s.macrocells.cell);

@@ -118,6 +118,15 @@ struct Sidecar {
   };
   std::optional<Visible> visible;
 
+  /// Of a packed file (FORMAT.md): its blocks, and what readers see that know the tree alone.
+  struct Packed {
+    bool preview = false;  ///< the tree holds each block's mean
+    /// Blocks by kind: without a stream, mean, transform, lattice, raw.
+    std::array<std::uint64_t, 5> blocks{};
+    CertifiedError error_preview;  ///< of the tree's values; the two corner leaves count as means
+  };
+  std::optional<Packed> packed;
+
   struct Macrocells {
     std::int64_t cell = 0;  ///< voxels along an edge
     Index3 dims;            ///< cells

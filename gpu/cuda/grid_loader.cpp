@@ -71,6 +71,14 @@ void add_refusal(std::string& note, LoadPath path, const std::string& refusal) {
   throw Error(ErrorKind::io, cat(task.file.path(), ": cannot be brought to the device: ", note));
 }
 
+// What is in its tree are means: kernels would show those without a word.
+void require_stored_voxels(const NvdbFile& file) {
+  if (file.grid().packed() == nullptr) return;
+  throw Error(ErrorKind::input,
+              compose(file.path(), ": is packed; the CUDA loader reads float, Fp4, Fp8, Fp16 and FpN ",
+                      "grids; convert it with ", option("encoding", "float")));
+}
+
 }  // namespace
 
 std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads) {
@@ -80,6 +88,7 @@ std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads)
 }
 
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options, cudaStream_t stream) {
+  require_stored_voxels(file);
   CopyTask task{file.mapping(), file.grid().grid_offset(), file.grid().data_bytes()};
   check_cuda(cudaGetDevice(&task.device), "asking for the current device");
   const LoadStream own(stream);

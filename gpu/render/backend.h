@@ -17,7 +17,7 @@ namespace weir {
 
 /// How a volume came in.
 struct LoadSummary {
-  std::string way;          ///< "mapped"; for a device, a load_path_name
+  std::string way;          ///< "mapped", "decoded" where packed; for a device, a load_path_name
   std::uint64_t bytes = 0;  ///< of the grid, tail padding left out
   double seconds = 0;       ///< of the transfer alone
   std::string note;         ///< why a faster way was refused; empty: none was

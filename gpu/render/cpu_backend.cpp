@@ -65,7 +65,7 @@ class CpuBackend : public Backend {
     LeafTable table(grid);
     MacrocellGrid cells(grid, cell_or_default(cell));
     const VolumeInfo info = volume_info(grid, cells);
-    const LoadSummary summary{"mapped", grid.data_bytes(), 0, ""};
+    const LoadSummary summary{grid.packed() != nullptr ? "decoded" : "mapped", grid.data_bytes(), 0, ""};
     return std::make_unique<CpuVolumeOf<FileVoxels>>(FileVoxels{std::move(file), std::move(table)}, std::move(cells),
                                                      info, summary);
   }

@@ -54,37 +54,50 @@ LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(leaf_lattice(grid.index_bb
 
   tile_values_.push_back(grid.background());
   const auto background_bits = std::bit_cast<std::uint32_t>(grid.background());
-  const std::byte* first_leaf = nullptr;
-  const std::byte* last_leaf = nullptr;
   grid.for_each_block([&](const GridBlock& block) {
-    if (block.leaf != nullptr) {
-      if (first_leaf == nullptr || block.leaf < first_leaf) first_leaf = block.leaf;
-      if (last_leaf == nullptr || block.leaf > last_leaf) last_leaf = block.leaf;
-    } else if (std::bit_cast<std::uint32_t>(block.value) != background_bits) {
-      add(block, static_cast<std::uint32_t>(tile_values_.size()));
-      tile_values_.push_back(block.value);
-    }
+    if (block.coded() || std::bit_cast<std::uint32_t>(block.value) == background_bits) return;
+    add(block, static_cast<std::uint32_t>(tile_values_.size()));
+    tile_values_.push_back(block.value);
   });
-
-  check_entry_range(tile_values_.size(),
-                    first_leaf == nullptr ? 0 : static_cast<std::uint64_t>(last_leaf - first_leaf) / nvdb::kAlignment);
-  const auto tiles = static_cast<std::uint32_t>(tile_values_.size());
-  if (first_leaf != nullptr) {
-    grid.for_each_block([&](const GridBlock& block) {
-      if (block.leaf == nullptr) return;
-      const auto units = static_cast<std::uint64_t>(block.leaf - first_leaf) / nvdb::kAlignment;
-      add(block, tiles + static_cast<std::uint32_t>(units));
-    });
-  }
+  const std::byte* const leaves = grid.packed() != nullptr ? add_decoded(grid) : add_stored(grid);
 
   view_ = {.entries = entries_.get(),
            .tile_values = tile_values_.data(),
-           .leaves = first_leaf,
+           .leaves = leaves,
            .count = narrow(lattice_.count),
            .shift = narrow(lattice_.domain.lo - lattice_.first * kLeafDim),
            .extent = narrow(lattice_.domain.extent()),
-           .tile_count = tiles,
+           .tile_count = static_cast<std::uint32_t>(tile_values_.size()),
            .type = grid.type()};
+}
+
+const std::byte* LeafTable::add_stored(const NvdbGrid& grid) {
+  const std::byte* first = nullptr;
+  const std::byte* last = nullptr;
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.leaf == nullptr) return;
+    if (first == nullptr || block.leaf < first) first = block.leaf;
+    if (last == nullptr || block.leaf > last) last = block.leaf;
+  });
+  check_entry_range(tile_values_.size(),
+                    first == nullptr ? 0 : static_cast<std::uint64_t>(last - first) / nvdb::kAlignment);
+  if (first == nullptr) return nullptr;
+  const auto tiles = static_cast<std::uint32_t>(tile_values_.size());
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.leaf == nullptr) return;
+    add(block, tiles + static_cast<std::uint32_t>(static_cast<std::uint64_t>(block.leaf - first) / nvdb::kAlignment));
+  });
+  return first;
+}
+
+const std::byte* LeafTable::add_decoded(const NvdbGrid& grid) {
+  decoded_ = DecodedLeaves(grid);
+  check_entry_range(tile_values_.size(), decoded_.bytes() / nvdb::kAlignment);
+  const auto tiles = static_cast<std::uint32_t>(tile_values_.size());
+  decoded_.for_each(grid, [&](const GridBlock& block, std::uint64_t number) {
+    add(block, tiles + static_cast<std::uint32_t>(number * nvdb::kFloatLeafBytes / nvdb::kAlignment));
+  });
+  return decoded_.data();
 }
 
 // Tiles of 128 or 4096 voxels cover many blocks; what overhangs the domain is never looked up.
@@ -103,7 +116,8 @@ void LeafTable::add(const GridBlock& block, std::uint32_t entry) {
 }
 
 std::uint64_t LeafTable::bytes() const {
-  return static_cast<std::uint64_t>(lattice_.size()) * sizeof(std::uint32_t) + tile_values_.size() * sizeof(float);
+  return static_cast<std::uint64_t>(lattice_.size()) * sizeof(std::uint32_t) + tile_values_.size() * sizeof(float) +
+         decoded_.bytes();
 }
 
 }  // namespace weir

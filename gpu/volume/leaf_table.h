@@ -2,7 +2,8 @@
 // each, built once at load. An entry below tile_count is an index into the tile
 // values; any other is a leaf, (offset from `leaves`) / 32 + tile_count. One
 // look-up and one load replace the walk from the root that a stock accessor
-// makes. LeafTable owns the table; the leaves stay where the file is mapped.
+// makes. LeafTable owns the table; the leaves stay where the file is mapped, or,
+// where it is packed, are decoded into memory.
 #pragma once
 
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include "format/leaf/leaf_decode.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "gpu/math/vector3.h"
+#include "gpu/volume/decoded_leaves.h"
 
 namespace weir {
 
@@ -92,12 +94,13 @@ void check_entry_range(std::uint64_t tiles, std::uint64_t units);
 class LeafTable {
  public:
   /// Builds the table over grid.index_bbox(). `grid`'s bytes must outlive it. Throws Error(input)
-  /// where the domain is empty, has more than 2^31 blocks, or leaves and tiles exceed 32 bits.
+  /// where the domain is empty, has more than 2^31 blocks, or leaves and tiles exceed 32 bits, and as DecodedLeaves
+  /// where the grid is packed.
   explicit LeafTable(const NvdbGrid& grid);
 
   LeafTableView view() const { return view_; }
   const Box& domain() const { return lattice_.domain; }
-  std::uint64_t bytes() const;  ///< of the table and the tile values
+  std::uint64_t bytes() const;  ///< of the table, the tile values and the decoded leaves
 
  private:
   struct Free {
@@ -105,10 +108,14 @@ class LeafTable {
   };
 
   void add(const GridBlock& block, std::uint32_t entry);
+  // Where the leaves begin.
+  const std::byte* add_stored(const NvdbGrid& grid);
+  const std::byte* add_decoded(const NvdbGrid& grid);
 
   NodeLattice lattice_;
   std::unique_ptr<std::uint32_t[], Free> entries_;
   std::vector<float> tile_values_;
+  DecodedLeaves decoded_;  ///< of a packed grid
   LeafTableView view_;
 };
 

@@ -87,17 +87,17 @@ void MacrocellGrid::merge() {
 
 void MacrocellGrid::gather(const NvdbGrid& grid) {
   grid.for_each_block([&](const GridBlock& block) {
-    if (block.leaf != nullptr) {
-      gather_leaf(grid, block);
+    if (block.coded()) {
+      gather_coded(grid, block);
     } else {
       gather_tile(block);
     }
   });
-  // A root entry that is absent is visited by nobody: background all over.
+  // A root entry that is absent is visited by nobody: background all over. Packed regions are all there.
   const NodeLattice roots = make_lattice(lattice_.domain, kUpperDim);
   for_each_index({{0, 0, 0}, roots.count}, [&](const Index3& i) {
     const GridBlock block = grid.block_at(roots.node_box(i).lo);
-    if (block.leaf == nullptr && block.dim == kUpperDim) gather_tile(block);
+    if (!block.coded() && block.dim == kUpperDim) gather_tile(block);
   });
 }
 
@@ -110,14 +110,14 @@ void MacrocellGrid::gather_tile(const GridBlock& block) {
                  [&](const Index3& cell) { include(cell, block.value, block.value); });
 }
 
-// A leaf lies in one cell and is part of the apron of up to seven neighbours, each of which sees
+// A block lies in one cell and is part of the apron of up to seven neighbours, each of which sees
 // only the voxels nearest to it.
-void MacrocellGrid::gather_leaf(const NvdbGrid& grid, const GridBlock& block) {
+void MacrocellGrid::gather_coded(const NvdbGrid& grid, const GridBlock& block) {
   const Index3 hi = block.origin + Index3{kLeafDim, kLeafDim, kLeafDim};
   const Box voxels = intersect({block.origin, hi}, lattice_.domain);
   if (voxels.empty()) return;
   std::array<float, kLeafVoxels> values;
-  grid.decode_leaf(block.leaf, values);
+  grid.decode_block(block, values);
   const Box all{lattice_.first, lattice_.first + lattice_.count};
   for_each_index(intersect(cells_of(grown(voxels, kMacrocellApron), lattice_.dim), all), [&](const Index3& cell) {
     const Index3 lo = cell * lattice_.dim;

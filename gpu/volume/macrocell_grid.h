@@ -37,7 +37,7 @@ class MacrocellGrid {
  private:
   void merge();
   void gather(const NvdbGrid& grid);
-  void gather_leaf(const NvdbGrid& grid, const GridBlock& block);
+  void gather_coded(const NvdbGrid& grid, const GridBlock& block);
   void gather_tile(const GridBlock& block);
   void include(const Index3& cell, float low, float high);
 

@@ -16,6 +16,7 @@
 #include "ingest/values/axis_placement.h"
 #include "ingest/vdb/grid_placement.h"
 #include "ingest/vdb/nvdb_tree.h"
+#include "ingest/vdb/packed_tree.h"
 
 namespace weir {
 namespace {
@@ -113,7 +114,9 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   info.mtime_ns = file->mtime_ns();
   info.files = {file->state()};
   const bool cached = file->looks_cached();
-  return make_leaf_source(make_nvdb_tree(std::move(file), grid, cached), std::move(info));
+  auto tree = grid.packed() != nullptr ? make_packed_tree(std::move(file), grid, cached)
+                                       : make_nvdb_tree(std::move(file), grid, cached);
+  return make_leaf_source(std::move(tree), std::move(info));
 }
 
 std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&) {
@@ -126,7 +129,7 @@ std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&
     info.layout = "NanoVDB grid";
     if (candidate.grid) {
       const NvdbGrid& grid = *candidate.grid;
-      info.type = grid_type_name(grid.type());
+      info.type = cat(grid_type_name(grid.type()), grid.packed() != nullptr ? " packed" : "");
       describe_box(grid.index_bbox(), info);
       if (info.obstacle.empty()) describe_placement(place_axes(steps_of(grid), grid.world_origin()), info);
       info.attributes.emplace_back("leaves", cat(grid.node_counts()[0]));

@@ -1,6 +1,6 @@
 // weir inspect: what a NanoVDB file holds and what its sidecar says about it, or
-// what an input holds. Reads no leaf unless the histogram has to be counted (no
-// sidecar).
+// what an input holds. Decodes no block unless the histogram has to be counted (no
+// sidecar); of a packed file it looks at all directories.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -28,6 +28,7 @@
 #include "tools/options/table_options.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
+#include "tools/report/packed_census.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/report/read_sidecar.h"
@@ -53,10 +54,12 @@ struct Inspection {
   std::optional<Sidecar> sidecar;
   bool sidecar_matches = false;  ///< size and head checksum are those of the volume
   Sidecar::Histogram histogram;
+  std::optional<PackedCensus> packed;  ///< where the grid is packed
 };
 
 std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
 std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
+double two_decimals(double bits) { return std::round(100 * bits) / 100; }
 Json json_of(const Index3& i) { return {i.x, i.y, i.z}; }
 
 const char* checksum_state(const NvdbGrid& grid) {
@@ -71,7 +74,7 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
   if (!std::isfinite(lo) || !std::isfinite(hi) || !(lo < hi)) return histogram;
   Progress progress(shown);
   progress.start("histogram", grid.data_bytes());
-  const auto leaf_bytes = grid.data_bytes() / std::max<std::uint64_t>(grid.node_counts()[0], 1);
+  const auto leaf_bytes = grid.data_bytes() / std::max<std::uint64_t>(census_blocks(grid), 1);
   histogram.counts = count_values(grid, lo, hi, kBins, [&](std::uint64_t leaves) {
     progress.update(leaves * leaf_bytes);
     if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted");
@@ -80,7 +83,8 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
 }
 
 Inspection look_at(const NvdbFile& file, const InspectArguments& arguments) {
-  Inspection result{file.grid(), std::nullopt, false, {}};
+  Inspection result{file.grid(), std::nullopt, false, {}, std::nullopt};
+  if (const PackedData* packed = file.grid().packed()) result.packed = take_packed_census(*packed);
   const std::string path = sidecar_path(arguments.path);
   if (is_there(path)) {
     result.sidecar = read_sidecar(path);
@@ -101,8 +105,9 @@ void print_grid(const NvdbFile& file) {
                            g.grid_offset(), ", ", g.grid_bytes() - g.data_bytes(), " bytes of padding"));
   line("format      ", cat("NanoVDB ", nvdb_version_text(g.version()), ", head checksum ", hex(g.head_checksum(), 8),
                            ' ', checksum_state(g)));
-  line("grid        ", cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), ", ", shown_text(box.extent()),
-                           " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
+  line("grid        ",
+       cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), g.packed() != nullptr ? " packed, " : ", ",
+           shown_text(box.extent()), " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", shown_text(g.voxel_size()), ", origin ", shown_text(g.world_origin())));
   const std::string range = g.value_min() <= g.value_max() ? cat(g.value_min(), " .. ", g.value_max()) : "none finite";
   line("values      ", cat(range, ", background ", g.background()));
@@ -115,6 +120,39 @@ void print_grid(const NvdbFile& file) {
   line("macrocells  ", cells.cells.empty() ? "none"
                                            : cat(shown_text(cells.lattice.count), " of ", cells.cell,
                                                  "^3 voxels, apron ", cells.apron));
+}
+
+constexpr std::array kKinds{PackedKind::mean, PackedKind::transform, PackedKind::lattice, PackedKind::raw};
+
+void print_packed(const PackedData& packed, const PackedCensus& census) {
+  std::string kinds;
+  for (const PackedKind kind : kKinds) {
+    const std::uint64_t blocks = census.blocks[static_cast<std::size_t>(kind)];
+    kinds += cat(blocks, ' ', packed_kind_name(kind));
+    if (blocks != 0) kinds += cat(" (", two_decimals(census.bits_a_voxel(kind)), " bits a voxel)");
+    kinds += ", ";
+  }
+  std::cout << cat("packed      ", packed_block_count(packed), " blocks of 8^3: ", kinds, census.none, " none; ",
+                   format_bytes(packed.bytes().size()), ", of which directories and tables ",
+                   format_bytes(census.directory_bytes), '\n');
+  std::cout << (packed.header().preview
+                    ? "            Other readers of NanoVDB files see the mean of each block of 8^3.\n"
+                    : "            Other readers of NanoVDB files see next to nothing: the file has no preview.\n");
+}
+
+Json packed_json(const PackedData& packed, const PackedCensus& census) {
+  Json blocks;
+  Json bits;
+  for (const PackedKind kind : kKinds) {
+    blocks[packed_kind_name(kind)] = census.blocks[static_cast<std::size_t>(kind)];
+    bits[packed_kind_name(kind)] = census.bits_a_voxel(kind);
+  }
+  blocks["none"] = census.none;
+  return {{"bytes", packed.bytes().size()},
+          {"directory_bytes", census.directory_bytes},
+          {"preview", packed.header().preview},
+          {"blocks", blocks},
+          {"bits_a_voxel", bits}};
 }
 
 std::string certificate_text(const Sidecar::CertifiedError& error) {
@@ -146,6 +184,7 @@ void print_sidecar(const Sidecar& s) {
 
 void print_text(const NvdbFile& file, const Inspection& found) {
   print_grid(file);
+  if (found.packed) print_packed(*file.grid().packed(), *found.packed);
   if (!found.sidecar) {
     std::cout << "sidecar     none\n";
   } else if (!found.sidecar_matches) {
@@ -184,6 +223,7 @@ void print_json(const NvdbFile& file, const Inspection& found) {
         {"leaves", g.node_counts()[0]},
         {"active_tiles", {{"8", g.tile_counts()[0]}, {"128", g.tile_counts()[1]}, {"4096", g.tile_counts()[2]}}},
         {"active_voxels", g.active_voxels()}}},
+      {"packed", found.packed ? packed_json(*g.packed(), *found.packed) : Json()},
       {"macrocells", cells.cells.empty()
                          ? Json()
                          : Json{{"cell", cells.cell}, {"dims", json_of(cells.lattice.count)}, {"apron", cells.apron}}},

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <sstream>
@@ -16,7 +16,9 @@
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/leaf/leaf_decode.h"
+#include "tools/export/export_tree.h"
 #include "tools/export/file_sink.h"
+#include "tools/export/packed_export_tree.h"
 #include "tools/export/vdb_node_values.h"
 
 namespace weir {
@@ -26,16 +28,6 @@ constexpr std::size_t kLeavesAtOnce = 2048;  ///< leaves between two looks at pr
 constexpr std::size_t kChunk = 64;           ///< leaves of one task
 constexpr std::uint32_t kLevelSet = 1;       ///< NanoVDB's GridClass
 
-template <std::size_t Bits>
-using Mask = std::array<std::uint64_t, Bits / 64>;
-
-template <std::size_t Bits>
-Mask<Bits> mask_at(const std::byte* at) {
-  Mask<Bits> mask;
-  std::memcpy(mask.data(), at, sizeof mask);
-  return mask;
-}
-
 template <typename MaskType>
 std::uint64_t count(const MaskType& mask) {
   std::uint64_t bits = 0;
@@ -43,14 +35,12 @@ std::uint64_t count(const MaskType& mask) {
   return bits;
 }
 
-// Calls `visit` with the address of each child of `node`, in the order of its table.
-template <std::size_t Entries, typename Visit>
-void for_each_child(const std::byte* node, const nvdb::InternalLayout& layout, const Visit& visit) {
-  const auto children = mask_at<Entries>(node + layout.child_mask);
+// Calls `visit` with each entry of `children` that is set, in order.
+template <typename MaskType, typename Visit>
+void for_each_set(const MaskType& children, const Visit& visit) {
   for (std::size_t w = 0; w < children.size(); ++w) {
     for (std::uint64_t word = children[w]; word != 0; word &= word - 1) {
-      const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(word));
-      visit(node + load<std::int64_t>(node + layout.table + 8 * i));
+      visit(64 * w + static_cast<std::size_t>(std::countr_zero(word)));
     }
   }
 }
@@ -63,10 +53,14 @@ void put_bytes(std::ostream& out, const T& value) {
 class Writer {
  public:
   Writer(const NvdbGrid& grid, const std::string& path, const VdbWriterOptions& options, File& file)
-      : grid_(grid), path_(path), options_(options), file_(file) {
-    grid_.for_each_root_entry([&](const RootEntry& entry) { entries_.push_back(entry); });
+      : grid_(grid),
+        tree_(grid.packed() != nullptr ? make_packed_export_tree(grid) : make_stored_export_tree(grid)),
+        path_(path),
+        options_(options),
+        file_(file) {
+    entries_ = tree_->roots();
     // Of OpenVDB's map, in whose order the leaves' values are looked for.
-    std::sort(entries_.begin(), entries_.end(), [](const RootEntry& a, const RootEntry& b) {
+    std::sort(entries_.begin(), entries_.end(), [](const ExportRoot& a, const ExportRoot& b) {
       return std::tie(a.origin.x, a.origin.y, a.origin.z) < std::tie(b.origin.x, b.origin.y, b.origin.z);
     });
   }
@@ -138,36 +132,45 @@ class Writer {
   void topology(std::ostream& out) {
     put_bytes(out, std::int32_t{1});  // buffers
     put_bytes(out, storage_.background);
-    const auto tiles =
-        std::count_if(entries_.begin(), entries_.end(), [](const auto& e) { return e.upper == nullptr; });
+    const auto tiles = std::count_if(entries_.begin(), entries_.end(), [](const auto& e) { return !e.child; });
     put_bytes(out, static_cast<std::uint32_t>(tiles));
     put_bytes(out, static_cast<std::uint32_t>(entries_.size()) - static_cast<std::uint32_t>(tiles));
     written_.topology.root_entries = entries_.size();
-    for (const RootEntry& entry : entries_) {
-      if (entry.upper != nullptr) continue;
+    for (const ExportRoot& entry : entries_) {
+      if (entry.child) continue;
       put_origin(out, entry.origin);
       put_bytes(out, stored(entry.value));
       put_bytes(out, std::uint8_t{entry.active});
       if (entry.active) written_.active_voxels += cube(kUpperDim);
     }
-    for (const RootEntry& entry : entries_) {
-      if (entry.upper == nullptr) continue;
+    for (const ExportRoot& entry : entries_) {
+      if (!entry.child) continue;
       put_origin(out, entry.origin);
-      ++written_.topology.nodes[2];
-      internal<nvdb::kUpper.entries>(out, entry.upper, nvdb::kUpper, kLowerDim);
-      for_each_child<nvdb::kUpper.entries>(entry.upper, nvdb::kUpper, [&](const std::byte* lower) {
-        ++written_.topology.nodes[1];
-        internal<nvdb::kLower.entries>(out, lower, nvdb::kLower, kLeafDim);
-        for_each_child<nvdb::kLower.entries>(lower, nvdb::kLower, [&](const std::byte* leaf) {
-          const auto active = mask_at<kLeafVoxels>(leaf + nvdb::leaf::kValueMask);
-          put_bytes(out, active);
-          written_.active_voxels += count(active);
-          if (++written_.topology.nodes[0] % kLeavesAtOnce == 0) report(0.1, written_.topology.nodes[0], 0);
-        });
-        // One without leaves is 33 KiB of pages too.
-        if (written_.topology.nodes[1] % (kLeavesAtOnce / 16) == 0) report(0.1, written_.topology.nodes[0], 0);
-      });
+      upper_topology(out, entry.upper);
     }
+  }
+
+  void upper_topology(std::ostream& out, const ExportNode& upper) {
+    ++written_.topology.nodes[2];
+    tree_->read_upper(upper, upper_);
+    internal(out, upper_, kLowerDim);
+    for_each_set(upper_.children, [&](std::size_t u) {
+      lower_topology(out, tree_->lower_of(upper, u));
+      // One without leaves is 33 KiB of pages too.
+      if (written_.topology.nodes[1] % (kLeavesAtOnce / 16) == 0) report(0.1, written_.topology.nodes[0], 0);
+    });
+  }
+
+  void lower_topology(std::ostream& out, const ExportNode& lower) {
+    ++written_.topology.nodes[1];
+    tree_->read_lower(lower, lower_);
+    internal(out, lower_, kLeafDim);
+    for_each_set(lower_.children, [&](std::size_t l) {
+      const auto active = tree_->leaf_mask(tree_->leaf_of(lower, l));
+      put_bytes(out, active);
+      written_.active_voxels += count(active);
+      if (++written_.topology.nodes[0] % kLeavesAtOnce == 0) report(0.1, written_.topology.nodes[0], 0);
+    });
   }
 
   static void put_origin(std::ostream& out, const Index3& origin) {
@@ -178,22 +181,19 @@ class Writer {
 
   // The masks and tiles of an upper or lower node whose entries have an edge of `dim` voxels.
   template <std::size_t Entries>
-  void internal(std::ostream& out, const std::byte* node, const nvdb::InternalLayout& layout, std::int64_t dim) {
-    const auto children = mask_at<Entries>(node + layout.child_mask);
-    const auto active = mask_at<Entries>(node + layout.value_mask);
-    std::vector<float> values(Entries);
+  void internal(std::ostream& out, InternalNode<Entries>& node, std::int64_t dim) {
     for (std::size_t i = 0; i < Entries; ++i) {
-      const bool child = (children[i / 64] >> i % 64 & 1U) != 0;
-      values[i] = child ? 0 : stored(load<float>(node + layout.table + 8 * i));
+      const bool child = (node.children[i / 64] >> i % 64 & 1U) != 0;
+      node.values[i] = child ? 0 : stored(node.values[i]);
     }
-    put_bytes(out, children);
-    put_bytes(out, active);
-    write_vdb_values(out, values, active, children, storage_);
-    written_.active_voxels += count(active) * cube(dim);
+    put_bytes(out, node.children);
+    put_bytes(out, node.active);
+    write_vdb_values(out, node.values, node.active, node.children, storage_);
+    written_.active_voxels += count(node.active) * cube(dim);
   }
 
   void leaves(std::ostream& out) {
-    std::vector<const std::byte*> batch;
+    std::vector<ExportNode> batch;
     std::uint64_t done = 0;
     const auto flush = [&] {
       write_batch(out, batch);
@@ -201,11 +201,14 @@ class Writer {
       batch.clear();
       report(0.9, done, 0.1);
     };
-    for (const RootEntry& entry : entries_) {
-      if (entry.upper == nullptr) continue;
-      for_each_child<nvdb::kUpper.entries>(entry.upper, nvdb::kUpper, [&](const std::byte* lower) {
-        for_each_child<nvdb::kLower.entries>(lower, nvdb::kLower, [&](const std::byte* leaf) {
-          batch.push_back(leaf);
+    for (const ExportRoot& entry : entries_) {
+      if (!entry.child) continue;
+      tree_->read_upper(entry.upper, upper_);
+      for_each_set(upper_.children, [&](std::size_t u) {
+        const ExportNode lower = tree_->lower_of(entry.upper, u);
+        tree_->read_lower(lower, lower_);
+        for_each_set(lower_.children, [&](std::size_t l) {
+          batch.push_back(tree_->leaf_of(lower, l));
           if (batch.size() == kLeavesAtOnce) flush();
         });
       });
@@ -213,7 +216,7 @@ class Writer {
     flush();
   }
 
-  void write_batch(std::ostream& out, const std::vector<const std::byte*>& batch) {
+  void write_batch(std::ostream& out, const std::vector<ExportNode>& batch) {
     std::vector<std::string> chunks((batch.size() + kChunk - 1) / kChunk);
     std::mutex mutex;
     tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
@@ -229,28 +232,31 @@ class Writer {
     for (const std::string& chunk : chunks) out.write(chunk.data(), static_cast<std::streamsize>(chunk.size()));
   }
 
-  void write_leaf(std::ostream& out, const std::byte* leaf, double& worst) const {
-    static constexpr Mask<kLeafVoxels> kNoChildren{};
+  void write_leaf(std::ostream& out, const ExportNode& leaf, double& worst) const {
+    static constexpr NodeMask<kLeafVoxels> kNoChildren{};
     std::array<float, kLeafVoxels> values;
-    grid_.decode_leaf(leaf, values);
+    tree_->read_leaf(leaf, values);
     for (float& value : values) value = stored(value, worst);
-    const auto active = mask_at<kLeafVoxels>(leaf + nvdb::leaf::kValueMask);
+    const auto active = tree_->leaf_mask(leaf);
     put_bytes(out, active);
     write_vdb_values(out, values, active, kNoChildren, storage_);
   }
 
   // `leaves` of all are done in a pass that has `share` of the work and begins at `from`.
   void report(double share, std::uint64_t leaves, double from) const {
-    const auto all = static_cast<double>(std::max(grid_.node_counts()[0], 1U));
+    const auto all = static_cast<double>(std::max<std::uint64_t>(tree_->leaves(), 1));
     if (options_.progress) options_.progress(from + share * static_cast<double>(leaves) / all);
     if (options_.release_pages) options_.release_pages();
   }
 
   const NvdbGrid& grid_;
+  std::unique_ptr<ExportTree> tree_;
   const std::string& path_;
   const VdbWriterOptions& options_;
   File& file_;
-  std::vector<RootEntry> entries_;
+  std::vector<ExportRoot> entries_;
+  UpperNode upper_;  // the last one read
+  LowerNode lower_;
   VdbStorage storage_;
   VdbWritten written_;
 };

@@ -33,7 +33,8 @@ struct VdbWritten {
 };
 
 /// Writes `grid` to `file` from its first byte. Nodes, tiles, active states and values are those of the grid, values
-/// bit for bit as NvdbGrid decodes them or rounded to 16 bits. Bytes do not depend on the number of threads; all of
+/// bit for bit as NvdbGrid decodes them or rounded to 16 bits; of a packed grid the nodes are those of
+/// make_packed_export_tree. Bytes do not depend on the number of threads; all of
 /// TBB's are used, and some 30 MiB besides the pages of the grid between two releases. Throws Error(input) for
 /// a transform that OpenVDB cannot read and a damaged leaf, Error(usage) for a finite value beyond kMaxHalf where half
 /// is asked for, and what `file` and the callbacks throw. `path` is for messages.

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "format/leaf/leaf_decode.h"
+#include "tools/report/packed_census.h"
 
 namespace weir {
 namespace {
@@ -23,11 +24,24 @@ void include(Box& box, const Box& other) {
 
 Index3 voxel_of(unsigned n) { return {n >> 6U, n >> 3U & 7U, n & 7U}; }
 
-// Calls on_tile for every tile in this thread, and reduces leaves batch by batch on all threads.
-// `Tally` has add(const GridBlock& leaf, std::span<const float, 512> values) and merge(const Tally&).
+using Walk = void (NvdbGrid::*)(const std::function<void(const GridBlock&)>&) const;
+
+bool voxel_active(const NvdbGrid& grid, const GridBlock& block, unsigned n) {
+  return block.leaf != nullptr ? leaf_active(block.leaf, n) : grid.index_bbox().contains(block.origin + voxel_of(n));
+}
+
+// The voxels of a block of one value that it has to do with: of a packed grid those inside the index box.
+Box tile_box(const NvdbGrid& grid, const GridBlock& tile, bool of_tree) {
+  const Box box{tile.origin, tile.origin + Index3{tile.dim, tile.dim, tile.dim}};
+  return of_tree ? box : intersect(box, grid.index_bbox());
+}
+
+// Calls on_tile for every block of one value that `walk` visits in this thread, and reduces the coded ones batch by
+// batch on all threads. `Tally` has add(const GridBlock& block, std::span<const float, 512> values) and
+// merge(const Tally&).
 template <typename Tally, typename OnTile>
-Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgress& progress, const OnTile& on_tile,
-                    Trace* trace = nullptr) {
+Tally reduce_blocks(const NvdbGrid& grid, Walk walk, const Tally& zero, const CensusProgress& progress,
+                    const OnTile& on_tile, Trace* trace = nullptr) {
   Tally total = zero;
   std::vector<GridBlock> batch;
   std::uint64_t done = 0;
@@ -38,7 +52,7 @@ Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgres
           std::array<float, kLeafVoxels> values{};
           const TraceSpan span(trace, "decode", range.size() * sizeof values);
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            grid.decode_leaf(batch[i].leaf, values);
+            grid.decode_block(batch[i], values);
             part.add(batch[i], values);
           }
           return part;
@@ -51,8 +65,8 @@ Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgres
     batch.clear();
     if (progress) progress(done);
   };
-  grid.for_each_block([&](const GridBlock& block) {
-    if (block.leaf == nullptr) return on_tile(total, block);
+  (grid.*walk)([&](const GridBlock& block) {
+    if (!block.coded()) return on_tile(total, block);
     batch.push_back(block);
     if (batch.size() == kLeafBatch) flush();
   });
@@ -62,23 +76,28 @@ Tally reduce_blocks(const NvdbGrid& grid, const Tally& zero, const CensusProgres
 
 class CensusTally {
  public:
-  explicit CensusTally(const NvdbGrid& grid) : grid_(&grid), cells_(grid.macrocells()) {}
+  /// `of_tree`: what is visited is the tree's; else packed data, with the macrocells, which are of what a grid decodes
+  /// to.
+  CensusTally(const NvdbGrid& grid, bool of_tree)
+      : grid_(&grid),
+        of_tree_(of_tree),
+        cells_(of_tree == (grid.packed() == nullptr) ? grid.macrocells() : MacrocellView{}) {}
 
-  void add(const GridBlock& leaf, std::span<const float, 512> values) {
+  void add(const GridBlock& block, std::span<const float, 512> values) {
     ++census.leaves;
-    ++census.leaves_by_bits[static_cast<std::size_t>(std::bit_width(grid_->leaf_bits(leaf.leaf)) - 1)];
-    const Box box{leaf.origin, leaf.origin + Index3{kLeafDim, kLeafDim, kLeafDim}};
+    if (of_tree_) ++census.leaves_by_bits[static_cast<std::size_t>(std::bit_width(grid_->leaf_bits(block.leaf)) - 1)];
+    const Box box{block.origin, block.origin + Index3{kLeafDim, kLeafDim, kLeafDim}};
     const Box inside = intersect(box, grid_->index_bbox());
-    if (inside == box && all_active(leaf.leaf)) {
-      add_whole(leaf, box, values);
+    if (inside == box && (!of_tree_ || all_active(block.leaf))) {
+      add_whole(block, box, values);
     } else {
-      add_partial(leaf, inside, values);
+      add_partial(block, inside, values);
     }
   }
 
   void add_tile(const GridBlock& tile) {
     ++(tile.active ? census.active_tiles : census.inactive_tiles)[tile_level(tile.dim)];
-    const Box box{tile.origin, tile.origin + Index3{tile.dim, tile.dim, tile.dim}};
+    const Box box = tile_box(*grid_, tile, of_tree_);
     if (tile.active) {
       census.active_voxels += static_cast<std::uint64_t>(box.voxels());
       add_value(tile.value, static_cast<std::uint64_t>(box.voxels()));
@@ -137,7 +156,7 @@ class CensusTally {
     const MinMax* cell = cells_.cells.empty() || inside.empty() ? nullptr : &cell_of(leaf);
     for (unsigned n = 0; n < values.size(); ++n) {
       const Index3 i = leaf.origin + voxel_of(n);
-      if (leaf_active(leaf.leaf, n)) {
+      if (voxel_active(*grid_, leaf, n)) {
         ++census.active_voxels;
         add_value(values[n], 1);
         include(census.active_bbox, {i, i + Index3{1, 1, 1}});
@@ -170,16 +189,18 @@ class CensusTally {
   }
 
   const NvdbGrid* grid_;
+  bool of_tree_;
   MacrocellView cells_;
 };
 
 class HistogramTally {
  public:
-  HistogramTally(float lo, float hi, std::size_t bins) : counts(bins), lo_(lo), hi_(hi) {}
+  HistogramTally(const NvdbGrid& grid, float lo, float hi, std::size_t bins)
+      : counts(bins), grid_(&grid), lo_(lo), hi_(hi) {}
 
   void add(const GridBlock& leaf, std::span<const float, 512> values) {
     for (unsigned n = 0; n < values.size(); ++n) {
-      if (leaf_active(leaf.leaf, n)) add_value(values[n], 1);
+      if (voxel_active(*grid_, leaf, n)) add_value(values[n], 1);
     }
   }
   void add_value(float value, std::uint64_t voxels) {
@@ -195,6 +216,7 @@ class HistogramTally {
   std::vector<std::uint64_t> counts;
 
  private:
+  const NvdbGrid* grid_;
   float lo_;
   float hi_;
 };
@@ -202,18 +224,34 @@ class HistogramTally {
 }  // namespace
 
 TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace) {
-  return reduce_blocks(
-             grid, CensusTally(grid), progress, [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); },
-             trace)
-      .census;
+  const auto add_tile = [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); };
+  const auto census_of = [&](bool tree) {
+    const Walk walk = tree ? &NvdbGrid::for_each_tree_block : &NvdbGrid::for_each_block;
+    return reduce_blocks(grid, walk, CensusTally(grid, tree), progress, add_tile, trace).census;
+  };
+  TreeCensus census = census_of(true);
+  census.valued_voxels = census.active_voxels;
+  if (grid.packed() == nullptr) return census;
+  const TreeCensus values = census_of(false);
+  census.nonfinite = values.nonfinite;
+  census.valued_voxels = values.active_voxels;
+  census.min = values.min;
+  census.max = values.max;
+  census.outside_macrocell = values.outside_macrocell;
+  return census;
+}
+
+std::uint64_t census_blocks(const NvdbGrid& grid) {
+  return grid.packed() != nullptr ? packed_block_count(*grid.packed()) : grid.node_counts()[0];
 }
 
 std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
                                         const CensusProgress& progress) {
-  return reduce_blocks(grid, HistogramTally(lo, hi, bins), progress,
-                       [](HistogramTally& total, const GridBlock& tile) {
+  return reduce_blocks(grid, &NvdbGrid::for_each_block, HistogramTally(grid, lo, hi, bins), progress,
+                       [&](HistogramTally& total, const GridBlock& tile) {
                          if (!tile.active) return;
-                         total.add_value(tile.value, static_cast<std::uint64_t>(tile.dim * tile.dim * tile.dim));
+                         const Box box = tile_box(grid, tile, grid.packed() == nullptr);
+                         total.add_value(tile.value, static_cast<std::uint64_t>(box.voxels()));
                        })
       .counts;
 }

@@ -1,5 +1,6 @@
 // What a grid really holds, counted by visiting every leaf and tile: `verify` compares the stored figures with it, and
-// `inspect` shows it.
+// `inspect` shows it. Of a packed grid the nodes, tiles and active voxels are the tree's, which is what other readers
+// see, and values are those of the packed data.
 #pragma once
 
 #include <array>
@@ -21,22 +22,27 @@ struct TreeCensus {
   std::array<std::uint64_t, 3> active_tiles{};         ///< of 8^3, 128^3, 4096^3 voxels
   std::array<std::uint64_t, 3> inactive_tiles{};       ///< the same; background outside the domain included
   std::uint64_t active_voxels = 0;                     ///< in leaves and active tiles
-  std::uint64_t nonfinite = 0;                         ///< active voxels that are NaN or infinite
+  std::uint64_t valued_voxels = 0;                     ///< those that nonfinite, min and max are of: all, where packed
+  std::uint64_t nonfinite = 0;                         ///< of them, those that are NaN or infinite
   Box active_bbox;                                     ///< half open; {} without active voxels
   float min = std::numeric_limits<float>::infinity();  ///< of the finite active values
   float max = -std::numeric_limits<float>::infinity();
   std::optional<Index3> outside_macrocell;  ///< a block in the domain with a value its macrocell does not hold
 };
 
-/// Called with the number of leaves done so far, from the calling thread; may throw to stop.
+/// Called with the number of leaves (of a packed grid: of coded blocks) done so far, from the calling thread; may throw
+/// to stop.
 using CensusProgress = std::function<void(std::uint64_t leaves)>;
 
-/// Decodes every leaf, on all threads of TBB. `trace` gets what each of them decodes, in float32 bytes. Throws as
-/// NvdbGrid::decode_leaf.
+/// Decodes every block, on all threads of TBB. `trace` gets what each of them decodes, in float32 bytes. Throws as
+/// NvdbGrid::for_each_block and decode_block.
 TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Trace* trace = nullptr);
 
+/// The most coded blocks that take_census and count_values can find.
+std::uint64_t census_blocks(const NvdbGrid& grid);
+
 /// Counts of the active values in `bins` equal bins over [lo, hi], lo < hi; what lies outside or is
-/// NaN is not counted. Decodes every leaf, on all threads of TBB. Throws as NvdbGrid::decode_leaf.
+/// NaN is not counted. Decodes every block, on all threads of TBB. Throws as take_census.
 std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
                                         const CensusProgress& progress);
 

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_checksum.h"
+#include "tools/report/packed_census.h"
 
 namespace weir {
 namespace {
@@ -45,7 +47,7 @@ VolumeCheck head_checksum(const NvdbGrid& grid) {
 }
 
 VolumeCheck stored_range(const NvdbGrid& grid, const TreeCensus& census) {
-  const bool none = census.active_voxels == census.nonfinite;  // nothing to bound
+  const bool none = census.valued_voxels == census.nonfinite;  // nothing to bound
   const bool exact = grid.value_min() == census.min && grid.value_max() == census.max;
   return {"stored range", cat(grid.value_min(), " .. ", grid.value_max()), cat(census.min, " .. ", census.max),
           none || census.nonfinite != 0 || exact};
@@ -60,9 +62,19 @@ VolumeCheck source_range(const NvdbGrid& grid, const TreeCensus& census, const S
   };
   const float least = std::min(widened(lo, -1), grid.background());
   const float most = std::max(widened(hi, 1), grid.background());
-  const bool ok = census.active_voxels == census.nonfinite || !std::isfinite(lo) || !std::isfinite(hi) ||
+  const bool ok = census.valued_voxels == census.nonfinite || !std::isfinite(lo) || !std::isfinite(hi) ||
                   (census.min >= least && census.max <= most);
   return {"sidecar value_range", cat(census.min, " .. ", census.max), cat("within ", least, " .. ", most), ok};
+}
+
+// Kinds of blocks, counted again.
+std::vector<VolumeCheck> packed_checks(const PackedData& packed, const Sidecar& sidecar) {
+  if (!sidecar.packed) return {{"sidecar packed", "no such object", "that of a packed file", false}};
+  const PackedCensus census = take_packed_census(packed);
+  const std::array<std::uint64_t, 5> blocks{census.none, census.blocks[0], census.blocks[1], census.blocks[2],
+                                            census.blocks[3]};
+  return {equal("sidecar packed.preview", packed.header().preview, sidecar.packed->preview),
+          equal("sidecar packed.blocks", blocks, sidecar.packed->blocks)};
 }
 
 }  // namespace
@@ -74,7 +86,10 @@ std::vector<VolumeCheck> check_structure(const NvdbGrid& grid, const TreeCensus&
   std::copy_n(grid.tile_counts().begin(), stored_tiles.size(), stored_tiles.begin());
   checks.push_back(equal("active tiles", stored_tiles, census.active_tiles));
   checks.push_back(equal("active voxels", grid.active_voxels(), census.active_voxels));
-  checks.push_back(equal("bounding box", grid.index_bbox(), census.active_bbox));
+  // Without a preview only the header and the root know the domain.
+  if (grid.packed() == nullptr || grid.packed()->header().preview) {
+    checks.push_back(equal("bounding box", grid.index_bbox(), census.active_bbox));
+  }
   checks.push_back(stored_range(grid, census));
   if (!grid.macrocells().cells.empty()) {
     const auto& outside = census.outside_macrocell;
@@ -102,8 +117,12 @@ std::vector<VolumeCheck> check_sidecar(const NvdbGrid& grid, const TreeCensus& c
   checks.push_back({"sidecar background.value", cat(grid.background()), cat(s.background.value),
                     same_value(grid.background(), s.background.value)});
   checks.push_back(source_range(grid, census, s));
-  checks.push_back(equal("sidecar selection.bits", census.leaves_by_bits, s.selection.bits));
-  checks.push_back(equal("sidecar selection.leaves_kept", census.leaves, s.selection.leaves_kept));
+  if (grid.packed() == nullptr) {  // where packed, the selection is not of leaves
+    checks.push_back(equal("sidecar selection.bits", census.leaves_by_bits, s.selection.bits));
+    checks.push_back(equal("sidecar selection.leaves_kept", census.leaves, s.selection.leaves_kept));
+  } else {
+    for (VolumeCheck& check : packed_checks(*grid.packed(), s)) checks.push_back(std::move(check));
+  }
   const MacrocellView cells = grid.macrocells();
   checks.push_back(equal("sidecar macrocells.cell", cells.cell, s.macrocells.cell));
   checks.push_back(equal("sidecar macrocells.dims", cells.lattice.count, s.macrocells.dims));

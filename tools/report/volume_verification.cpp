@@ -41,7 +41,7 @@ std::string parallel_digest(std::span<const std::byte> file, const VerificationW
 }
 
 TreeCensus watched_census(const NvdbGrid& grid, const VerificationWatch& watch) {
-  const auto leaves = static_cast<double>(std::max<std::uint64_t>(grid.node_counts()[0], 1));
+  const auto leaves = static_cast<double>(std::max<std::uint64_t>(census_blocks(grid), 1));
   const auto bytes = static_cast<double>(grid.data_bytes());
   if (watch.pass_started) watch.pass_started("leaves", grid.data_bytes());
   const TraceSpan pass(watch.trace, "leaves", grid.data_bytes());

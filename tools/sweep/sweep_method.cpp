@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-constexpr std::array kNames{"auto", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp"};
+constexpr std::array kNames{"auto", "packed", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp"};
 
 std::map<std::string, std::string> options_of(const std::string& name) {
   if (name == "zfp") return {};

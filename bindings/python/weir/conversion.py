@@ -35,6 +35,7 @@ def convert(
     max_error: Optional[float] = None,
     lossless: bool = False,
     encoding: Optional[str] = None,
+    preview: Optional[str] = None,
     metric: Optional[str] = None,
     fill: Optional[str] = None,
     background: Union[float, str, None] = None,
@@ -83,7 +84,7 @@ def convert(
         The smallest file that preserves every bit of every voxel.
 
     What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
-    "fp16"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
+    "fp16", "packed"; preview (of a packed file) "auto", "on", "off"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
     brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path.
 
     The volume: spacing (x, y, z) in world units per voxel; origin, the world position of voxel (0, 0, 0); missing, a
@@ -119,6 +120,7 @@ def convert(
         max_error=max_error,
         lossless=lossless,
         encoding=encoding,
+        preview=preview,
         metric=metric,
         fill=fill,
         background=background,

@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static weir_error error;
 static float* values;
@@ -68,7 +69,7 @@ static void struct_sizes(void) {
   snprintf(message, sizeof message,
            "weir_convert_options: struct_size is 17, and must be at least %zu; set it up with "
            "weir_convert_options_init",
-           sizeof newer.known);
+           offsetof(weir_convert_options, preview));  /* what 0.1 had */
   CHECK_USAGE(message, weir_convert_to_memory(&volume, values, NULL, &newer.known, &buffer, &error));
   newer.known.struct_size = SIZE_MAX;
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert_to_memory(&volume, values, NULL, &newer.known, &buffer, &error));
@@ -137,7 +138,9 @@ static void options(void) {
                  o.budget = 8);
   REFUSE_OPTIONS("size (WEIR_BUDGET_SIZE) is \"0\", it must be a size such as 1048577, 64MiB or 1.5GB", o.budget_kind = WEIR_BUDGET_SIZE);
   REFUSE_OPTIONS("size is 4096, and budget_kind is not WEIR_BUDGET_SIZE; set one or the other", o.size = 4096);
-  REFUSE_OPTIONS("encoding is 6, it must be 0 to 5", o.encoding = 6);
+  REFUSE_OPTIONS("encoding is 7, it must be 0 to 6", o.encoding = 7);
+  REFUSE_OPTIONS("preview is 3, it must be 0 to 2", o.preview = 3);
+  REFUSE_OPTIONS("reserved is 1, it must be 0", o.reserved = 1);
   REFUSE_OPTIONS("metric is 4, it must be 0 to 3", o.metric = 4);
   REFUSE_OPTIONS("fill is 2, it must be 0 to 1", o.fill = 2);
   REFUSE_OPTIONS("nonfinite is 3, it must be 0 to 2", o.nonfinite = 3);

@@ -28,7 +28,7 @@ class Errors(FolderTest):
             'rate is "nan", it must be a positive number: dense float32 bytes / file bytes': {"rate": float("nan")},
             "size, rate, psnr, max_error and lossless exclude each other; give one": {"rate": 2, "lossless": True},
             'size is "10 horses", it must be a size such as 1048577, 64MiB or 1.5GB': {"size": "10 horses"},
-            'encoding is "zip", it must be auto, float, fpn, fp4, fp8 or fp16': {"encoding": "zip"},
+            'encoding is "zip", it must be auto, float, fpn, fp4, fp8, fp16 or packed': {"encoding": "zip"},
             "metric farthest has no error target; psnr and max_error select by sse": {"metric": "farthest", "psnr": 9},
             'background is "inf", it must be auto or a finite float32': {"background": float("inf")},
             'spacing is "1,2", it must be x,y,z, three numbers in world units': {"spacing": (1, 2)},

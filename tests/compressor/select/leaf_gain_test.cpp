@@ -39,7 +39,7 @@ void for_each_gain(const Surveyed& surveyed, const GainRule& rule, Visit&& visit
     const Box box = tree.leaf_box(region);
     std::vector<LeafRow> rows;
     surveyed.rows.read_box(box, rows);
-    std::vector<LeafGain> gains;
+    RegionGains gains;
     rule.gains(tree, RegionRows(rows.data(), box.extent(), box), gains);
     ASSERT_EQ(std::ssize(gains), box.voxels());
     for (std::size_t i = 0; i < gains.size(); ++i) {
@@ -68,7 +68,7 @@ TEST_P(PaperMetricTest, IsTheDistanceOfTheBricksRangeFromTheBackground) {
                               : metric == Metric::farthest
                                   ? std::max(to_low, to_high)
                                   : std::abs((low + high) / 2 - static_cast<double>(background));
-      ASSERT_EQ(gain.steps[0].gain, expected) << leaf.x << ' ' << leaf.y << ' ' << leaf.z;
+      ASSERT_EQ(gain.first_gain(), expected) << leaf.x << ' ' << leaf.y << ' ' << leaf.z;
     });
   }
 }
@@ -92,7 +92,7 @@ TEST(LeafGain, SseIsTheSquaredErrorThatTheTileCosts) {
       for (const float v : volume.in(box)) {
         expected += (static_cast<long double>(v) - tile) * (static_cast<long double>(v) - tile);
       }
-      EXPECT_NEAR(gain.steps[0].gain, static_cast<double>(expected), static_cast<double>(expected) * 1e-13);
+      EXPECT_NEAR(gain.first_gain(), static_cast<double>(expected), static_cast<double>(expected) * 1e-13);
       EXPECT_FALSE(gain.exact);
     });
   }
@@ -125,7 +125,7 @@ TEST(LeafGain, ExactTilesHaveZeroGainInEveryMetric) {
                   [&](const TreeRegions&, const Index3& leaf, const LeafGain& gain) {
                     const bool exact = leaf == Index3{2, 0, 0};
                     EXPECT_EQ(gain.exact, exact);
-                    EXPECT_EQ(gain.steps[0].gain == 0, exact);
+                    EXPECT_EQ(gain.first_gain() == 0, exact);
                   });
   }
 }

@@ -73,7 +73,7 @@ struct Item {
 double key_of(const GainRule& rule, const LeafGain& leaf, const Region& region) {
   if (leaf.required) return std::numeric_limits<double>::infinity();
   if (leaf.exact) return 0;
-  const double own = rule.metric == Metric::sse ? leaf.steps[0].gain / 2144 : leaf.steps[0].gain;
+  const double own = rule.metric == Metric::sse ? leaf.first_gain() / 2144 : leaf.first_gain();
   return std::max(0x1p-1074, std::min(own, region.key));
 }
 
@@ -95,11 +95,11 @@ std::vector<Item> sorted_items(const Chooser& chooser) {
     const Region& region = tree.regions[static_cast<std::size_t>(r)];
     items.push_back({region.key, r, 33856, {}, -1, static_cast<int>(r)});
     const Box box = tree.leaf_box(r);
-    std::vector<LeafGain> gains = chooser.gains(r);
+    const RegionGains gains = chooser.gains(r);
     std::vector<std::size_t> order(gains.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::pair(-gains[a].steps[0].gain, gains[a].brick) < std::pair(-gains[b].steps[0].gain, gains[b].brick);
+      return std::pair(-gains[a].first_gain(), gains[a].brick) < std::pair(-gains[b].first_gain(), gains[b].brick);
     });
     std::uint32_t last_brick = ~0U;
     for (const std::size_t i : order) {

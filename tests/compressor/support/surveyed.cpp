@@ -42,11 +42,11 @@ Choice Chooser::choose(std::uint64_t file_bytes) {
   return choice;
 }
 
-std::vector<LeafGain> Chooser::gains(std::int64_t region) const {
+RegionGains Chooser::gains(std::int64_t region) const {
   std::vector<LeafRow> rows;
   const Box box = tree_.leaf_box(region);
   rows_.read_box(box, rows);
-  std::vector<LeafGain> gains;
+  RegionGains gains;
   selection_.rule().gains(tree_, RegionRows(rows.data(), box.extent(), box), gains);
   return gains;
 }

@@ -47,7 +47,7 @@ class Chooser {
   std::uint64_t lossless() const { return selection_.bytes().full.file_bytes; }
   Choice choose(std::uint64_t file_bytes);
   /// Gains of one region in leaf order.
-  std::vector<LeafGain> gains(std::int64_t region) const;
+  RegionGains gains(std::int64_t region) const;
 
  private:
   const RowStore& rows_;

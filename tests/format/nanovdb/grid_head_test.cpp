@@ -150,7 +150,7 @@ TEST(GridHead, HeadChecksumIsCrc32) {
 
 TEST(GridHead, MacrocellRecordDescribesTheData) {
   const TreeLayout layout = sample_layout();
-  const std::vector<std::byte> record = encode_macrocell_record(layout);
+  const std::vector<std::byte> record = encode_blind_records(layout);
   ASSERT_EQ(record.size(), sizeof(nanovdb::GridBlindMetaData));
   nanovdb::GridBlindMetaData meta;
   std::memcpy(static_cast<void*>(&meta), record.data(), sizeof meta);

@@ -89,13 +89,14 @@ TEST_F(SweepCommand, FiguresAreThoseOfConvert) {
   const std::string input = sample("cloud", "150x140x130_float32");
   const std::vector<std::pair<std::string, std::vector<std::string>>> methods{
       {"auto", {}},
+      {"packed", {"--encoding", "packed"}},
       {"fpn", {"--encoding", "fpn"}},
       {"float", {"--encoding", "float"}},
       {"fp8", {"--encoding", "fp8"}},
       {"paper", {"--preset", "paper"}},
       {"paper32", {"--preset", "paper", "--brick", "32"}}};
-  const Json found = rows(input, {"--rates", "12,6", "--methods", "auto,fpn,float,fp8,paper,paper32"});
-  ASSERT_EQ(found.size(), 12U);
+  const Json found = rows(input, {"--rates", "12,6", "--methods", "auto,packed,fpn,float,fp8,paper,paper32"});
+  ASSERT_EQ(found.size(), 14U);
   std::size_t i = 0;
   for (const auto& [name, options] : methods) {
     for (const std::string rate : {"12", "6"}) {
@@ -246,9 +247,9 @@ TEST_F(SweepCommand, Refusals) {
     return result.err;
   };
   EXPECT_EQ(refusal({"--rates", "8,8"}, 2), "weir: --rates holds 8 twice; leave one of them out\n");
-  EXPECT_EQ(
-      refusal({"--methods", ""}, 2),
-      "weir: --methods names \"\", the ones there are are auto, fpn, float, fp4, fp8, fp16, paper, paper32, zfp\n");
+  EXPECT_EQ(refusal({"--methods", ""}, 2),
+            "weir: --methods names \"\", the ones there are are auto, packed, fpn, float, fp4, fp8, fp16, paper, "
+            "paper32, zfp\n");
   EXPECT_EQ(refusal({"--dims", "32,32,31"}, 2).find("weir: " + input + ": --dims 32,32,31 contradicts"), 0U);
   EXPECT_EQ(run_weir({"sweep", directory_ / "none.raw", "-o", out_}).exit_code, 3);
   EXPECT_FALSE(fs::exists(out_));

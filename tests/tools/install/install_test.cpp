@@ -52,18 +52,63 @@ void add_files(const fs::path& root, const std::string& as, std::set<std::string
 
 std::set<std::string> headers() {
   std::set<std::string> files;
-  for (const char* name :
-       {"io/descriptor", "base/error", "base/message", "io/file_mapping", "base/host_device", "base/index",
-        "leaf/leaf_decode", "nanovdb/macrocells", "layout/nanovdb_layout", "nanovdb/nvdb_blind", "nanovdb/nvdb_bytes",
-        "nanovdb/nvdb_file", "nanovdb/nvdb_grid", "nanovdb/nvdb_header", "nanovdb/nvdb_tree", "layout/nvdb_type",
-        "nanovdb/range_max", "base/text"}) {
+  for (const char* name : {"io/descriptor",
+                           "base/error",
+                           "base/message",
+                           "io/file_mapping",
+                           "base/host_device",
+                           "base/index",
+                           "leaf/leaf_decode",
+                           "nanovdb/macrocells",
+                           "layout/nanovdb_layout",
+                           "nanovdb/nvdb_blind",
+                           "nanovdb/nvdb_bytes",
+                           "nanovdb/nvdb_file",
+                           "nanovdb/nvdb_grid",
+                           "nanovdb/nvdb_header",
+                           "nanovdb/nvdb_tree",
+                           "layout/nvdb_type",
+                           "nanovdb/range_max",
+                           "base/text",
+                           "base/process_memory",
+                           "base/simd",
+                           "nanovdb/grid_block",
+                           "nanovdb/packed_blocks",
+                           "packed/block_constants",
+                           "packed/block_context",
+                           "packed/block_decode",
+                           "packed/block_scan",
+                           "packed/block_steps",
+                           "packed/coefficient_decoder",
+                           "packed/inverse_transform",
+                           "packed/lattice_codes",
+                           "nanovdb/packed_chunk",
+                           "nanovdb/packed_data",
+                           "nanovdb/packed_header",
+                           "packed/packed_layout",
+                           "packed/transpose_lanes"}) {
     files.insert(cat("include/weir/format/", name, ".h"));
   }
-  for (const char* name :
-       {"image/colormap", "math/dda", "scene/environment_view", "trace/iso_surface", "volume/leaf_table",
-        "scene/lighting", "volume/macrocell_grid", "trace/max_projection", "trace/medium", "trace/path_tracer",
-        "trace/phase", "math/portable", "math/random", "math/ray", "trace/ray_march", "trace/tracking",
-        "scene/transfer_function", "math/vector3", "volume/volume_sampler"}) {
+  for (const char* name : {"image/colormap",
+                           "math/dda",
+                           "scene/environment_view",
+                           "trace/iso_surface",
+                           "volume/leaf_table",
+                           "scene/lighting",
+                           "volume/macrocell_grid",
+                           "trace/max_projection",
+                           "trace/medium",
+                           "trace/path_tracer",
+                           "trace/phase",
+                           "math/portable",
+                           "math/random",
+                           "math/ray",
+                           "trace/ray_march",
+                           "trace/tracking",
+                           "scene/transfer_function",
+                           "math/vector3",
+                           "volume/volume_sampler",
+                           "volume/decoded_leaves"}) {
     files.insert(cat("include/weir/gpu/", name, ".h"));
   }
   return files;

@@ -87,12 +87,13 @@ TEST(SweepPlot, UnmetRatesAreLeftOutOfTheLineButNotOfTheLegend) {
 
 TEST(SweepPlot, MethodsHaveDifferentColours) {
   std::vector<SweepRow> rows;
-  for (const char* name : {"auto", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp"}) {
+  for (const char* name : {"auto", "fpn", "float", "fp4", "fp8", "fp16", "paper", "paper32", "zfp", "packed"}) {
     rows.push_back(row(name, 125, 20.0 + 10.0 * static_cast<double>(rows.size())));
   }
   const Image image = psnr_plot(report_of(rows), SweepAxis::bits_per_voxel);
   EXPECT_GT(pixels_of(image, ink_of(0, 114, 178)), 50);
   EXPECT_GT(pixels_of(image, ink_of(112, 129, 25)), 10);  // the ninth, in the legend's second line
+  EXPECT_GT(pixels_of(image, ink_of(102, 51, 153)), 10);
 }
 
 // Ranges whose ticks could loop, divide by zero or overflow; volumes without anything to show.

@@ -1,0 +1,69 @@
+// What the encode pass hands blocks to, a layer at a time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compressor/encode/leaf_record.h"
+#include "compressor/leaf/fill.h"
+#include "compressor/leaf/quantised_leaf.h"
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/packed_region.h"
+#include "compressor/select/tree_regions.h"
+#include "compressor/survey/row_store.h"
+#include "compressor/survey/surveyed_leaves.h"
+#include "format/base/trace.h"
+#include "format/io/file_system.h"
+#include "format/layout/nvdb_type.h"
+#include "format/layout/tree_layout.h"
+#include "format/packed/block_constants.h"
+#include "format/packed/lattice_block.h"
+#include "ingest/plan/block_stream.h"
+
+namespace weir {
+
+/// What packed blocks are encoded with.
+struct PackedTarget {
+  const PlannedStreamsStore& streams;
+  PackedRule rule;
+  BlockConstants constants;
+  std::optional<Lattice> lattice;   ///< of the whole volume
+  std::optional<double> max_error;  ///< where the budget bounds it
+};
+
+struct EncodeTarget {
+  const TreeRegions& tree;
+  const ChoiceStore& choices;
+  const TreeLayout& layout;
+  Fill fill;
+  GridType type;  ///< float32 or quantised
+  Fit fit;        ///< of quantised leaves
+  File& out;
+  RecordStore& records;
+  const RowStore& rows;  ///< of the survey; each rank of its team encodes the leaves of its own regions
+  Trace* trace = nullptr;
+  const PackedTarget* packed = nullptr;  ///< where blocks are packed; then `type` and `fit` mean nothing
+};
+
+/// Where the kept blocks of a region lie.
+struct RegionPlaces {
+  std::optional<LeafPlaces> leaves;
+  std::optional<StreamPlaces> streams;  ///< of packed blocks
+};
+
+/// One per thread.
+class LayerEncoder {
+ public:
+  LayerEncoder() = default;
+  virtual ~LayerEncoder() = default;
+  LayerEncoder(const LayerEncoder&) = delete;
+  LayerEncoder& operator=(const LayerEncoder&) = delete;
+
+  /// The kept leaves of one x layer of one region, as far as they lie in the block.
+  virtual void add_layer(const Block& block, const Box& leaf_box, std::int64_t region, const RegionPlaces& places,
+                         const SurveyedLeaves& surveyed, std::int64_t x) = 0;
+  /// Writes what is still held; call before the thread turns to another block.
+  virtual void finish() = 0;
+};
+
+}  // namespace weir

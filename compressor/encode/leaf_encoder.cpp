@@ -1,0 +1,148 @@
+#include "compressor/encode/leaf_encoder.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "compressor/leaf/quantised_leaf.h"
+#include "format/base/simd.h"
+#include "format/leaf/leaf_codec.h"
+#include "format/leaf/quantised_codec.h"
+
+namespace weir {
+namespace {
+
+WEIR_SIMD bool all_finite(const LeafValues& values) {
+  std::uint32_t others = 0;
+  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // NaN for what is not finite
+  return others == 0;
+}
+
+// Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
+// follow each other in the file. One per thread.
+class LeafEncoder final : public LayerEncoder {
+ public:
+  explicit LeafEncoder(const EncodeTarget& target) : target_(target) {}
+
+  void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
+                 const SurveyedLeaves& surveyed, std::int64_t x) override {
+    const LeafPlaces& places = *of_region.leaves;
+    const TreeRegions& tree = target_.tree;
+    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
+    const Box box = intersect(tree.leaf_box(region_index), leaf_box);
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+        const Index3 leaf{x, y, z};
+        const std::size_t position = tree.mask_position(leaf);
+        if (!places.kept(position)) continue;
+        surveyed.check(leaf, block.values, block.voxels);
+        const LeafPlaces::Place before = places.before(position);
+        const LeafWidth width = places.width(position);
+        gather(block, leaf,
+               {region.first_leaf + before.leaves, target_.layout.leaves + region.first_byte + before.bytes, width});
+      }
+    }
+  }
+
+  void finish() override {
+    encode_batch();
+    const std::span<const std::byte> bytes(bytes_);
+    std::size_t at = 0;
+    for (std::size_t first = 0; first < leaves_.size();) {
+      std::size_t end = first;
+      std::size_t size = 0;
+      do {
+        size += leaf_bytes(leaves_[end++].width);
+      } while (end < leaves_.size() && leaves_[end].ordinal == leaves_[end - 1].ordinal + 1);
+      const TraceSpan span(target_.trace, "write", size);
+      target_.out.write_at(leaves_[first].offset, bytes.subspan(at, size));
+      target_.records.write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
+      at += size;
+      first = end;
+    }
+    bytes_.clear();
+    records_.clear();
+    leaves_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
+
+  // A kept leaf's place in the file.
+  struct Leaf {
+    std::uint64_t ordinal;
+    std::uint64_t offset;
+    LeafWidth width;
+  };
+
+  void gather(const Block& block, const Index3& leaf, const Leaf& place) {
+    const Box node = target_.tree.leaves.node_box(leaf);
+    const Box inside = target_.tree.leaves.voxels(leaf);
+    LeafValues& values = values_[batch_];
+    gather_leaf(block.values, block.voxels, node, inside, target_.fill.background, values);
+    finite_[batch_] = all_finite(values);
+    if (!finite_[batch_] && target_.fill.non_finite != NonFinitePolicy::keep) {
+      sources_[batch_] = values;
+      for (float& v : values) v = std::isfinite(v) ? v : target_.fill.background;
+    }
+    nodes_[batch_] = node;
+    insides_[batch_] = inside;
+    leaves_.push_back(place);
+    if (++batch_ == kLeafBatch) encode_batch();
+    if (leaves_.size() >= kHeldLeaves) finish();
+  }
+
+  void encode_batch() {
+    const std::size_t first = leaves_.size() - batch_;
+    if (target_.type != GridType::float32) {
+      for (std::size_t i = 0; i < batch_; ++i) {
+        const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
+        const Leaf& leaf = leaves_[first + i];
+        quantised_[i] =
+            quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target_.fit);
+        values_[i] = quantised_[i].decoded;
+      }
+    }
+    const std::span<NodeStatistics> statistics(statistics_.data(), batch_);
+    full_leaf_statistics({values_.data(), batch_}, {nodes_.data(), batch_}, statistics);
+    for (std::size_t i = 0; i < batch_; ++i) {
+      if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
+      const std::size_t at = bytes_.size();
+      bytes_.resize(at + leaf_bytes(leaves_[first + i].width));
+      const std::span<std::byte> image = std::span(bytes_).subspan(at);
+      records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
+      if (target_.type == GridType::float32) {
+        encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i], image.first<nvdb::kFloatLeafBytes>());
+      } else {
+        const QuantisedLeaf& leaf = quantised_[i];
+        encode_quantised_leaf(target_.type, leaf.codes, leaf.bits_log2, leaf.quantiser.minimum, leaf.quantiser.quantum,
+                              nodes_[i], insides_[i], statistics[i], image);
+        records_.back().squared_error = leaf.squared_error;
+        records_.back().max_abs = leaf.max_abs;
+        records_.back().exact = leaf.exact ? 1 : 0;
+      }
+    }
+    batch_ = 0;
+  }
+
+  const EncodeTarget& target_;
+  std::size_t batch_ = 0;  // leaves gathered and not yet encoded: the last ones of leaves_
+  std::array<LeafValues, kLeafBatch> values_{};
+  std::array<LeafValues, kLeafBatch> sources_{};  // before non-finite values were replaced; where there are any
+  std::array<bool, kLeafBatch> finite_{};
+  std::array<QuantisedLeaf, kLeafBatch> quantised_{};
+  std::array<Box, kLeafBatch> nodes_{};
+  std::array<Box, kLeafBatch> insides_{};
+  std::array<NodeStatistics, kLeafBatch> statistics_{};
+  std::vector<Leaf> leaves_;  // held, encoded or not
+  std::vector<std::byte> bytes_;
+  std::vector<LeafRecord> records_;
+};
+
+}  // namespace
+
+std::unique_ptr<LayerEncoder> make_leaf_encoder(const EncodeTarget& target) {
+  return std::make_unique<LeafEncoder>(target);
+}
+
+}  // namespace weir

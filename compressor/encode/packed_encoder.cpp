@@ -1,0 +1,199 @@
+#include "compressor/encode/packed_encoder.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "compressor/leaf/inside_voxels.h"
+#include "compressor/leaf/leaf_difference.h"
+#include "compressor/packed/block_values.h"
+#include "compressor/packed/exact_block.h"
+#include "format/base/error.h"
+#include "format/base/little_endian.h"
+#include "format/base/text.h"
+#include "format/packed/block_decode.h"
+#include "format/packed/block_encode.h"
+
+namespace weir {
+namespace {
+
+bool holds_numbers(const LeafValues& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+class PackedEncoder final : public LayerEncoder {
+ public:
+  explicit PackedEncoder(const EncodeTarget& target) : target_(target), packed_(*target.packed) {
+    stream_.resize(4096);
+  }
+
+  void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
+                 const SurveyedLeaves& surveyed, std::int64_t x) override {
+    const StreamPlaces& places = *of_region.streams;
+    const TreeRegions& tree = target_.tree;
+    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
+    const std::uint64_t chunk = target_.layout.packed_data + packed_chunks_offset() + region.first_byte;
+    const Box box = intersect(tree.leaf_box(region_index), leaf_box);
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+        const Index3 leaf{x, y, z};
+        const std::size_t position = tree.mask_position(leaf);
+        if (!places.kept(position)) continue;
+        surveyed.check(leaf, block.values, block.voxels);
+        add_ends(chunk, places, position);
+        add_stream(block, leaf, chunk + places.offset(position), places, position);
+        add_record(region.first_leaf + places.ordinal(position));
+      }
+    }
+  }
+
+  void finish() override {
+    flush_bytes();
+    flush_records();
+  }
+
+ private:
+  static constexpr std::size_t kHeldBytes = std::size_t{1} << 18U;
+  static constexpr std::size_t kHeldRecords = 1024;
+
+  std::uint64_t packed_chunks_offset() const {
+    return packed::kRegionsOffset + target_.tree.regions.size() * packed::region::kEntryBytes;
+  }
+
+  // The ends of a group's streams, before the first of them.
+  void add_ends(std::uint64_t chunk, const StreamPlaces& places, std::size_t position) {
+    using packed::chunk::kGroupBlocks;
+    const std::size_t group = position / kGroupBlocks;
+    const std::size_t first = group * kGroupBlocks + static_cast<std::size_t>(std::countr_zero(places.mask(group)));
+    if (position != first) return;
+    std::array<std::byte, 2 * kGroupBlocks> ends{};
+    std::size_t count = 0;
+    for (std::size_t p = first; p < (group + 1) * kGroupBlocks; ++p) {
+      if (!places.kept(p)) continue;
+      store(std::span(ends), 2 * count++,
+            static_cast<std::uint16_t>(places.offset(p) + places.bytes(p) - places.base(group)));
+    }
+    append(chunk + places.base(group), std::span(ends).first(2 * count));
+  }
+
+  void add_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const StreamPlaces& places,
+                  std::size_t position) {
+    node_ = target_.tree.leaves.node_box(leaf);
+    inside_ = target_.tree.leaves.voxels(leaf);
+    gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
+    values_ = source_;
+    if (target_.fill.non_finite != NonFinitePolicy::keep) {
+      for_each_inside(node_, inside_, [&](std::size_t i) {
+        if (!std::isfinite(values_[i])) values_[i] = target_.fill.background;
+      });
+    }
+    extend_outside(node_, inside_, values_);
+    const std::span<std::byte> stream = std::span(stream_).first(places.bytes(position));
+    write_stream(places.plan(), position, stream);
+    if (!decode_block(packed_.constants, places.plan().region.means, stream.data(),
+                      static_cast<std::uint32_t>(stream.size()), decoded_.data())) {
+      fail(leaf, "does not decode");
+    }
+    append(offset, stream);
+    if (packed_.rule.preview) write_corner(leaf);
+  }
+
+  void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
+    const std::int16_t step = plan.steps[position];
+    if (step != PlannedStreams::kExactStep) {
+      if (!transform_.set(values_)) fail({}, "cannot be transformed");
+      transform_.encode(packed_.constants, plan.region.means, step, stream);
+      return;
+    }
+    std::uint32_t bytes = 0;
+    std::vector<std::byte>& scratch = exact_;
+    scratch.resize(4096);
+    if (stream.size() == kRawStreamBytes) {
+      bytes = encode_raw(values_, scratch);
+    } else {
+      if (packed_.max_error && holds_numbers(values_)) bytes = write_bounded(values_, *packed_.max_error, scratch);
+      if (bytes != stream.size()) bytes = write_exact(values_, packed_.lattice, scratch);
+    }
+    if (bytes != stream.size()) fail({}, "has another length than was planned");
+    std::copy_n(scratch.begin(), bytes, stream.begin());
+  }
+
+  void write_corner(const Index3& leaf) {
+    const Index3 last = target_.tree.leaves.count - Index3{1, 1, 1};
+    if (leaf != Index3{0, 0, 0} && leaf != last) return;
+    std::array<std::byte, nvdb::kFloatLeafBytes> image{};
+    encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
+    const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
+    target_.out.write_at(target_.layout.leaves + ordinal * nvdb::kFloatLeafBytes, image);
+  }
+
+  void add_record(std::uint64_t ordinal) {
+    if (!records_.empty() && ordinal != first_record_ + records_.size()) flush_records();
+    if (records_.empty()) first_record_ = ordinal;
+    const NodeStatistics statistics = leaf_statistics(decoded_, node_, inside_);
+    LeafRecord record = make_leaf_record(decoded_, node_, inside_, statistics);
+    LeafValues seen = decoded_;
+    LeafValues read = decoded_;
+    for_each_inside(node_, inside_, [&](std::size_t i) {
+      seen[i] = source_[i];
+      read[i] = values_[i];
+    });
+    const LeafDifference lost = difference_of(seen, decoded_);
+    const LeafDifference changed = difference_of(read, decoded_);
+    record.squared_error = lost.squared_error;
+    record.max_abs = lost.max_abs;
+    record.exact = changed.different == 0 && changed.nonfinite_different == 0 ? 1 : 0;
+    records_.push_back(record);
+    if (records_.size() >= kHeldRecords) flush_records();
+  }
+
+  void append(std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (!bytes_.empty() && offset != first_byte_ + bytes_.size()) flush_bytes();
+    if (bytes_.empty()) first_byte_ = offset;
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (bytes_.size() >= kHeldBytes) flush_bytes();
+  }
+
+  void flush_bytes() {
+    if (bytes_.empty()) return;
+    const TraceSpan span(target_.trace, "write", bytes_.size());
+    target_.out.write_at(first_byte_, bytes_);
+    bytes_.clear();
+  }
+
+  void flush_records() {
+    if (records_.empty()) return;
+    target_.records.write(first_record_, records_);
+    records_.clear();
+  }
+
+  [[noreturn]] static void fail(const Index3& leaf, const char* what) {
+    throw Error(ErrorKind::internal,
+                cat("packed block ", leaf.x, ",", leaf.y, ",", leaf.z, " ", what, "; report this"));
+  }
+
+  const EncodeTarget& target_;
+  const PackedTarget& packed_;
+  TransformBlock transform_;
+  Box node_;
+  Box inside_;
+  LeafValues source_{};  // outside the domain: anything
+  LeafValues values_{};  // what is packed
+  LeafValues decoded_{};
+  std::vector<std::byte> stream_;
+  std::vector<std::byte> exact_;
+  std::uint64_t first_byte_ = 0;
+  std::vector<std::byte> bytes_;  // to be written from first_byte_ on
+  std::uint64_t first_record_ = 0;
+  std::vector<LeafRecord> records_;
+};
+
+}  // namespace
+
+std::unique_ptr<LayerEncoder> make_packed_encoder(const EncodeTarget& target) {
+  return std::make_unique<PackedEncoder>(target);
+}
+
+}  // namespace weir

@@ -1,0 +1,47 @@
+#include "compressor/packed/block_values.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "format/base/simd.h"
+
+namespace weir {
+namespace {
+
+WEIR_SIMD void transpose_block(const float* values, float* block) {
+  for (std::size_t x = 0; x < 8; ++x) {
+    for (std::size_t y = 0; y < 8; ++y) {
+      for (std::size_t z = 0; z < 8; ++z) block[x << 6U | y << 3U | z] = values[z << 6U | y << 3U | x];
+    }
+  }
+}
+
+}  // namespace
+
+void extend_outside(const Box& node, const Box& inside, LeafValues& block) {
+  if (inside == node) return;
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 last = inside.hi - node.lo - Index3{1, 1, 1};
+  const LeafValues given = block;
+  for (std::int64_t i = 0; i < kLeafVoxels; ++i) {
+    const Index3 nearest = max(lo, min(last, Index3{i >> 6, i >> 3 & 7, i & 7}));
+    block[static_cast<std::size_t>(i)] = given[static_cast<std::size_t>(nearest.x << 6 | nearest.y << 3 | nearest.z)];
+  }
+}
+
+void block_values(std::span<const float> values, const Box& node, const Box& inside, LeafValues& block) {
+  if (inside == node) return transpose_block(values.data(), block.data());
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 extent = inside.extent();
+  std::size_t at = 0;
+  for (std::int64_t z = 0; z < extent.z; ++z) {
+    for (std::int64_t y = 0; y < extent.y; ++y) {
+      for (std::int64_t x = 0; x < extent.x; ++x) {
+        block[static_cast<std::size_t>((lo.x + x) << 6 | (lo.y + y) << 3 | (lo.z + z))] = values[at++];
+      }
+    }
+  }
+  extend_outside(node, inside, block);
+}
+
+}  // namespace weir

@@ -1,0 +1,70 @@
+#include "compressor/packed/exact_block.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "compressor/leaf/leaf_lattice.h"
+#include "format/packed/block_encode.h"
+
+namespace weir {
+namespace {
+
+BlockConstants constants_of(const std::optional<Lattice>& lattice) {
+  BlockConstants constants;
+  constants.tables = built_in_tables();
+  if (lattice) {
+    constants.lattice_minimum = lattice->minimum;
+    constants.lattice_quantum = lattice->quantum;
+    constants.lattice_bits = lattice->bits;
+  }
+  return constants;
+}
+
+std::optional<Lattice> own_lattice(const LeafValues& block) {
+  const auto [low, high] = std::minmax_element(block.begin(), block.end());
+  if (!(std::isfinite(*low) && std::isfinite(*high) && *low < *high)) return std::nullopt;
+  for (const float v : block) {
+    if (!std::isfinite(v)) return std::nullopt;
+  }
+  const auto lattice = find_lattice(block, *low, *high);
+  if (!lattice) return std::nullopt;
+  return Lattice{*low, lattice->step, static_cast<std::uint32_t>(std::bit_width(lattice->largest))};
+}
+
+// Bits of `largest`, the largest code of a lattice; none where it has too many.
+constexpr double kMostCodes = 16777216;
+
+}  // namespace
+
+std::uint32_t write_exact(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
+                          FloatOrder order) {
+  const std::optional<Lattice> own = lattice ? std::nullopt : own_lattice(block);
+  return encode_exact(constants_of(lattice), own, block, out, order);
+}
+
+std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) {
+  const auto [low, high] = std::minmax_element(block.begin(), block.end());
+  const float minimum = *low;
+  // Half a quantum, and what the two roundings of the decoder add.
+  const double magnitude = static_cast<double>(std::max(std::fabs(*low), std::fabs(*high)));
+  const double allowed = max_error - magnitude * 0x1p-22;
+  if (!(allowed > 0)) return 0;
+  const auto quantum = static_cast<float>(2 * allowed * (1 - 0x1p-23));
+  if (!(quantum > 0) || !std::isfinite(quantum)) return 0;
+  const double largest = (static_cast<double>(*high) - static_cast<double>(minimum)) / static_cast<double>(quantum) + 1;
+  if (!(largest < kMostCodes)) return 0;
+  LeafValues rounded;
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const double code =
+        std::nearbyint((static_cast<double>(block[i]) - static_cast<double>(minimum)) / static_cast<double>(quantum));
+    const float product = static_cast<float>(code) * quantum;
+    rounded[i] = product + minimum;
+    if (!(std::fabs(static_cast<double>(rounded[i]) - static_cast<double>(block[i])) <= max_error)) return 0;
+  }
+  const Lattice lattice{minimum, quantum,
+                        static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint32_t>(largest)))};
+  return encode_exact(constants_of(std::nullopt), lattice, rounded, out);
+}
+
+}  // namespace weir

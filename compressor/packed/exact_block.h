@@ -1,0 +1,23 @@
+// A block's exact stream, and one that is exact of values rounded to within an error: the same bytes in the survey,
+// which counts them, and in the encode pass, which writes them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "format/leaf/leaf_codec.h"
+#include "format/packed/lattice_block.h"
+
+namespace weir {
+
+/// Writes the shortest stream that gives every bit of `block` back; `lattice` is the file's. Returns its bytes.
+std::uint32_t write_exact(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
+                          FloatOrder order = FloatOrder::used);
+
+/// The same for finite values rounded so that each is within `max_error` of its own. 0 where no lattice of 24 bits
+/// does that.
+std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out);
+
+}  // namespace weir

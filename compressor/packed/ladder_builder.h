@@ -1,0 +1,51 @@
+// Surveys the ladder of one block after the other. One builder per thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compressor/leaf/leaf_row.h"
+#include "compressor/packed/packed_ladder.h"
+#include "format/leaf/leaf_codec.h"
+#include "format/packed/block_encode.h"
+#include "format/packed/lattice_block.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// What ladders are built for.
+struct LadderAim {
+  bool lossless = false;             ///< exact kinds alone
+  bool keeps_non_finite = false;     ///< NaN and infinities stay
+  std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
+  std::optional<Lattice> lattice{};  ///< of the whole volume
+};
+
+/// The lattice that all values of a source lie on, where its type says so.
+std::optional<Lattice> lattice_of(const SourceInfo& source);
+
+class LadderBuilder {
+ public:
+  explicit LadderBuilder(const LadderAim& aim) : aim_(aim) {}
+
+  /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
+  /// the survey knows of them.
+  PackedLadder build(const LeafValues& block, const LeafRow& row);
+  /// Of one whose in-domain values have the same bits.
+  static PackedLadder uniform();
+  /// Of one with values that are not finite, `all` or some.
+  PackedLadder non_finite(bool all) const;
+
+ private:
+  void add_rungs(const LeafRow& row, PackedLadder& ladder);
+  void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
+  std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
+
+  LadderAim aim_;
+  TransformBlock transform_;
+  std::vector<std::byte> stream_ = std::vector<std::byte>(4096);
+};
+
+}  // namespace weir

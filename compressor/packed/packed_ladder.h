@@ -1,0 +1,50 @@
+// What the survey keeps of a block that may be packed: for some steps of the quantiser what its stream takes and what
+// error it leaves, so that selection can choose among them. One fixed-size record a block, spilled to disk.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace weir {
+
+/// A share of a block's energy (the squared error of its mean): (1 + m / 1024) * 2^-e, within a part in 2,000.
+class ErrorShare {
+ public:
+  ErrorShare() = default;
+  /// Of 0 to 1.
+  explicit ErrorShare(double share);
+  double value() const;
+
+ private:
+  std::uint16_t code_ = 0xFFFF;  // e << 10 | m; all bits set: none
+};
+
+struct PackedRung {
+  std::uint16_t bits = 0;  ///< of the stream but for the code of its mean
+  ErrorShare error;        ///< of the block's energy
+};
+
+/// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, kExactLevel its exact kind.
+inline constexpr std::uint8_t kExactLevel = 31;
+
+struct PackedLadder {
+  static constexpr std::size_t kMostRungs = 22;
+
+  std::int16_t first_step = 0;    ///< step number of rung 0
+  std::uint8_t count = 0;         ///< rungs, from coarse to fine
+  std::uint8_t bounded = 0;       ///< not 0: the exact kind is of values rounded to within --max-error
+  std::uint16_t exact_bytes = 0;  ///< of the stream of the exact kind
+  std::uint16_t reserved = 0;
+  std::array<PackedRung, kMostRungs> rungs{};
+
+  /// Step number of a rung: by whole octaves to where the first coefficient counts, then by half ones, at last by
+  /// whole ones again.
+  std::int32_t step(std::size_t rung) const {
+    const auto r = static_cast<std::int32_t>(rung);
+    return first_step + (r <= 2 ? 2 * r : r <= 12 ? r + 2 : 2 * r - 10);
+  }
+};
+static_assert(sizeof(PackedLadder) == 96, "ladders are spilled as they are");
+
+}  // namespace weir

@@ -1,0 +1,148 @@
+#include "compressor/select/packed_region.h"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "compressor/leaf/certificate.h"
+#include "format/packed/block_decode.h"
+#include "format/packed/block_encode.h"
+#include "format/packed/lattice_block.h"
+
+namespace weir {
+namespace {
+
+// The value that most uniform blocks have; of several the one of the lowest bits.
+std::optional<float> commonest_uniform(const RegionRows& rows, const Fill& fill) {
+  std::vector<std::uint32_t> values;
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    if (row.uniform()) values.push_back(std::bit_cast<std::uint32_t>(row.mean));
+    if (row.finite == 0 && fill.non_finite != NonFinitePolicy::keep) {
+      values.push_back(std::bit_cast<std::uint32_t>(fill.background));
+    }
+  });
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  std::size_t best = 0;
+  std::size_t most = 0;
+  for (std::size_t first = 0; first < values.size();) {
+    const auto end = std::upper_bound(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(), values[first]);
+    const auto count = static_cast<std::size_t>(end - values.begin()) - first;
+    if (count > most) {
+      most = count;
+      best = first;
+    }
+    first += count;
+  }
+  return std::bit_cast<float>(values[best]);
+}
+
+float mean_of(const RegionRows& rows, float fallback) {
+  CompensatedSum sum;
+  std::uint64_t count = 0;
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    sum.add(static_cast<double>(row.mean) * row.finite);
+    count += row.finite;
+  });
+  return count == 0 ? fallback : static_cast<float>(sum.value() / static_cast<double>(count));
+}
+
+}  // namespace
+
+SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill) {
+  SharedValues region;
+  const std::optional<float> uniform = commonest_uniform(rows, fill);
+  region.value = uniform ? *uniform : mean_of(rows, fill.background);
+  MinMax means = kNoBounds;
+  rows.for_each([&](const Index3& leaf, const LeafRow& row) {
+    if (row.uniform() || row.finite == 0) return;
+    // Voxels outside the domain take part in the mean of a block on the border.
+    const bool whole = leaves.voxels(leaf) == leaves.node_box(leaf);
+    widen(means, whole ? MinMax{row.mean, row.mean} : MinMax{row.min, row.max});
+  });
+  if (means.min <= means.max) region.means = {means.min, means.max};
+  return region;
+}
+
+std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, const MeanRange& means,
+                                  const PackedRule& rule) {
+  if (level == 0) return 0;
+  if (level == kExactLevel) return ladder.exact_bytes;
+  const std::size_t rung = level - 1U;
+  const std::int32_t step = ladder.step(rung);
+  if (step < rule.coarsest || step >= rule.coarsest + kPackedSteps) return 0;
+  const unsigned bits = mean_bits(means, step);
+  return bits == kNoMeanBits ? 0 : stream_bytes(ladder.rungs[rung].bits, bits);
+}
+
+PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
+  constexpr std::uint16_t kOneValueBytes = 5;
+  constexpr std::uint16_t kMeanBits = 8;
+  if (level == kExactLevel) {
+    const bool raw = ladder.exact_bytes == kOneValueBytes || ladder.exact_bytes == kRawStreamBytes;
+    return raw ? PackedKind::raw : PackedKind::lattice;
+  }
+  return ladder.rungs[level - 1U].bits == kMeanBits ? PackedKind::mean : PackedKind::transform;
+}
+
+double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) {
+  if (level == kExactLevel) return 0;
+  const std::size_t rung = level - 1U;
+  const auto size = static_cast<double>(step_size(ladder.step(rung)));
+  // Codes of the mean lie size / sqrt(512) apart.
+  const double of_mean = size * size / 12 * static_cast<double>(voxels) / static_cast<double>(kLeafVoxels);
+  return ladder.rungs[rung].error.value() * row.sse + of_mean;
+}
+
+PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const Fill& fill, const PackedRule& rule,
+                            const LeafChoices& choices) {
+  PlannedStreams plan;
+  plan.region = shared_values(rows, tree.leaves, fill);
+  rows.for_each([&](const Index3& leaf, const LeafRow&) {
+    const std::size_t position = tree.mask_position(leaf);
+    const KeptLevel level = choices.level(position);
+    if (level == 0) return;
+    const PackedLadder& ladder = rows.ladder(leaf);
+    plan.bytes[position] = static_cast<std::uint16_t>(packed_stream_bytes(ladder, level, plan.region.means, rule));
+    plan.steps[position] =
+        level == kExactLevel ? PlannedStreams::kExactStep : static_cast<std::int16_t>(ladder.step(level - 1U));
+  });
+  return plan;
+}
+
+void set_packed_counts(const PackedRule& rule, const TreeRegions& tree, std::uint64_t regions, NodeCounts& counts) {
+  counts.packed_bytes = packed::kRegionsOffset + tree.regions.size() * packed::region::kEntryBytes;
+  if (!rule.preview) return;
+  // The lowest and the highest block stay leaves, so that the box others find is the domain.
+  counts.uppers = tree.uppers.size();
+  counts.lowers = regions;
+  counts.leaves = tree.leaves.size() > 1 ? 2 : 1;
+  counts.leaf_bytes = counts.leaves * nvdb::kFloatLeafBytes;
+}
+
+StreamPlaces::StreamPlaces(std::unique_ptr<PlannedStreams> plan) : plan_(std::move(plan)) {
+  using packed::chunk::kGroupBlocks;
+  std::uint32_t at = packed::chunk::kGroups;
+  for (std::size_t group = 0; group < packed::chunk::kGroupCount; ++group) {
+    bases_[group] = at;
+    for (std::size_t b = 0; b < kGroupBlocks; ++b) {
+      if (kept(group * kGroupBlocks + b)) masks_[group] = static_cast<std::uint16_t>(masks_[group] | 1U << b);
+    }
+    at +=
+        static_cast<std::uint32_t>(packed::chunk::kEndBytes) * static_cast<std::uint32_t>(std::popcount(masks_[group]));
+    for (std::size_t position = group * kGroupBlocks; position < (group + 1) * kGroupBlocks; ++position) {
+      offsets_[position] = at;
+      ordinals_[position] = static_cast<std::uint16_t>(streams_);
+      at += plan_->bytes[position];
+      streams_ += kept(position) ? 1 : 0;
+    }
+  }
+  bases_.back() = at;
+}
+
+std::uint32_t StreamPlaces::chunk_bytes() const {
+  constexpr auto kAlign = static_cast<std::uint32_t>(packed::chunk::kAlignment);
+  return streams_ == 0 ? 0 : (bases_.back() + kAlign - 1) / kAlign * kAlign;
+}
+
+}  // namespace weir

@@ -1,0 +1,110 @@
+// What the blocks of a 128^3 region have in common in a packed file: the value of those without a stream, the range
+// of the others' means, and what each stream takes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "compressor/leaf/fill.h"
+#include "compressor/packed/packed_ladder.h"
+#include "compressor/packed/packed_rule.h"
+#include "compressor/select/leaf_choice.h"
+#include "compressor/select/region_rows.h"
+#include "compressor/select/tree_regions.h"
+#include "compressor/team/team.h"
+#include "format/io/file_system.h"
+#include "format/layout/tree_layout.h"
+#include "format/packed/block_constants.h"
+#include "format/nanovdb/packed_data.h"
+
+namespace weir {
+
+struct SharedValues {
+  float value = 0;  ///< what blocks without a stream read: the commonest value of uniform blocks, else the mean
+  MeanRange means;  ///< of the blocks that are not uniform; {0, 0} where there is none
+};
+
+/// Of the region with those rows, in their order; `leaves` is the leaf lattice.
+SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill);
+
+/// Bytes of a block's stream at a level; 0 where the level is none, or cannot be had.
+std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, const MeanRange& means,
+                                  const PackedRule& rule);
+
+/// The streams of a region as planned: bytes and step of each block, 0 bytes where it has none.
+struct PlannedStreams {
+  SharedValues region;
+  std::uint32_t reserved = 0;
+  std::array<std::uint16_t, LeafChoices::kLeaves> bytes{};
+  std::array<std::int16_t, LeafChoices::kLeaves> steps{};  ///< kExactStep: the exact kind
+
+  static constexpr std::int16_t kExactStep = 0x7FFF;
+};
+static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
+
+PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level);
+
+/// Squared error expected of the in-domain voxels of a block at a level but 0.
+double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels);
+
+PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const Fill& fill, const PackedRule& rule,
+                            const LeafChoices& choices);
+
+/// Sets what a packed file of `regions` regions with streams holds of tree nodes, and of `packed_bytes` what is in
+/// every file: header, tables and region table.
+void set_packed_counts(const PackedRule& rule, const TreeRegions& tree, std::uint64_t regions, NodeCounts& counts);
+
+/// Plans of regions by index. Thread-safe for different regions.
+class PlannedStreamsStore {
+ public:
+  PlannedStreamsStore(std::unique_ptr<File> file, std::int64_t regions) : file_(std::move(file)) {
+    file_->preallocate(static_cast<std::uint64_t>(regions) * sizeof(PlannedStreams));
+  }
+  void write(std::int64_t region, const PlannedStreams& plan) {
+    file_->write_at(at(region), std::as_bytes(std::span(&plan, 1)));
+  }
+  std::unique_ptr<PlannedStreams> read(std::int64_t region) const {
+    auto plan = std::make_unique<PlannedStreams>();
+    file_->read_at(at(region), std::as_writable_bytes(std::span(plan.get(), 1)));
+    return plan;
+  }
+  /// After each rank has written those of its regions.
+  void publish(Team& team) { team.publish(*file_); }
+
+ private:
+  static std::uint64_t at(std::int64_t region) { return static_cast<std::uint64_t>(region) * sizeof(PlannedStreams); }
+  std::unique_ptr<File> file_;
+};
+
+/// Where the streams of a region lie in its chunk.
+class StreamPlaces {
+ public:
+  explicit StreamPlaces(std::unique_ptr<PlannedStreams> plan);
+
+  const PlannedStreams& plan() const { return *plan_; }
+  bool kept(std::size_t position) const { return plan_->bytes[position] > 0; }
+  std::uint32_t bytes(std::size_t position) const { return plan_->bytes[position]; }
+  /// From the chunk's start.
+  std::uint32_t offset(std::size_t position) const { return offsets_[position]; }
+  /// Streams before this position.
+  std::uint32_t ordinal(std::size_t position) const { return ordinals_[position]; }
+  /// Base of a group of 16 positions from the chunk's start; of group 256: the end of the last stream.
+  std::uint32_t base(std::size_t group) const { return bases_[group]; }
+  /// Bit b: position 16 * group + b has a stream.
+  std::uint16_t mask(std::size_t group) const { return masks_[group]; }
+  std::uint32_t streams() const { return streams_; }
+  /// Of the chunk; 0 without streams.
+  std::uint32_t chunk_bytes() const;
+
+ private:
+  std::unique_ptr<PlannedStreams> plan_;
+  std::array<std::uint32_t, packed::chunk::kGroupCount + 1> bases_{};
+  std::array<std::uint16_t, packed::chunk::kGroupCount> masks_{};
+  std::array<std::uint32_t, LeafChoices::kLeaves> offsets_{};
+  std::array<std::uint16_t, LeafChoices::kLeaves> ordinals_{};
+  std::uint32_t streams_ = 0;
+};
+
+}  // namespace weir

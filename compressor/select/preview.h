@@ -1,0 +1,10 @@
+// The choice of what readers of others see in a packed file.
+#pragma once
+
+namespace weir {
+
+/// Whether the tree of a packed file holds each block's mean, for readers of others. automatic: where that takes at
+/// most a tenth of the file.
+enum class Preview { automatic, on, off };
+
+}  // namespace weir

@@ -1,0 +1,23 @@
+// The blocks of a packed grid, of its packed data alone: the tree is never looked at.
+#pragma once
+
+#include <functional>
+
+#include "format/nanovdb/grid_block.h"
+#include "format/nanovdb/packed_data.h"
+
+namespace weir {
+
+/// What covers voxel `i` (any coordinates): a block of 8^3, a region of 128^3 without a chunk, or `background` for
+/// 128^3 voxels outside the regions. Throws as PackedData::stream.
+GridBlock packed_block_at(const PackedData& data, float background, const Index3& i);
+
+/// Calls `visit` for all blocks that touch the index box, region by region in the order of the region table; within a
+/// region x-major, z fastest. Throws as PackedData::stream.
+void for_each_packed_block(const PackedData& data, const std::function<void(const GridBlock&)>& visit);
+
+/// The same for the region at lattice position `position`.
+void for_each_packed_block(const PackedData& data, const Index3& position,
+                           const std::function<void(const GridBlock&)>& visit);
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// What the decoder of a packed block needs besides its stream (FORMAT.md, "Packed data"): the file's constants and
+// the range of means of the block's region. No standard library in here: kernels include it.
+#pragma once
+
+#include <cstdint>
+
+namespace weir {
+
+/// Contexts of the entropy coder: 4 bands of 24 levels for transformed blocks, 24 levels for residuals.
+inline constexpr unsigned kPackedLevels = 24;
+inline constexpr unsigned kPackedBands = 4;
+inline constexpr unsigned kPackedTables = kPackedLevels * (kPackedBands + 1);
+inline constexpr unsigned kPackedSymbols = 16;
+
+struct BlockConstants {
+  float minimum = 0;  ///< decoded values are clamped to [minimum, maximum], but for exact kinds
+  float maximum = 0;
+  std::int32_t coarsest = 0;  ///< step number of a step field of 0
+  float lattice_minimum = 0;
+  float lattice_quantum = 0;       ///< 0: the file has no lattice
+  std::uint32_t lattice_bits = 0;  ///< of a code on the file's lattice
+  float below_one = 0;             ///< a coefficient of magnitude 1 decodes to (1 - below_one) steps
+  float below_more = 0;            ///< one of magnitude m >= 2 to (m - below_more) steps
+  /// kPackedTables x kPackedSymbols cumulative frequencies of a total of 4096.
+  const std::uint16_t* tables = nullptr;
+};
+
+/// Of the blocks' means in a region of 128^3 voxels; finite, low <= high.
+struct MeanRange {
+  float low = 0;
+  float high = 0;
+};
+
+}  // namespace weir

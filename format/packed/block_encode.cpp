@@ -1,0 +1,219 @@
+#include "format/packed/block_encode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "format/base/simd.h"
+#include "format/packed/block_decode.h"
+#include "format/packed/transpose_lanes.h"
+
+namespace weir {
+namespace {
+
+constexpr float kLargestValue = 1e30F;
+constexpr float kLeastRange = 1e-30F;
+constexpr float kDeadZone = 0.6F;
+constexpr float kRounding = 0.42F;
+
+// The forward transform of eight numbers each in its lane; the transpose of inverse_transform_8.
+template <typename T>
+[[gnu::always_inline]] inline void transform_8(T (&x)[8]) {
+  constexpr float c1 = kCosine[1], c2 = kCosine[2], c3 = kCosine[3], c4 = kCosine[4], c5 = kCosine[5], c6 = kCosine[6],
+                  c7 = kCosine[7];
+  const T s0 = x[0] + x[7], s1 = x[1] + x[6], s2 = x[2] + x[5], s3 = x[3] + x[4];
+  const T d0 = x[0] - x[7], d1 = x[1] - x[6], d2 = x[2] - x[5], d3 = x[3] - x[4];
+  const T e0 = s0 + s3, e1 = s1 + s2, f0 = s0 - s3, f1 = s1 - s2;
+  x[0] = c4 * (e0 + e1);
+  x[4] = c4 * (e0 - e1);
+  x[2] = c2 * f0 + c6 * f1;
+  x[6] = c6 * f0 - c2 * f1;
+  x[1] = c1 * d0 + c3 * d1 + c5 * d2 + c7 * d3;
+  x[3] = c3 * d0 - c7 * d1 - c1 * d2 - c5 * d3;
+  x[5] = c5 * d0 - c1 * d1 + c7 * d2 + c3 * d3;
+  x[7] = c7 * d0 - c5 * d1 + c3 * d2 - c1 * d3;
+}
+
+WEIR_SIMD void forward_transform(float* values) {
+  for (unsigned x = 0; x < 8; ++x) {
+    Floats8 rows[8];
+    std::memcpy(rows, values + 64 * x, sizeof rows);
+    transform_8(rows);  // along y
+    transpose_8(rows);
+    transform_8(rows);  // along z
+    transpose_8(rows);
+    std::memcpy(values + 64 * x, rows, sizeof rows);
+  }
+  for (unsigned y = 0; y < 8; ++y) {
+    Floats8 rows[8];
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], values + 64 * x + 8 * y, sizeof rows[x]);
+    transform_8(rows);  // along x
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(values + 64 * x + 8 * y, &rows[x], sizeof rows[x]);
+  }
+}
+
+// What quantise_rows has found.
+struct Quantised {
+  double squared_error;
+  std::int32_t last_place;  // that is not zero; 0 where all are
+};
+
+// Magnitudes at a step by index; rows whose largest coefficient is below the dead zone are zero.
+WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* largest, const double* energy, float step,
+                                  const std::int32_t* places, MagnitudeRows& magnitudes) {
+  const float scale = 1.0F / step;
+  const float least = kDeadZone * step * 0.999F;
+  Doubles8 sum{};
+  double dropped = 0;
+  Ints8 last{};
+  const Floats8 none{};
+  const Ints8 zero{};
+  for (unsigned row = 0; row < 64; ++row) {
+    std::int32_t* out = magnitudes.row(row);
+    if (largest[row] < least) {
+      dropped += energy[row];
+      std::memcpy(out, &zero, sizeof zero);
+      continue;
+    }
+    Floats8 c;
+    std::memcpy(&c, coefficients + 8 * row, sizeof c);
+    const Floats8 size = c < 0 ? -c : c;
+    const Floats8 scaled = size * scale;
+    Ints8 m = __builtin_convertvector(scaled + kRounding, Ints8);
+    m = m < 1 ? zero + 1 : m;
+    m = scaled < kDeadZone ? zero : m;
+    std::memcpy(out, &m, sizeof m);
+    const Floats8 whole = __builtin_convertvector(m, Floats8);
+    const Floats8 below = m == 1 ? kBelowOne - none : kBelowMore - none;
+    Floats8 decoded = (whole - below) * step;
+    decoded = m == 0 ? none : decoded;
+    const Doubles8 error = __builtin_convertvector(size - decoded, Doubles8);
+    sum += error * error;
+    Ints8 place;
+    std::memcpy(&place, places + 8 * row, sizeof place);
+    place = m == 0 ? zero : place;
+    last = place > last ? place : last;
+  }
+  double total = dropped;
+  std::int32_t last_place = 0;
+  for (int l = 0; l < 8; ++l) {
+    total += sum[l];
+    last_place = last[l] > last_place ? last[l] : last_place;
+  }
+  return {total, last_place};
+}
+
+constexpr std::array<std::int32_t, 512> make_places() {
+  std::array<std::int32_t, 512> places{};
+  for (unsigned index = 0; index < 512; ++index) places[index] = kBlockScan.place[index];
+  return places;
+}
+
+alignas(64) constexpr std::array<std::int32_t, 512> kPlaces = make_places();
+
+// Coefficients of more steps than that are not coded.
+constexpr double kMostMagnitude = 1e6;
+
+}  // namespace
+
+TransformBlock::TransformBlock(const std::uint16_t* tables) : rows_(symbol_costs(tables)) {}
+
+bool TransformBlock::set(std::span<const float, 512> values) {
+  float low = values[0];
+  float high = values[0];
+  double sum = 0;
+  for (const float v : values) {
+    low = v < low ? v : low;
+    high = v > high ? v : high;
+    sum += static_cast<double>(v);
+  }
+  mean_ = static_cast<float>(sum / 512);
+  const float range = high - low;
+  if (!(std::fabs(low) < kLargestValue && std::fabs(high) < kLargestValue)) return false;
+  if (range < kLeastRange) return false;
+  std::array<float, 512> block;
+  for (std::size_t i = 0; i < 512; ++i) block[i] = values[i] - mean_;
+  forward_transform(block.data());
+  block[0] = 0;
+  coefficients_ = block;
+  float largest = 0;
+  energy_ = 0;
+  for (unsigned row = 0; row < 64; ++row) {
+    float most = 0;
+    double squares = 0;
+    for (unsigned k = 0; k < 8; ++k) {
+      const float c = block[8 * row + k];
+      most = std::max(most, std::fabs(c));
+      squares += static_cast<double>(c) * static_cast<double>(c);
+    }
+    row_largest_[row] = most;
+    row_energy_[row] = squares;
+    largest = std::max(largest, most);
+    energy_ += squares;
+  }
+  largest_ = static_cast<double>(largest);
+  return true;
+}
+
+TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
+  const float size = step_size(step);
+  if (largest_ / static_cast<double>(size) > kMostMagnitude) return {1U << 20U, 0};
+  const Quantised quantised =
+      quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), size, kPlaces.data(), magnitudes_);
+  Cost cost{8, quantised.squared_error};
+  if (quantised.last_place == 0) return cost;
+  const unsigned end = static_cast<unsigned>(quantised.last_place) / kEndUnit + 1;
+  const auto [symbols, raw, nonzero] = rows_.of(magnitudes_, end);
+  const unsigned states = states_of(end);
+  // Each state begins at 16 bits, which hold signs and the mean's low bits, and ends in whole bytes of 3 or more.
+  const std::uint32_t coded = symbols + 256 * (raw + 16 * states) + 64;
+  const std::uint32_t back = std::max(3 * states, (coded + 2047) / 2048 + (states - 1));
+  const auto spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
+  constexpr std::int32_t kLeastMeanBits = 6;
+  const std::int32_t front = 5 + static_cast<std::int32_t>(states) + std::max(spare, -kLeastMeanBits);
+  cost.bits = static_cast<std::uint32_t>(8 + front + static_cast<std::int32_t>(8 * back));
+  return cost;
+}
+
+void TransformBlock::quantise(std::int32_t step) {
+  quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), step_size(step), kPlaces.data(),
+                magnitudes_);
+  for (unsigned place = 0; place < 512; ++place) {
+    const unsigned index = kBlockScan.index[place];
+    values_.magnitudes[place] = magnitudes_.at(index);
+    values_.negative[place] = coefficients_[index] < 0;
+  }
+}
+
+void TransformBlock::encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
+                            std::span<std::byte> out) {
+  quantise(step);
+  StreamFront front;
+  front.number_bits = mean_bits(range, step);
+  const float width = range.high - range.low;
+  const auto last = static_cast<std::uint32_t>(width / mean_quantum(step)) + 1;
+  const double code = std::nearbyint((static_cast<double>(mean_) - static_cast<double>(range.low)) /
+                                     static_cast<double>(mean_quantum(step)));
+  front.number = static_cast<std::uint32_t>(std::clamp(code, 0.0, static_cast<double>(last)));
+  const auto head = [&](StreamKind kind) {
+    return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
+  };
+  for (;;) {
+    front.end = end_of(values_);
+    if (front.end == 0) break;
+    out[0] = head(StreamKind::transform);
+    if (encode_values({constants.tables, true}, front, values_, out.subspan(1))) return;
+    for (unsigned place = kEndUnit * front.end; place > 0; --place) {
+      if (values_.magnitudes[place - 1] == 0) continue;
+      values_.magnitudes[place - 1] = 0;
+      break;
+    }
+  }
+  std::fill(out.begin(), out.end(), std::byte{0});
+  out[0] = head(StreamKind::mean);
+  for (unsigned i = 0; i < front.number_bits && 1 + i / 8 < out.size(); ++i) {
+    if ((front.number >> i & 1U) != 0) out[1 + i / 8] |= static_cast<std::byte>(1U << (i % 8));
+  }
+}
+
+}  // namespace weir

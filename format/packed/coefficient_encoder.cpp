@@ -1,0 +1,196 @@
+#include "format/packed/coefficient_encoder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace weir {
+namespace {
+
+constexpr std::uint32_t kTotal = 1U << kFrequencyBits;
+// A symbol, or raw bits: low and frequency of a total of 2^bits.
+struct Piece {
+  std::uint32_t low;
+  std::uint16_t frequency;  // 0: `bits` raw bits of value `low`
+  std::uint8_t bits;
+  std::uint8_t state;
+};
+
+// At most, for each value: a symbol, five bits of an escape, twice two halves of raw bits.
+constexpr std::size_t kMostPieces = 512 * 6;
+
+class PieceList {
+ public:
+  void add_symbol(unsigned state, const std::uint16_t* table, unsigned symbol) {
+    const std::uint32_t high = symbol + 1 < kPackedSymbols ? table[symbol + 1] : kTotal;
+    pieces_[count_++] = {table[symbol], static_cast<std::uint16_t>(high - table[symbol]), 0,
+                         static_cast<std::uint8_t>(state)};
+  }
+  void add_raw(unsigned state, std::uint32_t value, unsigned bits) {
+    for (unsigned done = 0; done < bits;) {
+      const unsigned take = std::min(bits - done, 16U);
+      pieces_[count_++] = {value >> done & ((1U << take) - 1U), 0, static_cast<std::uint8_t>(take),
+                           static_cast<std::uint8_t>(state)};
+      done += take;
+    }
+  }
+  std::span<const Piece> pieces() const { return {pieces_.data(), count_}; }
+
+ private:
+  std::array<Piece, kMostPieces> pieces_;
+  std::size_t count_ = 0;
+};
+
+void list_pieces(const CoderContexts& contexts, unsigned end, const ScanValues& values, PieceList& list) {
+  std::array<std::uint32_t, 513> by_index{};
+  const BlockScan& scan = kBlockScan;
+  const unsigned states = states_of(end);
+  for (unsigned place = 1; place < kEndUnit * end; ++place) {
+    const unsigned s = states == 2 ? place & 1U : 0;
+    std::uint32_t sum = 0;
+    for (const std::uint16_t near : scan.neighbour[place]) sum += std::min(by_index[near], kMostOfNeighbour);
+    const std::uint32_t t = scan.weight[place] * sum;
+    const unsigned level = t < kLevelSums ? scan.level[t] : kPackedLevels - 1;
+    const unsigned context = (contexts.bands ? scan.band[place] * kPackedLevels : 0) + level;
+    const std::uint32_t m = values.magnitudes[place];
+    const unsigned extra = extra_bits(t);
+    const std::uint32_t high = m >> extra;
+    const std::uint16_t* table = contexts.tables + std::size_t{kPackedSymbols} * context;
+    list.add_symbol(s, table, std::min(high, kEscape));
+    if (high >= kEscape) {
+      const std::uint32_t over = high - (kEscape - 1);
+      const auto length = static_cast<unsigned>(std::bit_width(over) - 1);
+      list.add_raw(s, length, 5);
+      list.add_raw(s, over - (1U << length), length);
+    }
+    list.add_raw(s, m & ((1U << extra) - 1U), extra);
+    by_index[scan.index[place]] = m;
+  }
+}
+
+// Words in the order in which they are made, which is that of their addresses.
+class RansEncoder {
+ public:
+  RansEncoder(std::uint32_t payload) : state_{kLeastState | (payload & 0xFFFFU), kLeastState | payload >> 16U} {}
+
+  void put(const Piece& piece) {
+    std::uint32_t& x = state_[piece.state];
+    if (piece.frequency == 0) {
+      // Decoding shifts right and then reads a word where the state is below the least.
+      if (x >> (32U - piece.bits) != 0) emit(x);
+      x = x << piece.bits | piece.low;
+      return;
+    }
+    const std::uint64_t limit = static_cast<std::uint64_t>(piece.frequency) << (32U - kFrequencyBits);
+    if (x >= limit) emit(x);
+    x = (x / piece.frequency << kFrequencyBits) + x % piece.frequency + piece.low;
+  }
+  std::span<const std::uint16_t> words() const { return {words_.data(), count_}; }
+  std::uint32_t state(unsigned s) const { return state_[s]; }
+
+ private:
+  void emit(std::uint32_t& x) {
+    words_[count_++] = static_cast<std::uint16_t>(x & 0xFFFFU);
+    x >>= 16U;
+  }
+
+  std::array<std::uint32_t, 2> state_;
+  std::array<std::uint16_t, kMostPieces> words_;
+  std::size_t count_ = 0;
+};
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::span<std::byte> out) : out_(out) {}
+  void write(std::uint32_t value, unsigned bits) {
+    for (unsigned i = 0; i < bits; ++i, ++at_) {
+      if (at_ / 8 >= out_.size()) continue;
+      if ((value >> i & 1U) != 0) out_[at_ / 8] |= std::byte{static_cast<unsigned char>(1U << (at_ % 8))};
+    }
+  }
+  std::uint32_t bytes() const { return static_cast<std::uint32_t>((at_ + 7) / 8); }
+
+ private:
+  std::span<std::byte> out_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+unsigned end_of(const ScanValues& values) {
+  for (unsigned place = 512; place > 1; --place) {
+    if (values.magnitudes[place - 1] != 0) return (place + kEndUnit - 1) / kEndUnit;
+  }
+  return 0;
+}
+
+bool encode_values(const CoderContexts& contexts, const StreamFront& front, const ScanValues& values,
+                   std::span<std::byte> out, std::uint32_t* needed) {
+  std::fill(out.begin(), out.end(), std::byte{0});
+  BitWriter bits(out);
+  bits.write(front.end_bits == 5 ? front.end - 1 : front.end, front.end_bits);
+  if (front.end == 0) {
+    bits.write(front.number, front.number_bits);
+    if (needed != nullptr) *needed = bits.bytes();
+    return bits.bytes() <= out.size();
+  }
+  const unsigned states = states_of(front.end);
+  const unsigned capacity = 16 * states;
+  std::array<bool, 512> signs{};
+  std::uint32_t nonzero = 0;
+  for (unsigned place = 1; place < kEndUnit * front.end; ++place) {
+    if (values.magnitudes[place] != 0) signs[nonzero++] = values.negative[place];
+  }
+  const std::uint32_t late = std::min(nonzero, capacity);
+  const unsigned moved = std::min(capacity - late, front.number_bits);
+  std::uint32_t payload = 0;
+  for (std::uint32_t i = 0; i < late; ++i) payload |= (signs[nonzero - late + i] ? 1U : 0U) << i;
+  if (moved > 0) {
+    const std::uint32_t low = moved == 32 ? front.number : front.number & ((1U << moved) - 1U);
+    payload |= low << late;
+  }
+
+  PieceList list;
+  list_pieces(contexts, front.end, values, list);
+  RansEncoder coder(payload);
+  const std::span<const Piece> pieces = list.pieces();
+  for (std::size_t i = pieces.size(); i > 0; --i) coder.put(pieces[i - 1]);
+
+  std::array<unsigned, 2> state_bytes{};
+  for (unsigned s = 0; s < states; ++s) {
+    state_bytes[s] = coder.state(s) >> 24U == 0 ? 3 : 4;
+    bits.write(state_bytes[s] == 3 ? 1 : 0, 1);
+  }
+  bits.write(moved == 32 ? 0 : front.number >> moved, front.number_bits - moved);
+  for (std::uint32_t i = 0; i + late < nonzero; ++i) bits.write(signs[i] ? 1 : 0, 1);
+  const std::size_t back = coder.words().size() * 2 + state_bytes[0] + state_bytes[1];
+  if (needed != nullptr) *needed = static_cast<std::uint32_t>(bits.bytes() + back);
+  if (bits.bytes() + back > out.size()) return false;
+  std::size_t at = out.size() - back;
+  for (const std::uint16_t word : coder.words()) {
+    out[at++] = static_cast<std::byte>(word & 0xFFU);
+    out[at++] = static_cast<std::byte>(word >> 8U);
+  }
+  for (unsigned s = states; s > 0; --s) {
+    for (unsigned b = 0; b < state_bytes[s - 1]; ++b)
+      out[at++] = static_cast<std::byte>(coder.state(s - 1) >> (8 * b) & 0xFFU);
+  }
+  return true;
+}
+
+SymbolCosts symbol_costs(const std::uint16_t* tables) {
+  SymbolCosts costs{};
+  for (unsigned context = 0; context < kPackedTables; ++context) {
+    const std::uint16_t* table = tables + std::size_t{kPackedSymbols} * context;
+    for (unsigned symbol = 0; symbol < kPackedSymbols; ++symbol) {
+      const std::uint32_t high = symbol + 1 < kPackedSymbols ? table[symbol + 1] : kTotal;
+      const double share = static_cast<double>(high - table[symbol]) / kTotal;
+      costs[context][symbol] = static_cast<std::uint16_t>(std::lround(-256 * std::log2(share)));
+    }
+  }
+  return costs;
+}
+
+unsigned escape_bits(std::uint32_t high) { return 5 + static_cast<unsigned>(std::bit_width(high - (kEscape - 1)) - 1); }
+
+}  // namespace weir

@@ -1,0 +1,36 @@
+// Exact streams of a block: predicted codes of a lattice or of the floats' own order, or the values as they are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "format/packed/block_constants.h"
+
+namespace weir {
+
+/// Values fl(fl(code * quantum) + minimum).
+struct Lattice {
+  float minimum = 0;
+  float quantum = 0;
+  std::uint32_t bits = 0;  ///< of a code, at most 24
+};
+
+/// Most bytes of a stream: raw values.
+inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
+
+/// Whether values on no lattice are predicted as whole numbers in the floats' order; else they are raw.
+enum class FloatOrder { used, unused };
+
+/// Writes the shortest stream that gives every bit of 512 values (x << 6 | y << 3 | z) back: on the file's lattice,
+/// that of `constants`, or where they do not lie on it on `own`, or on floats in order; or raw, or one value. Returns
+/// its bytes, at most kRawStreamBytes; `out` has room for as many.
+std::uint32_t encode_exact(const BlockConstants& constants, const std::optional<Lattice>& own,
+                           std::span<const float, 512> values, std::span<std::byte> out,
+                           FloatOrder order = FloatOrder::used);
+
+/// The values as they are.
+std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte> out);
+
+}  // namespace weir

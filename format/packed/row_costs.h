@@ -1,0 +1,47 @@
+// What the coded values of a block cost, for many steps of the quantiser in turn: eight coefficients of a row at once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "format/packed/coefficient_encoder.h"
+
+namespace weir {
+
+/// Rows of eight magnitudes by index, each behind eight lanes of which the last is zero, after eight rows of zeros.
+struct MagnitudeRows {
+  static constexpr unsigned kStride = 16;
+  alignas(64) std::int32_t padded[kStride * 72] = {};
+
+  std::int32_t* row(unsigned i) { return padded + kStride * (i + 8) + 8; }
+  const std::int32_t* row(unsigned i) const { return padded + kStride * (i + 8) + 8; }
+  std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(row(index / 8)[index % 8]); }
+};
+
+class RowCosts {
+ public:
+  /// Of the contexts of transformed blocks in those tables.
+  explicit RowCosts(const SymbolCosts& costs);
+
+  struct Sum {
+    std::uint32_t symbols = 0;  ///< in 1/256 bits
+    std::uint32_t raw = 0;      ///< bits of escapes and extra ones
+    std::uint32_t nonzero = 0;
+  };
+  /// Of places 1 to kEndUnit * end - 1; magnitudes are below 2^20.
+  Sum of(const MagnitudeRows& magnitudes, unsigned end) const;
+
+  struct Tables {
+    alignas(64) std::int32_t cost[kPackedBands * kPackedLevels * kPackedSymbols];
+    alignas(64) std::int32_t level[512];   // by the sum of the neighbours, all that are larger like the last
+    alignas(64) std::int32_t weight[512];  // by index
+    alignas(64) std::int32_t place[512];
+    alignas(64) std::int32_t context[512];  // of level 0
+    std::int32_t first_place[64];           // the least of each row
+  };
+
+ private:
+  Tables tables_;
+};
+
+}  // namespace weir

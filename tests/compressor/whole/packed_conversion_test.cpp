@@ -1,0 +1,247 @@
+// Packed files: exact sizes, certificates of what weir's reader decodes, budgets kept, the same bytes whatever the
+// threads, the memory and the shape of access, and what stock readers make of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/nanovdb/read_box.h"
+#include "tests/compressor/support/converted.h"
+#include "tests/compressor/support/hard_cases.h"
+#include "tests/compressor/support/memory_volume.h"
+#include "tests/compressor/support/random_volumes.h"
+#include "tests/support/message_of_error.h"
+
+namespace weir::packed_conversion_test {
+namespace {
+
+using test::Converted;
+using test::MemoryVolume;
+
+constexpr Box kDomain{{-9, 3, 120}, {61, 70, 181}};
+
+float smooth(const Index3& i) {
+  const auto x = static_cast<double>(i.x);
+  const auto y = static_cast<double>(i.y);
+  const auto z = static_cast<double>(i.z);
+  return static_cast<float>(std::sin(x * 0.11) * std::cos(y * 0.07 + z * 0.05) + 0.3 * std::sin(z * 0.21) + 2);
+}
+
+ConversionOptions packed(Budget::Kind kind, double value) {
+  ConversionOptions options;
+  options.encoding = Encoding::packed;
+  options.budget.kind = kind;
+  if (kind == Budget::Kind::size) {
+    options.budget.bytes = static_cast<std::uint64_t>(value);
+  } else if (kind == Budget::Kind::rate) {
+    options.budget.rate = value;
+  } else {
+    options.budget.target = value;
+  }
+  return options;
+}
+
+std::vector<float> decoded(const Converted& converted, const Box& domain) {
+  std::vector<float> values(static_cast<std::size_t>(domain.voxels()));
+  read_box(converted.grid(), domain, values);
+  return values;
+}
+
+struct Loss {
+  double squared = 0;
+  double max_abs = 0;
+  bool exact = true;
+  std::uint64_t finite = 0;
+};
+
+Loss loss_of(const MemoryVolume& volume, const Converted& converted, float background, NonFinitePolicy policy) {
+  const Box domain = volume.info().domain();
+  const std::vector<float> values = decoded(converted, domain);
+  Loss loss;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    float source = volume.values()[i];
+    if (std::isfinite(source)) {
+      const double error = std::fabs(static_cast<double>(source) - static_cast<double>(values[i]));
+      loss.squared += error * error;
+      loss.max_abs = std::max(loss.max_abs, error);
+      ++loss.finite;
+    } else if (policy == NonFinitePolicy::background) {
+      source = background;
+    }
+    loss.exact = loss.exact && test::bits_of(source) == test::bits_of(values[i]);
+  }
+  return loss;
+}
+
+void expect_certificate(const MemoryVolume& volume, const Converted& converted, const ConversionOptions& options,
+                        const std::string& what) {
+  const Loss loss =
+      loss_of(volume, converted, static_cast<float>(converted.sidecar.background.value), options.non_finite);
+  const Sidecar::CertifiedError& error = converted.sidecar.error;
+  const double mse = loss.finite == 0 ? 0 : loss.squared / static_cast<double>(loss.finite);
+  EXPECT_NEAR(error.mse, mse, mse * 1e-9) << what;
+  EXPECT_EQ(error.max_abs, loss.max_abs) << what;
+  EXPECT_EQ(error.lossless, loss.exact) << what;
+}
+
+class PackedSize : public testing::TestWithParam<Preview> {};
+
+TEST_P(PackedSize, EveryAskedSizeIsWrittenAndMoreBytesNeverLoseMore) {
+  MemoryVolume volume(kDomain, smooth);
+  ConversionOptions options = packed(Budget::Kind::size, 0);
+  options.preview = GetParam();
+  const std::uint64_t least = test::minimum_size(volume, options);
+  ConversionOptions whole = packed(Budget::Kind::lossless, 0);
+  whole.preview = GetParam();
+  const std::uint64_t most = test::convert(volume, whole).file.size();
+  double last = 1e300;
+  for (std::uint64_t i = 0; i <= 40; ++i) {
+    const std::uint64_t bytes = least + (most - least) * i * i / 1600 + i % 7;
+    options.budget.bytes = bytes;
+    const Converted converted = test::convert(volume, options);
+    ASSERT_EQ(converted.file.size(), bytes);
+    EXPECT_EQ(converted.sidecar.file.bytes, bytes);
+    expect_certificate(volume, converted, options, std::to_string(bytes));
+    // What is chosen is chosen by coefficients rounded to float: their errors are the values' to parts of a thousand.
+    EXPECT_LE(converted.sidecar.error.mse, last * 1.001) << bytes;
+    last = converted.sidecar.error.mse;
+    EXPECT_EQ(converted.grid().index_bbox(), kDomain);
+  }
+  options.budget.bytes = most + static_cast<std::uint64_t>(kDomain.voxels()) * 8;
+  EXPECT_TRUE(test::convert(volume, options).sidecar.error.lossless);
+}
+
+INSTANTIATE_TEST_SUITE_P(Previews, PackedSize, testing::Values(Preview::on, Preview::off),
+                         [](const auto& p) { return p.param == Preview::on ? "on" : "off"; });
+
+TEST(PackedConversion, BytesDoNotDependOnThreadsMemoryOrAccess) {
+  MemoryVolume volume(kDomain, smooth);
+  ConversionOptions options = packed(Budget::Kind::rate, 20);
+  const Converted first = test::convert(volume, options);
+  for (const std::size_t threads : {1U, 2U, 5U}) {
+    for (const AccessShape& access :
+         {AccessShape{4, {70, 67, 1}, {0, 0, 0}}, AccessShape{4, {16, 16, 16}, {0, 0, 0}}}) {
+      volume.set_access(access);
+      options.threads = threads;
+      options.memory = std::uint64_t{threads == 5 ? 512U : 160U} << 20U;
+      EXPECT_TRUE(test::convert(volume, options).file == first.file) << threads;
+    }
+  }
+}
+
+TEST(PackedConversion, KeepsEveryVoxelWithinTheLargestError) {
+  MemoryVolume volume(kDomain, smooth);
+  std::uint64_t last = 0;
+  for (const double bound : {0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    const ConversionOptions options = packed(Budget::Kind::max_error, bound);
+    const Converted converted = test::convert(volume, options);
+    expect_certificate(volume, converted, options, std::to_string(bound));
+    EXPECT_LE(converted.sidecar.error.max_abs, bound);
+    EXPECT_GE(converted.file.size(), last);
+    last = converted.file.size();
+  }
+}
+
+TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
+  MemoryVolume volume(kDomain, smooth);
+  for (const double psnr : {30.0, 50.0, 70.0, 90.0}) {
+    const ConversionOptions options = packed(Budget::Kind::psnr, psnr);
+    const Converted converted = test::convert(volume, options);
+    expect_certificate(volume, converted, options, std::to_string(psnr));
+    ASSERT_TRUE(converted.sidecar.error.psnr_db.has_value());
+    EXPECT_GE(*converted.sidecar.error.psnr_db, psnr);
+    EXPECT_LE(*converted.sidecar.error.psnr_db, psnr + 1);
+  }
+}
+
+TEST(PackedConversion, LosslessOfIntegersIsShorterThanTheirBytes) {
+  MemoryVolume volume(kDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
+  volume.info().type = ScalarType::uint16;
+  const ConversionOptions options = packed(Budget::Kind::lossless, 0);
+  const Converted converted = test::convert(volume, options);
+  EXPECT_TRUE(converted.sidecar.error.lossless);
+  expect_certificate(volume, converted, options, "integers");
+  EXPECT_LT(converted.file.size(), static_cast<std::uint64_t>(kDomain.voxels()) * 2);
+  ASSERT_TRUE(converted.sidecar.packed.has_value());
+  EXPECT_GT(converted.sidecar.packed->blocks[3], 0U);
+}
+
+TEST(PackedConversion, LosslessOfNoiseIsLittleMoreThanRaw) {
+  std::uint32_t state = 1;
+  MemoryVolume volume(kDomain, [&](const Index3&) {
+    state = state * 1664525U + 1013904223U;
+    return std::ldexp(static_cast<float>(state >> 8U), static_cast<int>(state & 15U) - 24);
+  });
+  ConversionOptions options = packed(Budget::Kind::lossless, 0);
+  options.preview = Preview::off;
+  const Converted converted = test::convert(volume, options);
+  EXPECT_TRUE(converted.sidecar.error.lossless);
+  expect_certificate(volume, converted, options, "noise");
+  const NodeLattice blocks = make_lattice(kDomain, kLeafDim);
+  const auto raw = static_cast<double>(blocks.size() * 2048);
+  EXPECT_LT(static_cast<double>(converted.file.size()), raw * 1.01 + 20000);
+}
+
+TEST(PackedConversion, BlocksWithoutNegativeValuesDecodeToNone) {
+  MemoryVolume volume(kDomain, [](const Index3& i) { return std::max(0.0F, smooth(i) - 2); });
+  const Converted converted = test::convert(volume, packed(Budget::Kind::rate, 40));
+  const std::vector<float> values = decoded(converted, kDomain);
+  EXPECT_GE(*std::min_element(values.begin(), values.end()), 0.0F);
+}
+
+TEST(PackedConversion, SaysWhatOtherReadersSee) {
+  MemoryVolume volume(kDomain, smooth);
+  ConversionOptions options = packed(Budget::Kind::lossless, 0);
+  options.preview = Preview::on;
+  const Converted on = test::convert(volume, options);
+  ASSERT_TRUE(on.sidecar.packed.has_value());
+  EXPECT_TRUE(on.sidecar.packed->preview);
+  // All regions have streams: others see each block's mean.
+  const NodeLattice blocks = make_lattice(kDomain, kLeafDim);
+  double squares = 0;
+  for (std::int64_t b = 0; b < blocks.size(); ++b) {
+    const std::vector<float> values = volume.in(blocks.voxels(blocks.position(b)));
+    double sum = 0;
+    for (const float v : values) sum += static_cast<double>(v);
+    const double mean = sum / static_cast<double>(values.size());
+    for (const float v : values) squares += (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean);
+  }
+  const double mse = squares / static_cast<double>(kDomain.voxels());
+  EXPECT_NEAR(on.sidecar.packed->error_preview.mse, mse, mse * 1e-6);
+}
+
+class PackedHardCases : public testing::TestWithParam<test::HardCase> {};
+
+TEST_P(PackedHardCases, KeepTheirCertificates) {
+  MemoryVolume volume = GetParam().make();
+  for (const NonFinitePolicy policy : test::policies_of(volume)) {
+    for (const Preview preview : {Preview::on, Preview::off}) {
+      ConversionOptions options = packed(Budget::Kind::lossless, 0);
+      options.non_finite = policy;
+      options.preview = preview;
+      const Converted lossless = test::convert(volume, options);
+      EXPECT_TRUE(lossless.sidecar.error.lossless);
+      expect_certificate(volume, lossless, options, "lossless");
+      options.budget.kind = Budget::Kind::size;
+      const std::uint64_t least = test::minimum_size(volume, options);
+      for (const double share : {0.02, 0.3, 0.8}) {
+        // Of floats on no lattice, lossless may take less than the exact blocks of other budgets.
+        const std::uint64_t more = lossless.file.size() > least ? lossless.file.size() - least : 1000;
+        options.budget.bytes = least + static_cast<std::uint64_t>(static_cast<double>(more) * share);
+        const Converted some = test::convert(volume, options);
+        EXPECT_EQ(some.file.size(), options.budget.bytes);
+        expect_certificate(volume, some, options, std::to_string(share));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PackedHardCases, testing::ValuesIn(test::hard_cases()),
+                         [](const auto& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace weir::packed_conversion_test
