@@ -47,10 +47,12 @@ function(weir_install_python)
   install(FILES ${PROJECT_SOURCE_DIR}/bindings/paraview/weir_reader.py DESTINATION ${CMAKE_INSTALL_DATADIR}/weir/paraview)
 endfunction()
 
-# weir_python_tests(): each tests/bindings/python/test_NAME.py as the test python.NAME.
+# weir_python_tests(): each tests/bindings/python/test_NAME.py, and that of the independent decoder in tests/packed, as the
+# test python.NAME.
 function(weir_python_tests)
   add_dependencies(weir_tests weir_python)
-  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/python/test_*.py)
+  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/python/test_*.py
+       ${PROJECT_SOURCE_DIR}/tests/packed/test_*.py)
   foreach(test IN LISTS tests)
     get_filename_component(name ${test} NAME_WE)
     string(REGEX REPLACE "^test_" "python." name ${name})

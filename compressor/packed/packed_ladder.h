@@ -38,11 +38,11 @@ struct PackedLadder {
   std::uint16_t reserved = 0;
   std::array<PackedRung, kMostRungs> rungs{};
 
-  /// Step number of a rung: by whole octaves to where the first coefficient counts, then by half ones, at last by
-  /// whole ones again.
+  /// Step number of a rung: by whole octaves to where the first coefficient counts, then by half ones, by whole ones
+  /// again, and at last, for what is nearly lossless, by two.
   std::int32_t step(std::size_t rung) const {
     const auto r = static_cast<std::int32_t>(rung);
-    return first_step + (r <= 2 ? 2 * r : r <= 12 ? r + 2 : 2 * r - 10);
+    return first_step + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
   }
 };
 static_assert(sizeof(PackedLadder) == 96, "ladders are spilled as they are");

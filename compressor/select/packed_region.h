@@ -16,8 +16,8 @@
 #include "compressor/team/team.h"
 #include "format/io/file_system.h"
 #include "format/layout/tree_layout.h"
-#include "format/packed/block_constants.h"
 #include "format/nanovdb/packed_data.h"
+#include "format/packed/block_constants.h"
 
 namespace weir {
 

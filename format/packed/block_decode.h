@@ -113,21 +113,21 @@ WEIR_HOST_DEVICE inline void inverse_transform_lines(float* values) {
   }
 }
 
-struct LineTransform {
-  WEIR_HOST_DEVICE void operator()(float* values, float mean, const BlockConstants& constants) const {
-    inverse_transform_lines(values);
-    for (unsigned i = 0; i < 512; ++i) values[i] = clamp_to(constants, mean + values[i]);
-  }
-};
+/// The fixed part of a transformed block's stream: its step, and bits of its mean's code. False where it is invalid.
+WEIR_HOST_DEVICE inline bool read_step(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
+                                       std::int32_t& step, unsigned& number_bits) {
+  step = constants.coarsest + static_cast<std::int32_t>(static_cast<unsigned>(stream[0]) >> 2U);
+  if (step < kLeastStep || step > kMostStep) return false;
+  number_bits = mean_bits(range, step);
+  return number_bits != kNoMeanBits;
+}
 
-template <typename Transform>
 WEIR_HOST_DEVICE inline bool decode_transform(const BlockConstants& constants, const BlockScan& scan,
                                               const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
-                                              float* values, const Transform& transform) {
-  const std::int32_t step = constants.coarsest + static_cast<std::int32_t>(static_cast<unsigned>(stream[0]) >> 2U);
-  if (step < kLeastStep || step > kMostStep) return false;
-  const unsigned number_bits = mean_bits(range, step);
-  if (number_bits == kNoMeanBits) return false;
+                                              float* values) {
+  std::int32_t step;
+  unsigned number_bits;
+  if (!read_step(constants, range, stream, step, number_bits)) return false;
   BitReader bits(stream + 1, bytes - 1);
   const unsigned end = bits.read(5) + 1;
   std::uint32_t magnitudes[513] = {};
@@ -138,74 +138,95 @@ WEIR_HOST_DEVICE inline bool decode_transform(const BlockConstants& constants, c
   }
   const float size = step_size(step);
   for (unsigned i = 0; i < 512; ++i) values[i] = coefficient(magnitudes[i], constants, size);
-  transform(values, decode_mean(range, step, code), constants);
+  inverse_transform_lines(values);
+  const float mean = decode_mean(range, step, code);
+  for (unsigned i = 0; i < 512; ++i) values[i] = clamp_to(constants, mean + values[i]);
   return true;
+}
+
+/// The fixed part of a lattice block's stream.
+struct LatticeHead {
+  unsigned predictor = 0;
+  LatticeKind kind = LatticeKind::file;
+  float minimum = 0;
+  float quantum = 0;
+  unsigned base_bits = 0;
+  const std::byte* front = nullptr;  ///< what follows
+};
+
+/// False where the stream is invalid.
+WEIR_HOST_DEVICE inline bool read_lattice_head(const BlockConstants& constants, const std::byte* stream,
+                                               std::uint32_t bytes, LatticeHead& read) {
+  const auto head = static_cast<unsigned>(stream[0]);
+  read.predictor = head >> 2U & 3U;
+  read.kind = static_cast<LatticeKind>(head >> 4U & 3U);
+  if (head >> 6U != 0 || read.kind > LatticeKind::ordered) return false;
+  read.minimum = constants.lattice_minimum;
+  read.quantum = constants.lattice_quantum;
+  read.base_bits = constants.lattice_bits;
+  read.front = stream + 1;
+  if (read.kind == LatticeKind::own) {
+    if (bytes < 9) return false;
+    read.minimum = load_bytes<float>(read.front);
+    read.quantum = load_bytes<float>(read.front + 4);
+    read.front += 8;
+    read.base_bits = 24;
+  } else if (read.kind == LatticeKind::ordered) {
+    read.base_bits = 32;
+  }
+  return true;
+}
+
+/// False where a code is too large.
+WEIR_HOST_DEVICE inline bool values_of_codes(const LatticeHead& head, const std::uint32_t* codes, float* values) {
+  std::uint32_t all = 0;
+  for (unsigned i = 0; i < 512; ++i) {
+    if (head.kind == LatticeKind::ordered) {
+      values[i] = float_of_ordered(codes[i]);
+      continue;
+    }
+    all |= codes[i];
+    const float product = static_cast<float>(codes[i]) * head.quantum;
+    values[i] = product + head.minimum;
+  }
+  return all >> 24U == 0;
+}
+
+WEIR_HOST_DEVICE inline CoderContexts residual_contexts(const BlockConstants& constants) {
+  return {constants.tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands, false};
 }
 
 WEIR_HOST_DEVICE inline bool decode_lattice(const BlockConstants& constants, const BlockScan& scan,
                                             const std::byte* stream, std::uint32_t bytes, float* values) {
-  const auto head = static_cast<unsigned>(stream[0]);
-  const unsigned predictor = head >> 2U & 3U;
-  const auto lattice = static_cast<LatticeKind>(head >> 4U & 3U);
-  if (head >> 6U != 0 || lattice > LatticeKind::ordered) return false;
-  float minimum = constants.lattice_minimum;
-  float quantum = constants.lattice_quantum;
-  unsigned number_bits = constants.lattice_bits;
-  const std::byte* front = stream + 1;
-  if (lattice == LatticeKind::own) {
-    if (bytes < 9) return false;
-    minimum = load_bytes<float>(front);
-    quantum = load_bytes<float>(front + 4);
-    front += 8;
-    number_bits = 24;
-  } else if (lattice == LatticeKind::ordered) {
-    number_bits = 32;
-  }
-  BitReader bits(front, static_cast<std::uint32_t>(stream + bytes - front));
+  LatticeHead head;
+  if (!read_lattice_head(constants, stream, bytes, head)) return false;
+  BitReader bits(head.front, static_cast<std::uint32_t>(stream + bytes - head.front));
   const unsigned end = bits.read(6);
   if (end > 512 / kEndUnit) return false;
   std::uint32_t codes[513] = {};
   std::uint32_t base = 0;
-  const CoderContexts contexts{constants.tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands, false};
-  if (!decode_values(scan, contexts, front, stream + bytes, end, bits, number_bits, codes, base)) return false;
-  codes[0] = base;
-  undo_prediction(predictor, lattice == LatticeKind::ordered, codes);
-  for (unsigned i = 0; i < 512; ++i) {
-    if (lattice == LatticeKind::ordered) {
-      values[i] = float_of_ordered(codes[i]);
-      continue;
-    }
-    if (codes[i] >> 24U != 0) return false;
-    const float product = static_cast<float>(codes[i]) * quantum;
-    values[i] = product + minimum;
+  if (!decode_values(scan, residual_contexts(constants), head.front, stream + bytes, end, bits, head.base_bits, codes,
+                     base)) {
+    return false;
   }
+  codes[0] = base;
+  undo_prediction(head.predictor, head.kind == LatticeKind::ordered, codes);
+  return values_of_codes(head, codes, values);
+}
+
+WEIR_HOST_DEVICE inline bool decode_mean_alone(const BlockConstants& constants, const MeanRange& range,
+                                               const std::byte* stream, std::uint32_t bytes, float* values) {
+  std::int32_t step;
+  unsigned number_bits;
+  if (!read_step(constants, range, stream, step, number_bits) || (number_bits + 7) / 8 > bytes - 1) return false;
+  BitReader bits(stream + 1, bytes - 1);
+  const float value = clamp_to(constants, decode_mean(range, step, bits.read(number_bits)));
+  for (unsigned i = 0; i < 512; ++i) values[i] = value;
   return true;
 }
 
-template <typename Transform>
-WEIR_HOST_DEVICE inline bool decode_block(const BlockConstants& constants, const BlockScan& scan,
-                                          const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
-                                          float* values, const Transform& transform) {
-  if (bytes < 2) return false;
+WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t bytes, float* values) {
   const auto head = static_cast<unsigned>(stream[0]);
-  switch (static_cast<StreamKind>(head & 3U)) {
-    case StreamKind::mean: {
-      const std::int32_t step = constants.coarsest + static_cast<std::int32_t>(head >> 2U);
-      if (step < kLeastStep || step > kMostStep) return false;
-      const unsigned number_bits = mean_bits(range, step);
-      if (number_bits == kNoMeanBits || (number_bits + 7) / 8 > bytes - 1) return false;
-      BitReader bits(stream + 1, bytes - 1);
-      const float value = clamp_to(constants, decode_mean(range, step, bits.read(number_bits)));
-      for (unsigned i = 0; i < 512; ++i) values[i] = value;
-      return true;
-    }
-    case StreamKind::transform:
-      return decode_transform(constants, scan, range, stream, bytes, values, transform);
-    case StreamKind::lattice:
-      return decode_lattice(constants, scan, stream, bytes, values);
-    case StreamKind::raw:
-      break;
-  }
   const bool uniform = (head >> 2U & 1U) != 0;
   if (head >> 3U != 0 || bytes != (uniform ? 5 : 2049)) return false;
   for (unsigned i = 0; i < 512; ++i) values[i] = load_bytes<float>(stream + 1 + (uniform ? 0 : 4 * i));
@@ -218,7 +239,19 @@ WEIR_HOST_DEVICE inline bool decode_block(const BlockConstants& constants, const
 WEIR_HOST_DEVICE inline bool decode_block_plain(const BlockConstants& constants, const BlockScan& scan,
                                                 const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
                                                 float* values) {
-  return packed_detail::decode_block(constants, scan, range, stream, bytes, values, packed_detail::LineTransform());
+  using namespace packed_detail;
+  if (bytes < 2) return false;
+  switch (static_cast<StreamKind>(static_cast<unsigned>(stream[0]) & 3U)) {
+    case StreamKind::mean:
+      return decode_mean_alone(constants, range, stream, bytes, values);
+    case StreamKind::transform:
+      return decode_transform(constants, scan, range, stream, bytes, values);
+    case StreamKind::lattice:
+      return decode_lattice(constants, scan, stream, bytes, values);
+    case StreamKind::raw:
+      break;
+  }
+  return decode_raw(stream, bytes, values);
 }
 
 /// Decodes a stream into 512 values (x << 6 | y << 3 | z). False where the stream is invalid; `values` are then

@@ -166,7 +166,9 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
   const auto [symbols, raw, nonzero] = rows_.of(magnitudes_, end);
   const unsigned states = states_of(end);
   // Each state begins at 16 bits, which hold signs and the mean's low bits, and ends in whole bytes of 3 or more.
-  const std::uint32_t coded = symbols + 256 * (raw + 16 * states) + 64;
+  // Whole numbers in the states lose a fraction of a bit, and a little of each symbol.
+  std::uint32_t coded = symbols + 256 * (raw + 16 * states);
+  coded += 64 + coded / 1024;
   const std::uint32_t back = std::max(3 * states, (coded + 2047) / 2048 + (states - 1));
   const auto spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
   constexpr std::int32_t kLeastMeanBits = 6;

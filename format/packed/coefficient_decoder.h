@@ -47,7 +47,8 @@ class BitReader {
     }
     return value;
   }
-  /// Whole bytes read from.
+  /// Bits, and whole bytes, read from.
+  WEIR_HOST_DEVICE std::uint32_t bits_used() const { return at_; }
   WEIR_HOST_DEVICE std::uint32_t bytes_used() const { return (at_ + 7) >> 3U; }
 
  private:

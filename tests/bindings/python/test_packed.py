@@ -1,0 +1,63 @@
+"""Packed files: weir reads what the decoder of tests/packed reads, which was written from FORMAT.md alone."""
+
+import sys
+import unittest
+
+import numpy
+import weir
+from support import SOURCE, FolderTest
+
+sys.path.insert(0, str(SOURCE / "tests/packed"))
+import packed_decoder  # noqa: E402
+
+
+def waves(extent):
+    """Smooth, with a part that is zero; numpy's order, x last or first does not matter."""
+    z, y, x = numpy.meshgrid(*(numpy.arange(n, dtype=numpy.float64) for n in reversed(extent)), indexing="ij")
+    values = numpy.sin(x * 0.11) * numpy.cos(y * 0.07 + z * 0.05) + 0.3 * numpy.sin(z * 0.21)
+    return numpy.where(x < 20, 0, values).astype(numpy.float32)
+
+
+class Packed(FolderTest):
+    def same_by_both(self, values, **options):
+        path = self.folder / "packed.nvdb"
+        weir.convert(values, path, encoding="packed", overwrite=True, **options)
+        theirs, counts = packed_decoder.Grid(str(path)).read(*self.box(path))
+        ours = weir.open(path).to_numpy()
+        self.assertEqual(ours.astype("<f4").tobytes(), numpy.asarray(theirs, dtype="<f4").tobytes())
+        return counts
+
+    @staticmethod
+    def box(path):
+        grid = packed_decoder.Grid(str(path))
+        return grid.low, grid.high
+
+    def test_transformed_blocks(self):
+        counts = self.same_by_both(waves((45, 38, 131)), rate=20)
+        self.assertGreater(counts["transform"], 100)
+
+    def test_blocks_of_whole_numbers(self):
+        counts = self.same_by_both(numpy.round(waves((30, 20, 33)) * 100).astype(numpy.int16), lossless=True)
+        self.assertGreater(counts["lattice"], 10)
+
+    def test_floats_kept_bit_by_bit(self):
+        rng = numpy.random.default_rng(3)
+        noise = rng.standard_normal((19, 17, 23)).astype(numpy.float32)
+        counts = self.same_by_both(noise, lossless=True, preview="off")
+        self.assertGreater(counts["raw"] + counts["lattice"], 10)
+
+    def test_errors_within_a_bound(self):
+        counts = self.same_by_both(waves((40, 40, 40)), max_error=1e-3, preview="on")
+        self.assertGreater(counts["transform"] + counts["lattice"], 50)
+
+    def test_a_region_reads_its_own_blocks_alone(self):
+        path = self.folder / "region.nvdb"
+        weir.convert(waves((64, 64, 64)), path, encoding="packed", rate=10)
+        grid = weir.open(path)
+        whole = grid.to_numpy()
+        part = grid.to_numpy(((9, 20, 31), (40, 41, 62)))
+        self.assertEqual(part.tobytes(), whole[31:62, 20:41, 9:40].tobytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
