@@ -16,8 +16,10 @@
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
+#include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
+#include "compressor/survey/filled_ladders.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -132,7 +134,9 @@ bool surveys_widths(const ConversionOptions& options) {
 }
 
 std::uint64_t region_bytes(const ConversionOptions& options) {
-  return kRegionRowsBytes + (options.encoding == Encoding::packed ? kRegionLaddersBytes : 0);
+  if (options.encoding != Encoding::packed) return kRegionRowsBytes;
+  // A block has many more steps than a leaf; sorted, there are two copies of them.
+  return kRegionRowsBytes + kRegionLaddersBytes + 2 * RegionGains::kMostBytes;
 }
 
 std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source) {
@@ -141,6 +145,7 @@ std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, cons
   aim.lossless = options.budget.kind == Budget::Kind::lossless;
   if (options.budget.kind == Budget::Kind::max_error) aim.max_error = options.budget.target;
   aim.keeps_non_finite = options.non_finite == NonFinitePolicy::keep;
+  aim.background = options.background;
   aim.lattice = lattice_of(source);
   return aim;
 }
@@ -183,6 +188,7 @@ class SurveyedConversion {
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
     find_background();
+    fill_ladders();
     return make_request();
   }
 
@@ -206,6 +212,14 @@ class SurveyedConversion {
     journal->state.background = background_;
     // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
     if (journal->resumable()) journal->save();
+  }
+
+  // Packed blocks of which the background is a part.
+  void fill_ladders() {
+    std::optional<LadderAim> aim = surveyed_ladders(options_, info_);
+    if (!aim || aim->background || aim->keeps_non_finite || survey_.missing + survey_.non_finite == 0) return;
+    aim->background = background_.value;
+    build_filled_ladders(parts_.source, reading_.survey, stores_.rows, *aim, stream_);
   }
 
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.

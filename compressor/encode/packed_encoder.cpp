@@ -19,10 +19,6 @@
 namespace weir {
 namespace {
 
-bool holds_numbers(const LeafValues& values) {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-}
-
 class PackedEncoder final : public LayerEncoder {
  public:
   explicit PackedEncoder(const EncodeTarget& target) : target_(target), packed_(*target.packed) {
@@ -102,7 +98,7 @@ class PackedEncoder final : public LayerEncoder {
 
   void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
-    if (step != PlannedStreams::kExactStep) {
+    if (step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep) {
       if (!transform_.set(values_)) fail({}, "cannot be transformed");
       transform_.encode(packed_.constants, plan.region.means, step, stream);
       return;
@@ -110,11 +106,12 @@ class PackedEncoder final : public LayerEncoder {
     std::uint32_t bytes = 0;
     std::vector<std::byte>& scratch = exact_;
     scratch.resize(4096);
-    if (stream.size() == kRawStreamBytes) {
+    if (step == PlannedStreams::kBoundedStep) {
+      bytes = write_bounded(values_, *packed_.max_error, scratch);
+    } else if (stream.size() == kRawStreamBytes) {
       bytes = encode_raw(values_, scratch);
     } else {
-      if (packed_.max_error && holds_numbers(values_)) bytes = write_bounded(values_, *packed_.max_error, scratch);
-      if (bytes != stream.size()) bytes = write_exact(values_, packed_.lattice, scratch);
+      bytes = write_exact(values_, packed_.lattice, scratch);
     }
     if (bytes != stream.size()) fail({}, "has another length than was planned");
     std::copy_n(scratch.begin(), bytes, stream.begin());

@@ -291,8 +291,11 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     write_packed_head(*parts.packed, tree, parts.layout, out);
     // The box is the domain, the range that of decoded values, whatever the tree holds of them.
     total.bbox = tree.leaves.domain;
-    total.min = lowers.decoded().min;
-    total.max = lowers.decoded().max;
+    const MinMax& decoded = lowers.decoded();
+    if (decoded.min <= decoded.max) {
+      total.min = decoded.min + 0.0F;  // no -0.0: which zero came first depends on the threads
+      total.max = decoded.max + 0.0F;
+    }
   }
   head.statistics = total;
   out.write_at(parts.layout.blind_meta, encode_blind_records(parts.layout));

@@ -32,8 +32,7 @@ std::optional<Lattice> own_lattice(const LeafValues& block) {
   return Lattice{*low, lattice->step, static_cast<std::uint32_t>(std::bit_width(lattice->largest))};
 }
 
-// Bits of `largest`, the largest code of a lattice; none where it has too many.
-constexpr double kMostCodes = 16777216;
+constexpr double kMostCodes = 16777216;  // of a lattice: 24 bits
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -11,16 +12,21 @@
 namespace weir {
 namespace {
 
-constexpr double kDeadZone = 0.6;            // steps below which a coefficient becomes 0
-constexpr std::int32_t kMeanSteps = 4;       // of a ladder before the first coefficient counts
-constexpr std::uint32_t kUniformBytes = 5;   // kind and value
-constexpr std::uint32_t kMostMeanBits = 24;  // of a stream
+constexpr double kDeadZone = 0.6;              // steps below which a coefficient becomes 0
+constexpr std::int32_t kMeanSteps = 4;         // of a ladder before the first coefficient counts
+constexpr double kMeanError = 0.5 + 1.0 / 16;  // quanta that a decoded mean of kMostBoundedMeanBits is off by
+constexpr std::uint32_t kUniformBytes = 5;     // kind and value
 
 // The coarsest step of at most `size`.
 std::int32_t coarsest_of_at_most(double size) {
   std::int32_t step = std::clamp(-2 * (std::ilogb(size) + 1), kLeastStep, kMostStep);
   while (step<kMostStep&& static_cast<double>(step_size(step))> size) ++step;
   return step;
+}
+
+bool have_same_bits(const LeafValues& block) {
+  const auto first = std::bit_cast<std::uint32_t>(block[0]);
+  return std::all_of(block.begin(), block.end(), [&](float v) { return std::bit_cast<std::uint32_t>(v) == first; });
 }
 
 double largest_difference(const LeafValues& a, const LeafValues& b) {
@@ -73,14 +79,21 @@ PackedLadder LadderBuilder::uniform() {
   return ladder;
 }
 
-PackedLadder LadderBuilder::non_finite(bool all) const {
-  if (all && !aim_.keeps_non_finite) return uniform();  // all become the background
-  PackedLadder ladder;
-  ladder.exact_bytes = kRawStreamBytes;
-  return ladder;
+PackedLadder LadderBuilder::build_non_finite(LeafValues& block, const LeafRow& row) {
+  PackedLadder raw;
+  raw.exact_bytes = kRawStreamBytes;
+  if (aim_.keeps_non_finite) return have_same_bits(block) ? uniform() : raw;
+  if (row.finite == 0) return uniform();  // all become the background
+  if (!aim_.background) return raw;
+  for (float& v : block) {
+    if (!std::isfinite(v)) v = *aim_.background;
+  }
+  return have_same_bits(block) ? uniform() : build(block, row, Filled::yes);
 }
 
-PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row) {
+PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row) { return build(block, row, Filled::no); }
+
+PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, Filled filled) {
   PackedLadder ladder;
   if (aim_.max_error) {
     build_bounded(block, *aim_.max_error, ladder);
@@ -89,12 +102,12 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row) {
   // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
   const FloatOrder order = aim_.lossless ? FloatOrder::used : FloatOrder::unused;
   ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
-  if (!aim_.lossless && transform_.set(block)) add_rungs(row, ladder);
+  if (!aim_.lossless && transform_.set(block))
+    add_rungs(row, filled == Filled::no ? transform_.energy() : row.sse, ladder);
   return ladder;
 }
 
-void LadderBuilder::add_rungs(const LeafRow& row, PackedLadder& ladder) {
-  const double energy = transform_.energy();
+void LadderBuilder::add_rungs(const LeafRow& row, double energy, PackedLadder& ladder) {
   const double largest = transform_.largest();
   if (!(energy > 0 && largest > 0)) return;
   const std::int32_t first = coarsest_of_at_most(largest / kDeadZone);
@@ -106,7 +119,8 @@ void LadderBuilder::add_rungs(const LeafRow& row, PackedLadder& ladder) {
     if (step < kLeastStep || step > kMostStep || static_cast<double>(step_size(step)) < finest) break;
     const TransformBlock::Cost cost = rung < 2 ? TransformBlock::Cost{8, energy} : transform_.cost(step);
     if (cost.bits + 8 >= 8U * ladder.exact_bytes) break;
-    ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits), ErrorShare(cost.squared_error / energy)};
+    const double share = std::min(1.0, cost.squared_error / energy);
+    ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits), ErrorShare(share)};
     ladder.count = static_cast<std::uint8_t>(rung + 1);
   }
 }
@@ -119,7 +133,7 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
   const double rounding = (deviation + std::fabs(mean)) * 0x1p-20;
   const double allowed = max_error - rounding;
   if (deviation < allowed) {
-    const std::int32_t step = coarsest_of_at_most(2 * std::sqrt(512.0) * (allowed - deviation));
+    const std::int32_t step = coarsest_of_at_most(std::sqrt(512.0) / kMeanError * (allowed - deviation));
     // Where coefficients would count at that step, the trials below find as much.
     if (transform_.cost(step).bits <= 8) return step;
   }
@@ -137,7 +151,8 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
     const std::span<std::byte> out = std::span(stream_).first(bytes);
     transform_.encode(constants, exact, step, out);
     if (!decode_block(constants, exact, out.data(), bytes, decoded.data())) continue;
-    if (largest_difference(block, decoded) + static_cast<double>(mean_quantum(step)) / 2 <= allowed) return step;
+    if (largest_difference(block, decoded) + kMeanError * static_cast<double>(mean_quantum(step)) <= allowed)
+      return step;
   }
   return std::nullopt;
 }
@@ -155,7 +170,8 @@ void LadderBuilder::build_bounded(const LeafValues& block, double max_error, Pac
   // A byte more than is expected, so that no coefficient has to go.
   const std::uint32_t bits = transform_.cost(*step).bits;
   const std::uint32_t enough = bits <= 8 ? bits : bits + 8;
-  if (stream_bytes(enough, kMostMeanBits / 2) >= ladder.exact_bytes) return;
+  constexpr std::uint32_t kUsualMeanBits = 12;
+  if (stream_bytes(enough, kUsualMeanBits) >= ladder.exact_bytes) return;
   ladder.first_step = static_cast<std::int16_t>(*step);
   ladder.count = 1;
   ladder.rungs[0] = {static_cast<std::uint16_t>(enough), ErrorShare(1)};

@@ -19,6 +19,7 @@ namespace weir {
 struct LadderAim {
   bool lossless = false;             ///< exact kinds alone
   bool keeps_non_finite = false;     ///< NaN and infinities stay
+  std::optional<float> background;   ///< what else they become, where that is known
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
 };
@@ -35,11 +36,16 @@ class LadderBuilder {
   PackedLadder build(const LeafValues& block, const LeafRow& row);
   /// Of one whose in-domain values have the same bits.
   static PackedLadder uniform();
-  /// Of one with values that are not finite, `all` or some.
-  PackedLadder non_finite(bool all) const;
+  /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
+  /// be built once more (compressor/survey/filled_ladders.h).
+  PackedLadder build_non_finite(LeafValues& block, const LeafRow& row);
 
  private:
-  void add_rungs(const LeafRow& row, PackedLadder& ladder);
+  // Whether the background is a part of the block. Its error does not count then: that of the whole is a bound.
+  enum class Filled { no, yes };
+  PackedLadder build(const LeafValues& block, const LeafRow& row, Filled filled);
+  // The errors of the rungs are shares of `energy`.
+  void add_rungs(const LeafRow& row, double energy, PackedLadder& ladder);
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
 

@@ -25,6 +25,10 @@ struct PackedRung {
   ErrorShare error;        ///< of the block's energy
 };
 
+/// Most bits of a mean where every voxel must be within an error: the product of its code and quantum rounds to within
+/// a 16th of a quantum.
+inline constexpr unsigned kMostBoundedMeanBits = 20;
+
 /// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, kExactLevel its exact kind.
 inline constexpr std::uint8_t kExactLevel = 31;
 

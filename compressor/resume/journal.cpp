@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kJournal = "journal";
 constexpr std::string_view kNewJournal = "journal.new";
 constexpr std::string_view kVolume = "volume";
-constexpr std::array<std::string_view, 3> kSpills{"rows", "faces", "records"};
+constexpr std::array<std::string_view, 4> kSpills{"rows", "faces", "ladders", "records"};
 
 bool is_of_encoding(std::string_view name) { return name == "records" || name == kVolume; }
 

@@ -54,7 +54,7 @@ class Journal {
 
   const std::string& directory() const { return directory_; }
 
-  /// "rows", "faces", "records" or "volume", with what is in it.
+  /// "rows", "faces", "ladders", "records" or "volume", with what is in it.
   std::shared_ptr<File> open(const std::string& name);
 
   /// Whether the time for a save has come. Throws what the last one failed with.

@@ -24,7 +24,7 @@ void CutSearch::for_each_key(const Visit& visit) const {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     visit(region.key, rule_.region_bytes(), region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
-    RegionGains gains;
+    RegionGains& gains = gains_.local();
     rule_.gains(tree_, rows, gains);
     for (const LeafGain& leaf : gains) {
       for (std::uint32_t i = 0; i < leaf.step_count; ++i) {

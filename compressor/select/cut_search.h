@@ -3,6 +3,8 @@
 // spilled rows.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cstdint>
 #include <functional>
 
@@ -48,6 +50,7 @@ class CutSearch {
   const GainRule& rule_;
   const RowStore& rows_;
   const TreeRegions& tree_;
+  mutable tbb::enumerable_thread_specific<RegionGains> gains_;  // of the region that a thread looks at
 };
 
 }  // namespace weir

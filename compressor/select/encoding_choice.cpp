@@ -43,7 +43,7 @@ class Candidate {
   /// The smallest file whose error is expected to meet the budget's target.
   FilePlan plan_for_error() {
     if (request_.budget.kind == Budget::Kind::psnr) {
-      if (encoding_ == Encoding::float32) return plan_exact();
+      if (encoding_ == Encoding::float32 || encoding_ == Encoding::packed) return plan_exact();
       const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
       return lowered_to_nothing ? plan_everything() : plan_expected(request_.planned_error);
     }
@@ -57,8 +57,8 @@ class Candidate {
     return planned({0, "psnr", ""});
   }
 
-  // Float leaves lose nothing, so that the plan's error is the file's. Selection counts gains to a part in 2^53 of
-  // the error of nothing kept, which is not enough for a target far below that.
+  // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Selection counts
+  // gains to a part in 2^53 of the error of nothing kept, which is not enough for a target far below that.
   FilePlan plan_exact() {
     const double target = std::min(request_.squared_error, request_.planned_error);
     FilePlan file = plan_expected(target);
@@ -236,6 +236,9 @@ FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDir
 }  // namespace
 
 Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error) {
+  if (encoding == Encoding::packed) {
+    return {ErrorKind::internal, cat(request.path, ": packed blocks miss what was asked; report this")};
+  }
   const bool psnr = request.budget.kind == Budget::Kind::psnr;
   std::string best;
   if (request.budget.kind == Budget::Kind::lossless) {

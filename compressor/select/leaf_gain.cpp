@@ -275,7 +275,8 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
     leaf.required = leaf.required || (weights.tile > 0 && row.max_abs_about(region.value) > *max_error);
     leaf.lossless = true;
     if (!leaf.required) return;
-    const PackedPoint rung{ladder.count > 0 ? stream(1) : 0, 0, 1};
+    const bool bounded = ladder.count > 0 && mean_bits(region.means, ladder.step(0)) <= kMostBoundedMeanBits;
+    const PackedPoint rung{bounded ? stream(1) : 0, 0, 1};
     out.add(leaf, packed_step({0, none, 0}, rung.bytes > 0 && rung.bytes < exact.bytes ? rung : exact));
     return;
   }
@@ -317,10 +318,11 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     gain.brick = static_cast<std::uint32_t>(
         linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
     const bool corner = leaf == Index3{0, 0, 0} || leaf == last_leaf;
-    gain.required =
-        (corner && (!packed || packed->preview)) || (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels);
     const float tile = packed ? region.value : fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);
+    gain.required = (corner && (!packed || packed->preview)) ||
+                    (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels) ||
+                    (row.finite == 0 && !gain.exact);
     Weights weights;
     if (visibility != nullptr) {
       const MinMax& reach = rows.reach(leaf);

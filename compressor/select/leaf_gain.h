@@ -48,8 +48,14 @@ class RegionGains {
  public:
   /// Most steps of one leaf.
   static constexpr std::size_t kMostSteps = 24;
+  /// Most bytes of a region's.
+  static constexpr std::uint64_t kMostBytes = LeafChoices::kLeaves * (sizeof(LeafGain) + kMostSteps * sizeof(LeafStep));
 
-  RegionGains() { steps_.reserve(LeafChoices::kLeaves * kMostSteps); }  // pages that no step touches cost nothing
+  // Pages that no step touches cost nothing.
+  RegionGains() {
+    leaves_.reserve(LeafChoices::kLeaves);
+    steps_.reserve(LeafChoices::kLeaves * kMostSteps);
+  }
   RegionGains(RegionGains&&) = default;
   RegionGains& operator=(RegionGains&&) = default;
 
@@ -70,6 +76,8 @@ class RegionGains {
   auto begin() { return leaves_.begin(); }
   auto end() { return leaves_.end(); }
   std::size_t size() const { return leaves_.size(); }
+  /// Of all leaves.
+  std::size_t step_count() const { return steps_.size(); }
   const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
 
  private:
@@ -100,8 +108,9 @@ struct GainRule {
   /// Weight of the error where a block of that reach reads `tile`.
   double tile_weight(const MinMax& reach, float tile) const;
 
-  /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, and those that
-  /// hold non-finite values to keep, are required.
+  /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, those that hold
+  /// non-finite values to keep, and packed blocks without a finite value that would not read the background are
+  /// required.
   void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const;
 
  private:

@@ -104,8 +104,11 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
     if (level == 0) return;
     const PackedLadder& ladder = rows.ladder(leaf);
     plan.bytes[position] = static_cast<std::uint16_t>(packed_stream_bytes(ladder, level, plan.region.means, rule));
-    plan.steps[position] =
-        level == kExactLevel ? PlannedStreams::kExactStep : static_cast<std::int16_t>(ladder.step(level - 1U));
+    if (level != kExactLevel) {
+      plan.steps[position] = static_cast<std::int16_t>(ladder.step(level - 1U));
+    } else {
+      plan.steps[position] = ladder.bounded != 0 ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;
+    }
   });
   return plan;
 }

@@ -38,9 +38,10 @@ struct PlannedStreams {
   SharedValues region;
   std::uint32_t reserved = 0;
   std::array<std::uint16_t, LeafChoices::kLeaves> bytes{};
-  std::array<std::int16_t, LeafChoices::kLeaves> steps{};  ///< kExactStep: the exact kind
+  std::array<std::int16_t, LeafChoices::kLeaves> steps{};  ///< or one of these
 
-  static constexpr std::int16_t kExactStep = 0x7FFF;
+  static constexpr std::int16_t kExactStep = 0x7FFF;    ///< the exact kind
+  static constexpr std::int16_t kBoundedStep = 0x7FFE;  ///< that of values rounded to within --max-error
 };
 static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
 

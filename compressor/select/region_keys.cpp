@@ -55,6 +55,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
   std::vector<LeafStep> steps;
+  steps.reserve(gains.step_count());
   bool required = false;
   double highest = 0;
   for (const LeafGain& leaf : gains) {

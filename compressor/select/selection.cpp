@@ -25,8 +25,9 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   };
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
+  tbb::enumerable_thread_specific<RegionGains> local_gains;
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
-    RegionGains gains;
+    RegionGains& gains = local_gains.local();
     rule_.gains(tree_, region_rows, gains);
     keys.summarize_region(region, region_rows, gains);
     Totals& total = totals.local();

@@ -96,10 +96,9 @@ class BlockSurvey::Leaves {
     const bool all = row.finite == values.size();
     if (all && row.uniform()) return LadderBuilder::uniform();
     if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
-    if (!all) return tally.ladders->non_finite(row.finite == 0);
     LeafValues block;
     block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
-    return tally.ladders->build(block, row);
+    return all ? tally.ladders->build(block, row) : tally.ladders->build_non_finite(block, row);
   }
 
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {

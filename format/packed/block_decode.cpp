@@ -28,8 +28,8 @@ WEIR_SIMD void transform_in_lanes(float* values, unsigned planes, float mean, fl
     inverse_transform_8(rows);  // along x
     for (unsigned x = 0; x < 8; ++x) {
       Floats8 v = (mean - none) + rows[x];
-      v = v < minimum ? minimum - none : v;
-      v = v > maximum ? maximum - none : v;
+      v = v >= minimum ? v : minimum - none;
+      v = v <= maximum ? v : maximum - none;
       std::memcpy(values + 64 * x + 8 * y, &v, sizeof v);
     }
   }

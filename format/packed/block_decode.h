@@ -27,8 +27,9 @@ WEIR_HOST_DEVICE inline T load_bytes(const std::byte* at) {
   return value;
 }
 
+// NaN, which damaged constants can lead to, becomes the minimum.
 WEIR_HOST_DEVICE inline float clamp_to(const BlockConstants& constants, float v) {
-  return v < constants.minimum ? constants.minimum : v > constants.maximum ? constants.maximum : v;
+  return v >= constants.minimum ? (v <= constants.maximum ? v : constants.maximum) : constants.minimum;
 }
 
 WEIR_HOST_DEVICE inline float decode_mean(const MeanRange& range, std::int32_t step, std::uint32_t code) {
@@ -169,6 +170,7 @@ WEIR_HOST_DEVICE inline bool read_lattice_head(const BlockConstants& constants, 
     if (bytes < 9) return false;
     read.minimum = load_bytes<float>(read.front);
     read.quantum = load_bytes<float>(read.front + 4);
+    if (!(read.minimum - read.minimum == 0 && read.quantum - read.quantum == 0)) return false;  // not finite
     read.front += 8;
     read.base_bits = 24;
   } else if (read.kind == LatticeKind::ordered) {

@@ -114,6 +114,19 @@ alignas(64) constexpr std::array<std::int32_t, 512> kPlaces = make_places();
 // Coefficients of more steps than that are not coded.
 constexpr double kMostMagnitude = 1e6;
 
+// The last of the places with the least magnitude that is not zero: what to leave out where a stream is too long.
+unsigned cheapest_place(const ScanValues& values) {
+  unsigned cheapest = 0;
+  std::uint32_t least = ~0U;
+  for (unsigned place = 1; place < 512; ++place) {
+    const std::uint32_t m = values.magnitudes[place];
+    if (m == 0 || m > least) continue;
+    least = m;
+    cheapest = place;
+  }
+  return cheapest;
+}
+
 }  // namespace
 
 TransformBlock::TransformBlock(const std::uint16_t* tables) : rows_(symbol_costs(tables)) {}
@@ -166,9 +179,9 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
   const auto [symbols, raw, nonzero] = rows_.of(magnitudes_, end);
   const unsigned states = states_of(end);
   // Each state begins at 16 bits, which hold signs and the mean's low bits, and ends in whole bytes of 3 or more.
-  // Whole numbers in the states lose a fraction of a bit, and a little of each symbol.
-  std::uint32_t coded = symbols + 256 * (raw + 16 * states);
-  coded += 64 + coded / 1024;
+  // A state begins with 16 to 17 bits, and whole numbers in it lose a little of each symbol.
+  std::uint32_t coded = symbols + 256 * (raw + 17 * states);
+  coded += coded / 1024;
   const std::uint32_t back = std::max(3 * states, (coded + 2047) / 2048 + (states - 1));
   const auto spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
   constexpr std::int32_t kLeastMeanBits = 6;
@@ -205,11 +218,7 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
     if (front.end == 0) break;
     out[0] = head(StreamKind::transform);
     if (encode_values({constants.tables, true}, front, values_, out.subspan(1))) return;
-    for (unsigned place = kEndUnit * front.end; place > 0; --place) {
-      if (values_.magnitudes[place - 1] == 0) continue;
-      values_.magnitudes[place - 1] = 0;
-      break;
-    }
+    values_.magnitudes[cheapest_place(values_)] = 0;
   }
   std::fill(out.begin(), out.end(), std::byte{0});
   out[0] = head(StreamKind::mean);

@@ -45,7 +45,7 @@ class TransformBlock {
   /// At a step number. The bits are what encode() takes, to a fraction of a bit.
   Cost cost(std::int32_t step);
 
-  /// Writes the stream to all of `out`. Where that is shorter than the stream, the last coefficients that are not zero
+  /// Writes the stream to all of `out`. Where that is shorter than the stream, the smallest coefficients
   /// go until it fits, where longer it has zeros in its middle. `constants` has what the file has.
   void encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step, std::span<std::byte> out);
 

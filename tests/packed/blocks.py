@@ -111,6 +111,8 @@ def parse_lattice(stream, constants):
         if len(stream) < 9:
             raise Invalid("the stream ends in its lattice")
         minimum, quantum = map(F32, struct.unpack_from("<2f", stream, 1))
+        if not (numpy.isfinite(minimum) and numpy.isfinite(quantum)):
+            raise Invalid("the stream's own lattice is not finite")
     front = BitReader(stream, 9 if lattice == OWN_LATTICE else 1)
     bits = {OWN_LATTICE: 24, ORDERED: 32}.get(lattice, constants.lattice_bits)
     end = front.take(6)
@@ -137,7 +139,7 @@ def column(numbers):
 
 def clamped(values, constants):
     low, high = constants.minimum, constants.maximum
-    return numpy.where(values < low, low, numpy.where(values > high, high, values))
+    return numpy.where(values >= low, numpy.where(values <= high, values, high), low)
 
 
 def means_only(streams, constants):

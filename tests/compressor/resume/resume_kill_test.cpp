@@ -31,6 +31,18 @@ TEST_F(ResumeKill, WhicheverEncodingIsBetter) {
   expect_same_bytes(options, 24);
 }
 
+TEST_F(ResumeKill, Packed) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 8U << 20U;  // for the steps of its blocks
+  options.budget.kind = Budget::Kind::rate;
+  options.budget.rate = 20;
+  expect_same_bytes(options, 24);
+  options.budget.kind = Budget::Kind::psnr;
+  options.budget.target = 50;
+  expect_same_bytes(options, 24);
+}
+
 TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
   ConversionOptions options = base();
   options.encoding = Encoding::fpn;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -155,6 +156,96 @@ TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
     ASSERT_TRUE(converted.sidecar.error.psnr_db.has_value());
     EXPECT_GE(*converted.sidecar.error.psnr_db, psnr);
     EXPECT_LE(*converted.sidecar.error.psnr_db, psnr + 1);
+  }
+}
+
+// Far below what selection's sums resolve.
+TEST(PackedConversion, ReachesAPsnrNextToLossless) {
+  MemoryVolume volume(kDomain, smooth);
+  for (const double psnr : {140.0, 200.0, 260.0}) {
+    const Converted converted = test::convert(volume, packed(Budget::Kind::psnr, psnr));
+    EXPECT_TRUE(converted.sidecar.error.lossless || converted.sidecar.error.psnr_db.value_or(0) >= psnr) << psnr;
+  }
+}
+
+// Means a million apart have codes of many bits, whose products round.
+TEST(PackedConversion, KeepsTheLargestErrorWhereMeansLieFarApart) {
+  std::uint32_t state = 7;
+  MemoryVolume volume(kDomain, [&](const Index3& i) {
+    state = state * 1664525U + 1013904223U;
+    const float noise = std::ldexp(static_cast<float>(state >> 8U), -24);
+    const bool low = i.x < 0 && i.y < 10;
+    const bool high = i.x > 56 && i.y > 60;
+    return low ? noise - 1e6F : high ? noise + 1e6F : 20 * smooth(i) + noise;
+  });
+  for (const double bound : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2}) {
+    const ConversionOptions options = packed(Budget::Kind::max_error, bound);
+    EXPECT_LE(test::convert(volume, options).sidecar.error.max_abs, bound);
+  }
+}
+
+TEST(PackedConversion, KeepsTheLargestErrorOfIntegers) {
+  MemoryVolume volume(kDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
+  volume.info().type = ScalarType::int16;
+  for (const double bound : {0.4, 1.0, 3.0, 40.0}) {
+    const ConversionOptions options = packed(Budget::Kind::max_error, bound);
+    const Converted converted = test::convert(volume, options);
+    expect_certificate(volume, converted, options, std::to_string(bound));
+    EXPECT_LE(converted.sidecar.error.max_abs, bound);
+  }
+}
+
+// Blocks without a single value read the background, whatever other blocks of their region read.
+TEST(PackedConversion, MissingBlocksReadTheBackground) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
+    if (i.x < 8 && i.y < 16) return std::numeric_limits<float>::quiet_NaN();
+    return i.z < 32 ? 1.0F : 30 * smooth(i) + static_cast<float>(i.x * 7 % 5);
+  });
+  ConversionOptions options = packed(Budget::Kind::rate, 3);
+  options.non_finite = NonFinitePolicy::background;
+  options.background = 7.0F;
+  const Converted converted = test::convert(volume, options);
+  const std::vector<float> values = decoded(converted, volume.info().domain());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(volume.values()[i])) {
+      ASSERT_EQ(values[i], 7.0F) << i;
+    }
+  }
+}
+
+// A coast: the voxels of a block on one side of a plane are missing.
+TEST(PackedConversion, BlocksWithSomeMissingVoxelsAreNotStoredRaw) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
+    return i.x + i.y + i.z < 96 ? std::numeric_limits<float>::quiet_NaN() : smooth(i);
+  });
+  ConversionOptions options = packed(Budget::Kind::psnr, 60);
+  options.non_finite = NonFinitePolicy::background;
+  const Converted converted = test::convert(volume, options);
+  expect_certificate(volume, converted, options, "coast");
+  ASSERT_TRUE(converted.sidecar.packed.has_value());
+  EXPECT_EQ(converted.sidecar.packed->blocks[4], 0U);
+}
+
+TEST(PackedConversion, KeptNaNOfOneKindTakesFiveBytesABlock) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
+    return i.x < 32 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.x / 8);
+  });
+  ConversionOptions options = packed(Budget::Kind::lossless, 0);
+  options.non_finite = NonFinitePolicy::keep;
+  options.preview = Preview::off;
+  const Converted converted = test::convert(volume, options);
+  EXPECT_TRUE(converted.sidecar.error.lossless);
+  EXPECT_LT(converted.file.size(), 40000U);
+}
+
+TEST(PackedConversion, TheRangeHasNoNegativeZero) {
+  MemoryVolume volume({{0, 0, 0}, {256, 8, 8}}, [](const Index3& i) { return i.x < 128 ? -0.0F : 0.0F; });
+  for (const NonFinitePolicy policy : {NonFinitePolicy::error, NonFinitePolicy::keep}) {
+    ConversionOptions options = packed(Budget::Kind::lossless, 0);
+    options.non_finite = policy;
+    const Converted converted = test::convert(volume, options);
+    EXPECT_EQ(test::bits_of(converted.grid().value_min()), 0U);
+    EXPECT_EQ(test::bits_of(converted.grid().value_max()), 0U);
   }
 }
 

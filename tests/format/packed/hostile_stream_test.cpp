@@ -164,5 +164,47 @@ TEST(HostileStream, RepeatedBytesAreRefusedOrDecodedAlike) {
   }
 }
 
+// Steps as coarse as a header may have let the transform overflow: infinities less infinities.
+TEST(HostileStream, TransformedValuesStayWithinTheClamp) {
+  Numbers numbers(77);
+  TransformBlock block;
+  BlockConstants constants = constants_from(0);
+  constants.minimum = -1;
+  constants.maximum = 1;
+  std::size_t decoded = 0;
+  for (const Shape shape : kShapes) {
+    ASSERT_TRUE(block.set(sample(shape, numbers, 1, 0.5F)));
+    for (const std::int32_t step : {4, 10, 16}) {
+      Stream stream(stream_bytes(block.cost(step).bits, mean_bits(kMeans, step)) + 1);
+      block.encode(constants, kMeans, step, stream);
+      BlockConstants coarse = constants;
+      coarse.coarsest = -250;
+      const MeanRange wide{-3e38F, 3e38F};
+      for (const MeanRange& means : {kMeans, wide}) {
+        const auto values = decode(coarse, means, stream);
+        if (!values) continue;
+        ++decoded;
+        for (const float v : *values) ASSERT_TRUE(v >= -1 && v <= 1) << v;
+      }
+    }
+  }
+  EXPECT_GT(decoded, 5U);
+}
+
+TEST(HostileStream, OwnLatticesThatAreNotFiniteAreRefused) {
+  BlockValues values;
+  for (std::size_t i = 0; i < 512; ++i) values[i] = static_cast<float>(i % 7) * 0.25F;
+  Stream stream(kRawStreamBytes);
+  stream.resize(encode_exact(constants_from(0), Lattice{0, 0.25F, 12}, values, stream));
+  ASSERT_TRUE(decode(constants_from(0), kMeans, stream).has_value());
+  for (const std::size_t at : {1U, 5U}) {
+    for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+      Stream damaged = stream;
+      std::memcpy(damaged.data() + at, &wrong, sizeof wrong);
+      EXPECT_FALSE(decode(constants_from(0), kMeans, damaged).has_value()) << at;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weir::hostile_stream_test

@@ -73,6 +73,16 @@ TEST(LatticeBlock, WholeNumbersOnTheFilesLatticeComeBack) {
   }
 }
 
+TEST(LatticeBlock, CodesOfMoreBitsThanTheFilesAreNotOnItsLattice) {
+  for (const float first : {255.0F, 256.0F, 257.0F, -1.0F}) {
+    BlockValues values;
+    for (unsigned i = 0; i < 512; ++i) values[i] = static_cast<float>(255 - i % 8);
+    values[0] = first;
+    const Stream stream = encode_and_check(values, on_lattice(0, 1, 8));
+    EXPECT_EQ(kind_of(stream) == Kind::file, first == 255) << first;
+  }
+}
+
 TEST(LatticeBlock, ValuesOnTheirOwnLatticeComeBack) {
   Numbers numbers(22);
   for (const std::uint32_t bits : {3U, 9U, 17U, 24U}) {

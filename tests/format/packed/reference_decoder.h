@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -67,7 +67,8 @@ class ReferenceDecoder {
   }
 
   float clamp(float v) const {
-    return v < constants_.minimum ? constants_.minimum : v > constants_.maximum ? constants_.maximum : v;
+    if (!(v >= constants_.minimum)) return constants_.minimum;
+    return v <= constants_.maximum ? v : constants_.maximum;
   }
 
   Floats transform(bool mean_alone) {
@@ -128,11 +129,11 @@ class ReferenceDecoder {
     const unsigned predictor = head >> 2U & 3U;
     const unsigned kind = head >> 4U & 3U;
     require(head >> 6U == 0 && kind < 3);
-    float minimum = constants_.lattice_minimum;
-    float quantum = constants_.lattice_quantum;
+    float minimum = constants_.lattice_minimum, quantum = constants_.lattice_quantum;
     if (kind == 1) {
       minimum = number(1);
       quantum = number(5);
+      require(std::isfinite(minimum) && std::isfinite(quantum));
       bit_ += 64;
     }
     const unsigned bits = kind == 0 ? constants_.lattice_bits : kind == 1 ? 24 : 32;
@@ -168,8 +169,7 @@ class ReferenceDecoder {
     for (const unsigned stride : {64U, 8U, 1U}) {
       if (i / stride % 8 > 0) steps.push_back(stride);
     }
-    std::int64_t sum = 0;
-    std::int64_t least = at(steps[0]);
+    std::int64_t sum = 0, least = at(steps[0]);
     for (const unsigned s : steps) {
       sum += at(s);
       least = std::min(least, at(s));
@@ -202,7 +202,7 @@ class ReferenceDecoder {
     word_end_ = last;
     words_from_ = words_from;
     std::vector<unsigned> order(512);
-    for (unsigned i = 0; i < 512; ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), 0U);
     const auto most = [](unsigned i) { return std::max({i / 64, i / 8 % 8, i % 8}); };
     const auto total = [](unsigned i) { return i / 64 + i / 8 % 8 + i % 8; };
     const auto shell = [&](unsigned i) { return most(i) < 2 ? 0 : most(i) < 4 ? 1 : 2; };
@@ -210,7 +210,7 @@ class ReferenceDecoder {
       if (shell(a) != shell(b)) return shell(a) < shell(b);
       return total(a) != total(b) ? total(a) < total(b) : a < b;
     });
-    std::vector<unsigned> nonzero;
+    std::vector<unsigned> nonzero;  // in the order of the scan
     for (unsigned p = 1; p < 16 * end; ++p) {
       const unsigned i = order[p];
       std::uint32_t sum = 0;
@@ -246,7 +246,6 @@ class ReferenceDecoder {
   }
 
   static unsigned level(std::uint32_t t) {
-    if (t == 0) return 0;
     if (t > 320) return 23;
     return std::min(23U, static_cast<unsigned>(std::floor(3 * std::log2(1 + 4 * static_cast<double>(t) / 6))));
   }

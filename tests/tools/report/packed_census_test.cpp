@@ -68,7 +68,7 @@ TEST_F(PackedCensusTest, Sidecar_OtherBlocksThanItSays_IsReported) {
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed"), "wrong");
   EXPECT_STREQ(ok_of(sidecar, "sidecar selection.leaves_kept"), "not checked");
   const auto kinds = PackedSample::blocks_by_kind();
-  sidecar.packed.emplace();
+  sidecar.packed = Sidecar::Packed{};
   sidecar.packed->blocks = {kinds[2], 0, 0, 0, kinds[0] + kinds[1]};
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.blocks"), "ok");
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.preview"), "ok");

@@ -78,7 +78,7 @@ TEST_F(ZfpTrialTest, SameErrorWhateverMemoryThreadsAndBlocks) {
   for (const Index3 extent : {Index3{201, 150, 99}, Index3{40000, 21, 4}}) {
     const auto source = open_synthetic("turbulence", {extent, 1});
     const Certificate expected = in_one_piece(*source, 70);
-    for (const std::size_t threads : {1, 3}) {
+    for (const std::size_t threads : {1U, 3U}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       expect_equal(run(*source, 70, resident_bytes() + (24 + 4 * threads) * kMiB).error, expected);
     }
