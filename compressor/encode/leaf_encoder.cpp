@@ -4,19 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/quantised_leaf.h"
-#include "format/base/simd.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/quantised_codec.h"
 
 namespace weir {
 namespace {
-
-WEIR_SIMD bool all_finite(const LeafValues& values) {
-  std::uint32_t others = 0;
-  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // NaN for what is not finite
-  return others == 0;
-}
 
 // Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
 // follow each other in the file. One per thread.

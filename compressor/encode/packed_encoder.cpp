@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "compressor/encode/record_batch.h"
+#include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/leaf_difference.h"
 #include "compressor/packed/block_values.h"
@@ -21,7 +23,8 @@ namespace {
 
 class PackedEncoder final : public LayerEncoder {
  public:
-  explicit PackedEncoder(const EncodeTarget& target) : target_(target), packed_(*target.packed) {
+  explicit PackedEncoder(const EncodeTarget& target)
+      : target_(target), packed_(*target.packed), records_(target.records) {
     stream_.resize(4096);
   }
 
@@ -40,19 +43,18 @@ class PackedEncoder final : public LayerEncoder {
         surveyed.check(leaf, block.values, block.voxels);
         add_ends(chunk, places, position);
         add_stream(block, leaf, chunk + places.offset(position), places, position);
-        add_record(region.first_leaf + places.ordinal(position));
+        records_.add(region.first_leaf + places.ordinal(position), decoded_, node_, inside_, loss());
       }
     }
   }
 
   void finish() override {
     flush_bytes();
-    flush_records();
+    records_.flush();
   }
 
  private:
   static constexpr std::size_t kHeldBytes = std::size_t{1} << 18U;
-  static constexpr std::size_t kHeldRecords = 1024;
 
   std::uint64_t packed_chunks_offset() const {
     return packed::kRegionsOffset + target_.tree.regions.size() * packed::region::kEntryBytes;
@@ -80,10 +82,9 @@ class PackedEncoder final : public LayerEncoder {
     inside_ = target_.tree.leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
     values_ = source_;
-    if (target_.fill.non_finite != NonFinitePolicy::keep) {
-      for_each_inside(node_, inside_, [&](std::size_t i) {
-        if (!std::isfinite(values_[i])) values_[i] = target_.fill.background;
-      });
+    replaced_ = target_.fill.non_finite != NonFinitePolicy::keep && !all_finite(source_);
+    if (replaced_) {
+      for (float& v : values_) v = std::isfinite(v) ? v : target_.fill.background;
     }
     extend_outside(node_, inside_, values_);
     const std::span<std::byte> stream = std::span(stream_).first(places.bytes(position));
@@ -126,24 +127,23 @@ class PackedEncoder final : public LayerEncoder {
     target_.out.write_at(target_.layout.leaves + ordinal * nvdb::kFloatLeafBytes, image);
   }
 
-  void add_record(std::uint64_t ordinal) {
-    if (!records_.empty() && ordinal != first_record_ + records_.size()) flush_records();
-    if (records_.empty()) first_record_ = ordinal;
-    const NodeStatistics statistics = leaf_statistics(decoded_, node_, inside_);
-    LeafRecord record = make_leaf_record(decoded_, node_, inside_, statistics);
+  LeafLoss loss() const {
+    LeafLoss loss = loss_of(source_);
+    if (replaced_) loss.exact = loss_of(values_).exact;
+    return loss;
+  }
+
+  // Of the in-domain voxels.
+  LeafLoss loss_of(const LeafValues& before) const {
+    if (inside_ == node_) return as_loss(difference_of(before, decoded_));
     LeafValues seen = decoded_;
-    LeafValues read = decoded_;
-    for_each_inside(node_, inside_, [&](std::size_t i) {
-      seen[i] = source_[i];
-      read[i] = values_[i];
-    });
-    const LeafDifference lost = difference_of(seen, decoded_);
-    const LeafDifference changed = difference_of(read, decoded_);
-    record.squared_error = lost.squared_error;
-    record.max_abs = lost.max_abs;
-    record.exact = changed.different == 0 && changed.nonfinite_different == 0 ? 1 : 0;
-    records_.push_back(record);
-    if (records_.size() >= kHeldRecords) flush_records();
+    for_each_inside(node_, inside_, [&](std::size_t i) { seen[i] = before[i]; });
+    return as_loss(difference_of(seen, decoded_));
+  }
+
+  static LeafLoss as_loss(const LeafDifference& difference) {
+    return {difference.squared_error, difference.max_abs,
+            difference.different == 0 && difference.nonfinite_different == 0};
   }
 
   void append(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -160,12 +160,6 @@ class PackedEncoder final : public LayerEncoder {
     bytes_.clear();
   }
 
-  void flush_records() {
-    if (records_.empty()) return;
-    target_.records.write(first_record_, records_);
-    records_.clear();
-  }
-
   [[noreturn]] static void fail(const Index3& leaf, const char* what) {
     throw Error(ErrorKind::internal,
                 cat("packed block ", leaf.x, ",", leaf.y, ",", leaf.z, " ", what, "; report this"));
@@ -176,15 +170,15 @@ class PackedEncoder final : public LayerEncoder {
   TransformBlock transform_;
   Box node_;
   Box inside_;
-  LeafValues source_{};  // outside the domain: anything
-  LeafValues values_{};  // what is packed
+  LeafValues source_{};    // outside the domain: anything
+  LeafValues values_{};    // what is packed
+  bool replaced_ = false;  // some of the source were not finite
   LeafValues decoded_{};
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
   std::uint64_t first_byte_ = 0;
   std::vector<std::byte> bytes_;  // to be written from first_byte_ on
-  std::uint64_t first_record_ = 0;
-  std::vector<LeafRecord> records_;
+  RecordBatch records_;
 };
 
 }  // namespace

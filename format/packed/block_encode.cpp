@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "format/base/simd.h"
 #include "format/packed/block_decode.h"
@@ -52,6 +53,55 @@ WEIR_SIMD void forward_transform(float* values) {
   }
 }
 
+struct BlockRange {
+  float low;
+  float high;
+  double sum;
+};
+
+WEIR_SIMD BlockRange range_of(const float* values) {
+  Floats8 low;
+  std::memcpy(&low, values, sizeof low);
+  Floats8 high = low;
+  Doubles8 sum{};
+  for (unsigned row = 0; row < 64; ++row) {
+    Floats8 v;
+    std::memcpy(&v, values + 8 * row, sizeof v);
+    low = v < low ? v : low;
+    high = v > high ? v : high;
+    sum += __builtin_convertvector(v, Doubles8);
+  }
+  BlockRange range{low[0], high[0], 0};
+  for (int l = 0; l < 8; ++l) {
+    range.low = low[l] < range.low ? low[l] : range.low;
+    range.high = high[l] > range.high ? high[l] : range.high;
+    range.sum += sum[l];
+  }
+  return range;
+}
+
+// The largest magnitude and the sum of squares of each row; returns the largest of all.
+WEIR_SIMD float measure_rows(const float* coefficients, float* largest, double* energy) {
+  float largest_of_all = 0;
+  for (unsigned row = 0; row < 64; ++row) {
+    Floats8 c;
+    std::memcpy(&c, coefficients + 8 * row, sizeof c);
+    const Floats8 size = c < 0 ? -c : c;
+    const Doubles8 wide = __builtin_convertvector(c, Doubles8);
+    const Doubles8 squares = wide * wide;
+    float most = 0;
+    double sum = 0;
+    for (int l = 0; l < 8; ++l) {
+      most = size[l] > most ? size[l] : most;
+      sum += squares[l];
+    }
+    largest[row] = most;
+    energy[row] = sum;
+    largest_of_all = most > largest_of_all ? most : largest_of_all;
+  }
+  return largest_of_all;
+}
+
 // What quantise_rows has found.
 struct Quantised {
   double squared_error;
@@ -63,8 +113,9 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
                                   const std::int32_t* places, MagnitudeRows& magnitudes) {
   const float scale = 1.0F / step;
   const float least = kDeadZone * step * 0.999F;
-  Doubles8 sum{};
+  Floats8 sum{};  // in squared steps, each at most a little above a third
   double dropped = 0;
+  magnitudes.live = 0;
   Ints8 last{};
   const Floats8 none{};
   const Ints8 zero{};
@@ -83,24 +134,25 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
     m = m < 1 ? zero + 1 : m;
     m = scaled < kDeadZone ? zero : m;
     std::memcpy(out, &m, sizeof m);
+    magnitudes.live |= std::uint64_t{1} << row;
     const Floats8 whole = __builtin_convertvector(m, Floats8);
     const Floats8 below = m == 1 ? kBelowOne - none : kBelowMore - none;
-    Floats8 decoded = (whole - below) * step;
+    Floats8 decoded = whole - below;
     decoded = m == 0 ? none : decoded;
-    const Doubles8 error = __builtin_convertvector(size - decoded, Doubles8);
+    const Floats8 error = scaled - decoded;
     sum += error * error;
     Ints8 place;
     std::memcpy(&place, places + 8 * row, sizeof place);
     place = m == 0 ? zero : place;
     last = place > last ? place : last;
   }
-  double total = dropped;
+  double total = 0;
   std::int32_t last_place = 0;
   for (int l = 0; l < 8; ++l) {
-    total += sum[l];
+    total += static_cast<double>(sum[l]);
     last_place = last[l] > last_place ? last[l] : last_place;
   }
-  return {total, last_place};
+  return {dropped + total * static_cast<double>(step) * static_cast<double>(step), last_place};
 }
 
 constexpr std::array<std::int32_t, 512> make_places() {
@@ -132,14 +184,7 @@ unsigned cheapest_place(const ScanValues& values) {
 TransformBlock::TransformBlock(const std::uint16_t* tables) : rows_(symbol_costs(tables)) {}
 
 bool TransformBlock::set(std::span<const float, 512> values) {
-  float low = values[0];
-  float high = values[0];
-  double sum = 0;
-  for (const float v : values) {
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-    sum += static_cast<double>(v);
-  }
+  const auto [low, high, sum] = range_of(values.data());
   mean_ = static_cast<float>(sum / 512);
   const float range = high - low;
   if (!(std::fabs(low) < kLargestValue && std::fabs(high) < kLargestValue)) return false;
@@ -149,21 +194,8 @@ bool TransformBlock::set(std::span<const float, 512> values) {
   forward_transform(block.data());
   block[0] = 0;
   coefficients_ = block;
-  float largest = 0;
-  energy_ = 0;
-  for (unsigned row = 0; row < 64; ++row) {
-    float most = 0;
-    double squares = 0;
-    for (unsigned k = 0; k < 8; ++k) {
-      const float c = block[8 * row + k];
-      most = std::max(most, std::fabs(c));
-      squares += static_cast<double>(c) * static_cast<double>(c);
-    }
-    row_largest_[row] = most;
-    row_energy_[row] = squares;
-    largest = std::max(largest, most);
-    energy_ += squares;
-  }
+  const float largest = measure_rows(block.data(), row_largest_.data(), row_energy_.data());
+  energy_ = std::accumulate(row_energy_.begin(), row_energy_.end(), 0.0);
   largest_ = static_cast<double>(largest);
   return true;
 }

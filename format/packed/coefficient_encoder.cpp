@@ -16,6 +16,16 @@ struct Piece {
   std::uint8_t state;
 };
 
+// ceil(2^44 / f): x * inverse >> 44 is x / f for every x below f * 2^20, which is what a state is reduced to before it
+// takes a symbol of frequency f.
+constexpr unsigned kInverseBits = 44;
+constexpr std::array<std::uint64_t, kTotal + 1> make_inverses() {
+  std::array<std::uint64_t, kTotal + 1> inverses{};
+  for (std::uint64_t f = 1; f <= kTotal; ++f) inverses[f] = ((std::uint64_t{1} << kInverseBits) + f - 1) / f;
+  return inverses;
+}
+constexpr std::array<std::uint64_t, kTotal + 1> kInverses = make_inverses();
+
 // At most, for each value: a symbol, five bits of an escape, twice two halves of raw bits.
 constexpr std::size_t kMostPieces = 512 * 6;
 
@@ -83,7 +93,8 @@ class RansEncoder {
     }
     const std::uint64_t limit = static_cast<std::uint64_t>(piece.frequency) << (32U - kFrequencyBits);
     if (x >= limit) emit(x);
-    x = (x / piece.frequency << kFrequencyBits) + x % piece.frequency + piece.low;
+    const auto whole = static_cast<std::uint32_t>(x * kInverses[piece.frequency] >> kInverseBits);
+    x = (whole << kFrequencyBits) + (x - whole * piece.frequency) + piece.low;
   }
   std::span<const std::uint16_t> words() const { return {words_.data(), count_}; }
   std::uint32_t state(unsigned s) const { return state_[s]; }

@@ -7,8 +7,9 @@
 namespace weir {
 namespace {
 
-constexpr std::int32_t kLastLevelSum = 511;
 constexpr unsigned kStride = MagnitudeRows::kStride;
+constexpr auto kFirstEscape = static_cast<std::int32_t>(kEscape);
+constexpr std::int32_t kNoCost = kPackedBands * kPackedLevels * kPackedSymbols;
 
 struct LaneSums {
   std::int32_t symbols[8];
@@ -23,43 +24,73 @@ struct LaneSums {
   log2 = (log2 >> 23) - 127;
 }
 
+// BlockScan::level of sums of neighbours: floor(3 log2(1 + 2 t / 3)), at most the last.
+[[gnu::always_inline]] inline void level_of(const Ints8& t, Ints8& level) {
+  const Floats8 u = __builtin_convertvector(3 + 2 * t, Floats8) / 3.0F;
+  Ints8 bits;
+  __builtin_memcpy(&bits, &u, sizeof bits);
+  const Ints8 mantissa = bits & 0x7FFFFF;
+  constexpr std::int32_t kThird = 0x214518;      // 2^(1/3)
+  constexpr std::int32_t kTwoThirds = 0x4B2FF5;  // 2^(2/3)
+  level = 3 * ((bits >> 23) - 127) - (mantissa >= kThird) - (mantissa >= kTwoThirds);
+  constexpr auto kLast = static_cast<std::int32_t>(kPackedLevels - 1);
+  level = level < kLast ? level : kLast - Ints8{};
+}
+
 [[gnu::always_inline]] inline void load_row(const std::int32_t* at, Ints8& row) {
   __builtin_memcpy(&row, at, sizeof row);
 }
 
+// Bit i set: row i has one that is not zero, or its neighbours have.
+std::uint64_t busy_rows(std::uint64_t live) {
+  constexpr std::uint64_t kFirstOfEight = 0x0101010101010101U;
+  return live | live << 8U | (live << 1U & ~kFirstOfEight);
+}
+
 // All places but the first four, and only those below `limit`.
-WEIR_SIMD void add_rows(const RowCosts::Tables& tables, const std::int32_t* padded, std::int32_t limit,
-                        LaneSums& sums) {
+WEIR_SIMD void add_rows(const RowCosts::Tables& tables, const std::int32_t* padded, std::uint64_t busy,
+                        std::int32_t limit, LaneSums& sums) {
   const Ints8 none{};
   Ints8 symbols{};
   Ints8 raw{};
   Ints8 zero{};
   for (unsigned row = 0; row < 64; ++row) {
     if (tables.first_place[row] >= limit) continue;
+    Ints8 place;
+    load_row(tables.place + 8 * row, place);
+    const Ints8 coded = place < limit;  // all bits where it is
+    if ((busy >> row & 1U) == 0) {
+      Ints8 cost;
+      load_row(tables.zero_cost + 8 * row, cost);
+      symbols += cost & coded;
+      continue;
+    }
     const std::int32_t* at = padded + kStride * (row + 8) + 8;
-    Ints8 m, up, left{}, back, weight, place, context;
+    Ints8 m, up, left{}, back, weight, first_cost;
     load_row(at, m);
     load_row(at - 8 * kStride, up);
     if (row % 8 != 0) load_row(at - kStride, left);  // of j = 0 the row before is of another i
     load_row(at - 1, back);
     load_row(tables.weight + 8 * row, weight);
-    load_row(tables.place + 8 * row, place);
-    load_row(tables.context + 8 * row, context);
+    load_row(tables.first_cost + 8 * row, first_cost);
     const Ints8 t = (up + left + back) * weight;
     Ints8 extra;
     log2_of(t > 36 ? t / 18 : none + 1, extra);
     extra = extra > 16 ? none + 16 : extra;
     const Ints8 high = m >> extra;
-    const Ints8 symbol = high < 15 ? high : none + 15;
-    const Ints8 counted = t < kLastLevelSum ? t : none + kLastLevelSum;
+    const Ints8 escaped = high >= kFirstEscape;
+    const Ints8 symbol = escaped ? none + kFirstEscape : high;
+    Ints8 level;
+    level_of(t, level);
+    const Ints8 entry = coded ? first_cost + 16 * level + symbol : none + kNoCost;
+    alignas(32) std::int32_t entries[8];
+    __builtin_memcpy(entries, &entry, sizeof entries);
     Ints8 cost;
-    for (int l = 0; l < 8; ++l) cost[l] = tables.cost[16 * (context[l] + tables.level[counted[l]]) + symbol[l]];
+    for (int l = 0; l < 8; ++l) cost[l] = tables.cost[entries[l]];
+    symbols += cost;
     Ints8 escape;
-    log2_of(high < 15 ? none + 1 : high - 14, escape);
-    escape = high < 15 ? none : escape + 5;
-    const Ints8 coded = place < limit;  // all bits where it is
-    symbols += cost & coded;
-    raw += (extra + escape) & coded;
+    log2_of(escaped ? high - (kFirstEscape - 1) : none + 1, escape);
+    raw += (extra + ((escape + 5) & escaped)) & coded;
     zero += (m != 0) & coded;
   }
   for (int l = 0; l < 8; ++l) {
@@ -76,7 +107,7 @@ RowCosts::RowCosts(const SymbolCosts& costs) {
   for (unsigned context = 0; context < kPackedBands * kPackedLevels; ++context) {
     std::copy(costs[context].begin(), costs[context].end(), tables_.cost + kPackedSymbols * context);
   }
-  for (unsigned t = 0; t < 512; ++t) tables_.level[t] = t < kLevelSums ? scan.level[t] : kPackedLevels - 1;
+  tables_.cost[kNoCost] = 0;
   std::fill(std::begin(tables_.first_place), std::end(tables_.first_place), 512);
   for (unsigned place = 0; place < 512; ++place) {
     const unsigned index = scan.index[place];
@@ -84,7 +115,8 @@ RowCosts::RowCosts(const SymbolCosts& costs) {
     const bool first = place < 4;
     tables_.weight[index] = scan.weight[place];
     tables_.place[index] = first ? 512 : static_cast<std::int32_t>(place);
-    tables_.context[index] = static_cast<std::int32_t>(scan.band[place] * kPackedLevels);
+    tables_.first_cost[index] = static_cast<std::int32_t>(scan.band[place] * kPackedLevels * kPackedSymbols);
+    tables_.zero_cost[index] = tables_.cost[tables_.first_cost[index]];
     std::int32_t& least = tables_.first_place[index / 8];
     least = std::min(least, tables_.place[index]);
   }
@@ -94,7 +126,7 @@ RowCosts::Sum RowCosts::of(const MagnitudeRows& magnitudes, unsigned end) const 
   const BlockScan& scan = kBlockScan;
   Sum sum;
   LaneSums sums;
-  add_rows(tables_, magnitudes.padded, static_cast<std::int32_t>(kEndUnit * end), sums);
+  add_rows(tables_, magnitudes.padded, busy_rows(magnitudes.live), static_cast<std::int32_t>(kEndUnit * end), sums);
   for (int l = 0; l < 8; ++l) {
     sum.symbols += static_cast<std::uint32_t>(sums.symbols[l]);
     sum.raw += static_cast<std::uint32_t>(sums.raw[l]);

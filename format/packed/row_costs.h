@@ -12,6 +12,7 @@ namespace weir {
 struct MagnitudeRows {
   static constexpr unsigned kStride = 16;
   alignas(64) std::int32_t padded[kStride * 72] = {};
+  std::uint64_t live = ~std::uint64_t{0};  ///< bit i not set: row i is zero
 
   std::int32_t* row(unsigned i) { return padded + kStride * (i + 8) + 8; }
   const std::int32_t* row(unsigned i) const { return padded + kStride * (i + 8) + 8; }
@@ -32,12 +33,12 @@ class RowCosts {
   Sum of(const MagnitudeRows& magnitudes, unsigned end) const;
 
   struct Tables {
-    alignas(64) std::int32_t cost[kPackedBands * kPackedLevels * kPackedSymbols];
-    alignas(64) std::int32_t level[512];   // by the sum of the neighbours, all that are larger like the last
-    alignas(64) std::int32_t weight[512];  // by index
+    alignas(64) std::int32_t cost[kPackedBands * kPackedLevels * kPackedSymbols + 1];  // the last is 0
+    alignas(64) std::int32_t weight[512];                                              // by index
     alignas(64) std::int32_t place[512];
-    alignas(64) std::int32_t context[512];  // of level 0
-    std::int32_t first_place[64];           // the least of each row
+    alignas(64) std::int32_t first_cost[512];  // of symbol 0 at level 0, as an index of cost
+    alignas(64) std::int32_t zero_cost[512];   // that entry
+    std::int32_t first_place[64];              // the least of each row
   };
 
  private:

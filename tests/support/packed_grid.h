@@ -97,8 +97,8 @@ class PackedGridBuilder {
     put(kMinimum, options_.range.min);
     put(kMaximum, options_.range.max);
     put(kCoarsest, options_.coarsest);
-    put(kBelowOne, 0.1F);
-    put(kBelowMore, 0.05F);
+    put(packed::header::kBelowOne, 0.1F);
+    put(packed::header::kBelowMore, 0.05F);
     put(kTables, static_cast<std::uint32_t>(packed::kHeaderBytes));
     put(kTableCount, std::uint32_t{kPackedTables});
     put(kRegions, packed::kRegionsOffset);

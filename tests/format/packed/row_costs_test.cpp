@@ -55,9 +55,11 @@ TEST(RowCosts, OfEqualsTheCountOneByOne) {
     const std::uint32_t largest_bits = numbers.below(21);
     const std::uint32_t share = 1 + numbers.below(16);
     MagnitudeRows magnitudes;
+    if (trial % 2 != 0) magnitudes.live = 0;
     std::array<std::uint32_t, 512> by_index{};
     for (unsigned index = 1; index < 512; ++index) {
-      if (numbers.below(16) >= share) continue;
+      if (numbers.below(trial % 3 == 0 ? 256 : 16) >= share) continue;
+      magnitudes.live |= std::uint64_t{1} << (index / 8);
       by_index[index] = numbers.bits() & ((1U << numbers.below(largest_bits + 1)) - 1U);
       magnitudes.row(index / 8)[index % 8] = static_cast<std::int32_t>(by_index[index]);
     }

@@ -1,0 +1,45 @@
+// Records of kept leaves in the order of their ordinals, their statistics computed a batch at a time and written by the
+// thousand.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "compressor/encode/leaf_record.h"
+
+namespace weir {
+
+/// What decoding a leaf has changed.
+struct LeafLoss {
+  double squared_error = 0;
+  double max_abs = 0;
+  bool exact = true;  ///< every voxel reads the bits it should
+};
+
+/// One per thread.
+class RecordBatch {
+ public:
+  explicit RecordBatch(RecordStore& records) : records_(records) {}
+
+  void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside, const LeafLoss& loss);
+  /// Writes what is still held.
+  void flush();
+
+ private:
+  static constexpr std::size_t kHeldRecords = 1024;
+
+  void compute();
+
+  RecordStore& records_;
+  std::size_t count_ = 0;  // leaves whose statistics are not yet computed
+  std::array<LeafValues, kLeafBatch> values_{};
+  std::array<Box, kLeafBatch> nodes_{};
+  std::array<Box, kLeafBatch> insides_{};
+  std::array<LeafLoss, kLeafBatch> losses_{};
+  std::uint64_t first_ = 0;  // ordinal of the first record held
+  std::vector<LeafRecord> held_;
+};
+
+}  // namespace weir
