@@ -16,10 +16,11 @@
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
+#include "compressor/select/file_size.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
-#include "compressor/survey/filled_ladders.h"
+#include "compressor/survey/ladder_completion.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -147,6 +148,7 @@ std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, cons
   aim.keeps_non_finite = options.non_finite == NonFinitePolicy::keep;
   aim.background = options.background;
   aim.lattice = lattice_of(source);
+  aim.near_rungs = !aim.lattice && !aim.lossless && !aim.max_error;
   return aim;
 }
 
@@ -188,7 +190,7 @@ class SurveyedConversion {
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
     find_background();
-    fill_ladders();
+    finish_ladders();
     return make_request();
   }
 
@@ -214,12 +216,28 @@ class SurveyedConversion {
     if (journal->resumable()) journal->save();
   }
 
-  // Packed blocks of which the background is a part.
-  void fill_ladders() {
+  // Packed blocks of which the background is a part, and those of which nearly everything is kept.
+  void finish_ladders() {
     std::optional<LadderAim> aim = surveyed_ladders(options_, info_);
-    if (!aim || aim->background || aim->keeps_non_finite || survey_.missing + survey_.non_finite == 0) return;
+    if (!aim) return;
+    MissingLadders missing;
+    missing.filled = !aim->background && !aim->keeps_non_finite && survey_.missing + survey_.non_finite > 0;
+    if (aim->near_rungs && buys_near_rungs()) missing.near = NearRungs::yes;
+    if (!missing.filled && missing.near == NearRungs::no) return;
     aim->background = background_.value;
-    build_filled_ladders(parts_.source, reading_.survey, stores_.rows, *aim, stream_);
+    complete_ladders(parts_.source, reading_.survey, stores_.rows, *aim, missing, stream_);
+  }
+
+  // Whether the budget has room for near rungs. Those of a small volume are there already.
+  bool buys_near_rungs() const {
+    constexpr double kNearly = 0.9;  // some blocks have a use for them before others
+    const Budget& budget = options_.budget;
+    const NearCost cost = near_cost(stores_.rows);
+    if (budget.kind == Budget::Kind::psnr)
+      return allowed_error(budget, survey_, survey_.finite) * kNearly < cost.squared_error;
+    const auto dense = static_cast<std::uint64_t>(info_.domain().voxels()) * sizeof(float);
+    const std::uint64_t bytes = budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense, budget.rate);
+    return static_cast<double>(bytes) > kNearly * cost.bytes;
   }
 
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.

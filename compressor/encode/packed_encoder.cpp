@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "compressor/encode/record_batch.h"
@@ -17,6 +18,7 @@
 #include "format/base/text.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
+#include "format/packed/rounded_block.h"
 
 namespace weir {
 namespace {
@@ -99,6 +101,12 @@ class PackedEncoder final : public LayerEncoder {
 
   void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
+    const int exponent = step - PlannedStreams::kNearStep;
+    if (std::abs(exponent) <= 128) {
+      rounded_.set(values_);
+      if (!rounded_.encode(exponent, stream)) fail({}, "cannot be rounded");
+      return;
+    }
     if (step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep) {
       if (!transform_.set(values_)) fail({}, "cannot be transformed");
       transform_.encode(packed_.constants, plan.region.means, step, stream);
@@ -168,6 +176,7 @@ class PackedEncoder final : public LayerEncoder {
   const EncodeTarget& target_;
   const PackedTarget& packed_;
   TransformBlock transform_;
+  RoundedBlock rounded_;
   Box node_;
   Box inside_;
   LeafValues source_{};    // outside the domain: anything

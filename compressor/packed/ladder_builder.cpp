@@ -79,7 +79,7 @@ PackedLadder LadderBuilder::uniform() {
   return ladder;
 }
 
-PackedLadder LadderBuilder::build_non_finite(LeafValues& block, const LeafRow& row) {
+PackedLadder LadderBuilder::build_non_finite(LeafValues& block, const LeafRow& row, NearRungs near) {
   PackedLadder raw;
   raw.exact_bytes = kRawStreamBytes;
   if (aim_.keeps_non_finite) return have_same_bits(block) ? uniform() : raw;
@@ -88,22 +88,26 @@ PackedLadder LadderBuilder::build_non_finite(LeafValues& block, const LeafRow& r
   for (float& v : block) {
     if (!std::isfinite(v)) v = *aim_.background;
   }
-  return have_same_bits(block) ? uniform() : build(block, row, Filled::yes);
+  return have_same_bits(block) ? uniform() : build(block, row, near, Filled::yes);
 }
 
-PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row) { return build(block, row, Filled::no); }
+PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, NearRungs near) {
+  return build(block, row, near, Filled::no);
+}
 
-PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, Filled filled) {
+PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled) {
   PackedLadder ladder;
   if (aim_.max_error) {
     build_bounded(block, *aim_.max_error, ladder);
     return ladder;
   }
   // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
-  const FloatOrder order = aim_.lossless ? FloatOrder::used : FloatOrder::unused;
+  const FloatOrder order = aim_.lossless || near == NearRungs::yes ? FloatOrder::used : FloatOrder::unused;
   ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
-  if (!aim_.lossless && transform_.set(block))
-    add_rungs(row, filled == Filled::no ? transform_.energy() : row.sse, ladder);
+  if (aim_.lossless || !transform_.set(block)) return ladder;
+  const double energy = filled == Filled::no ? transform_.energy() : row.sse;
+  add_rungs(row, energy, ladder);
+  if (near == NearRungs::yes) add_near_rungs(block, energy, ladder);
   return ladder;
 }
 
@@ -122,6 +126,21 @@ void LadderBuilder::add_rungs(const LeafRow& row, double energy, PackedLadder& l
     const double share = std::min(1.0, cost.squared_error / energy);
     ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits), ErrorShare(share)};
     ladder.count = static_cast<std::uint8_t>(rung + 1);
+  }
+}
+
+void LadderBuilder::add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder) {
+  if (!(energy > 0)) return;
+  rounded_.set(block);
+  const int finest = rounded_.exponent() - RoundedBlock::kMostBits;
+  const int coarsest = finest + static_cast<int>(PackedLadder::kMostNear) - 1;
+  if (coarsest > std::numeric_limits<std::int8_t>::max() || finest < std::numeric_limits<std::int8_t>::min()) return;
+  ladder.near_exponent = static_cast<std::int8_t>(coarsest);
+  for (int exponent = coarsest; exponent >= finest; --exponent) {
+    const auto cost = rounded_.cost(exponent);
+    if (!cost || cost->bytes >= ladder.exact_bytes) break;
+    const double share = std::min(1.0, cost->squared_error / energy);
+    ladder.near[ladder.near_count++] = {static_cast<std::uint16_t>(cost->bytes), ErrorShare(share)};
   }
 }
 

@@ -11,6 +11,7 @@
 #include "format/leaf/leaf_codec.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
+#include "format/packed/rounded_block.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -22,10 +23,14 @@ struct LadderAim {
   std::optional<float> background;   ///< what else they become, where that is known
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
+  bool near_rungs = false;           ///< a budget of bytes, or of an error, may buy them
 };
 
 /// The lattice that all values of a source lie on, where its type says so.
 std::optional<Lattice> lattice_of(const SourceInfo& source);
+
+/// Whether a ladder has near rungs, and its exact kind predicts floats.
+enum class NearRungs { no, yes };
 
 class LadderBuilder {
  public:
@@ -33,24 +38,26 @@ class LadderBuilder {
 
   /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
   /// the survey knows of them.
-  PackedLadder build(const LeafValues& block, const LeafRow& row);
+  PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near);
   /// Of one whose in-domain values have the same bits.
   static PackedLadder uniform();
   /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
-  /// be built once more (compressor/survey/filled_ladders.h).
-  PackedLadder build_non_finite(LeafValues& block, const LeafRow& row);
+  /// be built once more (compressor/survey/ladder_completion.h).
+  PackedLadder build_non_finite(LeafValues& block, const LeafRow& row, NearRungs near);
 
  private:
   // Whether the background is a part of the block. Its error does not count then: that of the whole is a bound.
   enum class Filled { no, yes };
-  PackedLadder build(const LeafValues& block, const LeafRow& row, Filled filled);
+  PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled);
   // The errors of the rungs are shares of `energy`.
   void add_rungs(const LeafRow& row, double energy, PackedLadder& ladder);
+  void add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder);
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
 
   LadderAim aim_;
   TransformBlock transform_;
+  RoundedBlock rounded_;
   std::vector<std::byte> stream_ = std::vector<std::byte>(4096);
 };
 

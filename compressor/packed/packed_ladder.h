@@ -29,18 +29,29 @@ struct PackedRung {
 /// a 16th of a quantum.
 inline constexpr unsigned kMostBoundedMeanBits = 20;
 
-/// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, kExactLevel its exact kind.
-inline constexpr std::uint8_t kExactLevel = 31;
+/// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, from kFirstNearLevel on those that
+/// are nearly lossless, kExactLevel its exact kind.
+inline constexpr std::uint8_t kFirstNearLevel = 23;
+inline constexpr std::uint8_t kExactLevel = 63;
+
+/// Values rounded to multiples of a power of two: where a transform's error ends at what float32 resolves.
+struct NearRung {
+  std::uint16_t bytes = 0;  ///< of the stream
+  ErrorShare error;         ///< of the block's energy
+};
 
 struct PackedLadder {
   static constexpr std::size_t kMostRungs = 22;
+  static constexpr std::size_t kMostNear = 12;
 
   std::int16_t first_step = 0;    ///< step number of rung 0
   std::uint8_t count = 0;         ///< rungs, from coarse to fine
   std::uint8_t bounded = 0;       ///< not 0: the exact kind is of values rounded to within --max-error
   std::uint16_t exact_bytes = 0;  ///< of the stream of the exact kind
-  std::uint16_t reserved = 0;
+  std::int8_t near_exponent = 0;  ///< of the coarsest near rung's quantum; each further one's is half of that
+  std::uint8_t near_count = 0;
   std::array<PackedRung, kMostRungs> rungs{};
+  std::array<NearRung, kMostNear> near{};  ///< from coarse to fine
 
   /// Step number of a rung: by whole octaves to where the first coefficient counts, then by half ones, by whole ones
   /// again, and at last, for what is nearly lossless, by two.
@@ -49,6 +60,6 @@ struct PackedLadder {
     return first_step + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
   }
 };
-static_assert(sizeof(PackedLadder) == 96, "ladders are spilled as they are");
+static_assert(sizeof(PackedLadder) == 144, "ladders are spilled as they are");
 
 }  // namespace weir

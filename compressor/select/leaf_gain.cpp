@@ -249,7 +249,7 @@ class PackedHull {
     return (from.error - to.error) / static_cast<double>(to.bytes - from.bytes);
   }
 
-  std::array<PackedPoint, PackedLadder::kMostRungs + 2> points_;
+  std::array<PackedPoint, PackedLadder::kMostRungs + PackedLadder::kMostNear + 2> points_;
   std::size_t count_ = 0;
 };
 
@@ -283,13 +283,25 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
   const bool nothing_does = leaf.exact || !(weights.tile > 0);
   leaf.lossless = true;
   if (nothing_does && !leaf.required) return;
-  PackedHull hull(none);
-  for (std::uint8_t rung = 0; rung < ladder.count; ++rung) {
-    const auto level = static_cast<KeptLevel>(rung + 1);
-    const std::uint32_t bytes = stream(level);
-    if (bytes == 0) continue;
-    hull.add({bytes, weights.kept * packed_error(ladder, level, row, voxels), level});
+  std::array<PackedPoint, PackedLadder::kMostRungs + PackedLadder::kMostNear> ways;
+  std::size_t count = 0;
+  const auto add = [&](KeptLevel first, std::size_t rungs) {
+    for (std::size_t rung = 0; rung < rungs; ++rung) {
+      const auto level = static_cast<KeptLevel>(first + rung);
+      const std::uint32_t bytes = stream(level);
+      if (bytes > 0) ways[count++] = {bytes, weights.kept * packed_error(ladder, level, row, voxels), level};
+    }
+  };
+  add(1, ladder.count);
+  add(kFirstNearLevel, ladder.near_count);
+  if (ladder.near_count > 0) {
+    std::sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(count),
+              [](const PackedPoint& a, const PackedPoint& b) {
+                return a.bytes != b.bytes ? a.bytes < b.bytes : a.level < b.level;
+              });
   }
+  PackedHull hull(none);
+  for (std::size_t i = 0; i < count; ++i) hull.add(ways[i]);
   hull.add(exact);
   const std::span<const PackedPoint> points = hull.points();
   for (std::size_t i = 1; i < points.size(); ++i) out.add(leaf, packed_step(points[i - 1], points[i]));

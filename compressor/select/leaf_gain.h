@@ -47,7 +47,7 @@ struct LeafGain {
 class RegionGains {
  public:
   /// Most steps of one leaf.
-  static constexpr std::size_t kMostSteps = 24;
+  static constexpr std::size_t kMostSteps = 36;
   /// Most bytes of a region's.
   static constexpr std::uint64_t kMostBytes = LeafChoices::kLeaves * (sizeof(LeafGain) + kMostSteps * sizeof(LeafStep));
 

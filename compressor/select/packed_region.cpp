@@ -68,6 +68,7 @@ std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, c
                                   const PackedRule& rule) {
   if (level == 0) return 0;
   if (level == kExactLevel) return ladder.exact_bytes;
+  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].bytes;
   const std::size_t rung = level - 1U;
   const std::int32_t step = ladder.step(rung);
   if (step < rule.coarsest || step >= rule.coarsest + kPackedSteps) return 0;
@@ -82,11 +83,13 @@ PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
     const bool raw = ladder.exact_bytes == kOneValueBytes || ladder.exact_bytes == kRawStreamBytes;
     return raw ? PackedKind::raw : PackedKind::lattice;
   }
+  if (level >= kFirstNearLevel) return PackedKind::lattice;
   return ladder.rungs[level - 1U].bits == kMeanBits ? PackedKind::mean : PackedKind::transform;
 }
 
 double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) {
   if (level == kExactLevel) return 0;
+  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
   const std::size_t rung = level - 1U;
   const auto size = static_cast<double>(step_size(ladder.step(rung)));
   // Codes of the mean lie size / sqrt(512) apart.
@@ -104,10 +107,13 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
     if (level == 0) return;
     const PackedLadder& ladder = rows.ladder(leaf);
     plan.bytes[position] = static_cast<std::uint16_t>(packed_stream_bytes(ladder, level, plan.region.means, rule));
-    if (level != kExactLevel) {
-      plan.steps[position] = static_cast<std::int16_t>(ladder.step(level - 1U));
-    } else {
+    if (level == kExactLevel) {
       plan.steps[position] = ladder.bounded != 0 ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;
+    } else if (level >= kFirstNearLevel) {
+      const int exponent = ladder.near_exponent - (level - kFirstNearLevel);
+      plan.steps[position] = static_cast<std::int16_t>(PlannedStreams::kNearStep + exponent);
+    } else {
+      plan.steps[position] = static_cast<std::int16_t>(ladder.step(level - 1U));
     }
   });
   return plan;

@@ -42,6 +42,7 @@ struct PlannedStreams {
 
   static constexpr std::int16_t kExactStep = 0x7FFF;    ///< the exact kind
   static constexpr std::int16_t kBoundedStep = 0x7FFE;  ///< that of values rounded to within --max-error
+  static constexpr std::int16_t kNearStep = 0x4000;     ///< plus exponent: rounded to multiples of 2^exponent
 };
 static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
 

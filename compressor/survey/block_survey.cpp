@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compressor/packed/block_values.h"
+#include "compressor/packed/near_sample.h"
 
 namespace weir {
 
@@ -98,7 +99,9 @@ class BlockSurvey::Leaves {
     if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
     LeafValues block;
     block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
-    return all ? tally.ladders->build(block, row) : tally.ladders->build_non_finite(block, row);
+    const bool near = aim_->near_rungs && is_near_sample(leaves_.linear(leaf), leaves_.size());
+    const NearRungs rungs = near ? NearRungs::yes : NearRungs::no;
+    return all ? tally.ladders->build(block, row, rungs) : tally.ladders->build_non_finite(block, row, rungs);
   }
 
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {

@@ -208,17 +208,9 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
   Cost cost{8, quantised.squared_error};
   if (quantised.last_place == 0) return cost;
   const unsigned end = static_cast<unsigned>(quantised.last_place) / kEndUnit + 1;
-  const auto [symbols, raw, nonzero] = rows_.of(magnitudes_, end);
-  const unsigned states = states_of(end);
-  // Each state begins at 16 bits, which hold signs and the mean's low bits, and ends in whole bytes of 3 or more.
-  // A state begins with 16 to 17 bits, and whole numbers in it lose a little of each symbol.
-  std::uint32_t coded = symbols + 256 * (raw + 17 * states);
-  coded += coded / 1024;
-  const std::uint32_t back = std::max(3 * states, (coded + 2047) / 2048 + (states - 1));
-  const auto spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
-  constexpr std::int32_t kLeastMeanBits = 6;
-  const std::int32_t front = 5 + static_cast<std::int32_t>(states) + std::max(spare, -kLeastMeanBits);
-  cost.bits = static_cast<std::uint32_t>(8 + front + static_cast<std::int32_t>(8 * back));
+  constexpr unsigned kEndBits = 5;
+  constexpr unsigned kLeastMeanBits = 6;
+  cost.bits = 8 + rows_.of(magnitudes_, end).stream_bits(end, kEndBits, kLeastMeanBits);
   return cost;
 }
 

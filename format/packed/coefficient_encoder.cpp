@@ -136,13 +136,13 @@ unsigned end_of(const ScanValues& values) {
 }
 
 bool encode_values(const CoderContexts& contexts, const StreamFront& front, const ScanValues& values,
-                   std::span<std::byte> out, std::uint32_t* needed) {
+                   std::span<std::byte> out, StreamSize* size) {
   std::fill(out.begin(), out.end(), std::byte{0});
   BitWriter bits(out);
   bits.write(front.end_bits == 5 ? front.end - 1 : front.end, front.end_bits);
   if (front.end == 0) {
     bits.write(front.number, front.number_bits);
-    if (needed != nullptr) *needed = bits.bytes();
+    if (size != nullptr) *size = {bits.bytes(), 0};
     return bits.bytes() <= out.size();
   }
   const unsigned states = states_of(front.end);
@@ -175,7 +175,7 @@ bool encode_values(const CoderContexts& contexts, const StreamFront& front, cons
   bits.write(moved == 32 ? 0 : front.number >> moved, front.number_bits - moved);
   for (std::uint32_t i = 0; i + late < nonzero; ++i) bits.write(signs[i] ? 1 : 0, 1);
   const std::size_t back = coder.words().size() * 2 + state_bytes[0] + state_bytes[1];
-  if (needed != nullptr) *needed = static_cast<std::uint32_t>(bits.bytes() + back);
+  if (size != nullptr) *size = {bits.bytes(), static_cast<std::uint32_t>(back)};
   if (bits.bytes() + back > out.size()) return false;
   std::size_t at = out.size() - back;
   for (const std::uint16_t word : coder.words()) {

@@ -27,16 +27,27 @@ struct StreamFront {
 /// Of the last place that is not zero, in units of kEndUnit places, rounded up; 0 where all are.
 unsigned end_of(const ScanValues& values);
 
-/// Writes front, states and words to all of `out`, zeros between them. False where that is too short; `out` is then
-/// anything. `needed`, where given, becomes the least size.
+/// Bytes of a stream's two parts, between which there may be zeros.
+struct StreamSize {
+  std::uint32_t front = 0;  ///< bits besides coded values
+  std::uint32_t back = 0;   ///< words and states
+};
+
+/// Writes front, words and states to all of `out`, zeros between them. False where that is too short; `out` is then
+/// anything. `size`, where given, becomes what they take.
 bool encode_values(const CoderContexts& contexts, const StreamFront& front, const ScanValues& values,
-                   std::span<std::byte> out, std::uint32_t* needed = nullptr);
+                   std::span<std::byte> out, StreamSize* size = nullptr);
 
 /// Bits that symbols cost, in 1/256, by context and symbol.
 using SymbolCosts = std::array<std::array<std::uint16_t, kPackedSymbols>, kPackedTables>;
 SymbolCosts symbol_costs(const std::uint16_t* tables);
 
-/// What a value of magnitude `m` costs after its context's symbol: bits of the escape and extra ones.
+/// Contexts of the codes of lattice blocks among the tables of all.
+inline const std::uint16_t* lattice_tables(const std::uint16_t* tables) {
+  return tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands;
+}
+
+/// Bits of an escape, of what is left of a magnitude after its extra bits.
 unsigned escape_bits(std::uint32_t high);
 
 }  // namespace weir

@@ -5,19 +5,17 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "format/packed/block_decode.h"
 #include "format/packed/coefficient_encoder.h"
+#include "format/packed/residuals.h"
 
 namespace weir {
 namespace {
 
-using Codes = std::array<std::uint32_t, 512>;
-
-std::optional<Codes> codes_on(const Lattice& lattice, std::span<const float, 512> values) {
+std::optional<BlockCodes> codes_on(const Lattice& lattice, std::span<const float, 512> values) {
   if (!(lattice.quantum > 0)) return std::nullopt;
-  Codes codes;
+  BlockCodes codes;
   const double most = std::ldexp(1.0, static_cast<int>(lattice.bits));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double code = std::nearbyint((static_cast<double>(values[i]) - static_cast<double>(lattice.minimum)) /
@@ -31,58 +29,27 @@ std::optional<Codes> codes_on(const Lattice& lattice, std::span<const float, 512
   return codes;
 }
 
-ScanValues residuals_of(const Codes& codes, unsigned predictor, bool ordered) {
-  ScanValues values;
-  for (unsigned place = 1; place < 512; ++place) {
-    const unsigned i = kBlockScan.index[place];
-    const std::int64_t predicted = predict(predictor, ordered, codes.data(), i >> 6U, i >> 3U & 7U, i & 7U);
-    const std::uint32_t residual = codes[i] - static_cast<std::uint32_t>(predicted);
-    values.negative[place] = residual >> 31U != 0;
-    values.magnitudes[place] = values.negative[place] ? 0U - residual : residual;
-  }
-  return values;
-}
-
-// What residuals take about, to choose a predictor by.
-std::uint32_t rough_bits(const ScanValues& values) {
-  std::uint32_t bits = 0;
-  for (const std::uint32_t m : values.magnitudes) bits += static_cast<std::uint32_t>(std::bit_width(3 * m));
-  return bits;
-}
-
-ScanValues best_residuals(const Codes& codes, bool ordered, unsigned& best_predictor) {
-  ScanValues best;
-  std::uint32_t least = ~0U;
-  for (unsigned predictor = 0; predictor < kPredictors; ++predictor) {
-    const ScanValues values = residuals_of(codes, predictor, ordered);
-    const std::uint32_t bits = rough_bits(values);
-    if (bits >= least) continue;
-    least = bits;
-    best = values;
-    best_predictor = predictor;
-  }
-  return best;
-}
-
 // Writes the stream of kind 2 over those codes where it is shorter than raw values. Returns its bytes, else 0.
-std::uint32_t write_codes(const BlockConstants& constants, LatticeKind kind, const Lattice& lattice, const Codes& codes,
-                          std::span<std::byte> out) {
+std::uint32_t write_codes(const BlockConstants& constants, LatticeKind kind, const Lattice& lattice,
+                          const BlockCodes& codes, std::span<std::byte> out) {
   const bool ordered = kind == LatticeKind::ordered;
   const std::size_t front_at = kind == LatticeKind::own ? 9 : 1;
-  const CoderContexts contexts{constants.tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands, false};
+  const CoderContexts contexts{lattice_tables(constants.tables), false};
   StreamFront front;
   front.end_bits = 6;
   front.number = codes[0];
   front.number_bits = kind == LatticeKind::own ? 24 : ordered ? 32 : lattice.bits;
-  unsigned predictor = 0;
-  const ScanValues values = best_residuals(codes, ordered, predictor);
+  BlockCodes residuals;
+  const unsigned predictor = best_predictor(codes, ordered, residuals);
+  const ScanValues values = scan_residuals(residuals);
   front.end = end_of(values);
   std::array<std::byte, 2 * kRawStreamBytes> scratch;
-  std::uint32_t coded = 0;
-  encode_values(contexts, front, values, scratch, &coded);
-  const auto bytes = static_cast<std::uint32_t>(coded + front_at);
+  StreamSize size;
+  encode_values(contexts, front, values, scratch, &size);
+  const auto bytes = static_cast<std::uint32_t>(front_at + size.front + size.back);
   if (bytes >= kRawStreamBytes) return 0;
-  encode_values(contexts, front, values, out.first(bytes).subspan(front_at));
+  std::copy_n(scratch.begin(), size.front, out.begin() + static_cast<std::ptrdiff_t>(front_at));
+  std::copy_n(scratch.end() - size.back, size.back, out.begin() + static_cast<std::ptrdiff_t>(front_at + size.front));
   out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor << 2U |
                                   static_cast<unsigned>(kind) << 4U);
   if (kind == LatticeKind::own) {
@@ -115,7 +82,7 @@ std::uint32_t encode_exact(const BlockConstants& constants, const std::optional<
   } else if (const auto own_codes = own ? codes_on(*own, values) : std::nullopt) {
     bytes = write_codes(constants, LatticeKind::own, *own, *own_codes, out);
   } else if (order == FloatOrder::used) {
-    Codes in_order;
+    BlockCodes in_order;
     std::transform(values.begin(), values.end(), in_order.begin(), ordered_of_float);
     bytes = write_codes(constants, LatticeKind::ordered, {}, in_order, out);
   }

@@ -102,10 +102,13 @@ WEIR_SIMD void add_rows(const RowCosts::Tables& tables, const std::int32_t* padd
 
 }  // namespace
 
-RowCosts::RowCosts(const SymbolCosts& costs) {
+RowCosts::RowCosts(const SymbolCosts& costs, Contexts contexts) {
   const BlockScan& scan = kBlockScan;
-  for (unsigned context = 0; context < kPackedBands * kPackedLevels; ++context) {
-    std::copy(costs[context].begin(), costs[context].end(), tables_.cost + kPackedSymbols * context);
+  const bool bands = contexts == Contexts::transform;
+  const unsigned first_context = bands ? 0 : kPackedBands * kPackedLevels;
+  for (unsigned context = 0; context < (bands ? kPackedBands : 1) * kPackedLevels; ++context) {
+    std::copy(costs[first_context + context].begin(), costs[first_context + context].end(),
+              tables_.cost + kPackedSymbols * context);
   }
   tables_.cost[kNoCost] = 0;
   std::fill(std::begin(tables_.first_place), std::end(tables_.first_place), 512);
@@ -115,7 +118,8 @@ RowCosts::RowCosts(const SymbolCosts& costs) {
     const bool first = place < 4;
     tables_.weight[index] = scan.weight[place];
     tables_.place[index] = first ? 512 : static_cast<std::int32_t>(place);
-    tables_.first_cost[index] = static_cast<std::int32_t>(scan.band[place] * kPackedLevels * kPackedSymbols);
+    tables_.first_cost[index] =
+        static_cast<std::int32_t>((bands ? scan.band[place] : 0U) * kPackedLevels * kPackedSymbols);
     tables_.zero_cost[index] = tables_.cost[tables_.first_cost[index]];
     std::int32_t& least = tables_.first_place[index / 8];
     least = std::min(least, tables_.place[index]);
@@ -134,18 +138,32 @@ RowCosts::Sum RowCosts::of(const MagnitudeRows& magnitudes, unsigned end) const 
   }
   std::uint32_t before = 0;
   for (unsigned place = 1; place < 4; ++place) {
-    const std::uint32_t m = magnitudes.at(scan.index[place]);
+    const unsigned index = scan.index[place];
+    const std::uint32_t m = magnitudes.at(index);
     sum.nonzero += m != 0 ? 1 : 0;
     const std::uint32_t t = scan.weight[place] * before;
     const unsigned level = t < kLevelSums ? scan.level[t] : kPackedLevels - 1;
     const unsigned extra = extra_bits(t);
     const std::uint32_t high = m >> extra;
-    sum.symbols += static_cast<std::uint32_t>(
-        tables_.cost[kPackedSymbols * (scan.band[place] * kPackedLevels + level) + std::min(high, kEscape)]);
+    const unsigned symbol = kPackedSymbols * level + std::min(high, kEscape);
+    sum.symbols += static_cast<std::uint32_t>(tables_.cost[static_cast<unsigned>(tables_.first_cost[index]) + symbol]);
     sum.raw += extra + (high >= kEscape ? escape_bits(high) : 0);
     before += m;
   }
   return sum;
+}
+
+std::uint32_t RowCosts::Sum::stream_bits(unsigned end, unsigned end_bits, unsigned number_bits) const {
+  const unsigned states = states_of(end);
+  // Each state begins at 16 bits, which hold signs and the number's low bits, and ends in whole bytes of 3 or more.
+  // A state begins with 16 to 17 bits, and whole numbers in it lose a little of each symbol.
+  std::uint32_t coded = symbols + 256 * (raw + 17 * states);
+  coded += coded / 1024;
+  const std::uint32_t back = std::max(3 * states, (coded + 2047) / 2048 + (states - 1));
+  const auto spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
+  const std::int32_t front =
+      static_cast<std::int32_t>(end_bits + states) + std::max(spare, -static_cast<std::int32_t>(number_bits));
+  return static_cast<std::uint32_t>(front + static_cast<std::int32_t>(8 * back));
 }
 
 }  // namespace weir

@@ -21,15 +21,22 @@ struct MagnitudeRows {
 
 class RowCosts {
  public:
-  /// Of the contexts of transformed blocks in those tables.
-  explicit RowCosts(const SymbolCosts& costs);
+  /// Of the contexts of transformed blocks in those tables, or of lattice blocks.
+  enum class Contexts { transform, lattice };
+  explicit RowCosts(const SymbolCosts& costs, Contexts contexts = Contexts::transform);
 
   struct Sum {
     std::uint32_t symbols = 0;  ///< in 1/256 bits
     std::uint32_t raw = 0;      ///< bits of escapes and extra ones
     std::uint32_t nonzero = 0;
+
+    /// Bits of a stream that is so coded besides those of its number, of which `number_bits` or more come first; a
+    /// little more than encode_values() takes.
+    std::uint32_t stream_bits(unsigned end, unsigned end_bits, unsigned number_bits) const;
   };
-  /// Of places 1 to kEndUnit * end - 1; magnitudes are below 2^20.
+  /// Magnitudes are below that.
+  static constexpr std::int32_t kMostMagnitude = 1 << 23;
+  /// Of places 1 to kEndUnit * end - 1.
   Sum of(const MagnitudeRows& magnitudes, unsigned end) const;
 
   struct Tables {

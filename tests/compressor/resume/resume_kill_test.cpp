@@ -34,7 +34,7 @@ TEST_F(ResumeKill, WhicheverEncodingIsBetter) {
 TEST_F(ResumeKill, Packed) {
   ConversionOptions options = base();
   options.encoding = Encoding::packed;
-  options.memory = 8U << 20U;  // for the steps of its blocks
+  options.memory = 12U << 20U;  // for the steps of its blocks
   options.budget.kind = Budget::Kind::rate;
   options.budget.rate = 20;
   expect_same_bytes(options, 24);

@@ -16,6 +16,7 @@
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/compressor/support/random_volumes.h"
 #include "tests/support/message_of_error.h"
+#include "tests/support/sanitized.h"
 
 namespace weir::packed_conversion_test {
 namespace {
@@ -128,7 +129,7 @@ TEST(PackedConversion, BytesDoNotDependOnThreadsMemoryOrAccess) {
          {AccessShape{4, {70, 67, 1}, {0, 0, 0}}, AccessShape{4, {16, 16, 16}, {0, 0, 0}}}) {
       volume.set_access(access);
       options.threads = threads;
-      options.memory = std::uint64_t{threads == 5 ? 512U : 160U} << 20U;
+      options.memory = std::uint64_t{threads == 5 || kSanitized ? 1024U : 160U} << 20U;
       EXPECT_TRUE(test::convert(volume, options).file == first.file) << threads;
     }
   }
@@ -259,6 +260,41 @@ TEST(PackedConversion, LosslessOfIntegersIsShorterThanTheirBytes) {
   EXPECT_LT(converted.file.size(), static_cast<std::uint64_t>(kDomain.voxels()) * 2);
   ASSERT_TRUE(converted.sidecar.packed.has_value());
   EXPECT_GT(converted.sidecar.packed->blocks[3], 0U);
+}
+
+TEST(PackedConversion, KeepsEveryBitOfFloatsWhereTheBudgetHasRoom) {
+  MemoryVolume volume(kDomain, smooth);
+  const Converted lossless = test::convert(volume, packed(Budget::Kind::lossless, 0));
+  const ConversionOptions options = packed(Budget::Kind::size, static_cast<double>(lossless.file.size()));
+  EXPECT_TRUE(test::convert(volume, options).sidecar.error.lossless);
+}
+
+TEST(PackedConversion, IsNearlyLosslessWhereTransformsEnd) {
+  MemoryVolume volume(kDomain, smooth);
+  const Converted lossless = test::convert(volume, packed(Budget::Kind::lossless, 0));
+  const ConversionOptions options = packed(Budget::Kind::size, 0.9 * static_cast<double>(lossless.file.size()));
+  const Converted converted = test::convert(volume, options);
+  EXPECT_GT(converted.sidecar.error.psnr_db, 145);
+  const auto& blocks = converted.sidecar.packed->blocks;
+  EXPECT_GT(blocks[1 + static_cast<std::size_t>(PackedKind::lattice)],
+            blocks[1 + static_cast<std::size_t>(PackedKind::transform)]);
+  expect_certificate(volume, converted, options, "nearly lossless");
+}
+
+TEST(PackedConversion, BlocksOfALargerVolumeAreNearlyLosslessToo) {
+  // More leaves than the survey builds near rungs for.
+  const Box domain{{0, 0, 0}, {168, 144, 120}};
+  MemoryVolume volume(domain, smooth);
+  ASSERT_GT(domain.voxels() / kLeafVoxels, 2 * 2048);
+  const ConversionOptions options = packed(Budget::Kind::psnr, 140);
+  const Converted converted = test::convert(volume, options);
+  EXPECT_GE(converted.sidecar.error.psnr_db, 140);
+  EXPECT_LT(converted.sidecar.error.psnr_db, 142);
+  EXPECT_LT(converted.file.size(), test::convert(volume, packed(Budget::Kind::lossless, 0)).file.size());
+  expect_certificate(volume, converted, options, "140 dB");
+  ConversionOptions other = options;
+  other.threads = 1;
+  EXPECT_TRUE(test::convert(volume, other).file == converted.file);
 }
 
 TEST(PackedConversion, LosslessOfNoiseIsLittleMoreThanRaw) {

@@ -52,7 +52,7 @@ TEST(RowCosts, OfEqualsTheCountOneByOne) {
   const RowCosts rows(costs);
   Numbers numbers(7);
   for (int trial = 0; trial < 3000; ++trial) {
-    const std::uint32_t largest_bits = numbers.below(21);
+    const std::uint32_t largest_bits = numbers.below(24);
     const std::uint32_t share = 1 + numbers.below(16);
     MagnitudeRows magnitudes;
     if (trial % 2 != 0) magnitudes.live = 0;
@@ -78,8 +78,8 @@ TEST(RowCosts, LargestMagnitudesAreCounted) {
   MagnitudeRows magnitudes;
   std::array<std::uint32_t, 512> by_index{};
   for (unsigned index = 1; index < 512; ++index) {
-    by_index[index] = (1U << 20U) - 1;
-    magnitudes.row(index / 8)[index % 8] = (1 << 20) - 1;
+    by_index[index] = RowCosts::kMostMagnitude - 1;
+    magnitudes.row(index / 8)[index % 8] = RowCosts::kMostMagnitude - 1;
   }
   const RowCosts::Sum expected = count_plainly(costs, by_index, 32);
   const RowCosts::Sum found = rows.of(magnitudes, 32);

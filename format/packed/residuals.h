@@ -1,0 +1,23 @@
+// What prediction inside a block leaves of its codes: what lattice_codes.h undoes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "format/packed/coefficient_encoder.h"
+
+namespace weir {
+
+/// Codes of the 512 values of a block, by index (x << 6 | y << 3 | z).
+using BlockCodes = std::array<std::uint32_t, 512>;
+
+/// Code minus prediction, modulo 2^32, by index; that of index 0 is 0. `ordered`: codes are signed.
+void residuals_of(const BlockCodes& codes, unsigned predictor, bool ordered, BlockCodes& residuals);
+
+/// The predictor whose residuals take about the least, and these.
+unsigned best_predictor(const BlockCodes& codes, bool ordered, BlockCodes& residuals);
+
+/// Residuals as the coder takes them.
+ScanValues scan_residuals(const BlockCodes& residuals);
+
+}  // namespace weir

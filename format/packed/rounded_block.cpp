@@ -1,0 +1,147 @@
+#include "format/packed/rounded_block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "format/base/simd.h"
+#include "format/packed/block_decode.h"
+#include "format/packed/block_scan.h"
+#include "format/packed/lattice_block.h"
+#include "format/packed/lattice_codes.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kFrontAt = 9;  // kind, minimum, quantum
+constexpr unsigned kEndBits = 6;
+constexpr unsigned kNumberBits = 24;  // of the first code
+constexpr int kUsualBits = 18;
+constexpr int kLeastExponent = -125;     // quanta are normal numbers
+constexpr int kMostExponent = 127 - 26;  // and the lattice's end is finite
+
+struct Rounded {
+  std::int32_t low;
+  std::int32_t high;
+  double squared_error;  // in squared quanta
+};
+
+// Whole multiples of the quantum nearest to the values.
+WEIR_SIMD Rounded round_all(const float* values, double scale, std::int32_t* multiples) {
+  Doubles8 errors{};
+  Ints8 low{};
+  Ints8 high{};
+  for (unsigned row = 0; row < 64; ++row) {
+    Floats8 v;
+    std::memcpy(&v, values + 8 * row, sizeof v);
+    const Doubles8 scaled = __builtin_convertvector(v, Doubles8) * scale;
+    const Doubles8 half = scaled < 0 ? Doubles8{} - 0.5 : Doubles8{} + 0.5;
+    const Ints8 m = __builtin_convertvector(scaled + half, Ints8);
+    std::memcpy(multiples + 8 * row, &m, sizeof m);
+    const Doubles8 error = scaled - __builtin_convertvector(m, Doubles8);
+    errors += error * error;
+    if (row == 0) low = high = m;
+    low = m < low ? m : low;
+    high = m > high ? m : high;
+  }
+  Rounded rounded{low[0], high[0], 0};
+  for (int l = 0; l < 8; ++l) {
+    rounded.low = std::min(rounded.low, low[l]);
+    rounded.high = std::max(rounded.high, high[l]);
+    rounded.squared_error += errors[l];
+  }
+  return rounded;
+}
+
+// Magnitudes of residuals; returns the last place that is not zero, -1 where one is too large to be counted.
+WEIR_SIMD std::int32_t fill_rows(const std::uint32_t* residuals, MagnitudeRows& magnitudes) {
+  const Ints8 none{};
+  Ints8 last{};
+  Ints8 large{};
+  for (unsigned row = 0; row < 64; ++row) {
+    Ints8 r;
+    std::memcpy(&r, residuals + 8 * row, sizeof r);
+    const Ints8 m = r < 0 ? -r : r;
+    std::memcpy(magnitudes.row(row), &m, sizeof m);
+    large |= m >= RowCosts::kMostMagnitude;
+    Ints8 place;
+    for (int l = 0; l < 8; ++l) place[l] = kBlockScan.place[8 * row + static_cast<unsigned>(l)];
+    place = m == 0 ? none : place;
+    last = place > last ? place : last;
+  }
+  std::int32_t last_place = 0;
+  for (int l = 0; l < 8; ++l) {
+    if (large[l] != 0) return -1;
+    last_place = std::max(last_place, last[l]);
+  }
+  return last_place;
+}
+
+}  // namespace
+
+RoundedBlock::RoundedBlock(const std::uint16_t* tables)
+    : tables_(tables), rows_(symbol_costs(tables), RowCosts::Contexts::lattice) {}
+
+void RoundedBlock::set(std::span<const float, 512> values) {
+  std::copy(values.begin(), values.end(), values_.begin());
+  float largest = 0;
+  for (const float v : values) largest = std::max(largest, std::fabs(v));
+  exponent_ = largest > 0 ? std::ilogb(largest) + 1 : kLeastExponent;
+  predictor_ = 0;
+  if (find_codes(exponent_ - kUsualBits)) predictor_ = best_predictor(codes_, false, residuals_);
+}
+
+bool RoundedBlock::find_codes(int quantum_exponent) {
+  if (quantum_exponent < std::max(kLeastExponent, exponent_ - kMostBits) || quantum_exponent > kMostExponent)
+    return false;
+  const double quantum = std::ldexp(1.0, quantum_exponent);
+  std::array<std::int32_t, 512> multiples;
+  const Rounded rounded = round_all(values_.data(), 1 / quantum, multiples.data());
+  lowest_ = rounded.low;
+  if (rounded.high == rounded.low || rounded.high - rounded.low >= 1 << kNumberBits) return false;
+  std::transform(multiples.begin(), multiples.end(), codes_.begin(),
+                 [&](std::int32_t m) { return static_cast<std::uint32_t>(m - lowest_); });
+  squared_error_ = rounded.squared_error * quantum * quantum;
+  return true;
+}
+
+std::optional<RoundedBlock::Cost> RoundedBlock::cost(int quantum_exponent) {
+  if (!find_codes(quantum_exponent)) return std::nullopt;
+  residuals_of(codes_, predictor_, false, residuals_);
+  const std::int32_t last_place = fill_rows(residuals_.data(), magnitudes_);
+  if (last_place <= 0) return std::nullopt;
+  const unsigned end = static_cast<unsigned>(last_place) / kEndUnit + 1;
+  const std::uint32_t bits = rows_.of(magnitudes_, end).stream_bits(end, kEndBits, kNumberBits) + kNumberBits;
+  const std::uint32_t bytes = static_cast<std::uint32_t>(kFrontAt) + (bits + 7) / 8;
+  if (bytes >= kRawStreamBytes) return std::nullopt;
+  return Cost{bytes, squared_error_};
+}
+
+bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
+  for (; quantum_exponent <= kMostExponent; ++quantum_exponent) {
+    if (!find_codes(quantum_exponent)) return false;
+    residuals_of(codes_, predictor_, false, residuals_);
+    if (write(quantum_exponent, out)) return true;
+  }
+  return false;
+}
+
+bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) const {
+  if (out.size() <= kFrontAt) return false;
+  const ScanValues values = scan_residuals(residuals_);
+  StreamFront front;
+  front.end = end_of(values);
+  front.end_bits = kEndBits;
+  front.number = codes_[0];
+  front.number_bits = kNumberBits;
+  if (!encode_values({lattice_tables(tables_), false}, front, values, out.subspan(kFrontAt))) return false;
+  out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor_ << 2U |
+                                  static_cast<unsigned>(LatticeKind::own) << 4U);
+  const auto quantum = static_cast<float>(std::ldexp(1.0, quantum_exponent));
+  const float minimum = static_cast<float>(lowest_) * quantum;
+  std::memcpy(out.data() + 1, &minimum, sizeof minimum);
+  std::memcpy(out.data() + 5, &quantum, sizeof quantum);
+  return true;
+}
+
+}  // namespace weir

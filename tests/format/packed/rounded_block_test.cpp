@@ -1,0 +1,111 @@
+#include "format/packed/rounded_block.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/format/packed/block_samples.h"
+
+namespace weir::rounded_block_test {
+namespace {
+
+using packed_test::BlockValues;
+using packed_test::constants_from;
+using packed_test::decode;
+using packed_test::kShapes;
+using packed_test::Numbers;
+using packed_test::sample;
+using packed_test::Shape;
+using packed_test::Stream;
+
+BlockValues decoded_from(const Stream& stream) {
+  const auto values = decode(constants_from(0), {}, stream);
+  EXPECT_TRUE(values.has_value());
+  return values.value_or(BlockValues{});
+}
+
+double squared_error(const BlockValues& a, const BlockValues& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double error = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += error * error;
+  }
+  return sum;
+}
+
+TEST(RoundedBlock, EncodesToItsCostWithItsError) {
+  Numbers numbers(3);
+  RoundedBlock block;
+  int tried = 0;
+  for (const Shape shape : kShapes) {
+    for (const float amplitude : {1e-6F, 0.7F, 4000.0F}) {
+      for (const float offset : {0.0F, -3.0F, 5e6F}) {
+        const BlockValues values = sample(shape, numbers, amplitude, offset);
+        block.set(values);
+        for (int bits = 6; bits <= RoundedBlock::kMostBits; ++bits) {
+          const int exponent = block.exponent() - bits;
+          const auto cost = block.cost(exponent);
+          if (!cost) continue;
+          ++tried;
+          Stream stream(cost->bytes);
+          ASSERT_TRUE(block.encode(exponent, stream));
+          const BlockValues decoded = decoded_from(stream);
+          const double quantum = std::ldexp(1.0, exponent);
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            const double multiple = static_cast<double>(decoded[i]) / quantum;
+            ASSERT_EQ(multiple, std::nearbyint(multiple));
+            ASSERT_LE(std::fabs(static_cast<double>(decoded[i]) - static_cast<double>(values[i])), quantum / 2);
+          }
+          ASSERT_NEAR(cost->squared_error, squared_error(values, decoded), 1e-12 * cost->squared_error);
+        }
+      }
+    }
+  }
+  EXPECT_GT(tried, 400);
+}
+
+TEST(RoundedBlock, ALongerStreamHasZerosInItsMiddle) {
+  Numbers numbers(4);
+  const BlockValues values = sample(Shape::mixed, numbers, 1, 0);
+  RoundedBlock block;
+  block.set(values);
+  const int exponent = block.exponent() - 14;
+  Stream shortest(block.cost(exponent)->bytes);
+  Stream longer(shortest.size() + 100);
+  ASSERT_TRUE(block.encode(exponent, shortest));
+  ASSERT_TRUE(block.encode(exponent, longer));
+  EXPECT_EQ(decoded_from(shortest), decoded_from(longer));
+}
+
+TEST(RoundedBlock, WhereTheStreamIsTooShortTheQuantumIsLarger) {
+  Numbers numbers(5);
+  const BlockValues values = sample(Shape::noisy, numbers, 1, 0);
+  RoundedBlock block;
+  block.set(values);
+  const int exponent = block.exponent() - 16;
+  Stream stream(block.cost(exponent)->bytes * 3 / 4);
+  ASSERT_TRUE(block.encode(exponent, stream));
+  const double error = squared_error(values, decoded_from(stream));
+  EXPECT_GT(error, block.cost(exponent)->squared_error * 100);
+  EXPECT_LT(error, 0.001);
+  Stream tiny(12);
+  EXPECT_FALSE(block.encode(exponent, tiny));
+}
+
+TEST(RoundedBlock, ValuesThatNoLatticeHoldsHaveNoCost) {
+  Numbers numbers(6);
+  RoundedBlock block;
+  block.set(sample(Shape::ramp, numbers, 0, 3));
+  EXPECT_FALSE(block.cost(block.exponent() - 10)) << "one value";
+  block.set(sample(Shape::ramp, numbers, 1, 0));
+  EXPECT_FALSE(block.cost(block.exponent() - RoundedBlock::kMostBits - 1)) << "more than 24 bits";
+  for (const float amplitude : {1e-44F, 1e-38F, 3e38F}) {
+    block.set(sample(Shape::ramp, numbers, amplitude, 0));
+    EXPECT_FALSE(block.cost(block.exponent() - 20)) << amplitude;
+  }
+}
+
+}  // namespace
+}  // namespace weir::rounded_block_test
