@@ -44,9 +44,23 @@ void for_all(std::int64_t count, const Work& work) {
 
 }  // namespace
 
-DecodedLeaves::DecodedLeaves(const NvdbGrid& grid) {
-  const PackedData& packed = *grid.packed();
-  number_blocks(packed);
+std::vector<std::uint64_t> coded_blocks(const PackedData& packed) {
+  const NodeLattice& regions = packed.regions();
+  std::vector<std::uint64_t> counts(static_cast<std::size_t>(regions.size()));
+  for_all(regions.size(), [&](std::int64_t region) {
+    for_each_packed_block(packed, regions.position(region), [&](const GridBlock& block) {
+      counts[static_cast<std::size_t>(region)] += block.coded() ? 1 : 0;
+    });
+  });
+  return counts;
+}
+
+DecodedLeaves::DecodedLeaves(const NvdbGrid& grid) : first_(coded_blocks(*grid.packed())) {
+  for (std::uint64_t& first : first_) {
+    const std::uint64_t blocks = first;
+    first = count_;
+    count_ += blocks;
+  }
   if (count_ == 0) return;
   if (const std::uint64_t available = available_bytes(); bytes() > available) {
     throw Error(ErrorKind::input,
@@ -56,25 +70,10 @@ DecodedLeaves::DecodedLeaves(const NvdbGrid& grid) {
   }
   leaves_.reset(static_cast<std::byte*>(std::aligned_alloc(nvdb::kAlignment, bytes())));
   if (!leaves_) throw std::bad_alloc();
-  for_all(packed.regions().size(), [&](std::int64_t region) { decode_region(grid, region); });
+  for_all(grid.packed()->regions().size(), [&](std::int64_t region) { decode_region(grid, region); });
 }
 
 std::uint64_t DecodedLeaves::bytes() const { return count_ * nvdb::kFloatLeafBytes; }
-
-void DecodedLeaves::number_blocks(const PackedData& packed) {
-  const NodeLattice& regions = packed.regions();
-  first_.assign(static_cast<std::size_t>(regions.size()), 0);
-  for_all(regions.size(), [&](std::int64_t region) {
-    for_each_packed_block(packed, regions.position(region), [&](const GridBlock& block) {
-      first_[static_cast<std::size_t>(region)] += block.coded() ? 1 : 0;
-    });
-  });
-  for (std::uint64_t& first : first_) {
-    const std::uint64_t blocks = first;
-    first = count_;
-    count_ += blocks;
-  }
-}
 
 void DecodedLeaves::decode_region(const NvdbGrid& grid, std::int64_t region) {
   std::byte* leaf = leaves_.get() + first_[static_cast<std::size_t>(region)] * nvdb::kFloatLeafBytes;

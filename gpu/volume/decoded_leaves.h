@@ -14,6 +14,10 @@
 
 namespace weir {
 
+/// How many coded blocks each region of `packed` has, in the order of the region table; counted on all threads of the
+/// machine. Throws as PackedData::stream.
+std::vector<std::uint64_t> coded_blocks(const PackedData& packed);
+
 class DecodedLeaves {
  public:
   /// None.
@@ -36,7 +40,6 @@ class DecodedLeaves {
     void operator()(std::byte* p) const { std::free(p); }
   };
 
-  void number_blocks(const PackedData& packed);
   void decode_region(const NvdbGrid& grid, std::int64_t region);
 
   std::unique_ptr<std::byte[], Free> leaves_;

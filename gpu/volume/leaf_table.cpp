@@ -46,21 +46,25 @@ void check_entry_range(std::uint64_t tiles, std::uint64_t units) {
   }
 }
 
-LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(leaf_lattice(grid.index_bbox())) {
+std::uint64_t most_packed_tiles(const PackedData& packed) {
+  return static_cast<std::uint64_t>(packed.regions().size()) + 1;
+}
+
+LeafTable::LeafTable(const NvdbGrid& grid, CodedBlocks coded) : lattice_(leaf_lattice(grid.index_bbox())) {
   // Entry 0 is the background: calloc's untouched pages cost nothing where a sparse grid is empty.
   entries_.reset(
       static_cast<std::uint32_t*>(std::calloc(static_cast<std::size_t>(lattice_.size()), sizeof(std::uint32_t))));
   if (!entries_) throw std::bad_alloc();
 
-  tile_values_.push_back(grid.background());
-  const auto background_bits = std::bit_cast<std::uint32_t>(grid.background());
-  grid.for_each_block([&](const GridBlock& block) {
-    if (block.coded() || std::bit_cast<std::uint32_t>(block.value) == background_bits) return;
-    add(block, static_cast<std::uint32_t>(tile_values_.size()));
-    tile_values_.push_back(block.value);
-  });
-  const std::byte* const leaves = grid.packed() != nullptr ? add_decoded(grid) : add_stored(grid);
-
+  add_tiles(grid);
+  const std::byte* leaves = nullptr;
+  if (grid.packed() == nullptr) {
+    leaves = add_stored(grid);
+  } else if (coded == CodedBlocks::decoded) {
+    leaves = add_decoded(grid);
+  } else {
+    mark_coded(grid);
+  }
   view_ = {.entries = entries_.get(),
            .tile_values = tile_values_.data(),
            .leaves = leaves,
@@ -69,6 +73,25 @@ LeafTable::LeafTable(const NvdbGrid& grid) : lattice_(leaf_lattice(grid.index_bb
            .extent = narrow(lattice_.domain.extent()),
            .tile_count = static_cast<std::uint32_t>(tile_values_.size()),
            .type = grid.type()};
+}
+
+// Tiles of one value that follow each other share an entry: the blocks without a stream of a packed region do.
+void LeafTable::add_tiles(const NvdbGrid& grid) {
+  if (grid.packed() != nullptr) tile_values_.reserve(most_packed_tiles(*grid.packed()));
+  tile_values_.push_back(grid.background());
+  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.coded() || bits(block.value) == bits(grid.background())) return;
+    if (bits(block.value) != bits(tile_values_.back())) tile_values_.push_back(block.value);
+    add(block, static_cast<std::uint32_t>(tile_values_.size() - 1));
+  });
+}
+
+void LeafTable::mark_coded(const NvdbGrid& grid) {
+  check_entry_range(tile_values_.size(), 1);
+  grid.for_each_block([&](const GridBlock& block) {
+    if (block.coded()) add(block, static_cast<std::uint32_t>(tile_values_.size()));
+  });
 }
 
 const std::byte* LeafTable::add_stored(const NvdbGrid& grid) {

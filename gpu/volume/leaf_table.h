@@ -3,7 +3,7 @@
 // values; any other is a leaf, (offset from `leaves`) / 32 + tile_count. One
 // look-up and one load replace the walk from the root that a stock accessor
 // makes. LeafTable owns the table; the leaves stay where the file is mapped, or,
-// where it is packed, are decoded into memory.
+// where it is packed, are decoded into memory (cached_blocks.h: into a cache).
 #pragma once
 
 #include <cstdlib>
@@ -47,9 +47,19 @@ struct LeafTableView {
     return {leaves + 32 * static_cast<std::size_t>(entry - tile_count), 0.0F};
   }
 
+  /// The local voxel `i` from the first block's corner.
+  WEIR_HOST_DEVICE Int3 from_corner(const Int3& i) const { return {i.x + shift.x, i.y + shift.y, i.z + shift.z}; }
+
+  /// Whether the 2 x 2 x 2 voxels from the local voxel `i` up, which is `v` from the first block's corner, lie in one
+  /// block: two of three positions, and one look-up serves all eight.
+  WEIR_HOST_DEVICE bool taps_in_one_block(const Int3& i, const Int3& v) const {
+    return (v.x & 7) < 7 && (v.y & 7) < 7 && (v.z & 7) < 7 && i.x + 1 < extent.x && i.y + 1 < extent.y &&
+           i.z + 1 < extent.z;
+  }
+
   /// Value of the local voxel `i`, 0 <= i < extent.
   WEIR_HOST_DEVICE float voxel(const Int3& i) const {
-    const Int3 v{i.x + shift.x, i.y + shift.y, i.z + shift.z};
+    const Int3 v = from_corner(i);
     const LeafBlock b = block(v);
     return b.leaf == nullptr ? b.value : leaf_value(type, b.leaf, offset_in_leaf(v));
   }
@@ -57,10 +67,8 @@ struct LeafTableView {
   /// The 2 x 2 x 2 voxels from the local voxel `i` up, x fastest, those beyond the extent clamped. True where
   /// one tile covers all of them; then only c[0] is set.
   WEIR_HOST_DEVICE bool taps(const Int3& i, float (&c)[8]) const {
-    const Int3 v{i.x + shift.x, i.y + shift.y, i.z + shift.z};
-    if ((v.x & 7) < 7 && (v.y & 7) < 7 && (v.z & 7) < 7 && i.x + 1 < extent.x && i.y + 1 < extent.y &&
-        i.z + 1 < extent.z) {
-      // Two of three positions: all eight taps lie in one block, one table look-up serves them all.
+    const Int3 v = from_corner(i);
+    if (taps_in_one_block(i, v)) {
       const LeafBlock b = block(v);
       if (b.leaf == nullptr) {
         c[0] = b.value;
@@ -91,12 +99,20 @@ NodeLattice leaf_lattice(const Box& domain);
 /// the first do not fit a table's 32-bit entries.
 void check_entry_range(std::uint64_t tiles, std::uint64_t units);
 
+/// What a LeafTable makes of the coded blocks of a packed grid: leaves in memory, or entries that are neither tile nor
+/// leaf, for a reader that decodes them itself.
+enum class CodedBlocks { decoded, marked };
+
+/// Most tile values that the table of a packed grid has: one of each region, whose blocks without a stream have the
+/// same value, and the background.
+std::uint64_t most_packed_tiles(const PackedData& packed);
+
 class LeafTable {
  public:
   /// Builds the table over grid.index_bbox(). `grid`'s bytes must outlive it. Throws Error(input)
   /// where the domain is empty, has more than 2^31 blocks, or leaves and tiles exceed 32 bits, and as DecodedLeaves
-  /// where the grid is packed.
-  explicit LeafTable(const NvdbGrid& grid);
+  /// where the grid is packed and its blocks are to be decoded.
+  explicit LeafTable(const NvdbGrid& grid, CodedBlocks coded = CodedBlocks::decoded);
 
   LeafTableView view() const { return view_; }
   const Box& domain() const { return lattice_.domain; }
@@ -108,6 +124,8 @@ class LeafTable {
   };
 
   void add(const GridBlock& block, std::uint32_t entry);
+  void add_tiles(const NvdbGrid& grid);
+  void mark_coded(const NvdbGrid& grid);
   // Where the leaves begin.
   const std::byte* add_stored(const NvdbGrid& grid);
   const std::byte* add_decoded(const NvdbGrid& grid);

@@ -3,6 +3,7 @@
 // transfer function. A cell's bounds hold for every filtered lookup in it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -28,6 +29,9 @@ class MacrocellGrid {
 
   CellLattice lattice() const { return cell_lattice(lattice_); }
   const std::vector<MinMax>& bounds() const { return cells_; }
+  /// Of bounds and, while a picture is made, majorants.
+  std::uint64_t bytes() const { return cells_.size() * kCellBytes; }
+  static constexpr std::uint64_t kCellBytes = sizeof(MinMax) + sizeof(float);
   /// Boxes (voxels, inside the domain) that hold all cells `shows` is true for, called with a position in
   /// `bounds`: one from the first to the last of each row in x. The domain where there is no such cell.
   std::vector<Box> content(const std::function<bool(std::size_t)>& shows) const;
