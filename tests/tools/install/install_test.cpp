@@ -108,7 +108,9 @@ std::set<std::string> headers() {
                            "scene/transfer_function",
                            "math/vector3",
                            "volume/volume_sampler",
-                           "volume/decoded_leaves"}) {
+                           "volume/decoded_leaves",
+                           "volume/block_cache",
+                           "volume/cached_blocks"}) {
     files.insert(cat("include/weir/gpu/", name, ".h"));
   }
   return files;

@@ -1,0 +1,27 @@
+#include "gpu/volume/cached_blocks.h"
+
+#include "format/nanovdb/packed_blocks.h"
+
+namespace weir {
+
+CachedBlocks::CachedBlocks(const NvdbGrid& grid, std::uint64_t cache_bytes)
+    : packed_(grid.packed()),
+      first_(floor_div(grid.index_bbox().lo, kLeafDim)),
+      table_(grid, CodedBlocks::marked),
+      cache_(cache_bytes) {}
+
+// The directory is looked at again each time: some 50 ns, where a stream takes microseconds and its place, kept for
+// each block, would take more memory than the table.
+void CachedBlocks::decode(const Int3& at, std::span<float, kLeafVoxels> values) const {
+  const Index3 block = first_ + Index3{at.x, at.y, at.z};
+  const PackedRegion region = packed_->region(floor_div(block, kLowerLeaves) - packed_->regions().first);
+  packed_->decode(packed_->stream(region, packed_position(block)), values);
+}
+
+void BlockReader::decode(const Int3& at, std::uint32_t key) {
+  blocks_->decode(at, decoded_);
+  const auto turn = static_cast<std::uint32_t>(counts_.decoded++);
+  if (blocks_->cache_.store(key, decoded_, turn)) ++counts_.evicted;
+}
+
+}  // namespace weir
