@@ -11,16 +11,19 @@
 #include "gpu/image/image.h"
 #include "gpu/render/render_setup.h"
 #include "gpu/render/sample_options.h"
+#include "gpu/volume/cached_blocks.h"
 #include "gpu/volume/dense_volume.h"
+#include "gpu/volume/voxel_memory.h"
 
 namespace weir {
 
 /// How a volume came in.
 struct LoadSummary {
-  std::string way;          ///< "mapped", "decoded" where packed; for a device, a load_path_name
-  std::uint64_t bytes = 0;  ///< of the grid, tail padding left out
-  double seconds = 0;       ///< of the transfer alone
-  std::string note;         ///< why a faster way was refused; empty: none was
+  std::string way;           ///< "mapped", "decoded" or "cached" where packed; for a device, a load_path_name
+  std::uint64_t bytes = 0;   ///< of the grid, tail padding left out
+  double seconds = 0;        ///< of the transfer alone
+  std::string note;          ///< why a faster way was refused; empty: none was
+  std::uint64_t memory = 0;  ///< bytes taken of the host's, which VoxelMemory limits; 0: not counted
 };
 
 /// A volume that its back end can render, loaded for as long as the object lives.
@@ -34,7 +37,8 @@ class LoadedVolume {
 struct Picture {
   Image image;  ///< mean radiance
   ToneMapping tone;
-  double render_s = 0;  ///< of the samples alone
+  double render_s = 0;     ///< of the samples alone
+  CacheCounts cache = {};  ///< of a volume that was loaded "cached"
 };
 
 class Backend {
@@ -42,8 +46,8 @@ class Backend {
   virtual ~Backend() = default;
   virtual std::string_view name() const = 0;
   /// `file` stays mapped as long as the volume needs it. `cell`: voxels along a macrocell's edge, at least; 0: what is
-  /// fastest here. The memory of `reuse` (may be null), a volume of this back end that is no longer needed, is used
-  /// again.
+  /// fastest here. Throws as LeafTable, CachedBlocks and, of the CPU, plan_voxels. The memory of `reuse` (may be null),
+  /// a volume of this back end that is no longer needed, is used again.
   virtual std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
                                              std::unique_ptr<LoadedVolume> reuse) = 0;
   /// Loads a dense volume; `volume` is kept as long as it is needed.
@@ -54,7 +58,7 @@ class Backend {
                          const SampleOptions& sampling) = 0;
 };
 
-/// `threads` 0: all of the machine's.
-std::unique_ptr<Backend> make_cpu_backend(int threads);
+/// `threads` 0: all of the machine's. `memory` is of files; a dense volume was read by the caller.
+std::unique_ptr<Backend> make_cpu_backend(int threads, const VoxelMemory& memory = {});
 
 }  // namespace weir

@@ -18,17 +18,31 @@ namespace {
 constexpr std::int32_t kTile = 16;            // pixels
 constexpr std::uint32_t kSamplesPerPass = 4;  // a tile of a pass is some milliseconds of work
 
+oneapi::tbb::task_arena make_arena(int threads) {
+  return oneapi::tbb::task_arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+}
+
 }  // namespace
+
+std::size_t render_threads(int threads) { return static_cast<std::size_t>(make_arena(threads).max_concurrency()); }
 
 template <class Volume>
 Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options) {
-  Image image(task.width, task.height);
+  return render_cpu(std::span(&task, 1), options);
+}
+
+template <class Volume>
+Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptions& options) {
+  const RenderFrame& frame = tasks.front();
+  Image image(frame.width, frame.height);
   std::atomic<std::uint64_t> done{0};
   std::mutex reporting;
   const auto cancelled = [&] { return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed); };
 
   const auto render_tile = [&](std::int32_t x0, std::int32_t x1, std::int32_t y0, std::int32_t y1, std::uint32_t first,
                                std::uint32_t last) {
+    const auto thread = static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
+    const RenderTask<Volume>& task = tasks.size() == 1 ? tasks.front() : tasks[thread];
     for (std::int32_t y = y0; y < y1; ++y) {
       for (std::int32_t x = x0; x < x1; ++x) {
         Float3& sum = image.pixels[image.index(x, y)];
@@ -45,18 +59,18 @@ Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options
   if (options.threads > 0) {
     limit.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   }
-  oneapi::tbb::task_arena arena(options.threads > 0 ? options.threads : oneapi::tbb::task_arena::automatic);
+  oneapi::tbb::task_arena arena = make_arena(options.threads);
   for (std::uint32_t first = 0; first < options.samples && !cancelled(); first += kSamplesPerPass) {
     const std::uint32_t last = std::min(first + kSamplesPerPass, options.samples);
     arena.execute([&] {
-      const oneapi::tbb::blocked_range2d<std::int32_t> tiles(0, (task.height + kTile - 1) / kTile, 1, 0,
-                                                             (task.width + kTile - 1) / kTile, 1);
+      const oneapi::tbb::blocked_range2d<std::int32_t> tiles(0, (frame.height + kTile - 1) / kTile, 1, 0,
+                                                             (frame.width + kTile - 1) / kTile, 1);
       oneapi::tbb::parallel_for(tiles, [&](const auto& range) {
         for (std::int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty) {
           for (std::int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
             if (cancelled()) return;
-            render_tile(tx * kTile, std::min((tx + 1) * kTile, task.width), ty * kTile,
-                        std::min((ty + 1) * kTile, task.height), first, last);
+            render_tile(tx * kTile, std::min((tx + 1) * kTile, frame.width), ty * kTile,
+                        std::min((ty + 1) * kTile, frame.height), first, last);
           }
         }
       });
@@ -70,5 +84,7 @@ Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options
 
 template Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options);
 template Image render_cpu(const RenderTask<DenseSampler>& task, const CpuRenderOptions& options);
+template Image render_cpu(const RenderTask<CachedSampler>& task, const CpuRenderOptions& options);
+template Image render_cpu(std::span<const RenderTask<CachedSampler>> tasks, const CpuRenderOptions& options);
 
 }  // namespace weir

@@ -102,7 +102,11 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
           {"samples", request.sampling.samples},
           {"seed", request.options.seed},
           {"range", range ? nlohmann::json(*range) : nlohmann::json()},
-          {"load", {{"way", report.load.way}, {"bytes", report.load.bytes}, {"note", report.load.note}}},
+          {"load",
+           {{"way", report.load.way},
+            {"bytes", report.load.bytes},
+            {"memory_bytes", report.load.memory},
+            {"note", report.load.note}}},
           {"steps_per_s", report.sustained},
           {"limit", report.limit()},
           {"total_s", report.total_s},
@@ -116,6 +120,7 @@ void play_series(const PlayArguments& arguments) {
   PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
+  if (volumes.size() > 1) request.backend.memory.volumes = 2;  // play() holds as many
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   const FrameWriter write = open_output(arguments, *files, volumes.size());
@@ -147,6 +152,7 @@ void play_series(const PlayArguments& arguments) {
   if (arguments.json) {
     std::cout << to_json(arguments, request, report, backend->name()).dump(2) << '\n';
   } else {
+    if (report.load.way == "cached") spdlog::info("{}: {}", volumes.back(), report.load.note);
     spdlog::info(
         "{} frames of {} x {}, {:.2f} steps/s; load {:.2f} s, render {:.2f} s, write {:.2f} s: {} is the limit",
         report.frames, request.options.width, request.options.height, report.sustained, report.load_s, report.render_s,

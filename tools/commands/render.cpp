@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "compressor/options/conversion_request.h"
@@ -47,7 +48,8 @@ std::unique_ptr<LoadedVolume> load_file(Backend& backend, const RenderArguments&
   return backend.load(std::make_shared<const NvdbFile>(arguments.input), 0, nullptr);
 }
 
-std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments& arguments, Progress& progress) {
+std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments& arguments,
+                                         std::optional<std::uint64_t> ceiling, Progress& progress) {
   const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
@@ -55,7 +57,13 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
   options.progress = [&](std::int64_t done, std::int64_t) {
     progress.update(static_cast<std::uint64_t>(done) * sizeof(float));
   };
-  return backend.load_dense(read_dense(*source, options), 0);
+  return backend.load_dense(read_dense(*source, options, ceiling), 0);
+}
+
+// Null where nothing was looked up in a cache.
+nlohmann::json to_json(const CacheCounts& counts) {
+  if (counts.lookups == 0) return nullptr;
+  return {{"lookups", counts.lookups}, {"decoded", counts.decoded}, {"evicted", counts.evicted}};
 }
 
 void render(const RenderArguments& arguments) {
@@ -66,33 +74,39 @@ void render(const RenderArguments& arguments) {
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<LoadedVolume> volume =
-      arguments.volume == "dense" ? load_dense(*backend, arguments, progress) : load_file(*backend, arguments);
+      arguments.volume == "dense" ? load_dense(*backend, arguments, request.backend.memory.ceiling, progress)
+                                  : load_file(*backend, arguments);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   ImageFile image_file(*files, arguments.output);
   const double load_s = seconds_since(start);
+  const LoadSummary& loaded = volume->load_summary();
+  if (!arguments.json && loaded.way == "cached") spdlog::info("{}: {}", arguments.input, loaded.note);
 
   progress.start(cat("render, ", render_mode_name(request.scene.mode)), request.pixel_samples(), ProgressUnit::samples);
   request.sampling.progress = [&](std::uint64_t done) { progress.update(done); };
   const Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
   progress.finish();
   const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
-  const LoadSummary& loaded = volume->load_summary();
-
   if (arguments.json) {
-    const nlohmann::json report{
-        {"image", arguments.output},
-        {"bytes", bytes},
-        {"width", request.options.width},
-        {"height", request.options.height},
-        {"mode", render_mode_name(request.scene.mode)},
-        {"filter", filter_name(request.options.filter)},
-        {"volume", arguments.volume},
-        {"backend", backend->name()},
-        {"samples", request.sampling.samples},
-        {"seed", request.options.seed},
-        {"load", {{"way", loaded.way}, {"bytes", loaded.bytes}, {"transfer_s", loaded.seconds}, {"note", loaded.note}}},
-        {"load_s", load_s},
-        {"render_s", picture.render_s}};
+    const nlohmann::json report{{"image", arguments.output},
+                                {"bytes", bytes},
+                                {"width", request.options.width},
+                                {"height", request.options.height},
+                                {"mode", render_mode_name(request.scene.mode)},
+                                {"filter", filter_name(request.options.filter)},
+                                {"volume", arguments.volume},
+                                {"backend", backend->name()},
+                                {"samples", request.sampling.samples},
+                                {"seed", request.options.seed},
+                                {"load",
+                                 {{"way", loaded.way},
+                                  {"bytes", loaded.bytes},
+                                  {"memory_bytes", loaded.memory},
+                                  {"transfer_s", loaded.seconds},
+                                  {"note", loaded.note}}},
+                                {"cache", to_json(picture.cache)},
+                                {"load_s", load_s},
+                                {"render_s", picture.render_s}};
     std::cout << report.dump(2) << '\n';
   } else {
     spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, request.options.width,

@@ -24,16 +24,17 @@ constexpr std::uint64_t kDenseBytes = std::uint64_t{128} << 20U;
 /// Values read in one call, so that an interrupt does not wait for all of them.
 constexpr std::int64_t kReadBytes = std::int64_t{64} << 20U;
 
-void check_memory(const VolumeSource& source) {
+void check_memory(const VolumeSource& source, std::optional<std::uint64_t> ceiling) {
   const SourceInfo& info = source.info();
   const std::uint64_t values = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float);
   const std::uint64_t needed = values + source.working_bytes() + kStagingBytes + kDenseBytes;
   const std::uint64_t available = available_bytes();
-  if (needed <= available) return;
-  throw Error(ErrorKind::usage,
-              cat(info.path, ": --volume dense holds all ", info.extent.x, " x ", info.extent.y, " x ", info.extent.z,
-                  " voxels and needs ", format_bytes(needed), " of memory, ", format_bytes(available),
-                  " are available; show a part with --roi, or convert it and render the file"));
+  if (needed <= std::min(available, ceiling.value_or(available))) return;
+  const std::string left = ceiling && *ceiling < available ? cat("--memory allows ", format_bytes(*ceiling))
+                                                           : cat(format_bytes(available), " are available");
+  throw Error(ErrorKind::usage, cat(info.path, ": --volume dense holds all ", info.extent.x, " x ", info.extent.y,
+                                    " x ", info.extent.z, " voxels and needs ", format_bytes(needed), " of memory, ",
+                                    left, "; show a part with --roi, or convert it and render the file"));
 }
 
 // Layers of z, whose voxels follow each other in memory, in whole chunks where the source has them.
@@ -104,8 +105,9 @@ void fill_missing(float* values, std::int64_t count, float background) {
 
 }  // namespace
 
-std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const StreamOptions& options) {
-  check_memory(source);
+std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const StreamOptions& options,
+                                              std::optional<std::uint64_t> ceiling) {
+  check_memory(source, ceiling);
   const SourceInfo& info = source.info();
   const std::int64_t count = info.domain().voxels();
   // For overwrite: pages are touched when they are read into.

@@ -18,7 +18,7 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
                                           option("backend", "cpu"), " or auto"));
   }
 #endif
-  return make_cpu_backend(choice.threads);
+  return make_cpu_backend(choice.threads, choice.memory);
 }
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Which back end a picture is made with: --backend, --devices and --threads.
+// Which back end a picture is made with: --backend, --devices, --threads and --memory.
 #pragma once
 
 #include <memory>
@@ -13,6 +13,7 @@ struct BackendChoice {
   std::string name;          ///< "auto": CUDA where there is a device, else the CPU; "cuda", "cpu"
   std::vector<int> devices;  ///< of CUDA
   int threads = 0;           ///< of the CPU; 0: all of the machine's
+  VoxelMemory memory = {};   ///< of the CPU
 };
 
 /// Throws Error(usage) for "cuda" where this build or this machine has none.

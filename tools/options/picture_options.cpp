@@ -101,6 +101,12 @@ void read_devices(const OptionRow& row, const std::string& text, Request& reques
   request.backend.devices = devices;
 }
 
+void read_memory_ceiling(const OptionRow& row, const std::string& text, Request& request) {
+  const std::optional<std::uint64_t> bytes = parse_bytes(text);
+  if (!bytes || *bytes == 0) throw wrong_option(row.key, text, "a size above 0, like 512MiB");
+  request.backend.memory.ceiling = *bytes;
+}
+
 // Enough that a default picture is clean; the other modes only have edges to smooth.
 std::uint32_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 32 : 4; }
 
@@ -174,6 +180,13 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.backend.threads = static_cast<int>(read_count(row, text, 0, kMaxThreads));
      }},
+    {{.key = "memory",
+      .argument = "SIZE",
+      .unit = "bytes",
+      .standard = "what is available",
+      .help = "of the CPU, for tables, macrocells and decoded blocks: a packed file that decodes to more is rendered "
+              "from a cache, the same picture more slowly"},
+     read_memory_ceiling},
 };
 
 }  // namespace

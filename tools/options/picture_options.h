@@ -15,9 +15,8 @@ class App;
 
 namespace weir {
 
-/// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --range, --iso, --camera
-/// and
-/// --threads; what is given goes to `given`, which must live as long as the command.
+/// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --range, --iso,
+/// --camera, --threads and --memory; what is given goes to `given`, which must live as long as the command.
 void add_picture_options(CLI::App& command, GivenOptions& given);
 
 /// What they mean.

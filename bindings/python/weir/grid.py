@@ -208,6 +208,7 @@ class Grid:
         camera: Optional[Numbers] = None,
         backend: Optional[str] = None,
         threads: Optional[int] = None,
+        memory: Optional[Union[int, str]] = None,
         linear: bool = False,
         progress: Optional[Progress] = None,
     ) -> NDArray[Any]:
@@ -216,8 +217,9 @@ class Grid:
         mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers; camera (azimuth, elevation) or
         (azimuth, elevation, zoom), in degrees; colormap, a name; range (low, high) of colours and opacity; iso, the
         surface's value; scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or
-        "nearest"; backend "auto", "cpu" or "cuda"; threads, 0: all. Returns uint8 sRGB or, where `linear`, float32
-        radiance before tone mapping. progress is called with "render" and samples.
+        "nearest"; backend "auto", "cpu" or "cuda"; threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed
+        file that decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance
+        before tone mapping. progress is called with "render" and samples.
         """
         options = given_options(
             mode=mode,
@@ -232,6 +234,7 @@ class Grid:
             camera=camera,
             backend=backend,
             threads=threads,
+            memory=memory,
         )
         return self._core.render(options, linear, progress)
 

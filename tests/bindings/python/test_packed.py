@@ -58,6 +58,17 @@ class Packed(FolderTest):
         part = grid.to_numpy(((9, 20, 31), (40, 41, 62)))
         self.assertEqual(part.tobytes(), whole[31:62, 20:41, 9:40].tobytes())
 
+    def test_a_picture_in_less_memory_than_the_blocks_take(self):
+        path = self.folder / "picture.nvdb"
+        weir.convert(waves((80, 96, 96)), path, encoding="packed", rate=20)
+        grid = weir.open(path)
+        options = {"size": (40, 30), "spp": 2, "mode": "dvr", "backend": "cpu"}
+        picture = grid.render(memory="1MiB", **options)
+        self.assertGreater(picture.std(), 5)
+        numpy.testing.assert_array_equal(picture, grid.render(**options))
+        message = self.refused(weir.UsageError, grid.render, memory=100000, **options)
+        self.assertRegex(message, "^memory .* is too small to render this grid, which takes .*; give memory .* or more$")
+
 
 if __name__ == "__main__":
     unittest.main()

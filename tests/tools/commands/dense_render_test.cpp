@@ -128,6 +128,10 @@ TEST_F(DenseRender, Refusals) {
                  "--stack says how to read a source; give --volume dense with it");
   expect_refused({"render", raw, "-o", image, "--volume", "dense", "--spacing", "1,2"}, 2,
                  "--spacing is \"1,2\", it must be x,y,z, three numbers in world units");
+  expect_refused({"render", raw, "-o", image, "--volume", "dense", "--memory", "1MiB"}, 2,
+                 raw +
+                     ": --volume dense holds all 40 x 30 x 20 voxels and needs 132.1 MiB of memory, --memory allows "
+                     "1.0 MiB; show a part with --roi, or convert it and render the file");
   EXPECT_FALSE(std::filesystem::exists(image));
 }
 

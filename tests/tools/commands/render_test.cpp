@@ -118,6 +118,10 @@ TEST_F(Render, Refusals) {
   expect_refused(arguments("a.png", {"--iso", "high"}), 2, "--iso is \"high\", it must be a number");
   expect_refused(arguments("a.png", {"--threads", "-1"}), 2,
                  "--threads is \"-1\", it must be a whole number from 0 to 4096");
+  for (const std::string memory : {"0", "-1", "much"}) {
+    expect_refused(arguments("a.png", {"--memory=" + memory}), 2,
+                   "--memory is \"" + memory + "\", it must be a size above 0, like 512MiB");
+  }
   expect_refused(arguments("a.png", {"--seed", "1.5"}), 2,
                  "--seed is \"1.5\", it must be a whole number from 0 to 9223372036854775807");
   for (const std::string size : {"640", "0x480", "640x-1", "axb", "640x480x2", "99999x1", "32768x32768"}) {
