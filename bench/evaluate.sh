@@ -4,7 +4,8 @@
 #
 #   bench/evaluate.sh [OPTION...] [DIR]       DIR: default build/evaluation, or build/evaluation-quick
 #
-#   --only NAME,...   these experiments only: sizes, worst_case, errors, metrics, zfp, round_trip, pictures, speed
+#   --only NAME,...   these experiments only: sizes, worst_case, errors, few_bytes, lossless,
+#                     metrics, zfp, round_trip, pictures, speed, two_passes, stages, headline
 #   --again           measure anew what is there already
 #   --report          no measurement, only the report of those there are
 #   --scale N         divides the extents of the paper's large sets, default 4
@@ -15,7 +16,8 @@
 #   --weir FILE       the command to measure; default: build/release/weir, built first
 #
 # Leaves evaluation.md, evaluation.json, a CSV for each experiment and images/ in DIR. Exit code 1 where a promise is not
-# kept: sizes met to the byte, errors below the paper's, noise below its bound, errors below --max-error.
+# kept: sizes met to the byte, errors below the paper's, noise below its bound, errors below --max-error, by packed
+# files too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [[ " $* " == *" --weir"* || " $* " == *" --help "* || " $* " == *" --report "* ]] || tools/build.sh release weir

@@ -9,13 +9,16 @@ import sys
 import programs
 from experiment import Bench
 from experiments.errors import Errors
+from experiments.few_bytes import FewBytes
 from experiments.headline import Headline
+from experiments.lossless import Lossless
 from experiments.metrics import Metrics
 from experiments.pictures import Pictures
 from experiments.round_trip import RoundTrip
 from experiments.sizes import Sizes
 from experiments.speed import Speed
 from experiments.stages import Stages
+from experiments.two_passes import TwoPasses
 from experiments.worst_case import WorstCase
 from experiments.zfp import Zfp
 from report import broken_promises, publish, write_report
@@ -23,7 +26,8 @@ from store import Store
 from volumes import VolumeFiles
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXPERIMENTS = (Sizes(), WorstCase(), Errors(), Metrics(), Zfp(), RoundTrip(), Pictures(), Speed(), Stages(), Headline())
+EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), RoundTrip(), Pictures(), Speed(),
+               TwoPasses(), Stages(), Headline())
 
 
 def parse(arguments):

@@ -67,6 +67,11 @@ def describe(volume):
     return {"volume": volume.name, "extent": list(volume.extent), "type": volume.type, "note": volume.note}
 
 
+def method_options(method):
+    """Of `weir convert`, for what tables call `method`."""
+    return {"auto": (), "paper": ("--preset", "paper")}.get(method, ("--encoding", method))
+
+
 def size_text(extent):
     return " x ".join(str(n) for n in extent)
 

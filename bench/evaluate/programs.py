@@ -70,6 +70,10 @@ class Weir:
         """What `weir ARGUMENTS --json` prints; NaN and infinity are no JSON and do not occur."""
         return json.loads(self.run(*arguments, "--json").out)
 
+    def inspect(self, path):
+        """`weir inspect`, which has no progress to silence."""
+        return json.loads(run([self.path, "inspect", path, "--json"]).out)
+
     def flip(self, reference, test, *arguments):
         """`weir flip`, which has no progress to silence."""
         return json.loads(run([self.path, "flip", reference, test, *arguments, "--json"]).out)

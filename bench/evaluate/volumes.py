@@ -13,8 +13,11 @@ import pathlib
 import shutil
 import sys
 
+from phantom import write_phantom
+
 _TYPE_CODES = {"uint8": "B", "int16": "h", "uint16": "H", "float32": "f"}
 _LARGE_BYTES = 1 << 30  # deleted again after each use
+PHANTOM = "phantom"  # of phantom.py
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,7 +25,7 @@ class Volume:
     name: str
     extent: tuple  # voxels x, y, z
     type: str
-    kind: str = ""  # of weir sample; empty: a real one, unpacked
+    kind: str = ""  # of weir sample, or PHANTOM; empty: a real one, unpacked
     note: str = ""  # what it is, for the report
 
     @property
@@ -62,6 +65,11 @@ def magnetic_like(edge):
     return Volume("magnetic-like", (edge, edge, edge), "float32", "tiny", note)
 
 
+def ct_like(edge):
+    note = "a phantom of shells with a gentle texture and noise in every voxel"
+    return Volume("ct-like", (edge, edge, edge), "uint16", PHANTOM, note)
+
+
 def cube(kind, edge):
     return Volume(kind, (edge, edge, edge), "float32", kind)
 
@@ -72,6 +80,31 @@ _REAL = (
     Volume("tooth", (103, 94, 161), "uint8", note="computed tomography, noisy background that is not zero (GE)"),
     Volume("wmag", (91, 91, 91), "float32", note="vortex tubes of a turbulent flow, smooth and dense (NCAR, SPERR)"),
 )
+
+
+def real_set():
+    return list(_REAL)
+
+
+def integer_set():
+    """Whole numbers, of the table of lossless files."""
+    return [*(volume for volume in _REAL if volume.type != "float32"), ct_like(256)]
+
+
+def small_integer_set():
+    return [ct_like(48)]
+
+
+def few_bytes_set(edge):
+    """What the tables of few bytes show besides the real ones: smooth, sparse, and both."""
+    return [
+        Volume("cloud", (edge, edge, edge), "float32", "cloud", "a sparse cumulus, exact zero around it"),
+        Volume("turbulence", (edge, edge, edge), "float32", "turbulence", "dense, of both signs"),
+        Volume("vorticity-like", (edge, edge, edge), "float32", "signed",
+               "turbulence of both signs in a ball, exact zero around it"),
+        Volume("jet-like", (edge, edge, edge), "float32", "background",
+               "turbulence in a ball, a value that is not zero around it"),
+    ]
 
 
 def small_set():
@@ -160,12 +193,14 @@ class VolumeFiles:
         os.replace(partial, path)
 
     def _fill(self, volume, partial):
-        if volume.kind:
+        if volume.kind == PHANTOM:
+            write_phantom(partial, volume.extent, self._weir)
+        elif volume.kind:
             dims = ",".join(str(n) for n in volume.extent)
             self._weir.run("sample", volume.kind, "--dims", dims, "--type", volume.type, "-o", partial)
-            return
-        with lzma.open(self._archive(volume)) as packed, open(partial, "wb") as raw:
-            shutil.copyfileobj(packed, raw, 1 << 20)
+        else:
+            with lzma.open(self._archive(volume)) as packed, open(partial, "wb") as raw:
+                shutil.copyfileobj(packed, raw, 1 << 20)
 
 
 def _widen(path, scalar_type, partial):

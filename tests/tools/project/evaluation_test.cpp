@@ -50,13 +50,20 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   const Json all = figures();
   EXPECT_EQ(all["sizes"].size(), 2 * 2 * 4U);  // volumes, methods, rates
   for (const Json& row : all["sizes"]) EXPECT_EQ(row["bytes_got"], row["bytes_asked"]) << row;
-  ASSERT_EQ(all["worst_case"].size(), 2U);
+  ASSERT_EQ(all["worst_case"].size(), 2 * 2U);  // edges, encodings
   EXPECT_EQ(all["worst_case"][0]["bytes"], 446752);
   EXPECT_EQ(all["worst_case"][0]["fixed_bytes"], 4096 + 800 + 32 + 270400 + 33856 + 288);
-  EXPECT_EQ(all["worst_case"][1]["bytes"], 1407712);
+  EXPECT_EQ(all["worst_case"][1]["encoding"], "packed");
+  EXPECT_EQ(all["worst_case"][1]["fixed_bytes"], 4096 + 800 + 32 + 2 * 288 + 96 + 3840 + 16 + 1548);
+  EXPECT_EQ(all["worst_case"][2]["bytes"], 1407712);
   EXPECT_EQ(all["errors"].size(), 2 * 4 * 10U);  // volumes, methods, shares
+  EXPECT_EQ(all["few_bytes"].size(), 4 * 5U);    // volumes, shares
+  for (const Json& row : all["few_bytes"]) EXPECT_EQ(row["packed_bytes"], row["bytes_asked"]) << row;
+  ASSERT_EQ(all["lossless"].size(), 1U);
+  EXPECT_LT(all["lossless"][0]["packed_bytes"], all["lossless"][0]["auto_bytes"]);
   EXPECT_EQ(all["metrics"].size(), 2 * 2 * 4 * 2U);
-  EXPECT_GE(all["speed"].size(), 2 * 2U);  // leaves, caches; more where there are threads to compare
+  EXPECT_GE(all["speed"].size(), 2 * 2U);       // encodings, caches; more where there are threads to compare
+  EXPECT_EQ(all["two_passes"].size(), 2 * 2U);  // volumes, encodings
   for (const char* stage : {"read", "survey", "encode", "select", "commit"}) {
     EXPECT_EQ(std::ranges::count(all["stages"], stage, [](const Json& row) { return row["stage"]; }), 2 * 2) << stage;
   }
@@ -67,11 +74,12 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   for (const Json& row : all["pictures"]) EXPECT_EQ(row["flip_mean"] == 0, row["lossless"] && !row["rate"].is_null());
 
   const std::string text = report();
-  for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## ZFP",
-                            "## There and back", "## Pictures", "## Time and memory"}) {
+  for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## Few bytes",
+                            "## Lossless", "## ZFP", "## There and back", "## Pictures", "## Time and memory"}) {
     EXPECT_NE(text.find(title), std::string::npos) << title;
   }
-  EXPECT_NE(text.find("| 32^3 | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 32^3 | auto | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos)
+      << text;
   for (const auto& [name, rows] : all.items()) {
     EXPECT_EQ(text.find("@" + name + "@"), std::string::npos) << name << " is no place in report.md";
   }
@@ -84,27 +92,30 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   ASSERT_EQ(flip.exit_code, 0) << flip.err;
   EXPECT_EQ(Json::parse(flip.out)["width"], 3 * 64 + 2 * 4);  // pictures and the gaps between them
   EXPECT_EQ(Json::parse(flip.out)["height"], 7 * 48 + 6 * 4);
-  for (const char* name : {"sizes", "worst_case", "errors", "metrics", "pictures", "speed", "stages", "headline"}) {
+  for (const char* name : {"sizes", "worst_case", "errors", "few_bytes", "lossless", "metrics", "pictures", "speed",
+                           "two_passes", "stages", "headline"}) {
     EXPECT_TRUE(fs::exists(directory_ / (std::string(name) + ".csv"))) << name;
   }
 }
 
 TEST_F(Evaluation, ResumesMissingMeasurementsAndReportsWrongOnes) {
-  ASSERT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032\nworst_case: noise_0064\n");
+  ASSERT_EQ(evaluate({"--quick", "--only", "worst_case"}).err,
+            "worst_case: noise_0032_auto\nworst_case: noise_0032_packed\nworst_case: noise_0064_auto\n"
+            "worst_case: noise_0064_packed\n");
   EXPECT_NE(report().find("*Not measured yet.*"), std::string::npos);
   const fs::path state = directory_.path() / "state/worst_case";
-  fs::remove(state / "noise_0032.json");
-  EXPECT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032\n");
+  fs::remove(state / "noise_0032_packed.json");
+  EXPECT_EQ(evaluate({"--quick", "--only", "worst_case"}).err, "worst_case: noise_0032_packed\n");
 
-  Json record = Json::parse(read_file(state / "noise_0064.json"));
+  Json record = Json::parse(read_file(state / "noise_0064_auto.json"));
   record["result"]["bytes"] = 1500000;
-  write_file(state / "noise_0064.json", record.dump());
+  write_file(state / "noise_0064_auto.json", record.dump());
   const CommandResult run = evaluate({"--report"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_EQ(run.err,
-            "worst_case: noise of 64^3 takes 1500000 bytes, the format says 1407712\n"
-            "worst_case: noise of 64^3 takes 1500000 bytes, the bound is 1415719\n");
-  EXPECT_NE(report().find("* worst_case: noise of 64^3 takes 1500000 bytes, the format says 1407712\n"),
+            "worst_case: auto, noise of 64^3 takes 1500000 bytes, the format says 1407712\n"
+            "worst_case: auto, noise of 64^3 takes 1500000 bytes, the bound is 1415719\n");
+  EXPECT_NE(report().find("* worst_case: auto, noise of 64^3 takes 1500000 bytes, the format says 1407712\n"),
             std::string::npos);
 }
 
