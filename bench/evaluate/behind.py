@@ -1,78 +1,172 @@
 """Where others are ahead, by how much at most: figures of the other experiments, each the worst of its kind."""
 
-from markdown import command, percent, table, whole
+import math
+
+from experiments.few_bytes import gap_db
+from markdown import command, decibel, percent, table, whole
+
+OURS = ("auto", "packed")
+RIVALS = ("zfp", "auto")
 
 
 def behind_text(measured):
-    lines = [line for find in (_equal_bytes, _plateau, _bounds, _pictures, _small, _reading) for line in find(measured)]
-    return table(["behind", "at its worst", "where"], lines) + "\n\n" + command("bench/evaluate.sh --report")
+    finders = (_rates, _accuracy, _plateau, _above_lossless, _bounds, _lossless, _pictures, _noise, _reading, _time)
+    lines = [line for find in finders for line in find(measured)]
+    return table(["ours", "is behind", "at its worst", "where"], lines) + "\n\n" + command("bench/evaluate.sh --report")
 
 
-def _by_share(result, method):
-    return {row["share"]: row for row in result["rows"] if row["method"] == method and row["bytes_got"]}
+def _pairs(rivals):
+    return [(ours, rival) for ours in OURS for rival in rivals if rival != ours]
 
 
-def _equal_bytes(measured):
-    gaps = []
+def _gap_line(ours, title, gaps):
+    """The worst of (dB behind, ours, theirs, where), if any is behind."""
+    behind = [gap for gap in gaps if gap[0] > 0]
+    if not behind:
+        return []
+    gap, own, theirs, where = max(behind, key=lambda found: found[0])
+    figures = f"{decibel(own)} dB against " + ("lossless" if theirs["lossless"] else f"{decibel(theirs)} dB")
+    return [[ours, title, figures if math.isinf(gap) else f"{gap:.0f} dB, {figures}", where]]
+
+
+def _rates(measured):
+    """At equal bytes, where both have a file."""
+    lines = []
+    for ours, rival in _pairs(RIVALS):
+        gaps = [(-gap_db(own, theirs), own, theirs, where)
+                for where, own, theirs in _equal_bytes(measured, ours, rival) if own["bytes"] and theirs["bytes"]]
+        lines += _gap_line(ours, f"{_rate_title(rival)}, PSNR at equal bytes", gaps)
+    return lines
+
+
+def _rate_title(rival):
+    return {"zfp": "ZFP's fixed rate"}.get(rival, rival)
+
+
+def _equal_bytes(measured, ours, rival):
+    """(where, ours, theirs) of all that is measured at equal bytes."""
     for result in measured.results("errors"):
-        theirs = _by_share(result, "zfp")
-        for share, ours in _by_share(result, "auto").items():
-            if share in theirs and not ours["lossless"] and not theirs[share]["lossless"]:
-                gaps.append((theirs[share]["psnr_db"] - ours["psnr_db"], f"{result['volume']} at {share} % of dense"))
-    gap, where = max(gaps, default=(0, ""))
-    return [["ZFP's fixed rate, PSNR at equal bytes", f"{gap:.0f} dB", where]] if gap > 0 else []
+        by = {(row["method"], row["share"]): {**row, "bytes": row["bytes_got"]} for row in result["rows"]}
+        for (method, share), own in by.items():
+            if method == ours and (rival, share) in by:
+                yield f"{result['volume']} at {share} % of dense", own, by[(rival, share)]
+    for result in measured.results("few_bytes"):
+        for row in result["rows"]:
+            yield f"{result['volume']} at {row['share']} % of dense", row[ours], row[rival]
+
+
+def _accuracy(measured):
+    gaps = []
+    for result in measured.results("few_bytes"):
+        for row in result["rows"]:
+            own, theirs = row["packed_there"], row["accuracy"]
+            if own["bytes"] and theirs["bytes"]:
+                where = f"{result['volume']} at {percent(own['bytes'], result['dense_bytes'])} of dense"
+                gaps.append((-gap_db(own, theirs), own, theirs, where))
+    return _gap_line("packed", "ZFP's fixed accuracy, PSNR at equal bytes", gaps)
 
 
 def _plateau(measured):
     """The widest span of sizes over which more bytes bring nothing, short of lossless."""
-    spans = []
-    for result in measured.results("errors"):
-        for share, first in _by_share(result, "auto").items():
-            same = [s for s, row in _by_share(result, "auto").items() if row["mse"] == first["mse"] and s >= share]
-            if not first["lossless"] and len(same) > 1:
-                lossless = 100 * result["lossless_bytes"]["auto"] / result["dense_bytes"]
-                spans.append((max(same) - share, f"{first['psnr_db']:.0f} dB from {share} % of dense up to lossless at "
-                              f"{lossless:.0f} %", result["volume"]))
-    return [["itself: more bytes, no less error", *max(spans)[1:]]] if spans else []
+    lines = []
+    for ours in OURS:
+        spans = []
+        for result in measured.results("errors"):
+            rows = {row["share"]: row for row in result["rows"] if row["method"] == ours and row["bytes_got"]}
+            for share, first in rows.items():
+                same = [s for s, row in rows.items() if row["mse"] == first["mse"] and s >= share]
+                if not first["lossless"] and len(same) > 1:
+                    lossless = percent(result["lossless_bytes"][ours], result["dense_bytes"], 0)
+                    spans.append((max(same) - share, f"{first['psnr_db']:.0f} dB from {share} to {max(same)} % of "
+                                  f"dense, lossless at {lossless}", result["volume"]))
+        lines += [[ours, "itself: more bytes, no less error", *max(spans)[1:]]] if spans else []
+    return lines
+
+
+def _above_lossless(measured):
+    """Files of a size that have an error, though one without any takes fewer bytes."""
+    lines = []
+    for ours in OURS:
+        found = [(row["bytes_got"] / result["lossless_bytes"][ours],
+                  f"{decibel(row)} dB at {row['share']} % of dense, lossless at "
+                  f"{percent(result['lossless_bytes'][ours], result['dense_bytes'])}", result["volume"])
+                 for result in measured.results("errors") for row in result["rows"]
+                 if row["method"] == ours and row["bytes_got"] and not row["lossless"]]
+        worst = max(found, default=(0,))
+        lines += [[ours, "itself: an error in more bytes than lossless takes", *worst[1:]]] if worst[0] > 1 else []
+    return lines
+
+
+def _times_line(ours, title, found):
+    """The largest of (ratio, where) that is above 1."""
+    ratio, where = max(found, default=(0, ""))
+    return [[ours, title, f"{ratio:.1f} times" if ratio >= 1.05 else f"{ratio:.3f} times", where]] if ratio > 1 else []
 
 
 def _bounds(measured):
-    ratios = [(row["weir_bytes"] / row["zfp_bytes"],
-               f"{result['volume']}, {percent(row['weir_bytes'], result['dense_bytes'])} of dense against "
-               f"{percent(row['zfp_bytes'], result['dense_bytes'])}, bound {row['tolerance']:g} of the range")
-              for result in measured.results("zfp") for row in result["rows"]]
-    ratio, where = max(ratios, default=(0, ""))
-    return [["ZFP's fixed accuracy, bytes for a bound", f"{ratio:.1f} times", where]] if ratio > 1 else []
+    lines = []
+    for ours, rival in _pairs(RIVALS):
+        found = [(row[f"{ours}_bytes"] / row[f"{rival}_bytes"],
+                  f"{result['volume']}, {percent(row[f'{ours}_bytes'], result['dense_bytes'])} of dense against "
+                  f"{percent(row[f'{rival}_bytes'], result['dense_bytes'])}, bound {row['tolerance']:g} of the range")
+                 for result in measured.results("zfp") for row in result["rows"]]
+        title = "ZFP's fixed accuracy" if rival == "zfp" else rival
+        lines += _times_line(ours, f"{title}, bytes for a bound", found)
+    return lines
+
+
+def _lossless(measured):
+    lines = []
+    for ours in OURS:
+        found = [(row[f"{ours}_bytes"] / row["xz_bytes"],
+                  f"{row['volume']}, {percent(row[f'{ours}_bytes'], row['dense_bytes'], 2)} of dense against "
+                  f"{percent(row['xz_bytes'], row['dense_bytes'], 2)}") for row in measured.results("lossless")]
+        lines += _times_line(ours, "`xz -9`, bytes without loss", found)
+    return lines
 
 
 def _pictures(measured):
     rows = {(row["scene"], row["method"], row["rate"]): row for row in measured.results("pictures")}
-    gaps = []
-    for (scene, method, rate), ours in rows.items():
-        theirs = rows.get((scene, "zfp", rate))
-        if method == "auto" and theirs and ours["flip_mean"] is not None and theirs["flip_mean"] is not None:
-            gaps.append((ours["flip_mean"] - theirs["flip_mean"],
-                         f"{ours['flip_mean']:.3f} against {theirs['flip_mean']:.3f}", f"{scene} at 1:{rate}"))
-    worst = max(gaps, default=(0,))
-    return [["ZFP's fixed rate, mean FLIP at equal bytes", *worst[1:]]] if worst[0] > 0 else []
+    lines = []
+    for ours, rival in _pairs(RIVALS):
+        gaps = []
+        for (scene, method, rate), own in rows.items():
+            theirs = rows.get((scene, rival, rate))
+            if method == ours and theirs and own["flip_mean"] is not None and theirs["flip_mean"] is not None:
+                gaps.append((own["flip_mean"] - theirs["flip_mean"],
+                             f"{own['flip_mean']:.4f} against {theirs['flip_mean']:.4f}", f"{scene} at 1:{rate}"))
+        worst = max(gaps, default=(0,))
+        lines += [[ours, f"{_rate_title(rival)}, mean FLIP at equal bytes", *worst[1:]]] if worst[0] > 0 else []
+    return lines
 
 
-def _small(measured):
-    rows = measured.results("worst_case")
-    if not rows:
-        return []
-    worst = max(rows, key=lambda row: row["bytes"] / row["dense_bytes"])
-    return [["dense, bytes of lossless noise", f"{worst['bytes'] / worst['dense_bytes']:.1f} times",
-             f"{worst['edge']}^3, {whole(worst['bytes'])} bytes"]]
+def _noise(measured):
+    lines = []
+    for ours in OURS:
+        found = [(row["bytes"] / row["dense_bytes"], f"{row['edge']}^3, {whole(row['bytes'])} bytes")
+                 for row in measured.results("worst_case") if row["encoding"] == ours]
+        lines += _times_line(ours, "dense, bytes of lossless noise", found)
+    return lines
 
 
 def _reading(measured):
     """Of volumes from 512^3 on, where starting up is no part of it."""
-    lines = []
-    for cache in ("cold", "warm"):
-        rows = [row for row in measured.results("speed") if row["edge"] >= 512 and row["cache"] == cache]
-        if rows:
-            worst = max(rows, key=lambda row: row["seconds"] / row["read_twice_s"])
-            lines.append([f"reading the file twice, {cache}", f"{worst['seconds'] / worst['read_twice_s']:.1f} times",
-                          f"{worst['edge']}^3, {worst['encoding']}, {worst['threads']} threads"])
-    return lines
+    found = {}
+    for row in measured.results("speed"):
+        if row["edge"] >= 512:
+            where = f"cloud {row['edge']}^3 to an eighth, {row['threads']} threads"
+            found.setdefault((row["encoding"], row["cache"]), []).append((row["seconds"] / row["read_twice_s"], where))
+    for row in measured.results("two_passes"):
+        if row["edge"] >= 512:
+            where = f"{row['kind']} {row['edge']}^3 to a twentieth, {row['threads']} threads"
+            found.setdefault((row["encoding"], "warm"), []).append((row["seconds"] / row["read_twice_s"], where))
+    return [line for (encoding, cache), ratios in found.items()
+            for line in _times_line(encoding, f"reading the file twice, {cache}", ratios)]
+
+
+def _time(measured):
+    seconds = {(row["kind"], row["edge"], row["encoding"]): row["seconds"] for row in measured.results("two_passes")}
+    found = [(packed / seconds[(kind, edge, "auto")],
+              f"{kind} {edge}^3 to a twentieth, {packed:.2f} s against {seconds[(kind, edge, 'auto')]:.2f} s")
+             for (kind, edge, encoding), packed in seconds.items() if encoding == "packed"]
+    return _times_line("packed", "auto, seconds of a conversion", found)

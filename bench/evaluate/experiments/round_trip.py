@@ -9,7 +9,8 @@ from programs import run
 
 CLOUD = "wdas_cloud_sixteenth.vdb"
 BUDGETS = (("--lossless",), ("--lossless", "--encoding", "float"), ("--rate", "2"), ("--rate", "4"), ("--rate", "8"),
-           ("--rate", "4", "--preset", "paper"))
+           ("--rate", "4", "--preset", "paper"),
+           *((*budget, "--encoding", "packed") for budget in (("--lossless",), ("--rate", "8"), ("--rate", "20"))))
 
 
 class RoundTrip(Experiment):

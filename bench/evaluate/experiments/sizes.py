@@ -1,9 +1,10 @@
-"""Actual size against the asked one, ours and the paper's."""
+"""Actual size against the asked one, of leaves, of packed blocks and of the paper's preset."""
 
 from experiment import Experiment, describe, size_text
 from markdown import command, percent, table, whole
 
 RATES = (8, 4, 2, 1)
+METHODS = ("auto", "packed", "paper")
 LEAF_BYTES = 2144
 UPPER_BYTES = 270400
 LOWER_BYTES = 33856
@@ -36,7 +37,7 @@ class Sizes(Experiment):
         rates = ",".join(str(rate) for rate in RATES)
         with bench.files.file(volume) as path:
             report = bench.weir.report("sweep", path, "-o", bench.scratch("sizes"), "--overwrite", "--rates", rates,
-                                       "--methods", "auto,paper")
+                                       "--methods", ",".join(METHODS))
         keys = ("method", "rate", "bytes_asked", "bytes_got", "note")
         return {**describe(volume), "rows": [{key: row.get(key) for key in keys} for row in report["rows"]]}
 
@@ -52,14 +53,15 @@ class Sizes(Experiment):
             for rate in RATES:
                 asked = by[("auto", rate)]["bytes_asked"]
                 got = [whole(row["bytes_got"]) if row["bytes_got"] else "-"
-                       for row in (by[("auto", rate)], by[("paper", rate)])]
+                       for row in (by[(method, rate)] for method in METHODS)]
                 counted = share_of_blocks_bytes(result["extent"], rate)
                 lines.append([f"{result['volume']}, {size_text(result['extent'])}" if rate == RATES[0] else "",
                               f"1:{rate}", whole(asked), *got, percent(counted, asked)])
-        header = ["volume", "rate", "bytes asked", "got, auto", "got, paper's preset", "counted in blocks"]
+        header = ["volume", "rate", "bytes asked", "got, auto", "got, packed", "got, paper's preset",
+                  "counted in blocks"]
         return table(header, lines) + "\n\n" + command(
             "bench/evaluate.sh --only sizes",
-            "weir sweep VOLUME.raw -o sizes --rates 8,4,2,1 --methods auto,paper       # one volume of it")
+            "weir sweep VOLUME.raw -o sizes --rates 8,4,2,1 --methods auto,packed,paper       # one volume of it")
 
     def broken_promises(self, measured):
         return [f"{row['volume']}, {row['method']} at 1:{row['rate']:g}: {row['bytes_got']} bytes instead of "

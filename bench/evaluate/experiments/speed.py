@@ -9,7 +9,7 @@ from experiment import Experiment, remove_volume
 from markdown import command, table
 
 RATE = 8
-ENCODINGS = ("float", "fpn")
+ENCODINGS = ("float", "fpn", "packed")
 ROUNDS = 3
 SINGLE_ROUND_EDGE = 1024  # from there on a round is long enough to be believed
 READ_BYTES = 8 << 20
@@ -107,7 +107,7 @@ class Speed(Experiment):
         load = f"Load average of the machine before each measurement: {min(loads):.1f} to {max(loads):.1f}."
         return "\n\n".join((load, self._size_table(by, most), self._thread_table(by), command(
             "bench/evaluate.sh --only speed --again           # on a machine that does nothing else",
-            "weir convert cloud_512x512x512_float32.raw --rate 8 --encoding fpn --threads 2   # one figure")))
+            "weir convert cloud_512x512x512_float32.raw --rate 8 --encoding packed --threads 2   # one figure")))
 
     @staticmethod
     def _size_table(by, most):

@@ -9,11 +9,14 @@ import re
 import shutil
 import sys
 
-from experiment import Experiment, describe, remove_volume, size_text
+from experiment import Experiment, describe, method_options, remove_volume, size_text
 from experiments.errors import SHARES
 from markdown import command, decibel, percent, scientific, table
 from programs import run
 
+ENCODINGS = ("auto", "packed")
+METHODS = (*ENCODINGS, "zfp")
+ERROR_KEYS = ("max_abs", "psnr_db", "lossless")
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # of the value range
 MOST_BYTES = 2 << 30  # dense; the command holds the volume three times
 
@@ -42,13 +45,16 @@ class Zfp(Experiment):
             value_range = self._range(bench, path, output)
             for tolerance in TOLERANCES:
                 bound = tolerance * value_range
-                made = bench.weir.report("convert", path, "-o", output, "--overwrite", "--max-error", repr(bound))
+                row = {"tolerance": tolerance, "bound": bound}
+                for encoding in ENCODINGS:
+                    made = bench.weir.report("convert", path, "-o", output, "--overwrite", "--max-error", repr(bound),
+                                             *method_options(encoding))
+                    row[f"{encoding}_bytes"] = made["file"]["bytes"]
+                    row.update({f"{encoding}_{key}": made["error"][key] for key in ERROR_KEYS})
                 theirs = zfp_statistics(["-i", wide, "-f", "-3", *volume.extent, "-a", repr(bound)])
-                rows.append({"tolerance": tolerance, "bound": bound,
-                             "weir_bytes": made["file"]["bytes"], "weir_max_abs": made["error"]["max_abs"],
-                             "weir_psnr_db": made["error"]["psnr_db"], "weir_lossless": made["error"]["lossless"],
-                             "zfp_bytes": int(theirs["zfp"]), "zfp_max_abs": theirs["maxe"],
-                             "zfp_psnr_db": psnr(value_range, theirs["rmse"]), "zfp_lossless": theirs["rmse"] == 0})
+                row.update(zfp_bytes=int(theirs["zfp"]), zfp_max_abs=theirs["maxe"],
+                           zfp_psnr_db=psnr(value_range, theirs["rmse"]), zfp_lossless=theirs["rmse"] == 0)
+                rows.append(row)
         remove_volume(output)
         return {**describe(volume), "dense_bytes": volume.dense_bytes, "value_range": value_range, "rows": rows}
 
@@ -69,39 +75,39 @@ class Zfp(Experiment):
         lines = []
         for result in measured.results("errors"):
             by = {(row["method"], row["share"]): row for row in result["rows"]}
-            line = [result["volume"]]
-            for share in SHARES:
-                ours, theirs = by[("auto", share)], by[("zfp", share)]
-                if not ours["bytes_got"] or not theirs["bytes_got"]:
-                    line.append("-")
-                elif ours["lossless"]:
-                    line.append("both lossless" if theirs["lossless"] else f"lossless / {decibel(theirs)}")
-                else:
-                    line.append("-" if theirs["lossless"] else f"{ours['psnr_db'] - theirs['psnr_db']:+.1f}")
-            lines.append(line)
-        header = ["auto - ZFP, dB", *(f"{share} %" for share in SHARES)]
+            for encoding in ENCODINGS:
+                lines.append([result["volume"] if encoding == ENCODINGS[0] else "", encoding,
+                              *(_ahead(by[(encoding, share)], by[("zfp", share)]) for share in SHARES)])
+        header = ["ours - ZFP, dB", "ours", *(f"{share} %" for share in SHARES)]
         return table(header, lines) + "\n\n" + command("bench/evaluate.sh --only errors")
 
     def _bounds_text(self, measured):
         lines = []
         for result in measured.results(self.name):
             for row in result["rows"]:
-                ours = {"lossless": row["weir_lossless"], "psnr_db": row["weir_psnr_db"]}
-                theirs = {"lossless": row["zfp_lossless"], "psnr_db": row["zfp_psnr_db"]}
                 lines.append([result["volume"] if row is result["rows"][0] else "", f"{row['tolerance']:g}",
-                              percent(row["weir_bytes"], result["dense_bytes"]),
-                              percent(row["zfp_bytes"], result["dense_bytes"]),
-                              scientific(row["weir_max_abs"] / result["value_range"]),
-                              scientific(row["zfp_max_abs"] / result["value_range"]), decibel(ours), decibel(theirs)])
-        header = ["volume", "bound / range", "bytes: weir", "ZFP", "largest error: weir", "ZFP", "dB: weir", "ZFP"]
+                              *(percent(row[f"{method}_bytes"], result["dense_bytes"]) for method in METHODS),
+                              *(scientific(row[f"{method}_max_abs"] / result["value_range"]) for method in METHODS),
+                              *(decibel({key: row[f"{method}_{key}"] for key in ERROR_KEYS}) for method in METHODS)])
+        header = ["volume", "bound / range", "bytes: auto", "packed", "ZFP", "largest error: auto", "packed", "ZFP",
+                  "dB: auto", "packed", "ZFP"]
         return table(header, lines) + "\n\n" + command(
             "bench/evaluate.sh --only zfp",
-            "weir convert VOLUME.raw --max-error BOUND        # one line of it",
+            "weir convert VOLUME.raw --max-error BOUND --encoding packed        # one line of it",
             "zfp -i VOLUME_float32.raw -f -3 X Y Z -a BOUND -s")
 
     def broken_promises(self, measured):
-        return [f"{row['volume']}: an error of {row['weir_max_abs']} with --max-error {row['bound']}"
-                for row in self.rows(measured) if row["weir_max_abs"] > row["bound"]]
+        return [f"{row['volume']}, {encoding}: an error of {row[f'{encoding}_max_abs']} with --max-error {row['bound']}"
+                for row in self.rows(measured) for encoding in ENCODINGS if row[f"{encoding}_max_abs"] > row["bound"]]
+
+
+def _ahead(ours, theirs):
+    """By how many dB, as text; two that are lossless have no difference."""
+    if not ours["bytes_got"] or not theirs["bytes_got"]:
+        return "-"
+    if ours["lossless"]:
+        return "both lossless" if theirs["lossless"] else f"lossless / {decibel(theirs)}"
+    return f"{decibel(ours)} / lossless" if theirs["lossless"] else f"{ours['psnr_db'] - theirs['psnr_db']:+.1f}"
 
 
 def psnr(value_range, rmse):
