@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""What parts of a converted volume cost to read: time, and bytes from the disk, out of the page cache and into it.
+
+    PYTHONPATH=build/release/python python3 bench/block_access.py FILE.nvdb...
+
+For each file a Markdown table: opening it, and then one block of 8^3, a region of 64^3 or a level of detail of the whole,
+with the file dropped from the page cache before it is opened (cold) and just read (warm, the best of three). Bytes are
+those that the kernel read from the disk for this process, its read-ahead included, which a mapped file has when it is
+opened. Medians of positions that are spread over the volume, the same at each run.
+"""
+
+import argparse
+import os
+import random
+import sys
+import time
+
+import numpy
+import weir
+
+READINGS = 20
+
+
+def drop(path):
+    """Takes a file out of the page cache."""
+    with open(path, "rb") as file:
+        os.fsync(file.fileno())
+        os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+
+
+def disk_bytes():
+    """Bytes that the disk has given this process so far."""
+    with open("/proc/self/io", encoding="ascii") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("read_bytes"))
+
+
+def timed(action):
+    start = time.perf_counter()
+    action()
+    return time.perf_counter() - start
+
+
+def corners(shape, edge):
+    """Low corners (z, y, x) of regions of that edge, whose blocks are whole."""
+    numbers = random.Random(1)
+    return [[8 * numbers.randrange(max(1, (n - edge) // 8 + 1)) for n in shape] for _ in range(READINGS)]
+
+
+def region(grid, corner, edge):
+    z, y, x = corner
+    return grid.to_numpy(numpy.s_[z:z + edge, y:y + edge, x:x + edge])
+
+
+def once_cold(path, action):
+    """Seconds and bytes of opening a file that was dropped, and of the action after that."""
+    drop(path)
+    before = disk_bytes()
+    start = time.perf_counter()
+    with weir.open(path) as grid:
+        opened = time.perf_counter()
+        opened_bytes = disk_bytes()
+        action(grid)
+        return opened - start, time.perf_counter() - opened, opened_bytes - before, disk_bytes() - opened_bytes
+
+
+def warm(grid, action):
+    action(grid)
+    return min(timed(lambda: action(grid)) for _ in range(3))
+
+
+def measure_file(path):
+    with weir.open(path) as grid:
+        shape, levels = grid.shape, grid.levels
+    level = min(3, levels - 1)
+    rows = [("a block of 8^3", [lambda grid, at=at: region(grid, at, 8) for at in corners(shape, 8)]),
+            ("a region of 64^3", [lambda grid, at=at: region(grid, at, 64) for at in corners(shape, 64)]),
+            (f"level {level} of all", [lambda grid: grid.to_numpy(level=level)])]
+    print(f"`{os.path.basename(path)}`, {' x '.join(str(n) for n in reversed(shape))}, {os.path.getsize(path)} bytes:\n")
+    print("| | cold: ms | cold: bytes read | warm: ms |\n|---|---|---|---|")
+    opening = None
+    for name, actions in rows:
+        figures = numpy.median([once_cold(path, action) for action in actions], axis=0)
+        with weir.open(path) as grid:
+            cached = numpy.median([warm(grid, action) for action in actions])
+            if opening is None:
+                opening = timed(lambda: weir.open(path).close())
+                print(f"| opening | {figures[0] * 1e3:.2f} | {figures[2]:.0f} | {opening * 1e3:.3f} |")
+        print(f"| {name} | {figures[1] * 1e3:.2f} | {figures[3]:.0f} | {cached * 1e3:.3f} |", flush=True)
+    print()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", help="converted volumes")
+    for path in parser.parse_args().files:
+        measure_file(path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
