@@ -19,6 +19,7 @@
 #include "compressor/select/file_size.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
+#include "compressor/select/near_use.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
 #include "format/base/error.h"
@@ -190,8 +191,9 @@ class SurveyedConversion {
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
     find_background();
-    finish_ladders();
-    return make_request();
+    FileRequest request = make_request();
+    finish_ladders(request);
+    return request;
   }
 
   // The background and the source's digest, at the same time.
@@ -217,27 +219,15 @@ class SurveyedConversion {
   }
 
   // Packed blocks of which the background is a part, and those of which nearly everything is kept.
-  void finish_ladders() {
+  void finish_ladders(const FileRequest& request) {
     std::optional<LadderAim> aim = surveyed_ladders(options_, info_);
     if (!aim) return;
     MissingLadders missing;
     missing.filled = !aim->background && !aim->keeps_non_finite && survey_.missing + survey_.non_finite > 0;
-    if (aim->near_rungs && buys_near_rungs()) missing.near = NearRungs::yes;
+    if (aim->near_rungs && uses_near_rungs(request, stores_.rows)) missing.near = NearRungs::yes;
     if (!missing.filled && missing.near == NearRungs::no) return;
     aim->background = background_.value;
     complete_ladders(parts_.source, reading_.survey, stores_.rows, *aim, missing, stream_);
-  }
-
-  // Whether the budget has room for near rungs. Those of a small volume are there already.
-  bool buys_near_rungs() const {
-    constexpr double kNearly = 0.9;  // some blocks have a use for them before others
-    const Budget& budget = options_.budget;
-    const NearCost cost = near_cost(stores_.rows);
-    if (budget.kind == Budget::Kind::psnr)
-      return allowed_error(budget, survey_, survey_.finite) * kNearly < cost.squared_error;
-    const auto dense = static_cast<std::uint64_t>(info_.domain().voxels()) * sizeof(float);
-    const std::uint64_t bytes = budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense, budget.rate);
-    return static_cast<double>(bytes) > kNearly * cost.bytes;
   }
 
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.

@@ -104,6 +104,7 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
   // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
   const FloatOrder order = aim_.lossless || near == NearRungs::yes ? FloatOrder::used : FloatOrder::unused;
   ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
+  if (is_ordered(stream_)) ladder.exact = ExactKind::ordered;
   if (aim_.lossless || !transform_.set(block)) return ladder;
   const double energy = filled == Filled::no ? transform_.energy() : row.sse;
   add_rungs(row, energy, ladder);
@@ -138,6 +139,10 @@ void LadderBuilder::add_near_rungs(const LeafValues& block, double energy, Packe
   ladder.near_exponent = static_cast<std::int8_t>(coarsest);
   for (int exponent = coarsest; exponent >= finest; --exponent) {
     const auto cost = rounded_.cost(exponent);
+    if (!cost && ladder.near_count == 0) {  // of one value, far from zero
+      --ladder.near_exponent;
+      continue;
+    }
     if (!cost || cost->bytes >= ladder.exact_bytes) break;
     const double share = std::min(1.0, cost->squared_error / energy);
     ladder.near[ladder.near_count++] = {static_cast<std::uint16_t>(cost->bytes), ErrorShare(share)};
@@ -181,8 +186,9 @@ void LadderBuilder::build_bounded(const LeafValues& block, double max_error, Pac
   // On a lattice as coarse as the error allows, exact is shorter.
   const std::uint32_t exact =
       bounded == 0 || aim_.lattice ? write_exact(block, aim_.lattice, stream_) : kRawStreamBytes;
-  ladder.bounded = bounded > 0 && bounded < exact ? 1 : 0;
-  ladder.exact_bytes = static_cast<std::uint16_t>(ladder.bounded != 0 ? bounded : exact);
+  const bool rounds = bounded > 0 && bounded < exact;
+  ladder.exact = rounds ? ExactKind::bounded : ExactKind::values;
+  ladder.exact_bytes = static_cast<std::uint16_t>(rounds ? bounded : exact);
   if (!transform_.set(block)) return;
   const auto step = bounded_step(block, max_error);
   if (!step) return;

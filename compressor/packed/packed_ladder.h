@@ -40,13 +40,20 @@ struct NearRung {
   ErrorShare error;         ///< of the block's energy
 };
 
+/// What a ladder's last way to keep a block gives back.
+enum class ExactKind : std::uint8_t {
+  values,   ///< every bit: raw values, one value, or codes of a lattice
+  ordered,  ///< every bit: floats predicted in their own order, which the survey tries where there are near rungs
+  bounded,  ///< values rounded to within --max-error
+};
+
 struct PackedLadder {
   static constexpr std::size_t kMostRungs = 22;
   static constexpr std::size_t kMostNear = 12;
 
-  std::int16_t first_step = 0;    ///< step number of rung 0
-  std::uint8_t count = 0;         ///< rungs, from coarse to fine
-  std::uint8_t bounded = 0;       ///< not 0: the exact kind is of values rounded to within --max-error
+  std::int16_t first_step = 0;  ///< step number of rung 0
+  std::uint8_t count = 0;       ///< rungs, from coarse to fine
+  ExactKind exact{};
   std::uint16_t exact_bytes = 0;  ///< of the stream of the exact kind
   std::int8_t near_exponent = 0;  ///< of the coarsest near rung's quantum; each further one's is half of that
   std::uint8_t near_count = 0;

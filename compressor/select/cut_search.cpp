@@ -34,7 +34,7 @@ void CutSearch::for_each_key(const Visit& visit) const {
   });
 }
 
-double CutSearch::find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above) const {
+double CutSearch::find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above) const {
   // Radix selection from the top: 16 bits of the keys a pass, weights counted per bucket, until the bucket
   // that the goal is reached in is small enough to be sorted.
   constexpr int kDigit = 16;
@@ -80,6 +80,11 @@ double CutSearch::find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight&
     }
     if (prefix == 0 && shift == 64 - kDigit) {
       above += all_required + required.combine(std::plus<>());
+      if (goal.left) {
+        PurchaseGoal::Weight all = above;
+        for (const Bucket& bucket : total) all += bucket.weight;
+        goal.limit = all > *goal.left ? all - *goal.left : 0;
+      }
       if (goal.unit != 0 && above >= goal.limit) return std::numeric_limits<double>::max();
     }
     std::size_t bucket = kBuckets;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
@@ -20,6 +21,9 @@ struct PurchaseGoal {
   // Whole numbers, so that sums do not depend on the order of the threads.
   using Weight = unsigned __int128;
   Weight limit = 0;
+  /// What may stay unbought of all there is, where every step that can be bought leads to no error: the search sets
+  /// `limit` by it. So small errors are told apart however large the one of nothing bought is.
+  std::optional<Weight> left = std::nullopt;
 
   Weight weight(std::uint64_t bytes, double gain) const;
   /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
@@ -39,7 +43,7 @@ class CutSearch {
 
   /// The smallest key for which everything above it can be bought for `goal`; `above` is the sum of that. 0: everything
   /// can be bought.
-  double find_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above) const;
+  double find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above) const;
 
  private:
   template <typename Visit>

@@ -57,17 +57,14 @@ class Candidate {
     return planned({0, "psnr", ""});
   }
 
-  // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Selection counts
-  // gains to a part in 2^53 of the error of nothing kept, which is not enough for a target far below that.
+  // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
   FilePlan plan_exact() {
     const double target = std::min(request_.squared_error, request_.planned_error);
     FilePlan file = plan_expected(target);
-    double goal = target;
-    for (double step = 2; file.plan.expected_error > target; step *= 2) {
-      goal -= step * (file.plan.expected_error - target);
+    for (double slack = 0x1p-48; file.plan.expected_error > target; slack *= 256) {
       tree_ = std::move(file.tree);
-      if (!(goal > 0)) return plan_everything();
-      file = plan_expected(goal);
+      if (!(slack < 1)) return plan_everything();
+      file = plan_expected(target * (1 - slack));
     }
     return file;
   }

@@ -151,6 +151,11 @@ double GainRule::tile_weight(const MinMax& reach, float tile) const {
   return visibility->weight(with_tile);
 }
 
+GainRule::Weights GainRule::weights_of(const MinMax* reach, float tile) const {
+  if (reach == nullptr) return {};
+  return {tile_weight(*reach, tile), visibility->weight(*reach)};
+}
+
 void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights,
                                 LeafGain& leaf, RegionGains& out) const {
   const bool seen = weights.tile > 0;
@@ -264,7 +269,8 @@ LeafStep packed_step(const PackedPoint& from, const PackedPoint& to) {
 }  // namespace
 
 void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row,
-                                std::int64_t voxels, const Weights& weights, LeafGain& leaf, RegionGains& out) const {
+                                std::int64_t voxels, const MinMax* reach, LeafGain& leaf, RegionGains& out) const {
+  const Weights weights = weights_of(reach, region.value);
   const double none = leaf.exact ? 0 : weights.tile * row.sse_about(region.value);
   const auto stream = [&](KeptLevel level) {
     const std::uint32_t bytes = packed_stream_bytes(ladder, level, region.means, *packed);
@@ -335,16 +341,12 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     gain.required = (corner && (!packed || packed->preview)) ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels) ||
                     (row.finite == 0 && !gain.exact);
-    Weights weights;
-    if (visibility != nullptr) {
-      const MinMax& reach = rows.reach(leaf);
-      weights = {tile_weight(reach, tile), visibility->weight(reach)};
-    }
+    const MinMax* const reach = visibility == nullptr ? nullptr : &rows.reach(leaf);
     out.begin(gain);
     if (packed) {
-      add_packed_steps(rows.ladder(leaf), region, row, voxels, weights, gain, out);
+      add_packed_steps(rows.ladder(leaf), region, row, voxels, reach, gain, out);
     } else {
-      add_steps(row, voxels, tile, weights, gain, out);
+      add_steps(row, voxels, tile, weights_of(reach, tile), gain, out);
     }
     out.end(gain);
   });

@@ -113,6 +113,11 @@ struct GainRule {
   /// required.
   void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const;
 
+  /// Adds a packed block's steps to `out`: `leaf` says whether a block without a stream reads the same bits, and
+  /// whether it is required. `reach` is null where everything counts alike.
+  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row, std::int64_t voxels,
+                        const MinMax* reach, LeafGain& leaf, RegionGains& out) const;
+
  private:
   // What a squared error counts where the leaf reads its tile, and where it is kept.
   struct Weights {
@@ -123,8 +128,7 @@ struct GainRule {
                         RegionGains& out) const;
   void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
                  RegionGains& out) const;
-  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row, std::int64_t voxels,
-                        const Weights& weights, LeafGain& leaf, RegionGains& out) const;
+  Weights weights_of(const MinMax* reach, float tile) const;
   // The paper's metrics: gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, RegionGains& leaves) const;
 };

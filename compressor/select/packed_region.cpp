@@ -108,7 +108,8 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
     const PackedLadder& ladder = rows.ladder(leaf);
     plan.bytes[position] = static_cast<std::uint16_t>(packed_stream_bytes(ladder, level, plan.region.means, rule));
     if (level == kExactLevel) {
-      plan.steps[position] = ladder.bounded != 0 ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;
+      plan.steps[position] =
+          ladder.exact == ExactKind::bounded ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;
     } else if (level >= kFirstNearLevel) {
       const int exponent = ladder.near_exponent - (level - kFirstNearLevel);
       plan.steps[position] = static_cast<std::int16_t>(PlannedStreams::kNearStep + exponent);

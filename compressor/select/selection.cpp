@@ -160,11 +160,16 @@ void Selection::choose_error(double squared_error) {
   PurchaseGoal goal;
   goal.unit = std::ldexp(error, -90);
   if (!(goal.unit > 0)) return choose(error > squared_error ? bytes_.full.file_bytes : bytes_.minimum.file_bytes);
-  goal.limit = goal.weight(0, error - squared_error);
+  const bool ends_exact = rule_.packed || rule_.encoding == Encoding::float32;
+  if (ends_exact) {
+    goal.left = goal.weight(0, std::min(squared_error, error));
+  } else {
+    goal.limit = goal.weight(0, error - squared_error);
+  }
   buy_for(goal);
 }
 
-void Selection::buy_for(const PurchaseGoal& goal) {
+void Selection::buy_for(PurchaseGoal goal) {
   PurchaseGoal::Weight above = 0;
   cut_.threshold = CutSearch(rule_, rows_, tree_).find_threshold(goal, above);
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;

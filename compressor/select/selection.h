@@ -70,7 +70,7 @@ class Selection {
     std::uint64_t leaf_bytes = 0;
   };
   TreeLayout layout_of(const Purchases& bought) const;
-  void buy_for(const PurchaseGoal& goal);
+  void buy_for(PurchaseGoal goal);
   void resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought);
 
   GainRule rule_;

@@ -69,7 +69,7 @@ class RegionPlanner {
         if (rule_.packed) {
           const KeptLevel level = choices.level(position);
           expected.add(weight * packed_error(rows.ladder(leaf), level, row, voxels));
-          const bool exact = level == kExactLevel && rows.ladder(leaf).bounded == 0;
+          const bool exact = level == kExactLevel && rows.ladder(leaf).exact != ExactKind::bounded;
           ++tally.blocks[static_cast<std::size_t>(packed_kind(rows.ladder(leaf), level))];
           tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || exact);
           return;

@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -16,10 +15,11 @@
 namespace weir {
 namespace {
 
-// Whether the ladder of a leaf of so many voxels is built anew.
-bool is_incomplete(const MissingLadders& missing, const LeafRow& row, std::int64_t voxels) {
-  if (row.finite < voxels) return missing.filled && row.finite > 0;
-  return missing.near == NearRungs::yes && !row.uniform();
+// Whether the ladder of a leaf is built anew. What is decided by ladders (select/near_use.h) is decided by those that
+// are not.
+bool is_incomplete(const MissingLadders& missing, const NodeLattice& leaves, const Index3& leaf, const LeafRow& row) {
+  if (row.finite < leaves.voxels(leaf).voxels()) return missing.filled && row.finite > 0;
+  return missing.near == NearRungs::yes && !row.uniform() && !is_near_sample(leaves.linear(leaf), leaves.size());
 }
 
 // The leaves of a box to read: whole in x, because rows are what a file is read by.
@@ -28,8 +28,7 @@ Box box_to_read(const RowStore& rows, const MissingLadders& missing, const Box& 
   Box found{box.hi, box.lo};
   for (std::int64_t i = 0; i < box.voxels(); ++i) {
     const Index3 leaf = box.lo + index_at(i, box.extent());
-    const LeafRow& row = buffer[static_cast<std::size_t>(i)];
-    if (!is_incomplete(missing, row, rows.leaves().voxels(leaf).voxels())) continue;
+    if (!is_incomplete(missing, rows.leaves(), leaf, buffer[static_cast<std::size_t>(i)])) continue;
     found.lo = min(found.lo, leaf);
     found.hi = max(found.hi, leaf + Index3{1, 1, 1});
   }
@@ -39,62 +38,7 @@ Box box_to_read(const RowStore& rows, const MissingLadders& missing, const Box& 
   return found;
 }
 
-// Bytes of a transform of that share of the block's energy as error, between two rungs; all it may take where none has.
-double transform_bytes(const PackedLadder& ladder, double share) {
-  double coarser = 1;
-  double coarser_bits = 8;
-  for (std::size_t rung = 0; rung < ladder.count; ++rung) {
-    const double finer = ladder.rungs[rung].error.value();
-    const auto bits = static_cast<double>(ladder.rungs[rung].bits);
-    if (finer <= share) {
-      const double way = finer < coarser && finer > 0 ? std::log(coarser / share) / std::log(coarser / finer) : 1;
-      return (coarser_bits + way * (bits - coarser_bits)) / 8;
-    }
-    coarser = finer;
-    coarser_bits = bits;
-  }
-  return kRawStreamBytes;
-}
-
-// Of one block.
-NearCost near_cost(const PackedLadder& ladder, const LeafRow& row) {
-  for (std::size_t rung = 0; rung < ladder.near_count; ++rung) {
-    const double share = ladder.near[rung].error.value();
-    const auto bytes = static_cast<double>(ladder.near[rung].bytes);
-    if (share > 0 && bytes <= transform_bytes(ladder, share)) return {bytes, share * row.sse};
-  }
-  return {static_cast<double>(ladder.exact_bytes), 0};
-}
-
 }  // namespace
-
-NearCost near_cost(const RowStore& rows) {
-  constexpr std::int64_t kHeld = 4096;
-  std::vector<LeafRow> leaf_rows(kHeld);
-  std::vector<PackedLadder> ladders(kHeld);
-  NearCost sampled;
-  std::int64_t samples = 0;
-  std::int64_t blocks = 0;
-  const std::int64_t leaves = rows.leaves().size();
-  for (std::int64_t first = 0; first < leaves; first += kHeld) {
-    const auto count = static_cast<std::size_t>(std::min(kHeld, leaves - first));
-    rows.read(first, std::span(leaf_rows).first(count));
-    rows.ladders()->read(first, std::span(ladders).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const LeafRow& row = leaf_rows[i];
-      if (row.finite == 0 || row.uniform()) continue;
-      ++blocks;
-      if (!is_near_sample(first + static_cast<std::int64_t>(i), leaves)) continue;
-      ++samples;
-      const NearCost cost = near_cost(ladders[i], row);
-      sampled.bytes += cost.bytes;
-      sampled.squared_error += cost.squared_error;
-    }
-  }
-  if (samples == 0) return {};
-  const double scale = static_cast<double>(blocks) / static_cast<double>(samples);
-  return {sampled.bytes * scale, sampled.squared_error * scale};
-}
 
 void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const LadderAim& aim,
                       const MissingLadders& missing, const StreamOptions& options) {
@@ -113,14 +57,16 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
   }
   tbb::enumerable_thread_specific<LadderBuilder> builders([&] { return LadderBuilder(aim); });
   const auto build = [&](const Block& block, const Index3& leaf, const LeafRow& row) {
+    const bool near =
+        missing.near == NearRungs::yes || (aim.near_rungs && is_near_sample(leaves.linear(leaf), leaves.size()));
     const Box inside = leaves.voxels(leaf);
     LeafValues values;
     gather_leaf(block.values, block.voxels, leaves.node_box(leaf), inside, 0, values);
     extend_outside(leaves.node_box(leaf), inside, values);
     LadderBuilder& builder = builders.local();
-    const PackedLadder ladder = row.finite == inside.voxels() ? builder.build(values, row, missing.near)
-                                                              : builder.build_non_finite(values, row, missing.near);
-    rows.ladders()->write(leaves.linear(leaf), std::span(&ladder, 1));
+    const NearRungs rungs = near ? NearRungs::yes : NearRungs::no;
+    return row.finite == inside.voxels() ? builder.build(values, row, rungs)
+                                         : builder.build_non_finite(values, row, rungs);
   };
   rows.team().run([&] {
     stream_blocks(source, voxel_boxes, options, [&](const Block& block) {
@@ -128,13 +74,16 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
       const SurveyedLeaves surveyed(rows, box, source.info());
       std::vector<LeafRow> found;
       rows.read_box(box, found);
+      std::vector<PackedLadder> ladders;
+      rows.ladders()->read_box(box, ladders);
       tbb::parallel_for(std::int64_t{0}, box.voxels(), [&](std::int64_t i) {
         const Index3 leaf = box.lo + index_at(i, box.extent());
         const LeafRow& row = found[static_cast<std::size_t>(i)];
-        if (!is_incomplete(missing, row, leaves.voxels(leaf).voxels())) return;
+        if (!is_incomplete(missing, leaves, leaf, row)) return;
         surveyed.check(leaf, block.values, block.voxels);
-        build(block, leaf, row);
+        ladders[static_cast<std::size_t>(i)] = build(block, leaf, row);
       });
+      rows.ladders()->write_box(box, ladders);
     });
   });
   rows.team().publish(rows.ladders()->file());

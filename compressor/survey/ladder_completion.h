@@ -12,20 +12,10 @@
 
 namespace weir {
 
-/// What all blocks together take and lose where near rungs begin to be the better buy.
-struct NearCost {
-  double bytes = 0;
-  double squared_error = 0;
-};
-
-/// Estimated from the ladders of the sampled blocks (compressor/packed/near_sample.h), of a finished survey. Throws as
-/// File::read_at.
-NearCost near_cost(const RowStore& rows);
-
 /// Which ladders are built anew.
 struct MissingLadders {
   bool filled = false;             ///< of blocks with some values that are not finite: `aim.background` is set
-  NearRungs near = NearRungs::no;  ///< yes: of all, with near rungs
+  NearRungs near = NearRungs::no;  ///< yes: of all that the survey has built without near rungs, with them
 };
 
 /// Reads those blocks once more and sets their ladders in `rows`, of a finished survey.

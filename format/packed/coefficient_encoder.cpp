@@ -18,6 +18,7 @@ struct Piece {
 
 // ceil(2^44 / f): x * inverse >> 44 is x / f for every x below f * 2^20, which is what a state is reduced to before it
 // takes a symbol of frequency f.
+static_assert(kFrequencyBits <= 12, "a state below 2^32 is below f * 2^20 then");
 constexpr unsigned kInverseBits = 44;
 constexpr std::array<std::uint64_t, kTotal + 1> make_inverses() {
   std::array<std::uint64_t, kTotal + 1> inverses{};

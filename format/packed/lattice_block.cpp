@@ -61,6 +61,12 @@ std::uint32_t write_codes(const BlockConstants& constants, LatticeKind kind, con
 
 }  // namespace
 
+bool is_ordered(std::span<const std::byte> stream) {
+  const auto head = std::to_integer<unsigned>(stream[0]);
+  return (head & 3U) == static_cast<unsigned>(StreamKind::lattice) &&
+         (head >> 4U & 3U) == static_cast<unsigned>(LatticeKind::ordered);
+}
+
 std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte> out) {
   out[0] = static_cast<std::byte>(StreamKind::raw);
   std::memcpy(out.data() + 1, values.data(), values.size_bytes());

@@ -30,6 +30,9 @@ std::uint32_t encode_exact(const BlockConstants& constants, const std::optional<
                            std::span<const float, 512> values, std::span<std::byte> out,
                            FloatOrder order = FloatOrder::used);
 
+/// Whether a stream that encode_exact wrote is of floats predicted in their own order.
+bool is_ordered(std::span<const std::byte> stream);
+
 /// The values as they are.
 std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte> out);
 

@@ -43,6 +43,27 @@ TEST_F(ResumeKill, Packed) {
   expect_same_bytes(options, 24);
 }
 
+// Whole numbers, and a voxel or two of each block missing.
+class ResumeKillOfMissing : public ResumeTest {
+ protected:
+  ResumeKillOfMissing()
+      : ResumeTest([](const Index3& i) {
+          return (i.x * 7 + i.y * 13 + i.z * 29) % 317 == 0 ? NAN : std::round(200 * ripples(i));
+        }) {}
+};
+
+// Ladders of such blocks are built anew once the background is known: whether that was done before the kill must not
+// change what is decided by ladders.
+TEST_F(ResumeKillOfMissing, PackedNearlyLossless) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 12U << 20U;
+  options.non_finite = NonFinitePolicy::background;
+  options.budget.kind = Budget::Kind::rate;
+  options.budget.rate = 4;
+  expect_same_bytes(options, 16);
+}
+
 TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
   ConversionOptions options = base();
   options.encoding = Encoding::fpn;

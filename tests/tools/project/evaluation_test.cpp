@@ -71,7 +71,14 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   for (const Json& row : all["headline"]) EXPECT_TRUE(row["same_bytes"]) << row;
 
   ASSERT_GE(all["pictures"].size(), 1 + 3 * 2U);  // another seed; methods, rates; ZFP's where its command is installed
-  for (const Json& row : all["pictures"]) EXPECT_EQ(row["flip_mean"] == 0, row["lossless"] && !row["rate"].is_null());
+  for (const Json& row : all["pictures"]) {
+    const bool same_seed = !row["rate"].is_null();
+    if (row["lossless"] && same_seed) {
+      EXPECT_EQ(row["flip_mean"], 0) << row;
+    } else if (row["method"] != "packed") {  // whose error may lie far below what 8 bits show
+      EXPECT_GT(row["flip_mean"], 0) << row;
+    }
+  }
 
   const std::string text = report();
   for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## Few bytes",
