@@ -5,6 +5,7 @@
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define WEIR_SIMD __attribute__((target_clones("avx512f", "avx2", "default")))
+#define WEIR_SIMD_PATHS  // for functions that are written once for each width
 #else
 // Sanitizers start too late for the resolvers, and clang 14 clones no functions in namespaces.
 #define WEIR_SIMD
@@ -18,6 +19,7 @@ namespace weir {
 // scalars. Elementwise + - * / and comparisons mean what they mean for the elements.
 using Floats16 = float __attribute__((vector_size(64)));
 using Floats8 = float __attribute__((vector_size(32)));
+using Ints16 = std::int32_t __attribute__((vector_size(64)));
 using Ints8 = std::int32_t __attribute__((vector_size(32)));
 using Doubles8 = double __attribute__((vector_size(64)));
 

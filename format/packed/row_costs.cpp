@@ -7,38 +7,71 @@
 namespace weir {
 namespace {
 
-constexpr unsigned kStride = MagnitudeRows::kStride;
 constexpr auto kFirstEscape = static_cast<std::int32_t>(kEscape);
 constexpr std::int32_t kNoCost = kPackedBands * kPackedLevels * kPackedSymbols;
 
-struct LaneSums {
-  std::int32_t symbols[8];
-  std::int32_t raw[8];
-  std::int32_t zero[8];  // minus the magnitudes that are not
+struct Sums {
+  std::int32_t symbols = 0;
+  std::int32_t raw = 0;
+  std::int32_t nonzero = 0;
 };
 
-// floor(log2(v)) of 1 to 2^24.
-[[gnu::always_inline]] inline void log2_of(const Ints8& v, Ints8& log2) {
-  const Floats8 f = __builtin_convertvector(v, Floats8);
-  __builtin_memcpy(&log2, &f, sizeof log2);
-  log2 = (log2 >> 23) - 127;
+// Lanes of one row, or of two that follow each other. Each path has the width that its instructions have: compilers
+// take wider lanes apart.
+struct OneRow {
+  using Ints = Ints8;
+  using Floats = Floats8;
+};
+struct TwoRows {
+  using Ints = Ints16;
+  using Floats = Floats16;
+};
+
+// A difference shifted by 31 has all bits where it is negative; comparisons of that many lanes are slow.
+
+// Those of a float: 2^exponent * (1 + mantissa / 2^23).
+template <typename Lanes>
+[[gnu::always_inline]] inline void split(const typename Lanes::Ints& v, typename Lanes::Ints& exponent,
+                                         typename Lanes::Ints& mantissa) {
+  const auto f = __builtin_convertvector(v, typename Lanes::Floats);
+  typename Lanes::Ints bits;
+  __builtin_memcpy(&bits, &f, sizeof bits);
+  exponent = (bits >> 23) - 127;
+  mantissa = bits & 0x7FFFFF;
 }
 
-// BlockScan::level of sums of neighbours: floor(3 log2(1 + 2 t / 3)), at most the last.
-[[gnu::always_inline]] inline void level_of(const Ints8& t, Ints8& level) {
-  const Floats8 u = __builtin_convertvector(3 + 2 * t, Floats8) / 3.0F;
-  Ints8 bits;
-  __builtin_memcpy(&bits, &u, sizeof bits);
-  const Ints8 mantissa = bits & 0x7FFFFF;
-  constexpr std::int32_t kThird = 0x214518;      // 2^(1/3)
-  constexpr std::int32_t kTwoThirds = 0x4B2FF5;  // 2^(2/3)
-  level = 3 * ((bits >> 23) - 127) - (mantissa >= kThird) - (mantissa >= kTwoThirds);
+// BlockScan::level of sums of neighbours: floor(3 log2(1 + 2 t / 3)), at most the last; of v = 3 + 2 t its thresholds
+// are 3 * 2^(n / 3).
+template <typename Lanes>
+[[gnu::always_inline]] inline void level_of(const typename Lanes::Ints& t, typename Lanes::Ints& level) {
+  typename Lanes::Ints exponent;
+  typename Lanes::Ints mantissa;
+  split<Lanes>(3 + 2 * t, exponent, mantissa);
+  constexpr std::int32_t kTwoThirds = 0x1863F8;  // of 1.5 * 2^(2/3) / 2
+  constexpr std::int32_t kWhole = 0x400000;      // of 1.5
+  constexpr std::int32_t kThird = 0x71E7A4;      // of 1.5 * 2^(1/3)
+  level =
+      3 * exponent - 2 + ((mantissa - kTwoThirds) >> 31) + ((mantissa - kWhole) >> 31) + ((mantissa - kThird) >> 31);
   constexpr auto kLast = static_cast<std::int32_t>(kPackedLevels - 1);
-  level = level < kLast ? level : kLast - Ints8{};
+  const typename Lanes::Ints none{};
+  level = level < kLast ? level : none + kLast;
 }
 
-[[gnu::always_inline]] inline void load_row(const std::int32_t* at, Ints8& row) {
-  __builtin_memcpy(&row, at, sizeof row);
+// extra_bits() of sums of neighbours: floor(log2(t / 18)) of more than 36, at most 16.
+template <typename Lanes>
+[[gnu::always_inline]] inline void extra_of(const typename Lanes::Ints& t, typename Lanes::Ints& extra) {
+  typename Lanes::Ints exponent;
+  typename Lanes::Ints mantissa;
+  split<Lanes>(t, exponent, mantissa);
+  extra = exponent - 4 + ((mantissa - 0x100000) >> 31);  // 18 is 1.125 * 2^4
+  const typename Lanes::Ints none{};
+  extra = extra < 16 ? extra : none + 16;
+  extra &= (36 - t) >> 31;
+}
+
+template <typename Ints>
+[[gnu::always_inline]] inline void load_lanes(const std::int32_t* at, Ints& lanes) {
+  __builtin_memcpy(&lanes, at, sizeof lanes);
 }
 
 // Bit i set: row i has one that is not zero, or its neighbours have.
@@ -48,57 +81,95 @@ std::uint64_t busy_rows(std::uint64_t live) {
 }
 
 // All places but the first four, and only those below `limit`.
-WEIR_SIMD void add_rows(const RowCosts::Tables& tables, const std::int32_t* padded, std::uint64_t busy,
-                        std::int32_t limit, LaneSums& sums) {
-  const Ints8 none{};
-  Ints8 symbols{};
-  Ints8 raw{};
-  Ints8 zero{};
-  for (unsigned row = 0; row < 64; ++row) {
-    if (tables.first_place[row] >= limit) continue;
-    Ints8 place;
-    load_row(tables.place + 8 * row, place);
-    const Ints8 coded = place < limit;  // all bits where it is
-    if ((busy >> row & 1U) == 0) {
-      Ints8 cost;
-      load_row(tables.zero_cost + 8 * row, cost);
+template <typename Lanes>
+[[gnu::always_inline]] inline void add_lanes(const RowCosts::Tables& tables, const std::int32_t* padded,
+                                             std::uint64_t busy, std::int32_t limit, Sums& sums) {
+  using Ints = typename Lanes::Ints;
+  constexpr unsigned kLanes = sizeof(Ints) / sizeof(std::int32_t);
+  constexpr unsigned kRows = kLanes / 8;
+  const Ints none{};
+  Ints not_first{};
+  Ints second_row{};
+  for (unsigned l = 0; l < kLanes; ++l) {
+    not_first[l] = l % 8 == 0 ? 0 : -1;
+    second_row[l] = l < 8 ? 0 : -1;
+  }
+  Ints symbols{};
+  Ints raw{};
+  Ints nonzero{};
+  std::int32_t looked_up = 0;
+  for (unsigned row = 0; row < 64; row += kRows) {
+    if (tables.first_place[row] >= limit && tables.first_place[row + kRows - 1] >= limit) continue;
+    Ints place;
+    load_lanes(tables.place + 8 * row, place);
+    const Ints coded = (place - limit) >> 31;  // all bits where it is
+    if ((busy >> row & ((1U << kRows) - 1U)) == 0) {
+      Ints cost;
+      load_lanes(tables.zero_cost + 8 * row, cost);
       symbols += cost & coded;
       continue;
     }
-    const std::int32_t* at = padded + kStride * (row + 8) + 8;
-    Ints8 m, up, left{}, back, weight, first_cost;
-    load_row(at, m);
-    load_row(at - 8 * kStride, up);
-    if (row % 8 != 0) load_row(at - kStride, left);  // of j = 0 the row before is of another i
-    load_row(at - 1, back);
-    load_row(tables.weight + 8 * row, weight);
-    load_row(tables.first_cost + 8 * row, first_cost);
-    const Ints8 t = (up + left + back) * weight;
-    Ints8 extra;
-    log2_of(t > 36 ? t / 18 : none + 1, extra);
-    extra = extra > 16 ? none + 16 : extra;
-    const Ints8 high = m >> extra;
-    const Ints8 escaped = high >= kFirstEscape;
-    const Ints8 symbol = escaped ? none + kFirstEscape : high;
-    Ints8 level;
-    level_of(t, level);
-    const Ints8 entry = coded ? first_cost + 16 * level + symbol : none + kNoCost;
-    alignas(32) std::int32_t entries[8];
+    const std::int32_t* at = padded + 8 * (row + 8);
+    Ints m, up, left, back, weight, first_cost;
+    load_lanes(at, m);
+    load_lanes(at - 64, up);
+    load_lanes(at - 8, left);
+    if (row % 8 == 0) left &= second_row;  // of j = 0 the row before is of another i
+    load_lanes(at - 1, back);
+    back &= not_first;
+    load_lanes(tables.weight + 8 * row, weight);
+    load_lanes(tables.first_cost + 8 * row, first_cost);
+    const Ints t = (up + left + back) * weight;
+    Ints extra;
+    extra_of<Lanes>(t, extra);
+    const Ints high = m >> extra;
+    const Ints escaped = (kFirstEscape - 1 - high) >> 31;
+    const Ints symbol = high < kFirstEscape ? high : none + kFirstEscape;
+    Ints level;
+    level_of<Lanes>(t, level);
+    const Ints entry = ((first_cost + 16 * level + symbol) & coded) | (kNoCost & ~coded);
+    alignas(64) std::int32_t entries[kLanes];
     __builtin_memcpy(entries, &entry, sizeof entries);
-    Ints8 cost;
-    for (int l = 0; l < 8; ++l) cost[l] = tables.cost[entries[l]];
-    symbols += cost;
-    Ints8 escape;
-    log2_of(escaped ? high - (kFirstEscape - 1) : none + 1, escape);
+    asm volatile("" : "+m"(entries));  // else each lane is taken out of its register, which takes longer
+    for (const std::int32_t e : entries) looked_up += tables.cost[e];
+    Ints escape;
+    Ints unused;
+    split<Lanes>(1 + ((high - kFirstEscape) & escaped), escape, unused);
     raw += (extra + ((escape + 5) & escaped)) & coded;
-    zero += (m != 0) & coded;
+    nonzero -= (-m >> 31) & coded;
   }
-  for (int l = 0; l < 8; ++l) {
-    sums.symbols[l] = symbols[l];
-    sums.raw[l] = raw[l];
-    sums.zero[l] = zero[l];
+  for (unsigned l = 0; l < kLanes; ++l) {
+    sums.symbols += symbols[l];
+    sums.raw += raw[l];
+    sums.nonzero += nonzero[l];
   }
+  sums.symbols += looked_up;
 }
+
+#ifdef WEIR_SIMD_PATHS
+__attribute__((target("avx512f"))) void add_rows_512(const RowCosts::Tables& tables, const std::int32_t* padded,
+                                                     std::uint64_t busy, std::int32_t limit, Sums& sums) {
+  add_lanes<TwoRows>(tables, padded, busy, limit, sums);
+}
+
+__attribute__((target_clones("avx2", "default"))) void add_rows_256(const RowCosts::Tables& tables,
+                                                                    const std::int32_t* padded, std::uint64_t busy,
+                                                                    std::int32_t limit, Sums& sums) {
+  add_lanes<OneRow>(tables, padded, busy, limit, sums);
+}
+
+const bool has_512 = __builtin_cpu_supports("avx512f") != 0;
+
+void add_rows(const RowCosts::Tables& tables, const std::int32_t* padded, std::uint64_t busy, std::int32_t limit,
+              Sums& sums) {
+  (has_512 ? add_rows_512 : add_rows_256)(tables, padded, busy, limit, sums);
+}
+#else
+void add_rows(const RowCosts::Tables& tables, const std::int32_t* padded, std::uint64_t busy, std::int32_t limit,
+              Sums& sums) {
+  add_lanes<OneRow>(tables, padded, busy, limit, sums);
+}
+#endif
 
 }  // namespace
 
@@ -129,13 +200,11 @@ RowCosts::RowCosts(const SymbolCosts& costs, Contexts contexts) {
 RowCosts::Sum RowCosts::of(const MagnitudeRows& magnitudes, unsigned end) const {
   const BlockScan& scan = kBlockScan;
   Sum sum;
-  LaneSums sums;
+  Sums sums;
   add_rows(tables_, magnitudes.padded, busy_rows(magnitudes.live), static_cast<std::int32_t>(kEndUnit * end), sums);
-  for (int l = 0; l < 8; ++l) {
-    sum.symbols += static_cast<std::uint32_t>(sums.symbols[l]);
-    sum.raw += static_cast<std::uint32_t>(sums.raw[l]);
-    sum.nonzero -= static_cast<std::uint32_t>(sums.zero[l]);
-  }
+  sum.symbols += static_cast<std::uint32_t>(sums.symbols);
+  sum.raw += static_cast<std::uint32_t>(sums.raw);
+  sum.nonzero += static_cast<std::uint32_t>(sums.nonzero);
   std::uint32_t before = 0;
   for (unsigned place = 1; place < 4; ++place) {
     const unsigned index = scan.index[place];

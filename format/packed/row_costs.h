@@ -1,21 +1,21 @@
-// What the coded values of a block cost, for many steps of the quantiser in turn: eight coefficients of a row at once.
+// What the coded values of a block cost, for many steps of the quantiser in turn: a row of eight, or two, at once.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "format/packed/coefficient_encoder.h"
 
 namespace weir {
 
-/// Rows of eight magnitudes by index, each behind eight lanes of which the last is zero, after eight rows of zeros.
+/// Rows of eight magnitudes by index, after eight rows of zeros.
 struct MagnitudeRows {
-  static constexpr unsigned kStride = 16;
-  alignas(64) std::int32_t padded[kStride * 72] = {};
+  alignas(64) std::int32_t padded[8 * 72] = {};
   std::uint64_t live = ~std::uint64_t{0};  ///< bit i not set: row i is zero
 
-  std::int32_t* row(unsigned i) { return padded + kStride * (i + 8) + 8; }
-  const std::int32_t* row(unsigned i) const { return padded + kStride * (i + 8) + 8; }
+  std::int32_t* row(unsigned i) { return padded + std::size_t{8} * (i + 8); }
+  const std::int32_t* row(unsigned i) const { return padded + std::size_t{8} * (i + 8); }
   std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(row(index / 8)[index % 8]); }
 };
 
