@@ -148,11 +148,23 @@ TEST_F(Mpi, AnyNumberOfProcessesConvertsToTheSameBytes) {
   expect_same(sample("cloud", "1x1x1", "uint8"), {"--lossless"});
 }
 
+TEST_F(Mpi, PackedConversionsGiveTheSameBytes) {
+  const std::string turbulence = sample("turbulence", "167x143x119", "float32");
+  expect_same(turbulence, {"--encoding", "packed", "--rate", "20"});
+  expect_same(turbulence, {"--encoding", "packed", "--psnr", "135"});
+  expect_same(turbulence, {"--encoding", "packed", "--max-error", "0.001"});
+  // Blocks with missing values are read once more.
+  const std::string missing = sample("some-nan", "167x143x119", "float32");
+  expect_same(missing, {"--encoding", "packed", "--nonfinite", "background", "--rate", "4"});
+  expect_pushed(missing, {"167", "143", "119", "10"});
+}
+
 TEST_F(Mpi, ConversionWithAScene_GivesTheSameBytes) {
   const std::string cloud = sample("cloud", "150x140x140", "float32");
   write_file(directory_ / "scene.toml",
              "[volume]\nrange = [0.0, 1.0]\nopacity = [[0.0, 0.0], [0.4, 0.0], [1.0, 1.0]]\n");
   expect_same(cloud, {"--rate", "30", "--scene", "scene.toml"});
+  expect_same(cloud, {"--encoding", "packed", "--rate", "60", "--scene", "scene.toml"});
 }
 
 TEST_F(Mpi, RealVolumesConvertAndPushToTheSameBytes) {

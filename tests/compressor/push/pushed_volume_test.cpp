@@ -47,7 +47,7 @@ TEST_P(PushedHardCase, PushedFileEqualsTheConvertedFile) {
   const std::int64_t planes = volume.info().extent.z;
   std::uint32_t seed = 0;
   for (const NonFinitePolicy policy : test::policies_of(volume)) {
-    for (const Encoding encoding : {Encoding::float32, Encoding::automatic}) {
+    for (const Encoding encoding : {Encoding::float32, Encoding::automatic, Encoding::packed}) {
       for (const Budget::Kind kind : {Budget::Kind::automatic, Budget::Kind::lossless}) {
         ConversionOptions options;
         options.non_finite = policy;

@@ -94,6 +94,7 @@ TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
 }
 
 constexpr Budget kRate8{Budget::Kind::rate, 8, 0};
+constexpr Budget kRate20{Budget::Kind::rate, 20, 0};
 constexpr Budget kRate3{Budget::Kind::rate, 3, 0};
 constexpr Budget kOdd{Budget::Kind::size, 8, 1234567};
 constexpr Budget kLossless{Budget::Kind::lossless, 8, 0};
@@ -187,7 +188,39 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   FillMode::mean,
                                                   NonFinitePolicy::error,
                                                   "59c78a68799b87b1e28417441d6ac194",
-                                                  Encoding::fp4}),
+                                                  Encoding::fp4},
+                                           Golden{"cloud",
+                                                  {300, 200, 150},
+                                                  kRate20,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "77d8ae2c37ee86403577e0a295d44e53",
+                                                  Encoding::packed},
+                                           Golden{"turbulence",
+                                                  {131, 140, 135},
+                                                  kRate20,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "878b6e48ee4d4d0b4c6351601db45f4a",
+                                                  Encoding::packed},
+                                           Golden{"some-nan",
+                                                  {131, 140, 135},
+                                                  kRate3,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::background,
+                                                  "b4e8ae3f46ed8312592804ac52985c74",
+                                                  Encoding::packed},
+                                           Golden{"offset",
+                                                  {100, 101, 102},
+                                                  kLossless,
+                                                  Metric::sse,
+                                                  FillMode::mean,
+                                                  NonFinitePolicy::error,
+                                                  "c90cdc10ecbf330671b10f66a99295dc",
+                                                  Encoding::packed}),
                          name_of);
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/hard_cases.h"
 #include "tests/compressor/support/memory_volume.h"
+#include "tests/compressor/support/packed_files.h"
 #include "tests/compressor/support/random_volumes.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/sanitized.h"
@@ -22,78 +23,17 @@ namespace weir::packed_conversion_test {
 namespace {
 
 using test::Converted;
+using test::decoded;
+using test::expect_certificate;
+using test::kPackedDomain;
 using test::MemoryVolume;
-
-constexpr Box kDomain{{-9, 3, 120}, {61, 70, 181}};
-
-float smooth(const Index3& i) {
-  const auto x = static_cast<double>(i.x);
-  const auto y = static_cast<double>(i.y);
-  const auto z = static_cast<double>(i.z);
-  return static_cast<float>(std::sin(x * 0.11) * std::cos(y * 0.07 + z * 0.05) + 0.3 * std::sin(z * 0.21) + 2);
-}
-
-ConversionOptions packed(Budget::Kind kind, double value) {
-  ConversionOptions options;
-  options.encoding = Encoding::packed;
-  options.budget.kind = kind;
-  if (kind == Budget::Kind::size) {
-    options.budget.bytes = static_cast<std::uint64_t>(value);
-  } else if (kind == Budget::Kind::rate) {
-    options.budget.rate = value;
-  } else {
-    options.budget.target = value;
-  }
-  return options;
-}
-
-std::vector<float> decoded(const Converted& converted, const Box& domain) {
-  std::vector<float> values(static_cast<std::size_t>(domain.voxels()));
-  read_box(converted.grid(), domain, values);
-  return values;
-}
-
-struct Loss {
-  double squared = 0;
-  double max_abs = 0;
-  bool exact = true;
-  std::uint64_t finite = 0;
-};
-
-Loss loss_of(const MemoryVolume& volume, const Converted& converted, float background, NonFinitePolicy policy) {
-  const Box domain = volume.info().domain();
-  const std::vector<float> values = decoded(converted, domain);
-  Loss loss;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    float source = volume.values()[i];
-    if (std::isfinite(source)) {
-      const double error = std::fabs(static_cast<double>(source) - static_cast<double>(values[i]));
-      loss.squared += error * error;
-      loss.max_abs = std::max(loss.max_abs, error);
-      ++loss.finite;
-    } else if (policy == NonFinitePolicy::background) {
-      source = background;
-    }
-    loss.exact = loss.exact && test::bits_of(source) == test::bits_of(values[i]);
-  }
-  return loss;
-}
-
-void expect_certificate(const MemoryVolume& volume, const Converted& converted, const ConversionOptions& options,
-                        const std::string& what) {
-  const Loss loss =
-      loss_of(volume, converted, static_cast<float>(converted.sidecar.background.value), options.non_finite);
-  const Sidecar::CertifiedError& error = converted.sidecar.error;
-  const double mse = loss.finite == 0 ? 0 : loss.squared / static_cast<double>(loss.finite);
-  EXPECT_NEAR(error.mse, mse, mse * 1e-9) << what;
-  EXPECT_EQ(error.max_abs, loss.max_abs) << what;
-  EXPECT_EQ(error.lossless, loss.exact) << what;
-}
+using test::packed;
+using test::smooth;
 
 class PackedSize : public testing::TestWithParam<Preview> {};
 
 TEST_P(PackedSize, EveryAskedSizeIsWrittenAndMoreBytesNeverLoseMore) {
-  MemoryVolume volume(kDomain, smooth);
+  MemoryVolume volume(kPackedDomain, smooth);
   ConversionOptions options = packed(Budget::Kind::size, 0);
   options.preview = GetParam();
   const std::uint64_t least = test::minimum_size(volume, options);
@@ -111,9 +51,9 @@ TEST_P(PackedSize, EveryAskedSizeIsWrittenAndMoreBytesNeverLoseMore) {
     // What is chosen is chosen by coefficients rounded to float: their errors are the values' to parts of a thousand.
     EXPECT_LE(converted.sidecar.error.mse, last * 1.001) << bytes;
     last = converted.sidecar.error.mse;
-    EXPECT_EQ(converted.grid().index_bbox(), kDomain);
+    EXPECT_EQ(converted.grid().index_bbox(), kPackedDomain);
   }
-  options.budget.bytes = most + static_cast<std::uint64_t>(kDomain.voxels()) * 8;
+  options.budget.bytes = most + static_cast<std::uint64_t>(kPackedDomain.voxels()) * 8;
   EXPECT_TRUE(test::convert(volume, options).sidecar.error.lossless);
 }
 
@@ -121,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Previews, PackedSize, testing::Values(Preview::on, Prev
                          [](const auto& p) { return p.param == Preview::on ? "on" : "off"; });
 
 TEST(PackedConversion, BytesDoNotDependOnThreadsMemoryOrAccess) {
-  MemoryVolume volume(kDomain, smooth);
+  MemoryVolume volume(kPackedDomain, smooth);
   ConversionOptions options = packed(Budget::Kind::rate, 20);
   const Converted first = test::convert(volume, options);
   for (const std::size_t threads : {1U, 2U, 5U}) {
@@ -136,7 +76,7 @@ TEST(PackedConversion, BytesDoNotDependOnThreadsMemoryOrAccess) {
 }
 
 TEST(PackedConversion, KeepsEveryVoxelWithinTheLargestError) {
-  MemoryVolume volume(kDomain, smooth);
+  MemoryVolume volume(kPackedDomain, smooth);
   std::uint64_t last = 0;
   for (const double bound : {0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     const ConversionOptions options = packed(Budget::Kind::max_error, bound);
@@ -149,7 +89,7 @@ TEST(PackedConversion, KeepsEveryVoxelWithinTheLargestError) {
 }
 
 TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
-  MemoryVolume volume(kDomain, smooth);
+  MemoryVolume volume(kPackedDomain, smooth);
   for (const double psnr : {30.0, 50.0, 70.0, 90.0}) {
     const ConversionOptions options = packed(Budget::Kind::psnr, psnr);
     const Converted converted = test::convert(volume, options);
@@ -160,19 +100,10 @@ TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
   }
 }
 
-// Far below what selection's sums resolve.
-TEST(PackedConversion, ReachesAPsnrNextToLossless) {
-  MemoryVolume volume(kDomain, smooth);
-  for (const double psnr : {140.0, 200.0, 260.0}) {
-    const Converted converted = test::convert(volume, packed(Budget::Kind::psnr, psnr));
-    EXPECT_TRUE(converted.sidecar.error.lossless || converted.sidecar.error.psnr_db.value_or(0) >= psnr) << psnr;
-  }
-}
-
 // Means a million apart have codes of many bits, whose products round.
 TEST(PackedConversion, KeepsTheLargestErrorWhereMeansLieFarApart) {
   std::uint32_t state = 7;
-  MemoryVolume volume(kDomain, [&](const Index3& i) {
+  MemoryVolume volume(kPackedDomain, [&](const Index3& i) {
     state = state * 1664525U + 1013904223U;
     const float noise = std::ldexp(static_cast<float>(state >> 8U), -24);
     const bool low = i.x < 0 && i.y < 10;
@@ -186,7 +117,7 @@ TEST(PackedConversion, KeepsTheLargestErrorWhereMeansLieFarApart) {
 }
 
 TEST(PackedConversion, KeepsTheLargestErrorOfIntegers) {
-  MemoryVolume volume(kDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
+  MemoryVolume volume(kPackedDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
   volume.info().type = ScalarType::int16;
   for (const double bound : {0.4, 1.0, 3.0, 40.0}) {
     const ConversionOptions options = packed(Budget::Kind::max_error, bound);
@@ -251,127 +182,20 @@ TEST(PackedConversion, TheRangeHasNoNegativeZero) {
 }
 
 TEST(PackedConversion, LosslessOfIntegersIsShorterThanTheirBytes) {
-  MemoryVolume volume(kDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
+  MemoryVolume volume(kPackedDomain, [](const Index3& i) { return std::round(100 * smooth(i)); });
   volume.info().type = ScalarType::uint16;
   const ConversionOptions options = packed(Budget::Kind::lossless, 0);
   const Converted converted = test::convert(volume, options);
   EXPECT_TRUE(converted.sidecar.error.lossless);
   expect_certificate(volume, converted, options, "integers");
-  EXPECT_LT(converted.file.size(), static_cast<std::uint64_t>(kDomain.voxels()) * 2);
+  EXPECT_LT(converted.file.size(), static_cast<std::uint64_t>(kPackedDomain.voxels()) * 2);
   ASSERT_TRUE(converted.sidecar.packed.has_value());
   EXPECT_GT(converted.sidecar.packed->blocks[3], 0U);
 }
 
-TEST(PackedConversion, KeepsEveryBitOfFloatsWhereTheBudgetHasRoom) {
-  MemoryVolume volume(kDomain, smooth);
-  const Converted lossless = test::convert(volume, packed(Budget::Kind::lossless, 0));
-  const ConversionOptions options = packed(Budget::Kind::size, static_cast<double>(lossless.file.size()));
-  EXPECT_TRUE(test::convert(volume, options).sidecar.error.lossless);
-}
-
-TEST(PackedConversion, IsNearlyLosslessWhereTransformsEnd) {
-  MemoryVolume volume(kDomain, smooth);
-  const Converted lossless = test::convert(volume, packed(Budget::Kind::lossless, 0));
-  const ConversionOptions options = packed(Budget::Kind::size, 0.9 * static_cast<double>(lossless.file.size()));
-  const Converted converted = test::convert(volume, options);
-  EXPECT_GT(converted.sidecar.error.psnr_db, 145);
-  const auto& blocks = converted.sidecar.packed->blocks;
-  EXPECT_GT(blocks[1 + static_cast<std::size_t>(PackedKind::lattice)],
-            blocks[1 + static_cast<std::size_t>(PackedKind::transform)]);
-  expect_certificate(volume, converted, options, "nearly lossless");
-}
-
-TEST(PackedConversion, BlocksOfALargerVolumeAreNearlyLosslessToo) {
-  // More leaves than the survey builds near rungs for.
-  const Box domain{{0, 0, 0}, {168, 144, 120}};
-  MemoryVolume volume(domain, smooth);
-  ASSERT_GT(domain.voxels() / kLeafVoxels, 2 * 2048);
-  const ConversionOptions options = packed(Budget::Kind::psnr, 140);
-  const Converted converted = test::convert(volume, options);
-  EXPECT_GE(converted.sidecar.error.psnr_db, 140);
-  EXPECT_LT(converted.sidecar.error.psnr_db, 142);
-  EXPECT_LT(converted.file.size(), test::convert(volume, packed(Budget::Kind::lossless, 0)).file.size());
-  expect_certificate(volume, converted, options, "140 dB");
-  ConversionOptions other = options;
-  other.threads = 1;
-  EXPECT_TRUE(test::convert(volume, other).file == converted.file);
-}
-
-// Waves of many lengths: each further bit of accuracy costs bytes.
-float rough(const Index3& i) {
-  const auto x = static_cast<double>(i.x);
-  const auto y = static_cast<double>(i.y);
-  const auto z = static_cast<double>(i.z);
-  double sum = 0;
-  for (int octave = 0; octave < 5; ++octave) {
-    const double k = 0.13 * std::exp2(octave);
-    sum += std::sin(k * x + octave) * std::cos(k * 1.1 * y - z * k * 0.7) / std::exp2(octave);
-  }
-  return static_cast<float>(sum + 2.5);
-}
-
-float with_missing(const Index3& i) {
-  return (i.x * 7 + i.y * 13 + i.z * 29) % 317 == 0 ? std::numeric_limits<float>::quiet_NaN() : rough(i);
-}
-
-float gradient(const Index3& i) { return static_cast<float>(i.x * 3 + i.y * 5 + i.z * 7) / 1000.0F; }
-
-struct NearVolume {
-  const char* name;
-  float (*value)(const Index3&);
-};
-
-class PackedPsnr : public testing::TestWithParam<NearVolume> {};
-
-// Of more leaves than the survey builds near rungs for.
-TEST_P(PackedPsnr, FilesGrowWithItAndAreNeverLongerThanLossless) {
-  MemoryVolume volume({{0, 0, 0}, {168, 144, 120}}, GetParam().value);
-  ConversionOptions options = packed(Budget::Kind::lossless, 0);
-  options.threads = 2;
-  options.non_finite = NonFinitePolicy::background;
-  const std::uint64_t lossless = test::convert(volume, options).file.size();
-  options.budget.kind = Budget::Kind::psnr;
-  std::uint64_t last = 0;
-  for (const double psnr : {110.0, 120.0, 126.0, 130.0, 134.0, 138.0, 142.0, 150.0, 180.0, 220.0}) {
-    options.budget.target = psnr;
-    const Converted converted = test::convert(volume, options);
-    const std::uint64_t bytes = converted.file.size();
-    EXPECT_GE(converted.sidecar.error.psnr_db.value_or(1e9), psnr);
-    EXPECT_GE(bytes, last) << psnr;
-    EXPECT_LE(bytes, lossless + lossless / 500) << psnr;
-    last = bytes;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Volumes, PackedPsnr,
-                         testing::Values(NearVolume{"rough", rough}, NearVolume{"gradient", gradient},
-                                         NearVolume{"missing", with_missing}),
-                         [](const auto& p) { return p.param.name; });
-
-TEST(PackedConversion, ReachesAPsnrFarAbove160WithFewerBytesThanLossless) {
-  MemoryVolume volume(kDomain, [](const Index3& i) { return i.x < 20 ? 1e4F * rough(i) : rough(i); });
-  const std::uint64_t lossless = test::convert(volume, packed(Budget::Kind::lossless, 0)).file.size();
-  const Converted converted = test::convert(volume, packed(Budget::Kind::psnr, 190));
-  EXPECT_GE(converted.sidecar.error.psnr_db.value_or(0), 190);
-  EXPECT_LT(converted.sidecar.error.psnr_db.value_or(1e9), 192);
-  EXPECT_LT(converted.file.size(), lossless / 10 * 9);
-}
-
-// The background is known after the survey only.
-TEST(PackedConversion, BlocksWithSomeMissingVoxelsAreNearlyLosslessToo) {
-  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, with_missing);
-  ConversionOptions options = packed(Budget::Kind::psnr, 135);
-  options.non_finite = NonFinitePolicy::background;
-  const Converted converted = test::convert(volume, options);
-  EXPECT_GE(converted.sidecar.error.psnr_db.value_or(0), 135);
-  EXPECT_GT(converted.sidecar.packed->blocks[1 + static_cast<std::size_t>(PackedKind::lattice)], 300U);
-  EXPECT_EQ(converted.sidecar.packed->blocks[1 + static_cast<std::size_t>(PackedKind::raw)], 0U);
-  expect_certificate(volume, converted, options, "135 dB");
-}
-
 TEST(PackedConversion, LosslessOfNoiseIsLittleMoreThanRaw) {
   std::uint32_t state = 1;
-  MemoryVolume volume(kDomain, [&](const Index3&) {
+  MemoryVolume volume(kPackedDomain, [&](const Index3&) {
     state = state * 1664525U + 1013904223U;
     return std::ldexp(static_cast<float>(state >> 8U), static_cast<int>(state & 15U) - 24);
   });
@@ -380,27 +204,27 @@ TEST(PackedConversion, LosslessOfNoiseIsLittleMoreThanRaw) {
   const Converted converted = test::convert(volume, options);
   EXPECT_TRUE(converted.sidecar.error.lossless);
   expect_certificate(volume, converted, options, "noise");
-  const NodeLattice blocks = make_lattice(kDomain, kLeafDim);
+  const NodeLattice blocks = make_lattice(kPackedDomain, kLeafDim);
   const auto raw = static_cast<double>(blocks.size() * 2048);
   EXPECT_LT(static_cast<double>(converted.file.size()), raw * 1.01 + 20000);
 }
 
 TEST(PackedConversion, BlocksWithoutNegativeValuesDecodeToNone) {
-  MemoryVolume volume(kDomain, [](const Index3& i) { return std::max(0.0F, smooth(i) - 2); });
+  MemoryVolume volume(kPackedDomain, [](const Index3& i) { return std::max(0.0F, smooth(i) - 2); });
   const Converted converted = test::convert(volume, packed(Budget::Kind::rate, 40));
-  const std::vector<float> values = decoded(converted, kDomain);
+  const std::vector<float> values = decoded(converted, kPackedDomain);
   EXPECT_GE(*std::min_element(values.begin(), values.end()), 0.0F);
 }
 
 TEST(PackedConversion, SaysWhatOtherReadersSee) {
-  MemoryVolume volume(kDomain, smooth);
+  MemoryVolume volume(kPackedDomain, smooth);
   ConversionOptions options = packed(Budget::Kind::lossless, 0);
   options.preview = Preview::on;
   const Converted on = test::convert(volume, options);
   ASSERT_TRUE(on.sidecar.packed.has_value());
   EXPECT_TRUE(on.sidecar.packed->preview);
   // All regions have streams: others see each block's mean.
-  const NodeLattice blocks = make_lattice(kDomain, kLeafDim);
+  const NodeLattice blocks = make_lattice(kPackedDomain, kLeafDim);
   double squares = 0;
   for (std::int64_t b = 0; b < blocks.size(); ++b) {
     const std::vector<float> values = volume.in(blocks.voxels(blocks.position(b)));
@@ -409,7 +233,7 @@ TEST(PackedConversion, SaysWhatOtherReadersSee) {
     const double mean = sum / static_cast<double>(values.size());
     for (const float v : values) squares += (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean);
   }
-  const double mse = squares / static_cast<double>(kDomain.voxels());
+  const double mse = squares / static_cast<double>(kPackedDomain.voxels());
   EXPECT_NEAR(on.sidecar.packed->error_preview.mse, mse, mse * 1e-6);
 }
 

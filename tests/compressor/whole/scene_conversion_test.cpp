@@ -15,6 +15,7 @@
 #include "compressor/leaf/certificate.h"
 #include "compressor/survey/visibility.h"
 #include "format/base/error.h"
+#include "format/nanovdb/read_box.h"
 #include "format/sidecar/scene_opacity.h"
 #include "tests/compressor/support/converted.h"
 
@@ -72,6 +73,8 @@ Seen seen_by_hand(const MemoryVolume& volume, const NvdbGrid& grid, const Scene&
   const Visibility visibility(scene, "s.toml", kDomain, Visibility::Weighing::alike);
   const NodeLattice leaves = make_lattice(kDomain, kLeafDim);
   Seen seen;
+  std::vector<float> values(static_cast<std::size_t>(kDomain.voxels()));
+  read_box(grid, kDomain, values);
   for (std::int64_t n = 0; n < leaves.size(); ++n) {
     const Box block = leaves.voxels(leaves.position(n));
     MinMax reach = kNoBounds;
@@ -82,7 +85,8 @@ Seen seen_by_hand(const MemoryVolume& volume, const NvdbGrid& grid, const Scene&
     if (!visibility.in_region(block) || !visibility.shows(reach)) continue;
     ++seen.blocks;
     for_each_index(block, [&](const Index3& i) {
-      const long double d = static_cast<long double>(volume.at(i)) - static_cast<long double>(grid.value(i));
+      const float decoded = values[static_cast<std::size_t>(linear_index(i - kDomain.lo, kDomain.extent()))];
+      const long double d = static_cast<long double>(volume.at(i)) - static_cast<long double>(decoded);
       ++seen.voxels;
       seen.squared += d * d;
       seen.max_abs = std::max(seen.max_abs, static_cast<double>(std::abs(d)));
@@ -91,15 +95,30 @@ Seen seen_by_hand(const MemoryVolume& volume, const NvdbGrid& grid, const Scene&
   return seen;
 }
 
-class SceneConversion : public testing::TestWithParam<Budget::Kind> {};
+struct SceneCase {
+  Budget::Kind kind;
+  Encoding encoding;
+};
+
+class SceneConversion : public testing::TestWithParam<SceneCase> {
+ protected:
+  static ConversionOptions options(const Scene& scene) {
+    const auto [kind, encoding] = GetParam();
+    const double rate = encoding == Encoding::packed ? 40 : 1.9;
+    const double target = kind == Budget::Kind::psnr ? 50 : kind == Budget::Kind::max_error ? 0.5 : rate;
+    ConversionOptions options = options_for(scene, kind, target);
+    options.encoding = encoding;
+    return options;
+  }
+};
 
 TEST_P(SceneConversion, CertificateCoversTheVisibleVoxels) {
   MemoryVolume source = volume();
-  const double target = GetParam() == Budget::Kind::psnr ? 50 : GetParam() == Budget::Kind::max_error ? 0.5 : 1.9;
+  const Budget::Kind kind = GetParam().kind;
   for (const bool region : {false, true}) {
     Scene scene = surface();
     if (region) scene.volume.region = Box{{0, 0, 0}, {30, 40, 40}};
-    const Converted converted = convert(source, options_for(scene, GetParam(), target));
+    const Converted converted = convert(source, options(scene));
     ASSERT_TRUE(converted.sidecar.visible);
     const Sidecar::Visible& visible = *converted.sidecar.visible;
     const Seen seen = seen_by_hand(source, converted.grid(), scene);
@@ -109,22 +128,21 @@ TEST_P(SceneConversion, CertificateCoversTheVisibleVoxels) {
     EXPECT_EQ(visible.error.max_abs, seen.max_abs);
     EXPECT_NEAR(visible.error.mse, static_cast<double>(seen.squared) / static_cast<double>(seen.voxels),
                 1e-12 * visible.error.mse);
-    EXPECT_EQ(visible.error.lossless, GetParam() == Budget::Kind::lossless);
+    EXPECT_EQ(visible.error.lossless, kind == Budget::Kind::lossless);
     EXPECT_FALSE(converted.sidecar.error.lossless) << "the ground is gone";
-    if (GetParam() == Budget::Kind::psnr) {
+    if (kind == Budget::Kind::psnr) {
       EXPECT_GE(visible.error.psnr_db, 50);
     }
-    if (GetParam() == Budget::Kind::max_error) {
+    if (kind == Budget::Kind::max_error) {
       EXPECT_LE(visible.error.max_abs, 0.5);
     }
   }
 }
 
 TEST_P(SceneConversion, FileIsSmallerThanWithoutTheScene) {
-  if (GetParam() == Budget::Kind::rate) GTEST_SKIP() << "a rate is a size";
+  if (GetParam().kind == Budget::Kind::rate) GTEST_SKIP() << "a rate is a size";
   MemoryVolume source = volume();
-  const double target = GetParam() == Budget::Kind::psnr ? 50 : 0.5;
-  ConversionOptions all = options_for(surface(), GetParam(), target);
+  ConversionOptions all = options(surface());
   const std::uint64_t weighed = convert(source, all).sidecar.file.bytes;
   all.scene.reset();
   EXPECT_LT(weighed, convert(source, all).sidecar.file.bytes);
@@ -132,32 +150,39 @@ TEST_P(SceneConversion, FileIsSmallerThanWithoutTheScene) {
 
 TEST_P(SceneConversion, BytesDependOnNeitherThreadsNorMemory) {
   MemoryVolume source = volume();
-  ConversionOptions options = options_for(surface(), GetParam(), GetParam() == Budget::Kind::psnr ? 50 : 1.9);
-  options.threads = 1;
-  const Converted one = convert(source, options);
-  options.threads = 3;
-  options.memory = std::uint64_t{1} << 30U;
+  ConversionOptions some = options(surface());
+  some.threads = 1;
+  const Converted one = convert(source, some);
+  some.threads = 3;
+  some.memory = std::uint64_t{1} << 30U;
   source.set_access({4, {16, 16, 16}, {0, 0, 0}});
-  EXPECT_EQ(convert(source, options).file, one.file);
+  EXPECT_EQ(convert(source, some).file, one.file);
 }
 
-std::string budget_name(const testing::TestParamInfo<Budget::Kind>& budget) {
-  switch (budget.param) {
+std::string case_name(const testing::TestParamInfo<SceneCase>& info) {
+  const std::string packed = info.param.encoding == Encoding::packed ? "Packed" : "";
+  switch (info.param.kind) {
     case Budget::Kind::rate:
-      return "Rate";
+      return packed + "Rate";
     case Budget::Kind::psnr:
-      return "Psnr";
+      return packed + "Psnr";
     case Budget::Kind::max_error:
-      return "MaxError";
+      return packed + "MaxError";
     default:
-      return "Lossless";
+      return packed + "Lossless";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Budgets, SceneConversion,
-                         testing::Values(Budget::Kind::rate, Budget::Kind::psnr, Budget::Kind::max_error,
-                                         Budget::Kind::lossless),
-                         budget_name);
+                         testing::Values(SceneCase{Budget::Kind::rate, Encoding::automatic},
+                                         SceneCase{Budget::Kind::psnr, Encoding::automatic},
+                                         SceneCase{Budget::Kind::max_error, Encoding::automatic},
+                                         SceneCase{Budget::Kind::lossless, Encoding::automatic},
+                                         SceneCase{Budget::Kind::rate, Encoding::packed},
+                                         SceneCase{Budget::Kind::psnr, Encoding::packed},
+                                         SceneCase{Budget::Kind::max_error, Encoding::packed},
+                                         SceneCase{Budget::Kind::lossless, Encoding::packed}),
+                         case_name);
 
 // Trilinear, as a renderer looks: clamped to the domain.
 double lookup(const std::array<double, 3>& p, const auto& value) {
