@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "format/base/simd.h"
@@ -11,73 +11,90 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kDifferenceLanes = 16;
+constexpr std::size_t kLanes = 8;
+constexpr std::size_t kHalves = 2;  // 16 sums, eight lanes of them at once
 
 struct DifferenceLanes {
-  std::array<double, kDifferenceLanes> squared_error;
-  std::array<double, kDifferenceLanes> max_abs;
-  std::array<float, kDifferenceLanes> min;
-  std::array<float, kDifferenceLanes> max;
-  std::array<std::uint32_t, kDifferenceLanes> nonfinite;
-  std::array<std::uint32_t, kDifferenceLanes> nonfinite_decoded;
-  std::array<std::uint32_t, kDifferenceLanes> different;
-  std::array<std::uint32_t, kDifferenceLanes> nonfinite_different;
+  Doubles8 squared_error{};
+  Doubles8 max_abs{};
+  Floats8 min{};
+  Floats8 max{};
+  Ints8 nonfinite{};
+  Ints8 nonfinite_decoded{};
+  Ints8 different{};
+  Ints8 nonfinite_different{};
 };
 
-// v - v is 0 for a finite v and NaN for every other.
-inline bool is_finite(float v) { return v - v == 0.0F; }
-
-WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes& lanes) {
-  for (std::size_t i = 0; i < kLeafVoxels; i += kDifferenceLanes) {
-    for (std::size_t l = 0; l < kDifferenceLanes; ++l) {
-      const float s = source[i + l];
-      const float d = decoded[i + l];
-      const bool s_finite = is_finite(s);
-      const bool d_finite = is_finite(d);
-      const double difference = static_cast<double>(s) - static_cast<double>(d);
-      const double counted = s_finite && d_finite ? difference : 0.0;
-      const double magnitude = counted < 0.0 ? -counted : counted;
-      lanes.squared_error[l] += counted * counted;
-      lanes.max_abs[l] = magnitude > lanes.max_abs[l] ? magnitude : lanes.max_abs[l];
-      lanes.min[l] = s_finite && s < lanes.min[l] ? s : lanes.min[l];
-      lanes.max[l] = s_finite && s > lanes.max[l] ? s : lanes.max[l];
-      lanes.nonfinite[l] += s_finite ? 0U : 1U;
-      lanes.nonfinite_decoded[l] += s_finite && !d_finite ? 1U : 0U;
-      const bool differs = std::bit_cast<std::uint32_t>(s) != std::bit_cast<std::uint32_t>(d);
-      lanes.different[l] += differs && s_finite ? 1U : 0U;
-      lanes.nonfinite_different[l] += differs && !s_finite ? 1U : 0U;
+WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes* halves) {
+  const Floats8 none{};
+  for (std::size_t half = 0; half < kHalves; ++half) {
+    DifferenceLanes lanes = halves[half];
+    for (std::size_t i = half * kLanes; i < kLeafVoxels; i += kHalves * kLanes) {
+      Floats8 s;
+      Floats8 d;
+      Ints8 s_bits;
+      Ints8 d_bits;
+      std::memcpy(&s, source + i, sizeof s);
+      std::memcpy(&d, decoded + i, sizeof d);
+      std::memcpy(&s_bits, source + i, sizeof s_bits);
+      std::memcpy(&d_bits, decoded + i, sizeof d_bits);
+      // v - v is 0 for a finite v and NaN for every other. All bits of a lane are set where it holds.
+      const Ints8 s_finite = s - s == none;
+      const Ints8 d_finite = d - d == none;
+      const Ints8 both = s_finite & d_finite;
+      const Floats8 s_counted = both ? s : none;
+      const Floats8 d_counted = both ? d : none;
+      const Doubles8 difference =
+          __builtin_convertvector(s_counted, Doubles8) - __builtin_convertvector(d_counted, Doubles8);
+      const Doubles8 magnitude = difference < 0 ? -difference : difference;
+      lanes.squared_error += difference * difference;
+      lanes.max_abs = magnitude > lanes.max_abs ? magnitude : lanes.max_abs;
+      lanes.min = s < lanes.min && s_finite ? s : lanes.min;
+      lanes.max = s > lanes.max && s_finite ? s : lanes.max;
+      const Ints8 differs = s_bits != d_bits;
+      lanes.nonfinite -= ~s_finite;
+      lanes.nonfinite_decoded -= s_finite & ~d_finite;
+      lanes.different -= differs & s_finite;
+      lanes.nonfinite_different -= differs & ~s_finite;
     }
+    halves[half] = lanes;
   }
 }
 
 }  // namespace
 
 LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded) {
-  DifferenceLanes lanes{};
-  lanes.min.fill(std::numeric_limits<float>::infinity());
-  lanes.max.fill(-std::numeric_limits<float>::infinity());
-  accumulate(source.data(), decoded.data(), lanes);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::array<DifferenceLanes, kHalves> halves;
+  for (DifferenceLanes& lanes : halves) {
+    lanes.min = lanes.min + kInfinity;
+    lanes.max = lanes.max - kInfinity;
+  }
+  accumulate(source.data(), decoded.data(), halves.data());
 
-  for (std::size_t half = kDifferenceLanes / 2; half > 0; half /= 2) {
-    for (std::size_t l = 0; l < half; ++l) lanes.squared_error[l] += lanes.squared_error[l + half];
+  Doubles8 squared_error = halves[0].squared_error + halves[1].squared_error;
+  for (unsigned half = kLanes / 2; half > 0; half /= 2) {
+    for (unsigned l = 0; l < half; ++l) squared_error[l] += squared_error[l + half];
   }
   LeafDifference result;
-  result.squared_error = lanes.squared_error[0];
-  result.range = {lanes.min[0], lanes.max[0]};
-  for (std::size_t l = 0; l < kDifferenceLanes; ++l) {
-    result.max_abs = std::max(result.max_abs, lanes.max_abs[l]);
-    result.range.min = std::min(result.range.min, lanes.min[l]);
-    result.range.max = std::max(result.range.max, lanes.max[l]);
-    result.nonfinite += lanes.nonfinite[l];
-    result.nonfinite_decoded += lanes.nonfinite_decoded[l];
-    result.different += lanes.different[l];
-    result.nonfinite_different += lanes.nonfinite_different[l];
+  result.squared_error = squared_error[0];
+  result.range = {halves[0].min[0], halves[0].max[0]};
+  for (const DifferenceLanes& lanes : halves) {
+    for (unsigned l = 0; l < kLanes; ++l) {
+      result.max_abs = std::max(result.max_abs, lanes.max_abs[l]);
+      result.range.min = std::min(result.range.min, lanes.min[l]);
+      result.range.max = std::max(result.range.max, lanes.max[l]);
+      result.nonfinite += static_cast<std::uint32_t>(lanes.nonfinite[l]);
+      result.nonfinite_decoded += static_cast<std::uint32_t>(lanes.nonfinite_decoded[l]);
+      result.different += static_cast<std::uint32_t>(lanes.different[l]);
+      result.nonfinite_different += static_cast<std::uint32_t>(lanes.nonfinite_different[l]);
+    }
   }
   return result;
 }
 
 double abs_difference(float source, float decoded) {
-  if (!is_finite(source) || !is_finite(decoded)) return 0.0;
+  if (!std::isfinite(source) || !std::isfinite(decoded)) return 0.0;
   return std::abs(static_cast<double>(source) - static_cast<double>(decoded));
 }
 

@@ -5,14 +5,6 @@
 
 namespace weir {
 
-namespace {
-
-constexpr int kMantissaBits = 10;
-constexpr int kLargestExponent = 62;
-constexpr std::uint16_t kNone = 0xFFFF;
-
-}  // namespace
-
 ErrorShare::ErrorShare(double share) {
   if (!(share > 0)) return;
   int exponent = 0;
@@ -25,12 +17,6 @@ ErrorShare::ErrorShare(double share) {
   }
   if (e > kLargestExponent) return;
   code_ = static_cast<std::uint16_t>(std::max(e, 0) << kMantissaBits | m);
-}
-
-double ErrorShare::value() const {
-  if (code_ == kNone) return 0;
-  const int m = code_ & ((1 << kMantissaBits) - 1);
-  return std::ldexp(1 + static_cast<double>(m) / (1 << kMantissaBits), -(code_ >> kMantissaBits));
 }
 
 }  // namespace weir

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,10 +15,19 @@ class ErrorShare {
   ErrorShare() = default;
   /// Of 0 to 1.
   explicit ErrorShare(double share);
-  double value() const;
+  double value() const {
+    if (code_ == kNone) return 0;
+    constexpr std::uint64_t kBias = 1023;  // of a double's exponent
+    const std::uint64_t e = code_ >> kMantissaBits;
+    const std::uint64_t m = code_ & ((1U << kMantissaBits) - 1U);
+    return std::bit_cast<double>((kBias - e) << 52U | m << (52U - kMantissaBits));
+  }
 
  private:
-  std::uint16_t code_ = 0xFFFF;  // e << 10 | m; all bits set: none
+  static constexpr int kMantissaBits = 10;
+  static constexpr int kLargestExponent = 62;
+  static constexpr std::uint16_t kNone = 0xFFFF;
+  std::uint16_t code_ = kNone;  // e << 10 | m
 };
 
 struct PackedRung {

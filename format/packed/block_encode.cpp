@@ -82,24 +82,26 @@ WEIR_SIMD BlockRange range_of(const float* values) {
 
 // The largest magnitude and the sum of squares of each row; returns the largest of all.
 WEIR_SIMD float measure_rows(const float* coefficients, float* largest, double* energy) {
-  float largest_of_all = 0;
-  for (unsigned row = 0; row < 64; ++row) {
-    Floats8 c;
-    std::memcpy(&c, coefficients + 8 * row, sizeof c);
-    const Floats8 size = c < 0 ? -c : c;
-    const Doubles8 wide = __builtin_convertvector(c, Doubles8);
-    const Doubles8 squares = wide * wide;
-    float most = 0;
-    double sum = 0;
-    for (int l = 0; l < 8; ++l) {
-      most = size[l] > most ? size[l] : most;
-      sum += squares[l];
+  Floats8 largest_of_all{};
+  for (unsigned first = 0; first < 64; first += 8) {
+    Floats8 rows[8];
+    std::memcpy(rows, coefficients + 8 * first, sizeof rows);
+    transpose_8(rows);  // a lane for each row
+    Floats8 most{};
+    Doubles8 sum{};
+    for (const Floats8& c : rows) {
+      const Floats8 size = c < 0 ? -c : c;
+      most = size > most ? size : most;
+      const Doubles8 wide = __builtin_convertvector(c, Doubles8);
+      sum += wide * wide;
     }
-    largest[row] = most;
-    energy[row] = sum;
+    std::memcpy(largest + first, &most, sizeof most);
+    std::memcpy(energy + first, &sum, sizeof sum);
     largest_of_all = most > largest_of_all ? most : largest_of_all;
   }
-  return largest_of_all;
+  float found = 0;
+  for (int l = 0; l < 8; ++l) found = largest_of_all[l] > found ? largest_of_all[l] : found;
+  return found;
 }
 
 // What quantise_rows has found.

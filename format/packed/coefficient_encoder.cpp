@@ -111,14 +111,35 @@ class RansEncoder {
   std::size_t count_ = 0;
 };
 
+// Signs of coded values in their order.
+class SignBits {
+ public:
+  void add(bool negative) {
+    words_[count_ / 32] |= (negative ? 1U : 0U) << (count_ % 32);
+    ++count_;
+  }
+  std::uint32_t count() const { return count_; }
+  /// At most 32 of them, from `first` on, the first one the lowest bit.
+  std::uint32_t bits(std::uint32_t first, std::uint32_t count) const {
+    const std::uint64_t two = words_[first / 32] | std::uint64_t{words_[first / 32 + 1]} << 32U;
+    return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
+  }
+
+ private:
+  std::array<std::uint32_t, 512 / 32 + 2> words_{};
+  std::uint32_t count_ = 0;
+};
+
 class BitWriter {
  public:
   explicit BitWriter(std::span<std::byte> out) : out_(out) {}
+  /// The low `bits` of `value`. What `out` has no room for is only counted.
   void write(std::uint32_t value, unsigned bits) {
-    for (unsigned i = 0; i < bits; ++i, ++at_) {
-      if (at_ / 8 >= out_.size()) continue;
-      if ((value >> i & 1U) != 0) out_[at_ / 8] |= std::byte{static_cast<unsigned char>(1U << (at_ % 8))};
+    std::uint64_t shifted = (value & ((std::uint64_t{1} << bits) - 1)) << (at_ % 8);
+    for (std::size_t byte = at_ / 8; shifted != 0 && byte < out_.size(); ++byte, shifted >>= 8U) {
+      out_[byte] |= static_cast<std::byte>(shifted & 0xFFU);
     }
+    at_ += bits;
   }
   std::uint32_t bytes() const { return static_cast<std::uint32_t>((at_ + 7) / 8); }
 
@@ -148,15 +169,13 @@ bool encode_values(const CoderContexts& contexts, const StreamFront& front, cons
   }
   const unsigned states = states_of(front.end);
   const unsigned capacity = 16 * states;
-  std::array<bool, 512> signs{};
-  std::uint32_t nonzero = 0;
+  SignBits signs;
   for (unsigned place = 1; place < kEndUnit * front.end; ++place) {
-    if (values.magnitudes[place] != 0) signs[nonzero++] = values.negative[place];
+    if (values.magnitudes[place] != 0) signs.add(values.negative[place]);
   }
-  const std::uint32_t late = std::min(nonzero, capacity);
+  const std::uint32_t late = std::min(signs.count(), capacity);
   const unsigned moved = std::min(capacity - late, front.number_bits);
-  std::uint32_t payload = 0;
-  for (std::uint32_t i = 0; i < late; ++i) payload |= (signs[nonzero - late + i] ? 1U : 0U) << i;
+  std::uint32_t payload = signs.bits(signs.count() - late, late);
   if (moved > 0) {
     const std::uint32_t low = moved == 32 ? front.number : front.number & ((1U << moved) - 1U);
     payload |= low << late;
@@ -174,7 +193,10 @@ bool encode_values(const CoderContexts& contexts, const StreamFront& front, cons
     bits.write(state_bytes[s] == 3 ? 1 : 0, 1);
   }
   bits.write(moved == 32 ? 0 : front.number >> moved, front.number_bits - moved);
-  for (std::uint32_t i = 0; i + late < nonzero; ++i) bits.write(signs[i] ? 1 : 0, 1);
+  for (std::uint32_t i = 0; i + late < signs.count(); i += 32) {
+    const std::uint32_t some = std::min(32U, signs.count() - late - i);
+    bits.write(signs.bits(i, some), some);
+  }
   const std::size_t back = coder.words().size() * 2 + state_bytes[0] + state_bytes[1];
   if (size != nullptr) *size = {bits.bytes(), static_cast<std::uint32_t>(back)};
   if (bits.bytes() + back > out.size()) return false;
