@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, of frames a second against a
-# dense texture, and of whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
+# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, of decoding packed files, of
+# frames a second against a dense texture, and of whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
-#     --bin    a folder with weir, weir_tests_cuda, weir_bench_load and weir_bench_frames; default: build/release, built
+#     --bin    a folder with weir, weir_tests_cuda and weir_bench_load, _decode and _frames; default: build/release, built
 #     --edge   of the largest cloud, default 2048
-#     STEP     checks, load, frames, pictures, largest; default: all of them
+#     STEP     checks, load, decode, frames, pictures, largest; default: all of them
 #
 # Exit code 1 where a check fails, or loading is below 0.8 of the device's rate.
 set -euo pipefail
@@ -20,17 +20,17 @@ while [[ ${1:-} == --* ]]; do
   esac
   shift 2
 done
-[ $# -gt 0 ] || set -- checks load frames pictures largest
+[ $# -gt 0 ] || set -- checks load decode frames pictures largest
 for step; do
   case $step in
-    checks | load | frames | pictures | largest) ;;
+    checks | load | decode | frames | pictures | largest) ;;
     *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
   esac
 done
 if [ -z "$bin" ]; then
-  tools/build.sh release weir weir_tests_cuda weir_bench_load weir_bench_frames
+  tools/build.sh release weir weir_tests_cuda weir_bench_load weir_bench_decode weir_bench_frames
   mkdir -p build/gpu
-  for name in weir weir_tests_cuda bench/weir_bench_load bench/weir_bench_frames; do
+  for name in weir weir_tests_cuda bench/weir_bench_load bench/weir_bench_decode bench/weir_bench_frames; do
     ln -sf "../release/$name" "build/gpu/${name##*/}"
   done
   bin=build/gpu
@@ -96,6 +96,23 @@ load() {
   rm "$work"/noise1024.*
 }
 
+# packed KIND RATE...: KIND512.RATE.nvdb, packed.
+packed() {
+  for rate in "${@:2}"; do
+    volume "$1" 512 packed --rate "$rate" --preview off
+    mv "$work/${1}512.packed.nvdb" "$work/${1}512.$rate.nvdb"
+  done
+  rm "$work/${1}512.raw"
+}
+
+decode() {
+  packed cloud 20 53.3
+  packed turbulence 10.667 20 50
+  packed noise 2 5.33
+  "$bin/weir_bench_decode" "$work"/*512.*.nvdb || failed=1
+  rm "$work"/*
+}
+
 frames() {
   cloud 256
   cloud 512
@@ -133,6 +150,7 @@ for step; do
   case $step in
     checks) checks ;;
     load) load ;;
+    decode) decode ;;
     frames) frames ;;
     pictures) pictures ;;
     largest) cloud "$edge" ;;

@@ -55,7 +55,7 @@ class SampledSteps {
   };
   static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
 
-  // Fewer are not worth to read the volume once more.
+  // Fewer are not worth to read the volume once more; a twentieth saves 6 dB of a sparse volume.
   static bool count(double near, double bought) { return near > bought / 256; }
 
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));

@@ -1,0 +1,150 @@
+// weir_bench_decode FILE.nvdb...: how fast the device decodes all blocks of packed files into float values in its
+// memory, beside the rate of copies within that memory; and whether the bits are those that the host decodes. Exits
+// with 1 where they are not; 2 for anything wrong.
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "gpu/cuda/packed/block_decoder.h"
+#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/device_array.h"
+
+namespace weir {
+namespace {
+
+constexpr int kRuns = 10;
+constexpr std::size_t kBatch = std::size_t{1} << 18U;  // blocks: 512 MiB of values
+
+/// Seconds between two points of a stream.
+class DeviceClock {
+ public:
+  DeviceClock() {
+    check_cuda(cudaEventCreate(&begin_), "creating an event");
+    check_cuda(cudaEventCreate(&end_), "creating an event");
+  }
+  ~DeviceClock() {
+    cudaEventDestroy(begin_);
+    cudaEventDestroy(end_);
+  }
+  DeviceClock(const DeviceClock&) = delete;
+  DeviceClock& operator=(const DeviceClock&) = delete;
+
+  template <class Work>
+  double seconds(const Work& work) {
+    check_cuda(cudaEventRecord(begin_, cudaStreamPerThread), "recording an event");
+    work();
+    check_cuda(cudaEventRecord(end_, cudaStreamPerThread), "recording an event");
+    check_cuda(cudaEventSynchronize(end_), "waiting for the device");
+    float ms = 0;
+    check_cuda(cudaEventElapsedTime(&ms, begin_, end_), "reading an event");
+    return static_cast<double>(ms) / 1e3;
+  }
+
+ private:
+  cudaEvent_t begin_{};
+  cudaEvent_t end_{};
+};
+
+/// Of all blocks with a stream, region by region.
+std::vector<PackedBlockId> blocks_of(const PackedData& packed) {
+  std::vector<PackedBlockId> blocks;
+  const NodeLattice& regions = packed.regions();
+  for (std::int64_t r = 0; r < regions.size(); ++r) {
+    const PackedRegion region = packed.region(regions.position(r));
+    if (region.chunk == 0) continue;
+    packed.for_each_stream(region, [&](unsigned position, const PackedStream& stream) {
+      if (stream.data != nullptr) blocks.push_back(static_cast<PackedBlockId>(r) << 12U | position);
+    });
+  }
+  return blocks;
+}
+
+/// How many of the blocks the device decoded to other bits than the host.
+std::size_t differing(const PackedData& packed, const std::vector<PackedBlockId>& blocks, std::size_t first,
+                      const std::vector<float>& values) {
+  std::size_t different = 0;
+  std::array<float, 512> expected;
+  for (std::size_t i = 0; i * 512 < values.size(); ++i) {
+    const PackedBlockId id = blocks[first + i];
+    const PackedRegion region = packed.region(packed.regions().position(static_cast<std::int64_t>(id >> 12U)));
+    packed.decode(packed.stream(region, static_cast<unsigned>(id & 4095U)), expected);
+    different += std::memcmp(expected.data(), values.data() + 512 * i, sizeof expected) != 0 ? 1 : 0;
+  }
+  return different;
+}
+
+bool measure(const std::string& path) {
+  const NvdbFile file(path);
+  const PackedData* packed = file.grid().packed();
+  if (packed == nullptr) throw Error(ErrorKind::usage, path + ": is not packed");
+  const std::vector<PackedBlockId> blocks = blocks_of(*packed);
+  BlockDecoder decoder(*packed);
+  const DeviceArray<PackedBlockId> ids{std::span<const PackedBlockId>(blocks)};
+  const std::size_t batch = std::min(kBatch, blocks.size());
+  DeviceArray<float> values(512 * batch);
+  DeviceArray<float> copy(512 * batch);
+  DeviceClock clock;
+
+  std::size_t different = 0;
+  BlockDecoder::Counts counts;
+  std::vector<float> host;
+  for (std::size_t first = 0; first < blocks.size(); first += batch) {
+    const std::size_t count = std::min(batch, blocks.size() - first);
+    decoder.decode(ids.data() + first, count, values.data(), cudaStreamPerThread);
+    const BlockDecoder::Counts some = decoder.counts(cudaStreamPerThread);
+    counts.damaged += some.damaged;
+    counts.plain += some.plain;
+    host.resize(512 * count);
+    values.download(host);
+    different += differing(*packed, blocks, first, host);
+  }
+
+  std::vector<double> decode_s;
+  std::vector<double> copy_s;
+  for (int run = 0; run < kRuns; ++run) {
+    decode_s.push_back(clock.seconds([&] { decoder.decode(ids.data(), batch, values.data(), cudaStreamPerThread); }));
+    copy_s.push_back(clock.seconds([&] {
+      check_cuda(
+          cudaMemcpyAsync(copy.data(), values.data(), copy.bytes(), cudaMemcpyDeviceToDevice, cudaStreamPerThread),
+          "copying on the device");
+    }));
+  }
+  std::ranges::sort(decode_s);
+  std::ranges::sort(copy_s);
+  const double bytes = static_cast<double>(values.bytes());
+  const double rate = bytes / decode_s[kRuns / 2] / 1e9;
+  const double copied = bytes / copy_s[kRuns / 2] / 1e9;
+  const double bits = 8.0 * static_cast<double>(packed->bytes().size()) / (512.0 * static_cast<double>(blocks.size()));
+  std::printf("%-28s %9zu %8.3f %9u %9.1f %9.1f %7.3f %s\n", path.substr(path.rfind('/') + 1).c_str(), blocks.size(),
+              bits, counts.plain, rate, copied, rate / copied,
+              different == 0 && counts.damaged == 0 ? "same" : "OTHER");
+  std::fflush(stdout);
+  if (different > 0 || counts.damaged > 0) {
+    std::printf("  %zu blocks have other bits, %u are damaged\n", different, counts.damaged);
+  }
+  return different == 0 && counts.damaged == 0;
+}
+
+}  // namespace
+}  // namespace weir
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 2) throw weir::Error(weir::ErrorKind::usage, "usage: weir_bench_decode FILE.nvdb...");
+    std::printf("%-28s %9s %8s %9s %9s %9s %7s %s\n", "file", "streams", "bits/v", "plain", "GB/s", "copy GB/s",
+                "ratio", "bits");
+    bool same = true;
+    for (int i = 1; i < argc; ++i) same = weir::measure(argv[i]) && same;
+    return same ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "weir_bench_decode: %s\n", error.what());
+    return 2;
+  }
+}
