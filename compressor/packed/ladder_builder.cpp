@@ -101,15 +101,24 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
     build_bounded(block, *aim_.max_error, ladder);
     return ladder;
   }
-  // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
-  const FloatOrder order = aim_.lossless || near == NearRungs::yes ? FloatOrder::used : FloatOrder::unused;
-  ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
-  if (is_ordered(stream_)) ladder.exact = ExactKind::ordered;
+  set_exact(block, near, ladder);
   if (aim_.lossless || !transform_.set(block)) return ladder;
   const double energy = filled == Filled::no ? transform_.energy() : row.sse;
   add_rungs(row, energy, ladder);
   if (near == NearRungs::yes) add_near_rungs(block, energy, ladder);
   return ladder;
+}
+
+void LadderBuilder::add_near(const LeafValues& block, PackedLadder& ladder) {
+  set_exact(block, NearRungs::yes, ladder);
+  if (transform_.set(block)) add_near_rungs(block, transform_.energy(), ladder);
+}
+
+void LadderBuilder::set_exact(const LeafValues& block, NearRungs near, PackedLadder& ladder) {
+  // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
+  const FloatOrder order = aim_.lossless || near == NearRungs::yes ? FloatOrder::used : FloatOrder::unused;
+  ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
+  ladder.exact = is_ordered(stream_) ? ExactKind::ordered : ExactKind::values;
 }
 
 void LadderBuilder::add_rungs(const LeafRow& row, double energy, PackedLadder& ladder) {
@@ -131,6 +140,7 @@ void LadderBuilder::add_rungs(const LeafRow& row, double energy, PackedLadder& l
 }
 
 void LadderBuilder::add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder) {
+  ladder.near_count = 0;
   if (!(energy > 0)) return;
   rounded_.set(block);
   const int finest = rounded_.exponent() - RoundedBlock::kMostBits;

@@ -39,6 +39,8 @@ class LadderBuilder {
   /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
   /// the survey knows of them.
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near);
+  /// Adds near rungs, and floats in order, to a ladder that build() has built of that block without them.
+  void add_near(const LeafValues& block, PackedLadder& ladder);
   /// Of one whose in-domain values have the same bits.
   static PackedLadder uniform();
   /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
@@ -51,6 +53,7 @@ class LadderBuilder {
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled);
   // The errors of the rungs are shares of `energy`.
   void add_rungs(const LeafRow& row, double energy, PackedLadder& ladder);
+  void set_exact(const LeafValues& block, NearRungs near, PackedLadder& ladder);
   void add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder);
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);

@@ -56,17 +56,14 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
     }
   }
   tbb::enumerable_thread_specific<LadderBuilder> builders([&] { return LadderBuilder(aim); });
-  const auto build = [&](const Block& block, const Index3& leaf, const LeafRow& row) {
-    const bool near =
-        missing.near == NearRungs::yes || (aim.near_rungs && is_near_sample(leaves.linear(leaf), leaves.size()));
+  const auto complete = [&](const Block& block, const Index3& leaf, const LeafRow& row, PackedLadder& ladder) {
     const Box inside = leaves.voxels(leaf);
     LeafValues values;
     gather_leaf(block.values, block.voxels, leaves.node_box(leaf), inside, 0, values);
     extend_outside(leaves.node_box(leaf), inside, values);
-    LadderBuilder& builder = builders.local();
-    const NearRungs rungs = near ? NearRungs::yes : NearRungs::no;
-    return row.finite == inside.voxels() ? builder.build(values, row, rungs)
-                                         : builder.build_non_finite(values, row, rungs);
+    if (row.finite == inside.voxels()) return builders.local().add_near(values, ladder);
+    const bool sampled = aim.near_rungs && is_near_sample(leaves.linear(leaf), leaves.size());
+    ladder = builders.local().build_non_finite(values, row, sampled ? NearRungs::yes : missing.near);
   };
   rows.team().run([&] {
     stream_blocks(source, voxel_boxes, options, [&](const Block& block) {
@@ -81,7 +78,7 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
         const LeafRow& row = found[static_cast<std::size_t>(i)];
         if (!is_incomplete(missing, leaves, leaf, row)) return;
         surveyed.check(leaf, block.values, block.voxels);
-        ladders[static_cast<std::size_t>(i)] = build(block, leaf, row);
+        complete(block, leaf, row, ladders[static_cast<std::size_t>(i)]);
       });
       rows.ladders()->write_box(box, ladders);
     });

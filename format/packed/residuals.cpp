@@ -23,11 +23,104 @@ WEIR_SIMD void difference_all(const std::uint32_t* codes, std::uint32_t* residua
   for (unsigned i = 1; i < 512; ++i) residuals[i] = along_y[i] - (i % 8 == 0 ? 0 : along_y[i - 1]);
 }
 
+// A row of codes, and those beside it.
+struct CodeRow {
+  Ints8 left;     // of x - 1
+  Ints8 up;       // of y - 1
+  Ints8 left_up;  // of both
+  bool has_left;
+  bool has_up;
+};
+
+[[gnu::always_inline]] inline void load_codes(const std::uint32_t* at, Ints8& row) {
+  __builtin_memcpy(&row, at, sizeof row);
+}
+
+// Lane z has what lane z - 1 had, lane 0 keeps its own.
+[[gnu::always_inline]] inline void shift_up(const Ints8& row, Ints8& shifted) {
+  shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2, 3, 4, 5, 6);
+}
+
+// floor(sum / (1 + has_left + has_up)) of neighbours where there is one at z - 1, else without it.
+[[gnu::always_inline]] inline void predict_mean(const CodeRow& beside, const Ints8& back, bool has_back, Ints8& mean) {
+  Ints8 sum{};
+  if (beside.has_left) sum += beside.left;
+  if (beside.has_up) sum += beside.up;
+  if (has_back) sum += back;
+  const int count = (beside.has_left ? 1 : 0) + (beside.has_up ? 1 : 0) + (has_back ? 1 : 0);
+  mean = count == 3 ? sum / 3 : count == 2 ? sum >> 1 : sum;
+}
+
+[[gnu::always_inline]] inline void predict_least(const CodeRow& beside, const Ints8& back, bool has_back,
+                                                 Ints8& least) {
+  least = has_back ? back : beside.has_left ? beside.left : beside.up;
+  if (beside.has_left) least = beside.left < least ? beside.left : least;
+  if (beside.has_up) least = beside.up < least ? beside.up : least;
+}
+
+[[gnu::always_inline]] inline void predict_planes(const CodeRow& beside, const Ints8& back, bool has_back,
+                                                  Ints8& median) {
+  Ints8 left_back;
+  Ints8 up_back;
+  shift_up(beside.left, left_back);
+  shift_up(beside.up, up_back);
+  const Ints8 a = beside.left + beside.up - beside.left_up;
+  const Ints8 b = beside.left + back - left_back;
+  const Ints8 c = beside.up + back - up_back;
+  if (!has_back) {
+    median = beside.has_left && beside.has_up ? a : beside.has_left ? beside.left : beside.up;
+  } else if (beside.has_left && beside.has_up) {
+    const Ints8 low = a < b ? a : b;
+    const Ints8 high = a < b ? b : a;
+    median = c < low ? low : c;
+    median = median > high ? high : median;
+  } else {
+    median = beside.has_left ? b : beside.has_up ? c : back;
+  }
+}
+
+using PredictRow = void (*)(const CodeRow&, const Ints8&, bool, Ints8&);
+
+// Of codes below 2^24, a row of them at once: sums fit 32 bits.
+template <PredictRow predict_row>
+[[gnu::always_inline]] inline void predict_rows(const std::uint32_t* codes, std::uint32_t* residuals) {
+  const Ints8 none{};
+  const Ints8 first = {-1, 0, 0, 0, 0, 0, 0, 0};
+  for (unsigned i = 0; i < 512; i += 8) {
+    CodeRow beside{none, none, none, i >= 64, i % 64 != 0};
+    Ints8 row;
+    load_codes(codes + i, row);
+    if (beside.has_left) load_codes(codes + i - 64, beside.left);
+    if (beside.has_up) load_codes(codes + i - 8, beside.up);
+    if (beside.has_left && beside.has_up) load_codes(codes + i - 72, beside.left_up);
+    Ints8 back;
+    shift_up(row, back);
+    Ints8 with_back;
+    Ints8 without;
+    predict_row(beside, back, true, with_back);
+    predict_row(beside, back, false, without);
+    row -= (with_back & ~first) | (without & first);
+    __builtin_memcpy(residuals + i, &row, sizeof row);
+  }
+  residuals[0] = 0;
+}
+
+WEIR_SIMD void predict_means(const std::uint32_t* codes, std::uint32_t* residuals) {
+  predict_rows<predict_mean>(codes, residuals);
+}
+WEIR_SIMD void predict_leasts(const std::uint32_t* codes, std::uint32_t* residuals) {
+  predict_rows<predict_least>(codes, residuals);
+}
+WEIR_SIMD void predict_medians(const std::uint32_t* codes, std::uint32_t* residuals) {
+  predict_rows<predict_planes>(codes, residuals);
+}
+
+// Of any codes.
 template <unsigned Predictor>
-void predict_all(const BlockCodes& codes, bool ordered, BlockCodes& residuals) {
+void predict_ordered(const BlockCodes& codes, BlockCodes& residuals) {
   residuals[0] = 0;
   for (unsigned i = 1; i < 512; ++i) {
-    const std::int64_t predicted = predict(Predictor, ordered, codes.data(), i >> 6U, i >> 3U & 7U, i & 7U);
+    const std::int64_t predicted = predict(Predictor, true, codes.data(), i >> 6U, i >> 3U & 7U, i & 7U);
     residuals[i] = codes[i] - static_cast<std::uint32_t>(predicted);
   }
 }
@@ -48,11 +141,11 @@ void residuals_of(const BlockCodes& codes, unsigned predictor, bool ordered, Blo
     case 0:
       return difference_all(codes.data(), residuals.data());
     case 1:
-      return predict_all<1>(codes, ordered, residuals);
+      return ordered ? predict_ordered<1>(codes, residuals) : predict_means(codes.data(), residuals.data());
     case 2:
-      return predict_all<2>(codes, ordered, residuals);
+      return ordered ? predict_ordered<2>(codes, residuals) : predict_leasts(codes.data(), residuals.data());
     default:
-      return predict_all<3>(codes, ordered, residuals);
+      return ordered ? predict_ordered<3>(codes, residuals) : predict_medians(codes.data(), residuals.data());
   }
 }
 

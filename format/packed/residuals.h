@@ -11,7 +11,7 @@ namespace weir {
 /// Codes of the 512 values of a block, by index (x << 6 | y << 3 | z).
 using BlockCodes = std::array<std::uint32_t, 512>;
 
-/// Code minus prediction, modulo 2^32, by index; that of index 0 is 0. `ordered`: codes are signed.
+/// Code minus prediction, modulo 2^32, by index; that of index 0 is 0. `ordered`: codes are signed, else below 2^24.
 void residuals_of(const BlockCodes& codes, unsigned predictor, bool ordered, BlockCodes& residuals);
 
 /// The predictor whose residuals take about the least, and these.
