@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, of decoding packed files, of
-# frames a second against a dense texture, and of whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
+# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, decoding, frames a second against
+# a dense texture, and whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
 #     --bin    a folder with weir, weir_tests_cuda and weir_bench_load, _decode and _frames; default: build/release, built
@@ -101,6 +101,7 @@ packed() {
   for rate in "${@:2}"; do
     volume "$1" 512 packed --rate "$rate" --preview off
     mv "$work/${1}512.packed.nvdb" "$work/${1}512.$rate.nvdb"
+    rm "$work/${1}512.packed.nvdb.json"
   done
   rm "$work/${1}512.raw"
 }

@@ -31,8 +31,7 @@ class Candidate {
   /// Whether the smallest file is as small as the budget, which is a size.
   bool fits(const Budget& budget) const {
     const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
-    const std::uint64_t asked = budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense, budget.rate);
-    return bytes_.minimum.file_bytes <= asked;
+    return bytes_.minimum.file_bytes <= asked_bytes(budget, dense);
   }
 
   FilePlan plan(const FileSize& size) {

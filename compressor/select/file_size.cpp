@@ -40,6 +40,10 @@ std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
   return quotient + (remainder > 0 ? 1 : 0);
 }
 
+std::uint64_t asked_bytes(const Budget& budget, std::uint64_t dense_bytes) {
+  return budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense_bytes, budget.rate);
+}
+
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const SelectionBytes& bytes,
                        const std::string& path) {
   const std::uint64_t minimum = bytes.minimum.file_bytes;

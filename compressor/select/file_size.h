@@ -20,6 +20,9 @@ struct FileSize {
 /// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as.
 std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate);
 
+/// What a budget of bytes asks for: its size, or that of its rate.
+std::uint64_t asked_bytes(const Budget& budget, std::uint64_t dense_float32_bytes);
+
 /// Exact file size for a budget that is not by error. Throws Error(budget) naming the minimum where it is below that.
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_float32_bytes, const SelectionBytes& bytes,
                        const std::string& path);

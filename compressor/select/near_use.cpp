@@ -93,8 +93,7 @@ bool judge(const FileRequest& request, const RowStore& rows) {
   const Budget& budget = request.budget;
   if (budget.kind == Budget::Kind::psnr) return steps.near_within_error(request.squared_error * share);
   const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
-  const std::uint64_t bytes = budget.kind == Budget::Kind::size ? budget.bytes : bytes_at_rate(dense, budget.rate);
-  return steps.near_within_bytes(static_cast<double>(bytes) * share);
+  return steps.near_within_bytes(static_cast<double>(asked_bytes(budget, dense)) * share);
 }
 
 }  // namespace

@@ -98,20 +98,13 @@ class ListedValues {
     const std::byte* const words = front + bits.bytes_used();
     RansDecoder started;
     if (!started.start(words, stream_end, states, flags)) return false;
-    CoderPosition position{{started.state(0), started.state(1)}, started.at()};
+    CoderPosition position{{started.state(0), started.state(1)}, started.words().at()};
     if (!coder_.decode(contexts, words, end, position)) return false;
-    const unsigned capacity = 16 * states;
-    const std::uint32_t payload = (position.state[0] & 0xFFFFU) | (states == 2 ? position.state[1] << 16U : 0);
-    const unsigned late = list().count < capacity ? list().count : capacity;
-    const unsigned moved = capacity - late < number_bits ? capacity - late : number_bits;
-    code_ = bits.read(number_bits - moved);
-    if (moved > 0) {
-      const std::uint32_t low = payload >> late & (moved == 32 ? ~0U : (1U << moved) - 1U);
-      code_ = (moved == 32 ? 0 : code_ << moved) | low;
-    }
-    const std::uint32_t early = list().count - late;
-    if ((bits.bits_used() + early + 7) >> 3U > static_cast<std::uint32_t>(position.at - front)) return false;
-    signs_.set(front, bits.bits_used(), early, late, payload);
+    const packed_detail::CodedNumber number =
+        packed_detail::read_number(bits, states, position.state[0], position.state[1], list().count, number_bits);
+    code_ = number.code;
+    if ((bits.bits_used() + number.early + 7) >> 3U > static_cast<std::uint32_t>(position.at - front)) return false;
+    signs_.set(front, bits.bits_used(), number.early, list().count - number.early, number.payload);
     return true;
   }
 

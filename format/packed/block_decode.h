@@ -37,13 +37,30 @@ WEIR_HOST_DEVICE inline float decode_mean(const MeanRange& range, std::int32_t s
   return range.low + offset;
 }
 
-/// What a stream of coded values begins with, read in order; and what comes after them.
-struct CodedValues {
+/// What is known once all magnitudes are decoded.
+struct CodedNumber {
   std::uint32_t code = 0;     ///< of the mean, or the base
-  std::uint32_t nonzero = 0;  ///< magnitudes
-  std::uint32_t payload = 0;
-  unsigned capacity = 0;  ///< bits of the payload
+  std::uint32_t payload = 0;  ///< what the coders' states end with: signs, then low bits of the code
+  std::uint32_t early = 0;    ///< signs that lie in front; the others are the payload's
 };
+
+/// Reads the code but for its low bits; `first` and `second` are the states that `states` coders end with, `nonzero` of
+/// the magnitudes are not zero.
+WEIR_HOST_DEVICE inline CodedNumber read_number(BitReader& bits, unsigned states, std::uint32_t first,
+                                                std::uint32_t second, std::uint32_t nonzero, unsigned number_bits) {
+  const unsigned capacity = 16 * states;
+  const unsigned late = nonzero < capacity ? nonzero : capacity;
+  const unsigned moved = capacity - late < number_bits ? capacity - late : number_bits;
+  CodedNumber number;
+  number.payload = (first & 0xFFFFU) | (states == 2 ? second << 16U : 0);
+  number.early = nonzero - late;
+  number.code = bits.read(number_bits - moved);
+  if (moved > 0) {
+    const std::uint32_t low = number.payload >> late & (moved == 32 ? ~0U : (1U << moved) - 1U);
+    number.code = (moved == 32 ? 0 : number.code << moved) | low;
+  }
+  return number;
+}
 
 /// Decodes magnitudes by index (513 entries, zero) and makes the signed values of them, modulo 2^32. `front` begins
 /// after the kind; `number_bits` are those of the code. False where the stream is invalid.
@@ -62,16 +79,9 @@ WEIR_HOST_DEVICE inline bool decode_values(const BlockScan& scan, const CoderCon
   if (!coder.start(front + bits.bytes_used(), stream_end, states, flags)) return false;
   const std::uint32_t nonzero = decode_magnitudes(scan, coder, contexts, end, magnitudes);
   if (nonzero == ~0U) return false;
-  const unsigned capacity = 16 * states;
-  const std::uint32_t payload = (coder.state(0) & 0xFFFFU) | (states == 2 ? coder.state(1) << 16U : 0);
-  const unsigned late = nonzero < capacity ? nonzero : capacity;
-  const unsigned moved = capacity - late < number_bits ? capacity - late : number_bits;
-  code = bits.read(number_bits - moved);
-  if (moved > 0) {
-    const std::uint32_t low = payload >> late & (moved == 32 ? ~0U : (1U << moved) - 1U);
-    code = (moved == 32 ? 0 : code << moved) | low;
-  }
-  const std::uint32_t early = nonzero - late;
+  const CodedNumber number = read_number(bits, states, coder.state(0), coder.state(1), nonzero, number_bits);
+  const std::uint32_t early = number.early;
+  code = number.code;
   std::uint32_t seen = 0;
   std::uint32_t signs = 0;
   for (unsigned place = 1; place < kEndUnit * end; ++place) {
@@ -83,12 +93,12 @@ WEIR_HOST_DEVICE inline bool decode_values(const BlockScan& scan, const CoderCon
       negative = (signs & 1U) != 0;
       signs >>= 1U;
     } else {
-      negative = (payload >> (seen - early) & 1U) != 0;
+      negative = (number.payload >> (seen - early) & 1U) != 0;
     }
     ++seen;
     if (negative) magnitudes[index] = 0U - magnitudes[index];
   }
-  return front + bits.bytes_used() <= coder.at();
+  return front + bits.bytes_used() <= coder.words().at();
 }
 
 WEIR_HOST_DEVICE inline float coefficient(std::uint32_t signed_magnitude, const BlockConstants& constants, float step) {

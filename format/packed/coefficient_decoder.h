@@ -57,21 +57,68 @@ class BitReader {
   std::uint32_t at_ = 0;
 };
 
-/// The states of a stream and its words, which are read from its end towards `front`.
+/// The words of a stream's coders, read from its end towards `front`; the next one is loaded ahead.
+class StreamWords {
+ public:
+  WEIR_HOST_DEVICE void start(const std::byte* front, const std::byte* at) {
+    front_ = front;
+    at_ = at;
+    load();
+  }
+  WEIR_HOST_DEVICE void renormalise(std::uint32_t& x) {
+    if (x >= kLeastState) return;
+    if (at_ - front_ < 2) {
+      whole_ = false;
+      x |= kLeastState;
+      return;
+    }
+    x = x << 16U | next_;
+    at_ -= 2;
+    load();
+  }
+  /// Up to 32 bits of a state as they are.
+  WEIR_HOST_DEVICE std::uint32_t bypass(std::uint32_t& x, unsigned bits) {
+    std::uint32_t value = 0;
+    for (unsigned got = 0; got < bits;) {
+      const unsigned take = bits - got < 16 ? bits - got : 16;
+      value |= (x & ((1U << take) - 1U)) << got;
+      x >>= take;
+      renormalise(x);
+      got += take;
+    }
+    return value;
+  }
+  /// False once a word was missing.
+  WEIR_HOST_DEVICE bool whole() const { return whole_; }
+  WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
+
+ private:
+  WEIR_HOST_DEVICE void load() {
+    if (at_ - front_ < 2) return;
+    next_ = static_cast<std::uint32_t>(at_[-2]) | static_cast<std::uint32_t>(at_[-1]) << 8U;
+  }
+
+  const std::byte* front_ = nullptr;
+  const std::byte* at_ = nullptr;
+  std::uint32_t next_ = 0;
+  bool whole_ = true;
+};
+
+/// The states of a stream and its words.
 class RansDecoder {
  public:
   /// False where the stream is too short.
   WEIR_HOST_DEVICE bool start(const std::byte* front, const std::byte* end, unsigned states, unsigned short_flags) {
-    front_ = front;
-    at_ = end;
+    const std::byte* at = end;
     for (unsigned s = 0; s < states; ++s) {
       const unsigned bytes = (short_flags >> s & 1U) != 0 ? 3 : 4;
-      if (at_ - front_ < static_cast<std::ptrdiff_t>(bytes)) return false;
-      at_ -= bytes;
+      if (at - front < static_cast<std::ptrdiff_t>(bytes)) return false;
+      at -= bytes;
       std::uint32_t state = 0;
-      for (unsigned b = 0; b < bytes; ++b) state |= static_cast<std::uint32_t>(at_[b]) << (8 * b);
+      for (unsigned b = 0; b < bytes; ++b) state |= static_cast<std::uint32_t>(at[b]) << (8 * b);
       state_[s] = state;
     }
+    words_.start(front, at);
     return true;
   }
 
@@ -82,41 +129,17 @@ class RansDecoder {
     const std::uint32_t low = table[found];
     const std::uint32_t high = found + 1 < kPackedSymbols ? table[found + 1] : 1U << kFrequencyBits;
     x = (high - low) * (x >> kFrequencyBits) + slot - low;
-    renormalise(x);
+    words_.renormalise(x);
     return found;
   }
 
   /// Up to 32 bits as they are.
-  WEIR_HOST_DEVICE std::uint32_t bypass(unsigned s, unsigned bits) {
-    std::uint32_t value = 0;
-    for (unsigned got = 0; got < bits;) {
-      const unsigned take = bits - got < 16 ? bits - got : 16;
-      std::uint32_t& x = state_[s];
-      value |= (x & ((1U << take) - 1U)) << got;
-      x >>= take;
-      renormalise(x);
-      got += take;
-    }
-    return value;
-  }
+  WEIR_HOST_DEVICE std::uint32_t bypass(unsigned s, unsigned bits) { return words_.bypass(state_[s], bits); }
 
   WEIR_HOST_DEVICE std::uint32_t state(unsigned s) const { return state_[s]; }
-  /// False once a word was missing.
-  WEIR_HOST_DEVICE bool whole() const { return whole_; }
-  WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
+  WEIR_HOST_DEVICE const StreamWords& words() const { return words_; }
 
  private:
-  WEIR_HOST_DEVICE void renormalise(std::uint32_t& x) {
-    if (x >= kLeastState) return;
-    if (at_ - front_ < 2) {
-      whole_ = false;
-      x |= kLeastState;
-      return;
-    }
-    at_ -= 2;
-    x = x << 16U | static_cast<std::uint32_t>(at_[0]) | static_cast<std::uint32_t>(at_[1]) << 8U;
-  }
-
   // The last entry of the table that is not above `slot`.
   WEIR_HOST_DEVICE static unsigned find(const std::uint16_t* table, std::uint32_t slot) {
 #if defined(__SSE2__) && !defined(__CUDA_ARCH__)
@@ -134,9 +157,7 @@ class RansDecoder {
   }
 
   std::uint32_t state_[2] = {kLeastState, kLeastState};
-  const std::byte* front_ = nullptr;
-  const std::byte* at_ = nullptr;
-  bool whole_ = true;
+  StreamWords words_;
 };
 
 /// What coded values are decoded by.
@@ -175,7 +196,7 @@ WEIR_HOST_DEVICE inline std::uint32_t decode_magnitudes(const BlockScan& scan, R
     if (m != 0) ++nonzero;
     magnitudes[scan.index[place]] = m;
   }
-  if (!coder.whole()) return ~0U;
+  if (!coder.words().whole()) return ~0U;
   for (unsigned s = 0; s < states; ++s) {
     if (coder.state(s) >> 16U != 1) return ~0U;
   }

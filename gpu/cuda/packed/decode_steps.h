@@ -41,7 +41,7 @@ struct CoderStates {
 
 // decode_magnitudes() of coefficient_decoder.h, into shared memory; `nonzero` gets how many are not zero.
 WEIR_HOST_DEVICE inline Outcome decode_magnitudes(const ScanPlaces& scan, const SharedTables& tables,
-                                                  CoderStates& states, Words& words, unsigned end,
+                                                  CoderStates& states, StreamWords& words, unsigned end,
                                                   Magnitudes& magnitudes, std::uint32_t& nonzero) {
   const bool two = states_of(end) == 2;
   nonzero = 0;
@@ -55,13 +55,13 @@ WEIR_HOST_DEVICE inline Outcome decode_magnitudes(const ScanPlaces& scan, const 
         static_cast<std::uint32_t>(magnitudes.at(near[0]) + magnitudes.at(near[1]) + magnitudes.at(near[2]));
     std::uint32_t m = tables.symbol(x, scan.band[place] * kPackedLevels + tables.level(t), words);
     if (m == kEscape) {
-      const unsigned length = bypass(x, 5, words);
-      m = kEscape - 1 + (1U << length) + bypass(x, length, words);
+      const unsigned length = words.bypass(x, 5);
+      m = kEscape - 1 + (1U << length) + words.bypass(x, length);
     }
     const unsigned extra = extra_bits(t);
     if (extra > 0) {
       if (m >> (32 - extra) != 0) return Outcome::damaged;
-      m = m << extra | bypass(x, extra, words);
+      m = m << extra | words.bypass(x, extra);
     }
     if (second) {
       states.second = x;
@@ -108,25 +108,16 @@ WEIR_HOST_DEVICE inline Outcome decode_stream(const PackedView& view, const Scan
   RansDecoder starts;
   if (!starts.start(front + bits.bytes_used(), found.data + found.bytes, states, flags)) return Outcome::damaged;
   CoderStates coders{starts.state(0), states == 2 ? starts.state(1) : kLeastState};
-  Words words;
-  words.start(front + bits.bytes_used(), starts.at());
+  StreamWords words = starts.words();
   std::uint32_t nonzero = 0;
   const Outcome outcome = decode_magnitudes(scan, tables, coders, words, end, magnitudes, nonzero);
   if (outcome != Outcome::decoded) return outcome;
 
-  const unsigned capacity = 16 * states;
-  const std::uint32_t payload = (coders.first & 0xFFFFU) | (states == 2 ? coders.second << 16U : 0);
-  const unsigned late = nonzero < capacity ? nonzero : capacity;
-  const unsigned moved = capacity - late < number_bits ? capacity - late : number_bits;
-  std::uint32_t code = bits.read(number_bits - moved);
-  if (moved > 0) {
-    const std::uint32_t low = payload >> late & (moved == 32 ? ~0U : (1U << moved) - 1U);
-    code = (moved == 32 ? 0 : code << moved) | low;
-  }
-  add_signs(kEndUnit * end, nonzero - late, payload, bits, magnitudes);
+  const CodedNumber number = read_number(bits, states, coders.first, coders.second, nonzero, number_bits);
+  add_signs(kEndUnit * end, number.early, number.payload, bits, magnitudes);
   if (front + bits.bytes_used() > words.at()) return Outcome::damaged;
   task.step = step_size(step);
-  task.value = decode_mean(found.means, step, code);
+  task.value = decode_mean(found.means, step, number.code);
   task.limit = static_cast<std::uint16_t>(kEndUnit * end);
   return Outcome::decoded;
 }

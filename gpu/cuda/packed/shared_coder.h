@@ -1,13 +1,12 @@
-// The entropy coder's tables in the shared memory of a group of threads, and a stream's words. For host and device.
+// The entropy coder's tables in the shared memory of a group of threads. For host and device.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "format/base/host_device.h"
 #include "format/packed/block_scan.h"
+#include "format/packed/coefficient_decoder.h"
 #include "gpu/cuda/packed/decode_layout.h"
-#include "gpu/cuda/packed/packed_view.h"
 
 namespace weir {
 
@@ -32,37 +31,6 @@ constexpr ScanPlaces make_scan_places() {
 }
 
 namespace decode_detail {
-
-// The words of a block's coders, read from the stream's end; the next one is loaded ahead.
-class Words {
- public:
-  WEIR_HOST_DEVICE void start(const std::byte* front, const std::byte* at) {
-    front_ = front;
-    at_ = at;
-    load();
-  }
-  WEIR_HOST_DEVICE void renormalise(std::uint32_t& x) {
-    if (x >= kLeastState) return;
-    if (at_ - front_ < 2) {
-      whole_ = false;
-      x |= kLeastState;
-      return;
-    }
-    x = x << 16U | next_;
-    at_ -= 2;
-    load();
-  }
-  WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
-  WEIR_HOST_DEVICE bool whole() const { return whole_; }
-
- private:
-  WEIR_HOST_DEVICE void load() { next_ = at_ - front_ >= 2 ? packed_detail::load_u16(at_ - 2) : 0; }
-
-  const std::byte* front_ = nullptr;
-  const std::byte* at_ = nullptr;
-  std::uint32_t next_ = 0;
-  bool whole_ = true;
-};
 
 // The tables of the entropy coder in shared memory.
 class SharedTables {
@@ -89,7 +57,7 @@ class SharedTables {
 
   WEIR_HOST_DEVICE unsigned level(std::uint32_t t) const { return t < kLevelSums ? levels_[t] : kPackedLevels - 1; }
 
-  WEIR_HOST_DEVICE unsigned symbol(std::uint32_t& x, unsigned context, Words& words) const {
+  WEIR_HOST_DEVICE unsigned symbol(std::uint32_t& x, unsigned context, StreamWords& words) const {
     const std::uint32_t slot = x & ((1U << kFrequencyBits) - 1U);
     unsigned found = starts_[context * kSlots + (slot >> kSlotShift)];
     std::uint32_t bounds = symbols_[context * kPackedSymbols + found];
@@ -105,18 +73,6 @@ class SharedTables {
   unsigned char* starts_;
   unsigned char* levels_;
 };
-
-WEIR_HOST_DEVICE inline std::uint32_t bypass(std::uint32_t& x, unsigned bits, Words& words) {
-  std::uint32_t value = 0;
-  for (unsigned got = 0; got < bits;) {
-    const unsigned take = bits - got < 16 ? bits - got : 16;
-    value |= (x & ((1U << take) - 1U)) << got;
-    x >>= take;
-    words.renormalise(x);
-    got += take;
-  }
-  return value;
-}
 
 }  // namespace decode_detail
 
