@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::watch_options_test {

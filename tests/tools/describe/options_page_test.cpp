@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/temporary_directory.h"
+#include "tests/support/run_command.h"
 
 namespace weir::options_page_test {
 namespace {
