@@ -53,26 +53,26 @@ class DeviceClock {
 };
 
 /// Of all blocks with a stream, region by region.
-std::vector<PackedBlockId> blocks_of(const PackedData& packed) {
-  std::vector<PackedBlockId> blocks;
+std::vector<BlockId> blocks_of(const PackedData& packed) {
+  std::vector<BlockId> blocks;
   const NodeLattice& regions = packed.regions();
   for (std::int64_t r = 0; r < regions.size(); ++r) {
     const PackedRegion region = packed.region(regions.position(r));
     if (region.chunk == 0) continue;
     packed.for_each_stream(region, [&](unsigned position, const PackedStream& stream) {
-      if (stream.data != nullptr) blocks.push_back(static_cast<PackedBlockId>(r) << 12U | position);
+      if (stream.data != nullptr) blocks.push_back(static_cast<BlockId>(r) << 12U | position);
     });
   }
   return blocks;
 }
 
 /// How many of the blocks the device decoded to other bits than the host.
-std::size_t differing(const PackedData& packed, const std::vector<PackedBlockId>& blocks, std::size_t first,
+std::size_t differing(const PackedData& packed, const std::vector<BlockId>& blocks, std::size_t first,
                       const std::vector<float>& values) {
   std::size_t different = 0;
   std::array<float, 512> expected;
   for (std::size_t i = 0; i * 512 < values.size(); ++i) {
-    const PackedBlockId id = blocks[first + i];
+    const BlockId id = blocks[first + i];
     const PackedRegion region = packed.region(packed.regions().position(static_cast<std::int64_t>(id >> 12U)));
     packed.decode(packed.stream(region, static_cast<unsigned>(id & 4095U)), expected);
     different += std::memcmp(expected.data(), values.data() + 512 * i, sizeof expected) != 0 ? 1 : 0;
@@ -84,9 +84,9 @@ bool measure(const std::string& path) {
   const NvdbFile file(path);
   const PackedData* packed = file.grid().packed();
   if (packed == nullptr) throw Error(ErrorKind::usage, path + ": is not packed");
-  const std::vector<PackedBlockId> blocks = blocks_of(*packed);
+  const std::vector<BlockId> blocks = blocks_of(*packed);
   BlockDecoder decoder(*packed);
-  const DeviceArray<PackedBlockId> ids{std::span<const PackedBlockId>(blocks)};
+  const DeviceArray<BlockId> ids{std::span<const BlockId>(blocks)};
   const std::size_t batch = std::min(kBatch, blocks.size());
   DeviceArray<float> values(512 * batch);
   DeviceArray<float> copy(512 * batch);
@@ -100,7 +100,7 @@ bool measure(const std::string& path) {
     decoder.decode(ids.data() + first, count, values.data(), cudaStreamPerThread);
     const BlockDecoder::Counts some = decoder.counts(cudaStreamPerThread);
     counts.damaged += some.damaged;
-    counts.plain += some.plain;
+    counts.wide += some.wide;
     host.resize(512 * count);
     values.download(host);
     different += differing(*packed, blocks, first, host);
@@ -123,8 +123,7 @@ bool measure(const std::string& path) {
   const double copied = bytes / copy_s[kRuns / 2] / 1e9;
   const double bits = 8.0 * static_cast<double>(packed->bytes().size()) / (512.0 * static_cast<double>(blocks.size()));
   std::printf("%-28s %9zu %8.3f %9u %9.1f %9.1f %7.3f %s\n", path.substr(path.rfind('/') + 1).c_str(), blocks.size(),
-              bits, counts.plain, rate, copied, rate / copied,
-              different == 0 && counts.damaged == 0 ? "same" : "OTHER");
+              bits, counts.wide, rate, copied, rate / copied, different == 0 && counts.damaged == 0 ? "same" : "OTHER");
   std::fflush(stdout);
   if (different > 0 || counts.damaged > 0) {
     std::printf("  %zu blocks have other bits, %u are damaged\n", different, counts.damaged);
@@ -138,8 +137,8 @@ bool measure(const std::string& path) {
 int main(int argc, char** argv) {
   try {
     if (argc < 2) throw weir::Error(weir::ErrorKind::usage, "usage: weir_bench_decode FILE.nvdb...");
-    std::printf("%-28s %9s %8s %9s %9s %9s %7s %s\n", "file", "streams", "bits/v", "plain", "GB/s", "copy GB/s",
-                "ratio", "bits");
+    std::printf("%-28s %9s %8s %9s %9s %9s %7s %s\n", "file", "streams", "bits/v", "wide", "GB/s", "copy GB/s", "ratio",
+                "bits");
     bool same = true;
     for (int i = 1; i < argc; ++i) same = weir::measure(argv[i]) && same;
     return same ? 0 : 1;

@@ -48,6 +48,7 @@ class PackedData {
   /// The whole packed data.
   std::span<const std::byte> bytes() const { return bytes_; }
   std::uint64_t file_offset() const { return file_offset_; }  ///< of its first byte
+  const std::string& path() const { return path_; }
 
   /// The stream of the block at `position` (see packed_position) of a region. One look-up reads one entry of the
   /// directory. Throws Error(input) where the directory is damaged.

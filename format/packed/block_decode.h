@@ -226,21 +226,35 @@ WEIR_HOST_DEVICE inline bool decode_lattice(const BlockConstants& constants, con
   return values_of_codes(head, codes, values);
 }
 
-WEIR_HOST_DEVICE inline bool decode_mean_alone(const BlockConstants& constants, const MeanRange& range,
-                                               const std::byte* stream, std::uint32_t bytes, float* values) {
+/// The one value of a block that is coded by its mean. False where the stream is invalid.
+WEIR_HOST_DEVICE inline bool read_mean(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
+                                       std::uint32_t bytes, float& value) {
   std::int32_t step;
   unsigned number_bits;
   if (!read_step(constants, range, stream, step, number_bits) || (number_bits + 7) / 8 > bytes - 1) return false;
   BitReader bits(stream + 1, bytes - 1);
-  const float value = clamp_to(constants, decode_mean(range, step, bits.read(number_bits)));
+  value = clamp_to(constants, decode_mean(range, step, bits.read(number_bits)));
+  return true;
+}
+
+WEIR_HOST_DEVICE inline bool decode_mean_alone(const BlockConstants& constants, const MeanRange& range,
+                                               const std::byte* stream, std::uint32_t bytes, float* values) {
+  float value;
+  if (!read_mean(constants, range, stream, bytes, value)) return false;
   for (unsigned i = 0; i < 512; ++i) values[i] = value;
   return true;
 }
 
-WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t bytes, float* values) {
+/// Whether a raw block has one value. False where the stream is invalid.
+WEIR_HOST_DEVICE inline bool read_raw_head(const std::byte* stream, std::uint32_t bytes, bool& uniform) {
   const auto head = static_cast<unsigned>(stream[0]);
-  const bool uniform = (head >> 2U & 1U) != 0;
-  if (head >> 3U != 0 || bytes != (uniform ? 5 : 2049)) return false;
+  uniform = (head >> 2U & 1U) != 0;
+  return head >> 3U == 0 && bytes == (uniform ? 5 : 2049);
+}
+
+WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t bytes, float* values) {
+  bool uniform;
+  if (!read_raw_head(stream, bytes, uniform)) return false;
   for (unsigned i = 0; i < 512; ++i) values[i] = load_bytes<float>(stream + 1 + (uniform ? 0 : 4 * i));
   return true;
 }

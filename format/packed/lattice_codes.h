@@ -14,45 +14,53 @@ enum class LatticeKind : std::uint8_t { file = 0, own = 1, ordered = 2 };
 /// Predictors: 3-D Lorenzo, the neighbours' mean, their minimum, the median of three planes.
 inline constexpr unsigned kPredictors = 4;
 
-/// Of voxel (x, y, z) but (0, 0, 0), from the codes of those before it; `ordered`: codes are signed.
-WEIR_HOST_DEVICE inline std::int64_t predict(unsigned predictor, bool ordered, const std::uint32_t* codes, unsigned x,
-                                             unsigned y, unsigned z) {
-  const std::uint32_t* at = codes + (x << 6U | y << 3U | z);
+/// Of the voxel at `at`, from the codes kX, kY and 1 before it along x, y and z, where there are any, and those between
+/// them; it has one of the three at least. `ordered`: codes are signed. Sum has room for three codes' sum.
+template <class Sum, unsigned kX, unsigned kY>
+WEIR_HOST_DEVICE inline Sum predict_at(unsigned predictor, bool ordered, const std::uint32_t* at, bool has_x,
+                                       bool has_y, bool has_z) {
   const auto code = [&](unsigned back) {
     const std::uint32_t c = *(at - back);
-    return ordered ? static_cast<std::int64_t>(static_cast<std::int32_t>(c)) : static_cast<std::int64_t>(c);
+    return ordered ? static_cast<Sum>(static_cast<std::int32_t>(c)) : static_cast<Sum>(c);
   };
   if (predictor == 1 || predictor == 2) {
-    std::int64_t sum = 0;
-    std::int64_t least = 0;
-    std::int64_t count = 0;
-    const auto add = [&](std::int64_t c) {
+    Sum sum = 0;
+    Sum least = 0;
+    unsigned count = 0;
+    const auto add = [&](Sum c) {
       least = count == 0 || c < least ? c : least;
       sum += c;
       ++count;
     };
-    if (x > 0) add(code(64));
-    if (y > 0) add(code(8));
-    if (z > 0) add(code(1));
+    if (has_x) add(code(kX));
+    if (has_y) add(code(kY));
+    if (has_z) add(code(1));
     if (predictor == 2) return least;
-    const std::int64_t quotient = sum / count;
-    return sum % count < 0 ? quotient - 1 : quotient;
+    if (count < 3) return sum >> (count - 1);  // floor
+    const Sum third = sum / 3;
+    return sum - 3 * third < 0 ? third - 1 : third;
   }
-  if (x > 0 && y > 0 && z > 0) {
+  if (has_x && has_y && has_z) {
     if (predictor == 0) {
-      return code(64) + code(8) + code(1) - code(72) - code(65) - code(9) + code(73);
+      return code(kX) + code(kY) + code(1) - code(kX + kY) - code(kX + 1) - code(kY + 1) + code(kX + kY + 1);
     }
-    const std::int64_t a = code(64) + code(8) - code(72);
-    const std::int64_t b = code(64) + code(1) - code(65);
-    const std::int64_t c = code(8) + code(1) - code(9);
-    const std::int64_t low = a < b ? a : b;
-    const std::int64_t high = a < b ? b : a;
+    const Sum a = code(kX) + code(kY) - code(kX + kY);
+    const Sum b = code(kX) + code(1) - code(kX + 1);
+    const Sum c = code(kY) + code(1) - code(kY + 1);
+    const Sum low = a < b ? a : b;
+    const Sum high = a < b ? b : a;
     return c < low ? low : c > high ? high : c;
   }
-  if (x > 0 && y > 0) return code(64) + code(8) - code(72);
-  if (x > 0 && z > 0) return code(64) + code(1) - code(65);
-  if (y > 0 && z > 0) return code(8) + code(1) - code(9);
-  return x > 0 ? code(64) : y > 0 ? code(8) : code(1);
+  if (has_x && has_y) return code(kX) + code(kY) - code(kX + kY);
+  if (has_x && has_z) return code(kX) + code(1) - code(kX + 1);
+  if (has_y && has_z) return code(kY) + code(1) - code(kY + 1);
+  return has_x ? code(kX) : has_y ? code(kY) : code(1);
+}
+
+/// Of voxel (x, y, z) but (0, 0, 0), from the codes of those before it; `ordered`: codes are signed.
+WEIR_HOST_DEVICE inline std::int64_t predict(unsigned predictor, bool ordered, const std::uint32_t* codes, unsigned x,
+                                             unsigned y, unsigned z) {
+  return predict_at<std::int64_t, 64, 8>(predictor, ordered, codes + (x << 6U | y << 3U | z), x > 0, y > 0, z > 0);
 }
 
 /// Residuals become codes; codes[0] is the base.

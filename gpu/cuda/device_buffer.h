@@ -20,12 +20,12 @@ class DeviceBuffer {
   std::byte* data() const { return memory_.data(); }
   std::uint64_t capacity() const { return memory_.bytes(); }
 
-  /// Makes it at least `bytes` large; its content is lost where it grows. Throws Error(io) where the device has no
-  /// room; it is empty then.
+  /// Makes it at least `bytes` large, and up to a multiple of 16; its content is lost where it grows. Throws Error(io)
+  /// where the device has no room; it is empty then.
   void reserve(std::uint64_t bytes) {
     if (bytes <= capacity()) return;
     memory_ = DeviceArray<std::byte>();  // first: there may be no room for both
-    memory_ = DeviceArray<std::byte>(bytes);
+    memory_ = DeviceArray<std::byte>((bytes + 15) / 16 * 16);
   }
 
   std::optional<PinnedRing>& ring() { return ring_; }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include "format/packed/block_encode.h"
@@ -28,14 +29,42 @@ inline const std::uint16_t* even_tables() {
   return tables.data();
 }
 
+// Of codes near each other or far apart, which the predictors suit differently, on a lattice or in the floats' order.
+inline PackedBytes exact_stream(std::minstd_rand& engine) {
+  const auto random = [&engine] { return static_cast<std::uint32_t>(engine()) >> 8U; };
+  const std::uint32_t shape = random() % 4;
+  const bool on_lattice = random() % 2 == 0;
+  const std::uint32_t rough = random() % 14;
+  std::array<float, 512> values;
+  for (unsigned i = 0; i < 512; ++i) {
+    const std::uint32_t x = i >> 6U, y = i >> 3U & 7U, z = i & 7U;
+    const std::uint32_t noise = random() % (1U << rough);
+    std::uint32_t code = 0;
+    if (shape == 0) code = 1000 * x + 300 * y + x * y * 8 + 77 * z + noise % 4;
+    if (shape == 1) code = noise;
+    if (shape == 2) code = random() % 4 > 0 ? 0 : noise;
+    if (shape == 3) code = (x > 3 ? 3000 : 0) + (y > 2 ? 500 : 0) + (z > 4 ? 9000 : 0) + noise % 2;
+    values[i] = static_cast<float>(code) * 0.25F - 20.0F;
+    if (!on_lattice) values[i] *= 1.0F + static_cast<float>(noise % 8) * 1.1920929e-7F;
+  }
+  BlockConstants constants;
+  constants.tables = even_tables();
+  std::optional<Lattice> own;
+  if (on_lattice) own = Lattice{-20.0F, 0.25F, 24};
+  PackedBytes stream(kRawStreamBytes);
+  stream.resize(encode_exact(constants, own, values, stream));
+  return stream;
+}
+
 // Of all kinds, and of magnitudes that need all the room there is, or more.
 inline PackedBytes stream_of_some_kind(const Index3& block) {
   std::minstd_rand engine(static_cast<std::uint32_t>(block.x * 7919 + block.y * 104729 + block.z * 1299709));
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()); };
-  const std::uint32_t kind = random() % 8;
+  const std::uint32_t kind = random() % 10;
   if (kind == 0) return {};
   if (kind == 1) return constant_stream(3.5F);
   if (kind == 2) return mean_stream(random() % 16, 4);
+  if (kind >= 8) return exact_stream(engine);
   std::array<float, 512> values;
   const float wave = std::ldexp(1.0F, static_cast<int>(random() % 8));
   const float noise = std::ldexp(1.0F, static_cast<int>(random() % 12) - 8);

@@ -8,19 +8,17 @@
 #include "format/base/host_device.h"
 #include "format/packed/block_constants.h"
 #include "format/packed/packed_layout.h"
+#include "gpu/cuda/volume/block_lattice.h"
 
 namespace weir {
 
 struct PackedView {
-  const std::byte* data = nullptr;  ///< at a multiple of 8
+  const std::byte* data = nullptr;  ///< at a multiple of 16; may be read up to one
   std::uint64_t bytes = 0;
   std::uint64_t table = 0;    ///< offset of the region table
   std::uint64_t regions = 0;  ///< of its entries, x fastest
   BlockConstants constants;   ///< its tables lie on the device
 };
-
-/// A block of a grid: 4096 * linear index of its region (x fastest) + its position (packed_position()) there.
-using PackedBlockId = std::uint64_t;
 
 /// What a block's look-up finds.
 struct FoundStream {
@@ -45,7 +43,7 @@ WEIR_HOST_DEVICE T load_aligned(const std::byte* at) {
 
 }  // namespace packed_detail
 
-WEIR_HOST_DEVICE inline FoundStream find_stream(const PackedView& view, PackedBlockId id) {
+WEIR_HOST_DEVICE inline FoundStream find_stream(const PackedView& view, BlockId id) {
   using namespace packed_detail;
   FoundStream found;
   found.damaged = true;

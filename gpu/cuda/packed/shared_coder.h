@@ -6,74 +6,93 @@
 #include "format/base/host_device.h"
 #include "format/packed/block_scan.h"
 #include "format/packed/coefficient_decoder.h"
-#include "gpu/cuda/packed/decode_layout.h"
+#include "gpu/cuda/packed/scan_steps.h"
+#include "gpu/cuda/packed/stream_queue.h"
 
-namespace weir {
+namespace weir::decode_detail {
 
-/// The order of the scan as a warp looks it up, all its threads the same place.
-struct ScanPlaces {
-  std::uint16_t neighbour[512][3] = {};  ///< places; 0, whose magnitude is zero, where there is none
-  std::uint8_t weight[512] = {};
-  std::uint8_t band[512] = {};
-};
+inline constexpr unsigned kBucketShift = kFrequencyBits - 8;
+static_assert(kSymbolBuckets << kBucketShift == 1U << kFrequencyBits);
+// Of the residuals of lattice blocks, in buckets.
+inline constexpr unsigned kResidualContexts = kPackedLevels * kPackedBands * kSymbolBuckets;
 
-constexpr ScanPlaces make_scan_places() {
-  ScanPlaces places;
-  for (unsigned place = 0; place < 512; ++place) {
-    for (unsigned n = 0; n < 3; ++n) {
-      const unsigned index = kBlockScan.neighbour[place][n];
-      places.neighbour[place][n] = index < 512 ? kBlockScan.place[index] : std::uint16_t{0};
-    }
-    places.weight[place] = kBlockScan.weight[place];
-    places.band[place] = kBlockScan.band[place];
-  }
-  return places;
-}
-
-namespace decode_detail {
-
-// The tables of the entropy coder in shared memory.
+// The tables of the entropy coder, in shared memory or on their way there.
 class SharedTables {
  public:
-  WEIR_HOST_DEVICE SharedTables(unsigned char* shared, const DecodeLayout& layout)
-      : symbols_(reinterpret_cast<std::uint32_t*>(shared + layout.symbols)),
-        starts_(shared + layout.starts),
-        levels_(shared + layout.levels) {}
+  static constexpr unsigned kSymbolBytes = kPackedTables * kPackedSymbols * 4;
+  static constexpr unsigned kBucketBytes = kPackedTables * kSymbolBuckets;
+  static constexpr unsigned kLevelBytes = (kLevelSums * 2 + 15) / 16 * 16;
+  static constexpr unsigned kBytes = kSymbolBytes + kBucketBytes + kLevelBytes;
+  static_assert(kBytes % 16 == 0);
 
+  WEIR_HOST_DEVICE explicit SharedTables(unsigned char* shared)
+      : symbols_(shared), buckets_(shared + kSymbolBytes), levels_(shared + kSymbolBytes + kBucketBytes) {}
+
+  /// Makes them.
   template <class Thread>
   WEIR_HOST_DEVICE void fill(const Thread& thread, const BlockScan& scan, const std::uint16_t* tables) {
-    for (unsigned i = thread.index(); i < kContexts * kPackedSymbols; i += thread.count()) {
+    for (unsigned i = thread.index(); i < kPackedTables * kPackedSymbols; i += thread.count()) {
       const std::uint32_t high = i % kPackedSymbols + 1 < kPackedSymbols ? tables[i + 1] : 1U << kFrequencyBits;
-      symbols_[i] = tables[i] | high << 16U;
+      reinterpret_cast<std::uint32_t*>(symbols_)[i] = tables[i] | (high - tables[i]) << 16U;
     }
-    for (unsigned i = thread.index(); i < kContexts * kSlots; i += thread.count()) {
-      const std::uint16_t* table = tables + i / kSlots * kPackedSymbols;
-      unsigned found = 0;
-      for (unsigned j = 1; j < kPackedSymbols; ++j) found += table[j] <= (i % kSlots) << kSlotShift ? 1U : 0U;
-      starts_[i] = static_cast<std::uint8_t>(found);
+    for (unsigned i = thread.index(); i < kPackedTables * kSymbolBuckets; i += thread.count()) {
+      buckets_[i] = bucket(tables + i / kSymbolBuckets * kPackedSymbols, (i % kSymbolBuckets) << kBucketShift);
     }
-    for (unsigned i = thread.index(); i < kLevelSums; i += thread.count()) levels_[i] = scan.level[i];
+    for (unsigned t = thread.index(); t < kLevelSums; t += thread.count()) {
+      reinterpret_cast<std::uint16_t*>(levels_)[t] =
+          static_cast<std::uint16_t>(scan.level[t] * kSymbolBuckets | extra_bits(t));
+    }
   }
 
-  WEIR_HOST_DEVICE unsigned level(std::uint32_t t) const { return t < kLevelSums ? levels_[t] : kPackedLevels - 1; }
+  /// Copies them.
+  template <class Thread>
+  WEIR_HOST_DEVICE void load(const Thread& thread, const unsigned char* from) {
+    for (unsigned i = thread.index(); i < kBytes / sizeof(Quad); i += thread.count()) {
+      reinterpret_cast<Quad*>(symbols_)[i] = reinterpret_cast<const Quad*>(from)[i];
+    }
+  }
 
-  WEIR_HOST_DEVICE unsigned symbol(std::uint32_t& x, unsigned context, StreamWords& words) const {
+  /// Level of neighbours whose sum is t, times kSymbolBuckets | extra_bits(t) where that sum is below kLevelSums.
+  WEIR_HOST_DEVICE std::uint32_t level(std::uint32_t t) const {
+    return reinterpret_cast<const std::uint16_t*>(levels_)[t < kLevelSums ? t : kLevelSums - 1];
+  }
+
+  /// `context` counts in buckets.
+  WEIR_HOST_DEVICE unsigned symbol(std::uint32_t& x, std::uint32_t context, StreamQueue& words) const {
     const std::uint32_t slot = x & ((1U << kFrequencyBits) - 1U);
-    unsigned found = starts_[context * kSlots + (slot >> kSlotShift)];
-    std::uint32_t bounds = symbols_[context * kPackedSymbols + found];
-    while (slot >= bounds >> 16U) bounds = symbols_[context * kPackedSymbols + ++found];
-    const std::uint32_t low = bounds & 0xFFFFU;
-    x = ((bounds >> 16U) - low) * (x >> kFrequencyBits) + slot - low;
+    const std::uint32_t bucket = buckets_[context + (slot >> kBucketShift)];
+    unsigned found = (bucket >> 4U) - ((x & 15U) < (bucket & 15U) ? 1U : 0U);
+    const unsigned char* symbols = symbols_ + (context >> 2U);
+    std::uint32_t symbol = *reinterpret_cast<const std::uint32_t*>(symbols + 4 * found);
+    std::uint32_t above = slot - (symbol & 0xFFFFU);
+    if (above >= symbol >> 16U) [[unlikely]] {
+      WEIR_NO_UNROLL
+      do {
+        symbol = *reinterpret_cast<const std::uint32_t*>(symbols + 4 * ++found);
+        above = slot - (symbol & 0xFFFFU);
+      } while (above >= symbol >> 16U);
+    }
+    x = (symbol >> 16U) * (x >> kFrequencyBits) + above;
     words.renormalise(x);
     return found;
   }
 
  private:
-  std::uint32_t* symbols_;
-  unsigned char* starts_;
+  static_assert(kSymbolBuckets == 4 * kPackedSymbols * 4);
+
+  // Where a symbol begins inside the bucket, that symbol << 4 | the slots before it; else the bucket's symbol << 4.
+  WEIR_HOST_DEVICE static unsigned char bucket(const std::uint16_t* table, std::uint32_t first) {
+    unsigned found = 0;
+    for (unsigned j = 1; j < kPackedSymbols; ++j) found += table[j] <= first ? 1U : 0U;
+    if (found + 1 < kPackedSymbols && table[found + 1] < first + (1U << kBucketShift)) {
+      return static_cast<unsigned char>((found + 1) << 4U | (table[found + 1] - first));
+    }
+    return static_cast<unsigned char>(found << 4U);
+  }
+
+  unsigned char* symbols_;
+  unsigned char* buckets_;
   unsigned char* levels_;
 };
 
-}  // namespace decode_detail
-
-}  // namespace weir
+}  // namespace weir::decode_detail

@@ -1,0 +1,51 @@
+// A stream for work beside another stream's.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <utility>
+
+#include "gpu/cuda/runtime/check.h"
+
+namespace weir {
+
+class SideStream {
+ public:
+  SideStream() {
+    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
+    check_cuda(cudaEventCreateWithFlags(&begin_, cudaEventDisableTiming), "making an event");
+    check_cuda(cudaEventCreateWithFlags(&end_, cudaEventDisableTiming), "making an event");
+  }
+  ~SideStream() {
+    if (stream_ == nullptr) return;
+    cudaEventDestroy(begin_);
+    cudaEventDestroy(end_);
+    cudaStreamDestroy(stream_);
+  }
+  SideStream(SideStream&& other) noexcept
+      : stream_(std::exchange(other.stream_, nullptr)), begin_(other.begin_), end_(other.end_) {}
+  SideStream& operator=(SideStream&& other) noexcept {
+    std::swap(stream_, other.stream_);
+    std::swap(begin_, other.begin_);
+    std::swap(end_, other.end_);
+    return *this;
+  }
+
+  cudaStream_t get() const { return stream_; }
+  /// What it is given from now on waits for what `other` was given so far.
+  void leave(cudaStream_t other) const { order(other, begin_, stream_); }
+  /// And what `other` is given from now on waits for what this one was given so far.
+  void join(cudaStream_t other) const { order(stream_, end_, other); }
+
+ private:
+  static void order(cudaStream_t first, cudaEvent_t event, cudaStream_t second) {
+    check_cuda(cudaEventRecord(event, first), "recording an event");
+    check_cuda(cudaStreamWaitEvent(second, event, 0), "waiting for an event");
+  }
+
+  cudaStream_t stream_ = nullptr;
+  cudaEvent_t begin_ = nullptr;
+  cudaEvent_t end_ = nullptr;
+};
+
+}  // namespace weir
