@@ -3,9 +3,9 @@
 # a dense texture, and whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
-#     --bin    a folder with weir, weir_tests_cuda and weir_bench_load, _decode and _frames; default: build/release, built
+#     --bin    a folder with weir, weir_tests_cuda and weir_bench_{load,decode,frames,paging}; default: build/release, built
 #     --edge   of the largest cloud, default 2048
-#     STEP     checks, load, decode, frames, pictures, largest; default: all of them
+#     STEP     checks, load, decode, frames, paging, pictures, largest; default: all of them
 #
 # Exit code 1 where a check fails, or loading is below 0.8 of the device's rate.
 set -euo pipefail
@@ -20,17 +20,17 @@ while [[ ${1:-} == --* ]]; do
   esac
   shift 2
 done
-[ $# -gt 0 ] || set -- checks load decode frames pictures largest
+[ $# -gt 0 ] || set -- checks load decode frames paging pictures largest
 for step; do
   case $step in
-    checks | load | decode | frames | pictures | largest) ;;
+    checks | load | decode | frames | paging | pictures | largest) ;;
     *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
   esac
 done
 if [ -z "$bin" ]; then
-  tools/build.sh release weir weir_tests_cuda weir_bench_load weir_bench_decode weir_bench_frames
+  tools/build.sh release weir weir_tests_cuda weir_bench_{load,decode,frames,paging}
   mkdir -p build/gpu
-  for name in weir weir_tests_cuda bench/weir_bench_load bench/weir_bench_decode bench/weir_bench_frames; do
+  for name in weir weir_tests_cuda bench/weir_bench_{load,decode,frames,paging}; do
     ln -sf "../release/$name" "build/gpu/${name##*/}"
   done
   bin=build/gpu
@@ -48,23 +48,27 @@ volume() {
   quiet "$bin/weir" convert "$name.raw" --dims "$dims" --type float32 --memory 8GiB --encoding "$3" "${@:4}" \
     -o "$name.$3.nvdb"
 }
-# table KIND EDGE ARGUMENTS...: frames a second of KINDEDGE.float.nvdb and .fpn.nvdb.
+# table KIND EDGE ARGUMENTS...: frames a second of KINDEDGE.float.nvdb, .fpn.nvdb and .packed.nvdb.
 table() {
   local name=$work/$1$2
   echo "== $1 $2"
-  "$bin/weir_bench_frames" "$name.raw" "$2,$2,$2" "$name.float.nvdb" "$name.fpn.nvdb" "${@:3}" || failed=1
+  "$bin/weir_bench_frames" "$name.raw" "$2,$2,$2" "$name.float.nvdb" "$name.fpn.nvdb" "$name.packed.nvdb" "${@:3}" ||
+    failed=1
   rm "$name".*
 }
-# An eighth of the dense size.
+# An eighth of the dense size; packed, a twentieth.
 cloud() {
   volume cloud "$1" float --rate 8
   volume cloud "$1" fpn --rate 8
+  volume cloud "$1" packed --rate 20
   table cloud "$@"
 }
-# Files that keep all leaves, since noise without some of them is another picture; quantised with 8 to 16 bits.
+# Files that keep all leaves, since noise without some of them is another picture; quantised with 8 to 16 bits, and packed
+# with 16.
 noise() {
   volume noise "$1" float --lossless
   volume noise "$1" fpn --rate 1.9
+  volume noise "$1" packed --rate 2
   table noise "$@"
 }
 # picture NAME ARGUMENTS: a line with the seconds of a picture of 1024 x 1024 pixels.
@@ -81,10 +85,10 @@ checks() {
   timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_repeat=30 --gtest_break_on_failure \
     --gtest_filter='GridLoader.Every*:GridLoader.Reuses*:GridLoader.Stops*' >"$work/log" || { tail "$work/log"; failed=1; }
   command -v compute-sanitizer >/dev/null || return 0
-  for tool in memcheck racecheck; do
+  for tool in memcheck racecheck synccheck; do
     echo "compute-sanitizer $tool"
     timeout 300 compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
-      --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*' |
+      --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*:BlockDecoderTest.*:BrickVolumeTest.ASmall*' |
       tail -n 3 || failed=1
   done
 }
@@ -123,6 +127,14 @@ frames() {
   noise 1024
 }
 
+paging() {
+  volume cloud 1024 packed --rate 20
+  for mode in path dvr iso mip; do
+    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 || failed=1
+  done
+  rm "$work"/*
+}
+
 pictures() {
   volume cloud 1024 float --rate 8
   # A Radiance picture of 16 x 8 pixels: a sky, and in one of them a sun 2^10 times as bright.
@@ -153,6 +165,7 @@ for step; do
     load) load ;;
     decode) decode ;;
     frames) frames ;;
+    paging) paging ;;
     pictures) pictures ;;
     largest) cloud "$edge" ;;
   esac

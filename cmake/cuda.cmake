@@ -62,7 +62,7 @@ if(CMAKE_CUDA_COMPILER)
   endif()
   if(WEIR_BUILD_BENCH AND NOT WEIR_EMBED)
     # As few shared libraries as it uses: it runs on machines that have a device and little else.
-    foreach(name load frames decode)
+    foreach(name load frames decode paging)
       add_executable(weir_bench_${name} ${PROJECT_SOURCE_DIR}/bench/gpu/bench_${name}.cpp)
       target_link_options(weir_bench_${name} PRIVATE -Wl,--as-needed)
       target_link_libraries(weir_bench_${name} PRIVATE weir_cuda_backend weir_format)

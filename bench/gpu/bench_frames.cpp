@@ -19,10 +19,12 @@
 #include "format/io/file_mapping.h"
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "gpu/cuda/render/brick_volume.h"
+#include "gpu/cuda/render/device_volume.h"
 #include "gpu/cuda/render/render_kernel.h"
 #include "gpu/cuda/volume/dense_texture.h"
+#include "gpu/cuda/volume/device_memory.h"
 #include "gpu/cuda/volume/device_samplers.h"
-#include "gpu/cuda/volume/device_volume.h"
 #include "gpu/image/image_output.h"
 #include "gpu/render/render_setup.h"
 
@@ -205,14 +207,19 @@ class Bench {
   Image first_;
 };
 
+void run_bricks(Bench& bench, const std::string& name, BrickCache& bricks) {
+  bench.run(name + " trilinear bricks", bricks.sampler<Filter::trilinear>(), bricks.bytes());
+  bench.run(name + " stochastic bricks", bricks.sampler<Filter::stochastic>(), bricks.bytes());
+}
+
 void run_file(Bench& bench, const std::string& name, DeviceVolume& volume) {
   const std::uint64_t bytes = volume.bytes().bytes();
   volume.with_table([&]<class Block>(const BlockTable<Block>& table) {
     bench.run(name + " stochastic", TableSampler<Block, Filter::stochastic>{table}, bytes);
     bench.run(name + " trilinear table", TableSampler<Block, Filter::trilinear>{table}, bytes);
   });
-  if (const BrickAtlas* atlas = volume.atlas()) {
-    bench.run(name + " trilinear atlas", atlas->sampler(), atlas->bytes());
+  if (BrickCache* atlas = volume.atlas()) {
+    run_bricks(bench, name, *atlas);
   } else {
     std::printf("%s\n", volume.atlas_refusal().c_str());
   }
@@ -221,15 +228,25 @@ void run_file(Bench& bench, const std::string& name, DeviceVolume& volume) {
 void run(const Options& options) {
   use_device(0);
   std::vector<std::unique_ptr<NvdbFile>> files;
-  std::vector<std::unique_ptr<DeviceVolume>> volumes;
+  std::vector<std::unique_ptr<DeviceVolume>> volumes;  // null where packed
+  std::vector<std::unique_ptr<BrickVolume>> packed;    // null where not
   for (const std::string& path : options.files) {
     files.push_back(std::make_unique<NvdbFile>(path));
     const NvdbGrid& grid = files.back()->grid();
-    DeviceGrid loaded = load_grid(*files.back(), {});
+    LoadOptions how;
+    how.packed = true;
+    DeviceGrid loaded = load_grid(*files.back(), {}, how);
     const LoadReport report = loaded.report();
     const MacrocellGrid cells(grid, 32);
-    volumes.push_back(std::make_unique<DeviceVolume>(grid, GridBytes(std::move(loaded)),
-                                                     make_lattice(grid.index_bbox(), 32), cells.bounds()));
+    if (grid.packed() != nullptr) {
+      volumes.push_back(nullptr);
+      packed.push_back(std::make_unique<BrickVolume>(grid, GridBytes(std::move(loaded)), cells.bounds(),
+                                                     free_device_bytes(0) - kSpareDeviceBytes));
+    } else {
+      packed.push_back(nullptr);
+      volumes.push_back(std::make_unique<DeviceVolume>(grid, GridBytes(std::move(loaded)),
+                                                       make_lattice(grid.index_bbox(), 32), cells.bounds()));
+    }
     std::printf("%s: %s, %.2f GB, %s, %.1f GB/s\n", path.c_str(), std::string(grid_type_name(grid.type())).c_str(),
                 static_cast<double>(report.bytes) / 1e9, std::string(load_path_name(report.path)).c_str(),
                 report.gb_per_s());
@@ -243,7 +260,11 @@ void run(const Options& options) {
     bench.use_cells(edge);
     bench.run("dense texture", TextureSampler{dense.object()}, dense.bytes());
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-      run_file(bench, std::string(grid_type_name(files[i]->grid().type())), *volumes[i]);
+      if (packed[i]) {
+        run_bricks(bench, "packed", packed[i]->cache());
+      } else {
+        run_file(bench, std::string(grid_type_name(files[i]->grid().type())), *volumes[i]);
+      }
     }
     bench.time_transfer_change();
   }

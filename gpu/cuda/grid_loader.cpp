@@ -88,7 +88,7 @@ std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads)
 }
 
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options, cudaStream_t stream) {
-  require_stored_voxels(file);
+  if (!options.packed) require_stored_voxels(file);
   CopyTask task{file.mapping(), file.grid().grid_offset(), file.grid().data_bytes()};
   check_cuda(cudaGetDevice(&task.device), "asking for the current device");
   const LoadStream own(stream);

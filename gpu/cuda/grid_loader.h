@@ -39,6 +39,8 @@ struct LoadOptions {
   /// device. The file's own pages are locked, all of them; where that is refused, or a foreign file has its grid at an
   /// offset that is no multiple of 32, a copy in page-locked memory serves (reported as pinned_ring).
   bool zero_copy = false;
+  /// A packed grid too, whose voxels are not in its tree: the caller decodes its blocks (packed/block_decoder.h).
+  bool packed = false;
   const std::atomic<bool>* cancel = nullptr;  ///< looked at before every chunk
 };
 
@@ -77,7 +79,7 @@ class DeviceGrid {
 ///
 /// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and
 /// never a signal; a write through another mapping of it may go unnoticed, and the grid is then no longer the one that
-/// was validated. Throws Error(input) for a packed grid, Error(io) where the device has no room or fails,
+/// was validated. Throws Error(input) for a packed grid unless options.packed, Error(io) where the device has no room or fails,
 /// Error(interrupted).
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options = {},
                      cudaStream_t stream = nullptr);

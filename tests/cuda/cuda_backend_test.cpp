@@ -11,9 +11,9 @@
 #include <regex>
 
 #include "format/base/error.h"
+#include "gpu/cuda/render/device_volume.h"
 #include "gpu/cuda/runtime/check.h"
 #include "gpu/cuda/volume/device_memory.h"
-#include "gpu/cuda/volume/device_volume.h"
 #include "tests/cuda/support/device_reads.h"
 #include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "gpu/cuda/volume/brick_atlas.h"
+#include "gpu/cuda/bricks/table_source.h"
 #include "gpu/cuda/volume/device_macrocells.h"
 #include "tests/cuda/support/device_reads.h"
 #include "tests/stock/test_grid.h"
@@ -111,8 +111,10 @@ TEST_P(DeviceTableOfType, TheAtlasFiltersToEightBits) {
   const TestGrid volume = grid();
   const LeafTable host(volume.grid());
   const std::vector<Float3> at = positions(volume.grid());
-  const std::vector<float> values =
-      with_table(volume.grid(), [&](const auto& table) { return test::read_smooth(BrickAtlas(table, 0), at); });
+  const std::vector<float> values = with_table(volume.grid(), [&]<class Block>(const BlockTable<Block>& table) {
+    BrickCache bricks(std::make_unique<TableSource<Block>>(volume.grid(), table), 512U << 20U, 0, BricksKept::all);
+    return test::read_smooth(bricks, Filter::trilinear, at);
+  });
   const VolumeSampler expected{host.view(), Filter::trilinear};
   const float step = 6;
   for (std::size_t i = 0; i < at.size(); ++i) {

@@ -1,6 +1,7 @@
 // What the loader does when the runtime refuses or fails in the middle, on the pretended device.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "gpu/cuda/grid_loader.h"
 #include "tests/cuda/support/grid_file.h"
 #include "tests/fake_cuda/fake_runtime.h"
+#include "tests/support/packed_grid.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::grid_loader_fault_test {
@@ -166,6 +168,29 @@ TEST_F(GridLoaderFault, KeepsTheRingForTheNextLoad) {
   grid = load_grid(grid_file, std::move(grid).take_buffer(), options);
   EXPECT_EQ(runtime().calls("cudaHostAlloc"), 1U);
   EXPECT_EQ(runtime().calls("cudaMallocAsync"), 1U);
+}
+
+TEST_F(GridLoaderFault, APackedGridIsForThoseWhoDecodeIt) {
+  test::PackedGridOptions options;
+  options.domain = {{0, 0, 0}, {32, 16, 16}};
+  options.stream = [](const Index3&) { return test::constant_stream(2); };
+  const std::string path = directory_ / "packed.nvdb";
+  const test::PackedBytes bytes = test::PackedGridBuilder::build(options).file;
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const NvdbFile packed(path);
+  try {
+    load_grid(packed, {}, kOptions);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_EQ(error.what(), path +
+                                ": is packed; the CUDA loader reads float, Fp4, Fp8, Fp16 and FpN grids; convert it "
+                                "with --encoding float");
+  }
+  LoadOptions decoding = kOptions;
+  decoding.packed = true;
+  EXPECT_TRUE(holds(load_grid(packed, {}, decoding), packed));
 }
 
 }  // namespace

@@ -10,8 +10,10 @@ namespace weir {
 
 std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
 #ifdef WEIR_HAVE_CUDA
-  if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0))
-    return make_cuda_backend({.devices = choice.devices, .load = {}});
+  if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0)) {
+    return make_cuda_backend(
+        {.devices = choice.devices, .load = {}, .memory = choice.device_memory, .volumes = choice.memory.volumes});
+  }
 #else
   if (choice.name == "cuda") {
     throw Error(ErrorKind::usage, compose(option("backend", "cuda"), ": this build has no CUDA renderer; use ",

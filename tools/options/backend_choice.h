@@ -1,7 +1,9 @@
-// Which back end a picture is made with: --backend, --devices, --threads and --memory.
+// Which back end a picture is made with: --backend, --devices, --threads, --memory and --device-memory.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,8 @@ struct BackendChoice {
   std::string name;          ///< "auto": CUDA where there is a device, else the CPU; "cuda", "cpu"
   std::vector<int> devices;  ///< of CUDA
   int threads = 0;           ///< of the CPU; 0: all of the machine's
-  VoxelMemory memory = {};   ///< of the CPU
+  VoxelMemory memory = {};   ///< of the CPU; how many volumes are held, of both
+  std::optional<std::uint64_t> device_memory = std::nullopt;  ///< of each CUDA device, bytes
 };
 
 /// Throws Error(usage) for "cuda" where this build or this machine has none.

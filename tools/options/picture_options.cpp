@@ -101,10 +101,10 @@ void read_devices(const OptionRow& row, const std::string& text, Request& reques
   request.backend.devices = devices;
 }
 
-void read_memory_ceiling(const OptionRow& row, const std::string& text, Request& request) {
+std::uint64_t read_bytes(const OptionRow& row, const std::string& text) {
   const std::optional<std::uint64_t> bytes = parse_bytes(text);
   if (!bytes || *bytes == 0) throw wrong_option(row.key, text, "a size above 0, like 512MiB");
-  request.backend.memory.ceiling = *bytes;
+  return *bytes;
 }
 
 // Enough that a default picture is clean; the other modes only have edges to smooth.
@@ -186,7 +186,19 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
       .standard = "what is available",
       .help = "of the CPU, for tables, macrocells and decoded blocks: a packed file that decodes to more is rendered "
               "from a cache, the same picture more slowly"},
-     read_memory_ceiling},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.backend.memory.ceiling = read_bytes(row, text);
+     }},
+    {{.key = "device-memory",
+      .argument = "SIZE",
+      .unit = "bytes",
+      .standard = "what is free",
+      .help =
+          "of each CUDA device, for the volume: one that takes more is rendered from a cache, the same picture more "
+          "slowly"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.backend.device_memory = read_bytes(row, text);
+     }},
 };
 
 }  // namespace

@@ -9,13 +9,15 @@
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "gpu/cuda/render/brick_volume.h"
+#include "gpu/cuda/render/device_volume.h"
 #include "gpu/cuda/render/render_kernel.h"
+#include "gpu/cuda/render/trace_paged.h"
 #include "gpu/cuda/runtime/check.h"
 #include "gpu/cuda/volume/dense_texture.h"
 #include "gpu/cuda/volume/device_environment.h"
 #include "gpu/cuda/volume/device_memory.h"
 #include "gpu/cuda/volume/device_samplers.h"
-#include "gpu/cuda/volume/device_volume.h"
 
 namespace weir {
 
@@ -23,17 +25,41 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLaunchSeconds = 0.05;  // how long one launch may keep a cancellation waiting, roughly
+std::uint64_t block_count(const NvdbGrid& grid) {
+  return static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
+}
 
-/// Why a grid cannot lie on the current device, of which `held` bytes are kept for it already; "" where it can.
-std::string reason_for_zero_copy(const NvdbGrid& grid, std::uint64_t held) {
-  const auto blocks = static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
-  const std::uint64_t table = blocks * (grid.type() == GridType::float32 ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
-  const std::uint64_t needed = grid.data_bytes() + table + kSpareDeviceBytes;
-  const std::uint64_t there = free_device_bytes(needed > held ? needed - held : 0) + held;
-  if (needed <= there) return "";
-  return cat("the grid needs ", format_bytes(needed), " of device memory and ", format_bytes(there),
-             " are free, so it stays in host memory");
+/// What a grid takes of a device that has room, apart from an atlas.
+std::uint64_t bytes_needed(const NvdbGrid& grid) {
+  // Of a packed grid's streams and its bricks, the bricks are what is looked up.
+  if (grid.packed() != nullptr) return 2 * grid.data_bytes();
+  const bool floats = grid.type() == GridType::float32;
+  return grid.data_bytes() + block_count(grid) * (floats ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
+}
+
+/// What a grid may take of a device.
+struct DeviceRoom {
+  std::uint64_t bytes = 0;
+  std::uint64_t free = 0;  ///< of the device, all in all
+  bool limited = false;    ///< by what the caller asked for
+};
+
+/// Why a grid cannot lie on the current device; "" where it can.
+std::string reason_for_zero_copy(const NvdbGrid& grid, const DeviceRoom& room) {
+  const std::uint64_t needed = bytes_needed(grid);
+  if (needed <= room.bytes) return "";
+  if (room.limited) {
+    return compose("the grid needs ", format_bytes(needed), " of device memory, more than ",
+                   option("device-memory", format_bytes(room.bytes)), ", so it stays in host memory")
+        .text();
+  }
+  return cat("the grid needs ", format_bytes(needed + kSpareDeviceBytes), " of device memory and ",
+             format_bytes(room.free), " are free, so it stays in host memory");
+}
+
+/// A tenth of it bricks at least, beside the table.
+bool worth_bricks(const NvdbGrid& grid, std::uint64_t memory) {
+  return grid.packed() != nullptr || memory >= grid.data_bytes() / 10;
 }
 
 /// A file's grid, or a dense volume, on every device of the back end, in its order.
@@ -46,6 +72,13 @@ class CudaVolume : public LoadedVolume {
         cells_(std::move(cells)),
         info_(volume_info(file_->grid(), cells_)),
         summary_(std::move(summary)) {}
+  CudaVolume(std::shared_ptr<const NvdbFile> file, std::vector<std::unique_ptr<BrickVolume>> bricks,
+             MacrocellGrid cells, LoadSummary summary)
+      : file_(std::move(file)),
+        bricks_(std::move(bricks)),
+        cells_(std::move(cells)),
+        info_(volume_info(file_->grid(), cells_)),
+        summary_(std::move(summary)) {}
   CudaVolume(const VolumeInfo& info, std::vector<std::unique_ptr<DenseTexture>> textures, MacrocellGrid cells,
              LoadSummary summary)
       : textures_(std::move(textures)), cells_(std::move(cells)), info_(info), summary_(std::move(summary)) {}
@@ -54,12 +87,15 @@ class CudaVolume : public LoadedVolume {
   const LoadSummary& load_summary() const override { return summary_; }
   const MacrocellGrid& cells() const { return cells_; }
   bool dense() const { return !textures_.empty(); }
+  bool in_bricks() const { return !bricks_.empty(); }
+  BrickVolume& bricks(std::size_t i) { return *bricks_[i]; }
   DeviceVolume& grid(std::size_t i) { return *grids_[i]; }
   DenseTexture& texture(std::size_t i) { return *textures_[i]; }
 
  private:
   std::shared_ptr<const NvdbFile> file_;  ///< kept: a zero-copy grid lies in its mapping
   std::vector<std::unique_ptr<DeviceVolume>> grids_;
+  std::vector<std::unique_ptr<BrickVolume>> bricks_;
   std::vector<std::unique_ptr<DenseTexture>> textures_;
   MacrocellGrid cells_;
   VolumeInfo info_;
@@ -75,8 +111,8 @@ struct Share {
 
 /// Samples in turns that grow until one takes kLaunchSeconds; `launch` starts [first, last) on the default stream.
 template <class Launch>
-void trace(const Share& share, const std::atomic<bool>* cancel, const std::function<void(std::uint32_t)>& done,
-           const Launch& launch) {
+void trace(const Share& share, std::uint64_t pixels, const std::atomic<bool>* cancel,
+           const std::function<void(std::uint64_t)>& done, const Launch& launch) {
   std::uint32_t turn = 1;
   for (std::uint32_t first = share.first; first < share.last;) {
     if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) return;
@@ -85,7 +121,7 @@ void trace(const Share& share, const std::atomic<bool>* cancel, const std::funct
     launch(first, last);
     check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "rendering");
     if (seconds_since(start) < kLaunchSeconds / 2) turn = std::min(2 * turn, 1U << 16U);
-    done(last - first);
+    done(pixels * (last - first));
     first = last;
   }
 }
@@ -112,7 +148,8 @@ class CudaBackend : public Backend {
     use_device(options_.devices.front());
     DeviceBuffer buffer;
     if (auto* last = static_cast<CudaVolume*>(reuse.get()); last != nullptr && !last->dense()) {
-      buffer = std::move(last->grid(0)).take_bytes().take_buffer();
+      buffer = last->in_bricks() ? std::move(last->bricks(0)).take_bytes().take_buffer()
+                                 : std::move(last->grid(0)).take_bytes().take_buffer();
     }
     reuse.reset();
     // The file's macrocells are merged while the grid is on its way.
@@ -122,7 +159,9 @@ class CudaBackend : public Backend {
     }
     std::string note;
     LoadOptions how = options_.load;
-    if (!how.zero_copy) note = reason_for_zero_copy(grid, buffer.capacity());
+    how.packed = true;
+    const DeviceRoom room = room_for(grid, buffer.capacity());
+    if (!how.zero_copy) note = reason_for_zero_copy(grid, room);
     how.zero_copy = how.zero_copy || !note.empty();
     if (how.zero_copy && options_.devices.size() > 1) {
       throw Error(ErrorKind::usage,
@@ -134,6 +173,21 @@ class CudaBackend : public Backend {
     LoadSummary summary{cat(load_path_name(report.path), report.zero_copy ? ", zero-copy" : ""), report.bytes,
                         report.seconds, note};
 
+    if (grid.packed() != nullptr || (!note.empty() && worth_bricks(grid, room.bytes))) {
+      MacrocellGrid cells = merged.valid() ? merged.get() : MacrocellGrid(grid, edge);
+      std::vector<std::unique_ptr<BrickVolume>> bricks;
+      for (const int device : options_.devices) {
+        use_device(device);
+        GridBytes bytes = bricks.empty() ? GridBytes(std::move(loaded))
+                                         : GridBytes(bricks.front()->bytes(), options_.devices.front(), device);
+        bricks.push_back(std::make_unique<BrickVolume>(grid, std::move(bytes), cells.bounds(), room.bytes));
+      }
+      BrickCache& cache = bricks.front()->cache();
+      summary.note +=
+          cat(summary.note.empty() ? "" : "; ", cache.paged() ? "a cache of " : "all of ", cache.bricks(), " bricks, ",
+              format_bytes(cache.bytes()), cache.paged() ? "" : ", ", cache.paged() ? "" : cache.texels_note());
+      return std::make_unique<CudaVolume>(std::move(file), std::move(bricks), std::move(cells), std::move(summary));
+    }
     const NodeLattice lattice = make_lattice(grid.index_bbox(), edge);
     std::vector<MinMax> bounds;  // none: the first device gathers them
     if (merged.valid()) bounds = merged.get().bounds();
@@ -169,11 +223,10 @@ class CudaBackend : public Backend {
     const auto start = Clock::now();
     std::mutex reporting;
     std::uint64_t samples_done = 0;
-    const std::uint64_t pixels = static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height);
-    const auto done = [&](std::uint32_t samples) {
+    const auto done = [&](std::uint64_t samples) {
       const std::lock_guard lock(reporting);
       samples_done += samples;
-      if (sampling.progress) sampling.progress(samples_done * pixels);
+      if (sampling.progress) sampling.progress(samples_done);
     };
 
     // Device i takes the i-th of as many stretches of samples.
@@ -204,9 +257,11 @@ class CudaBackend : public Backend {
  private:
   std::vector<Float3> render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup,
                                    const RenderOptions& options, const Share& share, const std::atomic<bool>* cancel,
-                                   const std::function<void(std::uint32_t)>& done) const {
+                                   const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
-    DeviceMacrocells& cells = volume.dense() ? volume.texture(i).cells : volume.grid(i).cells();
+    DeviceMacrocells& cells = volume.dense()       ? volume.texture(i).cells
+                              : volume.in_bricks() ? volume.bricks(i).cells()
+                                                   : volume.grid(i).cells();
     const DeviceTransfer transfer(setup.transfer_function());
     cells.update(transfer, cudaStreamPerThread);
     std::optional<DeviceEnvironment> environment;
@@ -214,29 +269,58 @@ class CudaBackend : public Backend {
     DeviceArray<Float3> sums(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
     check_cuda(cudaMemsetAsync(sums.data(), 0, sums.bytes(), cudaStreamPerThread), "clearing the picture");
 
-    const auto run = [&](const auto& sampler) {
+    const auto task_of = [&](const auto& sampler) {
       auto task = setup.bare_task(sampler);
       task.medium.transfer = transfer.bounds().transfer;
       task.medium.cell_opacity = cells.majorants();
       task.medium.cell_values = cells.bounds();
       if (environment) task.lighting.environment = environment->view();
-      trace(share, cancel, done, [&](std::uint32_t first, std::uint32_t last) {
+      return task;
+    };
+    const auto run = [&](const auto& sampler) {
+      const auto task = task_of(sampler);
+      trace(share, sums.size(), cancel, done, [&](std::uint32_t first, std::uint32_t last) {
         launch_render(task, first, last, sums.data(), cudaStreamPerThread);
       });
     };
     if (volume.dense()) {
       run(TextureSampler{volume.texture(i).texture.object(), options.filter == Filter::nearest});
+    } else if (volume.in_bricks()) {
+      BrickCache& cache = volume.bricks(i).cache();
+      with_filter(options.filter, [&]<Filter kFilter>() {
+        if (!cache.paged()) return run(cache.sampler<kFilter>());
+        trace_paged<kFilter>(cache, task_of, share.first, share.last, sums, cancel, done);
+      });
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
     return sums.download();
   }
 
+  // Calls use<Filter>() with one known when this is compiled.
+  template <class Use>
+  static void with_filter(Filter filter, const Use& use) {
+    if (filter == Filter::nearest) return use.template operator()<Filter::nearest>();
+    if (filter == Filter::stochastic) return use.template operator()<Filter::stochastic>();
+    return use.template operator()<Filter::trilinear>();
+  }
+
+  // For the grid on the current device, of which `held` bytes are kept for it already.
+  DeviceRoom room_for(const NvdbGrid& grid, std::uint64_t held) const {
+    if (options_.memory) return {*options_.memory / options_.volumes, 0, true};
+    const std::uint64_t bricks =
+        grid.packed() != nullptr ? block_count(grid) * (kBrickTexels * sizeof(float) + sizeof(BrickEntry)) : 0;
+    const std::uint64_t wanted = bytes_needed(grid) + bricks + kSpareDeviceBytes;
+    const std::uint64_t free = free_device_bytes(wanted > held ? wanted - held : 0) + held;
+    const std::uint64_t bytes = free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0;
+    return {grid.packed() != nullptr ? std::min(bytes, device_bytes() / options_.volumes) : bytes, free, false};
+  }
+
   template <class Run>
   void run_filter(DeviceVolume& volume, Filter filter, const Run& run) const {
     if (filter == Filter::trilinear && options_.atlas) {
-      if (const BrickAtlas* atlas = volume.atlas()) {
-        run(atlas->sampler());
+      if (BrickCache* atlas = volume.atlas()) {
+        run(atlas->sampler<Filter::trilinear>());
         return;
       }
     }

@@ -3,13 +3,10 @@
 
 #include "gpu/cuda/render/render_kernel.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/pixel_tile.h"
 #include "gpu/cuda/volume/device_samplers.h"
 
 namespace weir {
-
-/// Pixels of a block of threads: a warp is 8 x 4 pixels, whose rays stay together.
-inline constexpr unsigned kTileWidth = 8;
-inline constexpr unsigned kTileHeight = 16;
 
 /// Blocks of threads that a multiprocessor holds at once while it traces paths, which wait for memory most of the time:
 /// 64 registers a thread and some of them spilled do better than all of them and fewer threads.

@@ -2,4 +2,3 @@
 
 template void weir::launch_render(const RenderTask<TextureSampler>&, std::uint32_t, std::uint32_t, Float3*,
                                   cudaStream_t);
-template void weir::launch_render(const RenderTask<AtlasSampler>&, std::uint32_t, std::uint32_t, Float3*, cudaStream_t);

@@ -10,14 +10,15 @@
 
 namespace weir {
 
-Texture::Texture(const Int3& size) : size_(size) {
+Texture::Texture(const Int3& size, TexelType type) : size_(size), type_(type) {
   const std::string extent = cat(size.x, " x ", size.y, " x ", size.z);
   if (max_component({static_cast<float>(size.x), static_cast<float>(size.y), static_cast<float>(size.z)}) >
       kMaxTextureEdge) {
     throw Error(ErrorKind::input,
                 cat("a texture of ", extent, " voxels, at most ", kMaxTextureEdge, " an axis can be"));
   }
-  const cudaChannelFormatDesc format = cudaCreateChannelDesc<float>();
+  const cudaChannelFormatDesc format =
+      type == TexelType::float32 ? cudaCreateChannelDesc<float>() : cudaCreateChannelDesc<unsigned short>();
   const cudaExtent texels{static_cast<std::size_t>(size.x), static_cast<std::size_t>(size.y),
                           static_cast<std::size_t>(size.z)};
   check_cuda(cudaMalloc3DArray(&array_, &format, texels, cudaArraySurfaceLoadStore),
@@ -28,7 +29,7 @@ Texture::Texture(const Int3& size) : size_(size) {
   cudaTextureDesc how{};
   for (cudaTextureAddressMode& mode : how.addressMode) mode = cudaAddressModeClamp;
   how.filterMode = cudaFilterModeLinear;
-  how.readMode = cudaReadModeElementType;
+  how.readMode = type == TexelType::float32 ? cudaReadModeElementType : cudaReadModeNormalizedFloat;
   check_cuda(cudaCreateTextureObject(&texture_, &resource, &how, nullptr), "making a texture");
   check_cuda(cudaCreateSurfaceObject(&surface_, &resource), "making a surface");
 }
@@ -43,6 +44,7 @@ Texture::Texture(Texture&& other) noexcept { *this = std::move(other); }
 
 Texture& Texture::operator=(Texture&& other) noexcept {
   std::swap(size_, other.size_);
+  std::swap(type_, other.type_);
   std::swap(array_, other.array_);
   std::swap(texture_, other.texture_);
   std::swap(surface_, other.surface_);
@@ -51,7 +53,7 @@ Texture& Texture::operator=(Texture&& other) noexcept {
 
 std::uint64_t Texture::bytes() const {
   return static_cast<std::uint64_t>(size_.x) * static_cast<std::uint64_t>(size_.y) *
-         static_cast<std::uint64_t>(size_.z) * sizeof(float);
+         static_cast<std::uint64_t>(size_.z) * texel_bytes(type_);
 }
 
 void Texture::upload(const float* planes, std::int32_t z, std::int32_t depth) {

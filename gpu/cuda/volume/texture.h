@@ -1,4 +1,4 @@
-// A 3-D array of floats on the device, read through the texture unit and written
+// A 3-D array of texels on the device, read through the texture unit and written
 // as a surface. Owns both.
 #pragma once
 
@@ -13,12 +13,17 @@ namespace weir {
 /// Texels along an axis of a 3-D texture, on every device since compute capability 5.0.
 inline constexpr std::int32_t kMaxTextureEdge = 16384;
 
+/// Floats, or 16 bits that are read as a share of the largest, in [0, 1].
+enum class TexelType { float32, share16 };
+
+constexpr std::uint64_t texel_bytes(TexelType type) { return type == TexelType::float32 ? 4 : 2; }
+
 class Texture {
  public:
   Texture() = default;
-  /// size.x * size.y * size.z floats, uninitialised; read trilinear, unnormalised coordinates, clamped to the edge.
+  /// size.x * size.y * size.z texels, uninitialised; read trilinear, unnormalised coordinates, clamped to the edge.
   /// Throws Error(io) where the device has no room, Error(input) where it has no textures that large.
-  explicit Texture(const Int3& size);
+  explicit Texture(const Int3& size, TexelType type = TexelType::float32);
   ~Texture();
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;
@@ -26,11 +31,12 @@ class Texture {
   cudaTextureObject_t object() const { return texture_; }
   cudaSurfaceObject_t surface() const { return surface_; }
   std::uint64_t bytes() const;
-  /// Planes [z, z + depth) from dense host memory, x fastest.
+  /// Planes [z, z + depth) of floats from dense host memory, x fastest.
   void upload(const float* planes, std::int32_t z, std::int32_t depth);
 
  private:
   Int3 size_;
+  TexelType type_ = TexelType::float32;
   cudaArray_t array_ = nullptr;
   cudaTextureObject_t texture_ = 0;
   cudaSurfaceObject_t surface_ = 0;

@@ -74,8 +74,13 @@ std::vector<float> read_smooth(const BlockTable<Block>& table, Filter filter, co
   return smooth(TableSampler<Block, Filter::trilinear>{table}, positions);
 }
 
-std::vector<float> read_smooth(const BrickAtlas& atlas, const std::vector<Float3>& positions) {
-  return smooth(atlas.sampler(), positions);
+std::vector<float> read_smooth(BrickCache& bricks, Filter filter, const std::vector<Float3>& positions) {
+  if (filter == Filter::nearest) return smooth(bricks.sampler<Filter::nearest>(), positions);
+  return smooth(bricks.sampler<Filter::trilinear>(), positions);
+}
+
+std::vector<float> read_stochastic(BrickCache& bricks, const std::vector<Float3>& positions, int draws) {
+  return mean(bricks.sampler<Filter::stochastic>(), positions, draws);
 }
 
 template <class Block>

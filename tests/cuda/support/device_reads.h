@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gpu/cuda/volume/brick_atlas.h"
+#include "gpu/cuda/bricks/brick_cache.h"
 #include "gpu/cuda/volume/device_table.h"
 #include "gpu/volume/volume_sampler.h"
 
@@ -16,10 +16,12 @@ std::vector<float> read_voxels(const BlockTable<Block>& table);
 /// `smooth` at each position, nearest or trilinear.
 template <class Block>
 std::vector<float> read_smooth(const BlockTable<Block>& table, Filter filter, const std::vector<Float3>& positions);
-std::vector<float> read_smooth(const BrickAtlas& atlas, const std::vector<Float3>& positions);
+/// Of a cache that holds all bricks.
+std::vector<float> read_smooth(BrickCache& bricks, Filter filter, const std::vector<Float3>& positions);
 /// The mean of `draws` stochastic samples at each position.
 template <class Block>
 std::vector<float> read_stochastic(const BlockTable<Block>& table, const std::vector<Float3>& positions, int draws);
+std::vector<float> read_stochastic(BrickCache& bricks, const std::vector<Float3>& positions, int draws);
 
 }  // namespace weir::test
 

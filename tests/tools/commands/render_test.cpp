@@ -119,8 +119,10 @@ TEST_F(Render, Refusals) {
   expect_refused(arguments("a.png", {"--threads", "-1"}), 2,
                  "--threads is \"-1\", it must be a whole number from 0 to 4096");
   for (const std::string memory : {"0", "-1", "much"}) {
-    expect_refused(arguments("a.png", {"--memory=" + memory}), 2,
-                   "--memory is \"" + memory + "\", it must be a size above 0, like 512MiB");
+    for (const std::string option : {"--memory", "--device-memory"}) {
+      expect_refused(arguments("a.png", {option + "=" + memory}), 2,
+                     option + " is \"" + memory + "\", it must be a size above 0, like 512MiB");
+    }
   }
   expect_refused(arguments("a.png", {"--seed", "1.5"}), 2,
                  "--seed is \"1.5\", it must be a whole number from 0 to 9223372036854775807");

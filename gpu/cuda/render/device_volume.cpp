@@ -1,19 +1,14 @@
-#include "gpu/cuda/volume/device_volume.h"
+#include "gpu/cuda/render/device_volume.h"
 
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include "format/base/error.h"
+#include "gpu/cuda/bricks/table_source.h"
+#include "gpu/cuda/volume/device_memory.h"
 
 namespace weir {
-
-GridBytes::GridBytes(const GridBytes& other, int other_device, int device) : copy_(other.bytes()) {
-  check_cuda(cudaMemcpyPeer(copy_.data(), device, other.data(), other_device, other.bytes()),
-             "copying a grid to another device");
-}
-
-DeviceBuffer GridBytes::take_buffer() && {
-  return loaded_ ? std::move(*std::exchange(loaded_, std::nullopt)).take_buffer() : DeviceBuffer{};
-}
 
 namespace {
 
@@ -26,17 +21,22 @@ std::variant<DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> make_table(co
 }  // namespace
 
 DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells)
-    : bytes_(std::move(bytes)),
+    : grid_(grid),
+      bytes_(std::move(bytes)),
       table_(make_table(grid, bytes_.data())),
       host_cells_(cells.empty()
                       ? with_table([&](const auto& table) { return gather_macrocells(table, cell_lattice(lattice)); })
                       : std::move(cells)),
       cells_(host_cells_) {}
 
-const BrickAtlas* DeviceVolume::atlas() {
+BrickCache* DeviceVolume::atlas() {
   if (!atlas_ && atlas_refusal_.empty()) {
     try {
-      atlas_.emplace(with_table([](const auto& table) { return BrickAtlas(table, kSpareDeviceBytes); }));
+      const std::uint64_t free = free_device_bytes(std::numeric_limits<std::uint64_t>::max());
+      atlas_.emplace(with_table([&]<class Block>(const BlockTable<Block>& table) {
+                       return std::unique_ptr<BlockSource>(std::make_unique<TableSource<Block>>(grid_, table));
+                     }),
+                     free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0, 0, BricksKept::all);
     } catch (const Error& error) {
       atlas_refusal_ = error.what();
     }

@@ -1,0 +1,179 @@
+#include "gpu/cuda/bricks/brick_cache.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "format/base/error.h"
+#include "format/base/message.h"
+#include "format/base/text.h"
+#include "gpu/cuda/bricks/brick_pager.h"
+#include "gpu/cuda/bricks/brick_texels.h"
+#include "gpu/cuda/bricks/device_machine.cuh"
+
+namespace weir {
+
+namespace {
+
+constexpr std::uint64_t kPageBytes = kRegionBlocks * sizeof(BrickEntry);
+constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t);
+// Of a block decoded with others: its values, and its share of the table of numbers.
+constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
+constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
+constexpr std::uint32_t kLeastBlocks = 1U << 10U;
+constexpr std::uint32_t kMostRequests = 1U << 18U;
+constexpr std::uint32_t kLeastSlots = 1U << 12U;  // some tens for each ray of a tile
+
+template <class Texel>
+using DevicePager = BrickPager<DeviceMachine, SurfaceTexels<Texel>>;
+
+}  // namespace
+
+/// Of either kind of texels.
+class BrickCache::Pager {
+ public:
+  Pager(TexelType type, BlockSource& source, const BrickPlan& plan, cudaSurfaceObject_t surface) {
+    if (type == TexelType::share16) {
+      words_.emplace(DeviceMachine{}, source, plan, SurfaceTexels<unsigned short>{surface});
+    } else {
+      floats_.emplace(DeviceMachine{}, source, plan, SurfaceTexels<float>{surface});
+    }
+  }
+
+  template <class Use>
+  decltype(auto) with(const Use& use) {
+    return words_ ? use(*words_) : use(*floats_);
+  }
+
+ private:
+  std::optional<DevicePager<unsigned short>> words_;
+  std::optional<DevicePager<float>> floats_;
+};
+
+BrickCache::BrickCache(std::unique_ptr<BlockSource> source, std::uint64_t bytes, std::uint64_t taken, BricksKept kept)
+    : source_(std::move(source)),
+      taken_(taken),
+      budget_(bytes > taken ? bytes - taken : 0),
+      bytes_(bytes),
+      kept_(kept) {
+  for (const RegionEntry& region : source_->regions()) {
+    ++regions_;
+    if ((region.page & RegionEntry::kMissing) != 0) ++regions_with_pages_;
+  }
+  make(TexelType::share16);
+}
+
+BrickCache::~BrickCache() = default;
+
+PageTable BrickCache::pages() {
+  return pager_->with([](auto& pager) { return pager.table(); });
+}
+
+BrickCache::Needs BrickCache::needs() const {
+  Needs needs;
+  needs.table = std::uint64_t{regions_} * (sizeof(RegionEntry) + sizeof(std::uint32_t));
+  const std::uint64_t scratch =
+      std::clamp<std::uint64_t>(budget_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
+  needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
+  needs.plan.most_requests = std::max(kRegionBlocks, std::min(kMostRequests, needs.plan.blocks * 2));
+  needs.fixed = needs.table + scratch + needs.plan.most_requests * sizeof(BlockId);
+  return needs;
+}
+
+void BrickCache::make(TexelType type) {
+  type_ = type;
+  pager_.reset();
+  whole_ = DeviceArray<BrickEntry>();
+  texture_ = Texture();
+  if (make_whole()) return;
+  if (kept_ == BricksKept::all) {
+    throw Error(ErrorKind::io, cat("all bricks of the grid need more than the ", format_bytes(budget_),
+                                   " of device memory that are free"));
+  }
+  make_paged();
+}
+
+void BrickCache::make_pager(BrickPlan plan, const TextureShape& shape) {
+  texture_ = Texture(shape.texels(), type_);
+  slots_ = plan.slots;
+  plan.across = shape.x;
+  plan.down = shape.y;
+  pager_ = std::make_unique<Pager>(type_, *source_, plan, texture_.surface());
+}
+
+// All bricks; false where they do not fit.
+bool BrickCache::make_whole() {
+  Needs needs = this->needs();
+  const BlockLattice lattice = source_->lattice();
+  const auto most = static_cast<std::int32_t>(kFixedPointEnd - 8);
+  if (greater(lattice.extent.x, greater(lattice.extent.y, lattice.extent.z)) > most) return false;
+  needs.plan.pages = regions_;
+  needs.fixed += 2 * (std::uint64_t{regions_} + 1) * kPageBytes;  // pages, and the table made of them
+  if (needs.fixed > budget_ / 2) return false;
+  needs.plan.slots = 1;
+  pager_ = std::make_unique<Pager>(type_, *source_, needs.plan, 0);
+  const std::uint32_t missing = pager_->with([](auto& pager) { return pager.bring_all_pages(); });
+  pager_.reset();
+  const TextureShape shape = shape_for(std::uint64_t{missing} + 1);
+  if (shape.size() <= missing || needs.fixed + missing * kSlotBytes + shape.size() * brick_bytes(type_) > budget_) {
+    return false;
+  }
+  needs.plan.slots = std::max(1U, missing);
+  make_pager(needs.plan, shape);
+  paged_ = false;
+  const bool fits = pager_->with([&](auto& pager) {
+    pager.bring_all_pages();
+    if (!pager.bring_all_bricks()) return false;
+    whole_ = pager.take_table();
+    return true;
+  });
+  if (!fits) make(TexelType::float32);
+  return true;
+}
+
+// Places for as many bricks as fit.
+void BrickCache::make_paged() {
+  Needs needs = this->needs();
+  const std::uint64_t least = needs.fixed + 10 * 2 * kPageBytes + 2 * kLeastSlots * (brick_bytes(type_) + kSlotBytes);
+  if (needs.table > budget_ / 20 || budget_ < least) {
+    const std::uint64_t enough = ((std::max(20 * needs.table, least) + taken_) >> 20U) + 1;
+    throw Error(ErrorKind::usage,
+                compose(option("device-memory", format_bytes(bytes_)), " is too small for this grid; give ",
+                        option("device-memory", cat(enough, "MiB")), " or more"));
+  }
+  needs.plan.pages = static_cast<std::uint32_t>(std::min<std::uint64_t>(
+      std::max(1U, regions_with_pages_), std::max<std::uint64_t>(budget_ / 10, kPageBytes) / kPageBytes));
+  const std::uint64_t rest = budget_ - needs.fixed - (std::uint64_t{needs.plan.pages} + 1) * kPageBytes;
+  const TextureShape shape = shape_within(rest * brick_bytes(type_) / (brick_bytes(type_) + kSlotBytes), type_);
+  needs.plan.slots = static_cast<std::uint32_t>(shape.size() - 1);
+  make_pager(needs.plan, shape);
+  paged_ = true;
+}
+
+std::uint64_t BrickCache::bytes() const {
+  return texture_.bytes() + whole_.bytes() + pager_->with([](auto& pager) { return pager.bytes(); });
+}
+
+BrickCounters BrickCache::counters() const {
+  return pager_->with([](auto& pager) { return pager.counters(); });
+}
+
+PagingTurn BrickCache::serve() {
+  const PagingTurn turn = pager_->with([](auto& pager) { return pager.serve(); });
+  if (turn.unfit) make(TexelType::float32);
+  return turn;
+}
+
+void BrickCache::check() {
+  pager_->with([](auto& pager) { pager.check(); });
+}
+
+std::string BrickCache::texels_note() const {
+  if (type_ == TexelType::float32) return "float texels";
+  const float span = std::bit_cast<float>(counters().worst);
+  return cat("16-bit texels, off by at most ", span / (2 * kMostTexel));
+}
+
+}  // namespace weir

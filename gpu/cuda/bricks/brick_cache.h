@@ -1,0 +1,95 @@
+// The blocks of a grid as bricks of a texture on the current device, which filters them: all of them where there is
+// room, else as many as fit, brought in when they are looked up.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gpu/cuda/bricks/block_source.h"
+#include "gpu/cuda/bricks/brick_counters.h"
+#include "gpu/cuda/bricks/brick_plan.h"
+#include "gpu/cuda/bricks/brick_sampler.h"
+#include "gpu/cuda/bricks/paged_sampler.h"
+#include "gpu/cuda/bricks/paging_turn.h"
+#include "gpu/cuda/bricks/texture_shape.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "gpu/cuda/volume/texture.h"
+
+namespace weir {
+
+/// What a cache may leave out.
+enum class BricksKept {
+  some,  ///< those that were not looked up, where there is no room for all
+  all,   ///< none: where there is no room, making it is an error
+};
+
+/// Made and used with its device current, by one thread at a time.
+class BrickCache {
+ public:
+  /// Takes at most `bytes` of device memory, of which `taken` already are by what the source reads. Texels have 16
+  /// bits, in a range of each brick's own, floats where that does not hold a brick's values (some not finite). Throws
+  /// Error(usage) where `bytes` are too few, with how many would do, Error(io) where the device has no room,
+  /// Error(input) where blocks are damaged.
+  BrickCache(std::unique_ptr<BlockSource> source, std::uint64_t bytes, std::uint64_t taken,
+             BricksKept kept = BricksKept::some);
+  ~BrickCache();
+
+  /// Whether there are fewer places than bricks.
+  bool paged() const { return paged_; }
+  TexelType texel_type() const { return type_; }
+  std::uint64_t bytes() const;                     ///< of device memory
+  std::uint64_t bricks() const { return slots_; }  ///< there is room for
+  BrickCounters counters() const;                  ///< as of the last turn
+
+  /// Of one that is not paged.
+  template <Filter kFilter>
+  BrickSampler<kFilter> sampler() const {
+    return {BrickTable(source_->lattice(), whole_.data()), texture_.object()};
+  }
+  /// Of a paged one.
+  template <Filter kFilter>
+  PagedSampler<kFilter> paged_sampler() {
+    return {pages(), texture_.object()};
+  }
+
+  /// Of a paged one: brings in what was looked up and missing since the last call. Where that was `unfit`, all that was
+  /// drawn is to be drawn again, from floats. Throws as the constructor.
+  PagingTurn serve();
+  /// Throws Error(input) where a block that was decoded since the last call is damaged.
+  void check();
+  /// "16-bit texels, off by at most 1.5e-05": of all bricks so far.
+  std::string texels_note() const;
+
+ private:
+  class Pager;
+
+  struct Needs {
+    BrickPlan plan;           // without pages, slots and their shape
+    std::uint64_t table = 0;  // bytes of the regions'
+    std::uint64_t fixed = 0;  // bytes of that, and of all that brings bricks in
+  };
+
+  PageTable pages();
+  Needs needs() const;
+  void make(TexelType type);
+  bool make_whole();
+  void make_paged();
+  void make_pager(BrickPlan plan, const TextureShape& shape);
+
+  std::unique_ptr<BlockSource> source_;
+  std::uint64_t taken_;
+  std::uint64_t budget_;  // what is left
+  std::uint64_t bytes_;
+  BricksKept kept_;
+  std::uint32_t regions_ = 0;
+  std::uint32_t regions_with_pages_ = 0;
+  TexelType type_ = TexelType::share16;
+  bool paged_ = false;
+  std::uint32_t slots_ = 0;
+  Texture texture_;
+  std::unique_ptr<Pager> pager_;
+  DeviceArray<BrickEntry> whole_;  // of all blocks, where all are there
+};
+
+}  // namespace weir

@@ -1,0 +1,58 @@
+// What the work of a brick cache counts, where it is done. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "format/base/host_device.h"
+
+namespace weir {
+
+struct BrickCounters {
+  static constexpr std::uint32_t kAges = 64;
+
+  std::uint32_t brick_requests = 0;   ///< in this turn
+  std::uint32_t region_requests = 0;  ///< in this turn
+  std::uint32_t evicted = 0;          ///< bricks, in this turn
+  std::uint32_t ages[kAges] = {};     ///< slots by the turns since they were last used; the last one: or more
+  std::uint32_t blocks = 0;           ///< of this batch
+  std::uint32_t free_slots = 0;
+  std::uint32_t unfit = 0;    ///< bricks that 16 bits do not hold
+  std::uint32_t worst = 0;    ///< largest span of a brick, a float's bits
+  std::uint64_t built = 0;    ///< bricks, in all
+  std::uint64_t decoded = 0;  ///< blocks, in all
+};
+
+/// Before slots are counted.
+struct BeginTurn {
+  BrickCounters* counters = nullptr;
+  WEIR_HOST_DEVICE void operator()(std::uint32_t) const {
+    for (std::uint32_t& age : counters->ages) age = 0;
+    counters->evicted = 0;
+  }
+};
+
+/// Once all that was asked for is brought in or forgotten.
+struct EndTurn {
+  BrickCounters* counters = nullptr;
+  WEIR_HOST_DEVICE void operator()(std::uint32_t) const {
+    counters->brick_requests = 0;
+    counters->region_requests = 0;
+  }
+};
+
+struct BeginBatch {
+  BrickCounters* counters = nullptr;
+  WEIR_HOST_DEVICE void operator()(std::uint32_t) const { counters->blocks = 0; }
+};
+
+/// After a batch of `bricks`.
+struct EndBatch {
+  BrickCounters* counters = nullptr;
+  std::uint32_t bricks = 0;
+  WEIR_HOST_DEVICE void operator()(std::uint32_t) const {
+    counters->built += bricks;
+    counters->decoded += counters->blocks;
+  }
+};
+
+}  // namespace weir

@@ -1,0 +1,120 @@
+// The places for bricks on a device, and the steps that hand them out and take them back. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/cuda/bricks/brick_counters.h"
+#include "gpu/cuda/bricks/page_table.h"
+
+namespace weir {
+
+struct BrickSlots {
+  static constexpr std::uint32_t kFree = ~0U;
+
+  std::uint32_t* owners = nullptr;  ///< numbers of their entries in the page table; kFree
+  std::uint32_t* stamps = nullptr;  ///< turns in which they were last used
+  std::uint32_t* free = nullptr;    ///< counters->free_slots numbers of slots
+  std::uint32_t count = 0;
+  std::uint32_t across = 0;  ///< bricks along x of the texture
+  std::uint32_t down = 0;    ///< and along y
+
+  /// As BrickEntry has it. Place (0, 0, 0) is nobody's.
+  WEIR_HOST_DEVICE std::uint32_t brick(std::uint32_t slot) const {
+    const std::uint32_t n = slot + 1;
+    return BrickEntry::pack(n % across, n / across % down, n / across / down);
+  }
+  /// Inverse.
+  WEIR_HOST_DEVICE std::uint32_t slot(std::uint32_t brick) const {
+    return (brick & 2047U) + across * ((brick >> 11U & 2047U) + down * (brick >> 22U)) - 1;
+  }
+};
+
+/// For each slot: free at the beginning.
+struct FreeAllSlots {
+  BrickSlots slots;
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    slots.owners[i] = BrickSlots::kFree;
+    slots.stamps[i] = 0;
+    slots.free[i] = slots.count - 1 - i;
+  }
+};
+
+/// Stamps the slots that were used since the last time, and their pages, and counts all slots by age. A group of
+/// threads takes every groups-th stretch.
+struct AgeSlots {
+  struct Shared {
+    std::uint32_t ages[BrickCounters::kAges];
+  };
+
+  BrickSlots slots;
+  BrickEntry* entries = nullptr;
+  std::uint32_t* page_stamps = nullptr;
+  BrickCounters* counters = nullptr;
+  std::uint32_t turn = 0;
+  std::uint32_t groups = 1;
+
+  template <class Thread>
+  WEIR_HOST_DEVICE void operator()(const Thread& thread, Shared& shared, std::uint32_t group) const {
+    for (std::uint32_t a = thread.index(); a < BrickCounters::kAges; a += thread.count()) shared.ages[a] = 0;
+    thread.meet();
+    for (std::uint32_t i = group * thread.count() + thread.index(); i < slots.count; i += groups * thread.count()) {
+      if (slots.owners[i] == BrickSlots::kFree) continue;
+      std::uint32_t& state = entries[slots.owners[i]].state;
+      if ((state & brick_state::kUsed) != 0) {
+        state &= ~brick_state::kUsed;
+        slots.stamps[i] = turn;
+        page_stamps[slots.owners[i] / kRegionBlocks] = turn;
+      }
+      const std::uint32_t age = turn - slots.stamps[i];
+      atomic_add(shared.ages + lesser(age, BrickCounters::kAges - 1), 1U);
+    }
+    thread.meet();
+    for (std::uint32_t a = thread.index(); a < BrickCounters::kAges; a += thread.count()) {
+      if (shared.ages[a] != 0) atomic_add(counters->ages + a, shared.ages[a]);
+    }
+  }
+};
+
+/// Takes `wanted` slots back from bricks of at least that age.
+struct EvictSlots {
+  BrickSlots slots;
+  BrickEntry* entries = nullptr;
+  BrickCounters* counters = nullptr;
+  std::uint32_t turn = 0;
+  std::uint32_t least_age = 1;
+  std::uint32_t wanted = 0;
+
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    if (slots.owners[i] == BrickSlots::kFree || lesser(turn - slots.stamps[i], BrickCounters::kAges - 1) < least_age) {
+      return;
+    }
+    if (atomic_add(&counters->evicted, 1U) >= wanted) return;
+    BrickEntry& entry = entries[slots.owners[i]];
+    entry = {entry.low + 0.5F * entry.span, 0, 0, brick_state::kMissing};
+    slots.owners[i] = BrickSlots::kFree;
+    slots.free[atomic_add(&counters->free_slots, 1U)] = i;
+  }
+};
+
+/// Takes pages back from regions, and the slots of their bricks: for each entry of each of the pages.
+struct DropPages {
+  PageTable table;
+  BrickSlots slots;
+  BrickCounters* counters = nullptr;
+  const std::uint32_t* regions = nullptr;
+  const std::uint32_t* pages = nullptr;
+
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    const std::uint32_t n = i / kRegionBlocks;
+    BrickEntry& entry = table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks];
+    if (entry.brick != 0) {
+      const std::uint32_t slot = slots.slot(entry.brick);
+      slots.owners[slot] = BrickSlots::kFree;
+      slots.free[atomic_add(&counters->free_slots, 1U)] = slot;
+    }
+    entry = {};
+    if (i % kRegionBlocks == 0) table.regions[regions[n]].page = RegionEntry::kMissing;
+  }
+};
+
+}  // namespace weir

@@ -1,0 +1,89 @@
+// Where the bricks of a grid are, all of which are there: one entry for each block. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/cuda/bricks/fixed_point.h"
+#include "gpu/cuda/bricks/page_table.h"
+
+namespace weir {
+
+struct BrickTable {
+  const BrickEntry* entries = nullptr;  ///< of the blocks over the domain, x fastest
+  std::uint32_t across = 1;             ///< blocks along x
+  std::uint32_t down = 1;               ///< and along y
+  std::uint32_t origin = 0;             ///< what index() makes of the first block's bits
+  Float3 first;                         ///< kFixedPoint + voxels from the first block's corner to the domain's
+  Float3 last;                          ///< the domain's highest voxel
+
+  /// A position's fixed point bits: voxels from the first block's corner.
+  struct Position {
+    std::uint32_t x;
+    std::uint32_t y;
+    std::uint32_t z;
+  };
+
+  BrickTable() = default;
+  /// Over a domain of at most kFixedPointEnd - 8 voxels along each axis.
+  BrickTable(const BlockLattice& lattice, const BrickEntry* all)
+      : entries(all),
+        across(static_cast<std::uint32_t>(blocks(lattice).x)),
+        down(static_cast<std::uint32_t>(blocks(lattice).y)) {
+    constexpr std::uint32_t kFirst = kFixedPointBits >> 11U;
+    origin = kFirst + across * (kFirst + down * kFirst);
+    const auto from_corner = [](std::int32_t shift) { return kFixedPoint + static_cast<float>(shift & 7); };
+    first = {from_corner(lattice.shift.x), from_corner(lattice.shift.y), from_corner(lattice.shift.z)};
+    last = {static_cast<float>(lattice.extent.x - 1), static_cast<float>(lattice.extent.y - 1),
+            static_cast<float>(lattice.extent.z - 1)};
+  }
+
+  /// Blocks along each axis of the table over a lattice.
+  WEIR_HOST_DEVICE static Int3 blocks(const BlockLattice& lattice) {
+    const Int3 last = lattice.last_block();
+    return {last.x - (lattice.shift.x >> 3) + 1, last.y - (lattice.shift.y >> 3) + 1,
+            last.z - (lattice.shift.z >> 3) + 1};
+  }
+
+  /// Of local voxels, centres at whole numbers; those outside are moved into the domain.
+  WEIR_HOST_DEVICE Position position(const Float3& q) const {
+    return {bits(clamped(q.x, 0.0F, last.x) + first.x), bits(clamped(q.y, 0.0F, last.y) + first.y),
+            bits(clamped(q.z, 0.0F, last.z) + first.z)};
+  }
+  WEIR_HOST_DEVICE std::uint32_t index(const Position& at) const {
+    return (at.x >> 11U) + across * ((at.y >> 11U) + down * (at.z >> 11U)) - origin;
+  }
+  /// Coordinates in the texture of a position in the brick of an entry.
+  WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
+    return {texel(entry.brick & 2047U, at.x), texel(entry.brick >> 11U & 2047U, at.y), texel(entry.brick >> 22U, at.z)};
+  }
+
+ private:
+  WEIR_HOST_DEVICE static std::uint32_t bits(float v) {
+    std::uint32_t b;
+    __builtin_memcpy(&b, &v, sizeof b);
+    return b;
+  }
+  // Half a texel above the voxel, where its centre is.
+  WEIR_HOST_DEVICE static float texel(std::uint32_t brick, std::uint32_t at) {
+    const std::uint32_t b = brick * (256U * kBrickEdge) + (kFixedPointBits | (at & 2047U));
+    float v;
+    __builtin_memcpy(&v, &b, sizeof v);
+    return v - (kFixedPoint - 0.5F);
+  }
+};
+
+/// Fills a table from pages that are all there: for each of its entries.
+struct FillBrickTable {
+  PageTable pages;
+  BrickEntry* entries = nullptr;
+
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    const BlockLattice& l = pages.lattice;
+    const Int3 count = BrickTable::blocks(l);
+    const auto at = static_cast<std::int32_t>(i);
+    entries[i] = pages.find({at % count.x + (l.shift.x >> 3), at / count.x % count.y + (l.shift.y >> 3),
+                             at / count.x / count.y + (l.shift.z >> 3)});
+  }
+};
+
+}  // namespace weir

@@ -1,0 +1,74 @@
+// The current device as what a brick cache works on, in the order of the calling thread's default stream.
+#pragma once
+
+#include <cstdint>
+
+#include "format/nanovdb/macrocells.h"
+#include "gpu/cuda/runtime/device_array.h"
+#include "gpu/math/portable.h"
+
+namespace weir {
+
+inline constexpr unsigned kStepThreads = 256;
+
+/// A thread of a group.
+struct StepThread {
+  __device__ unsigned index() const { return threadIdx.x; }
+  __device__ unsigned count() const { return blockDim.x; }
+  __device__ void meet() const { __syncthreads(); }
+  /// Bounds of all threads' bounds; the first thread's result is right. `of_warps` has one for each warp.
+  __device__ MinMax widest(MinMax own, MinMax* of_warps) const {
+    for (int distance = 16; distance > 0; distance /= 2) {
+      own.min = lesser(own.min, __shfl_down_sync(~0U, own.min, distance));
+      own.max = greater(own.max, __shfl_down_sync(~0U, own.max, distance));
+    }
+    if (threadIdx.x % 32 == 0) of_warps[threadIdx.x / 32] = own;
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      for (unsigned w = 1; w < blockDim.x / 32; ++w) {
+        own = {lesser(own.min, of_warps[w].min), greater(own.max, of_warps[w].max)};
+      }
+    }
+    return own;
+  }
+};
+
+template <class Step>
+__global__ void run_each(const __grid_constant__ Step step, std::uint32_t count) {
+  const std::uint32_t i = blockIdx.x * kStepThreads + threadIdx.x;
+  if (i < count) step(i);
+}
+
+template <class Step>
+__global__ void run_groups(const __grid_constant__ Step step) {
+  __shared__ typename Step::Shared shared;
+  step(StepThread{}, shared, blockIdx.x);
+}
+
+struct DeviceMachine {
+  template <class T>
+  using Array = DeviceArray<T>;
+
+  /// step(i) for i < count.
+  template <class Step>
+  void each(std::uint32_t count, const Step& step) const {
+    if (count == 0) return;
+    run_each<<<(count + kStepThreads - 1) / kStepThreads, kStepThreads, 0, cudaStreamPerThread>>>(step, count);
+    check_cuda(cudaGetLastError(), "working on bricks");
+  }
+  /// step(thread, shared, g) by a group of threads for each g < count.
+  template <class Step>
+  void groups(std::uint32_t count, const Step& step) const {
+    if (count == 0) return;
+    run_groups<<<count, kStepThreads, 0, cudaStreamPerThread>>>(step);
+    check_cuda(cudaGetLastError(), "working on bricks");
+  }
+  /// Until all work is done.
+  void wait() const { check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "working on bricks"); }
+  template <class T>
+  void clear(Array<T>& array) const {
+    check_cuda(cudaMemsetAsync(array.data(), 0, array.bytes(), cudaStreamPerThread), "clearing device memory");
+  }
+};
+
+}  // namespace weir

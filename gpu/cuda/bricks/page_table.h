@@ -1,0 +1,120 @@
+// Which blocks of a grid lie on the device as bricks, and where: a table of two levels. A region's entry names its
+// page, a page has an entry for each of the region's blocks. Where a page or a brick is not there, a look-up notes it,
+// and has a value near enough to go on with. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/cuda/bricks/atomics.h"
+#include "gpu/cuda/volume/block_lattice.h"
+
+namespace weir {
+
+/// Voxels along a brick's edge: a block of 8 and the next voxel above it, so that all 2 x 2 x 2 neighbourhoods that
+/// begin in the block lie in its brick.
+inline constexpr std::int32_t kBrickEdge = 9;
+inline constexpr std::int32_t kBrickTexels = kBrickEdge * kBrickEdge * kBrickEdge;
+
+namespace brick_state {
+inline constexpr std::uint32_t kMissing = 1;    ///< not on the device; the entry's value is an approximation
+inline constexpr std::uint32_t kRequested = 2;  ///< noted since requests were last served
+inline constexpr std::uint32_t kUsed = 4;       ///< looked up since that was last asked
+}  // namespace brick_state
+
+/// A block: `low` all over where it has no brick, else low + span * texel.
+struct alignas(16) BrickEntry {
+  float low = 0;
+  float span = 0;
+  std::uint32_t brick = 0;  ///< position of the brick in units of bricks, 11 bits for x and y, 10 for z; 0: none
+  std::uint32_t state = 0;
+
+  WEIR_HOST_DEVICE static std::uint32_t pack(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return x | y << 11U | z << 22U;
+  }
+  /// Texel of the brick's lowest voxel.
+  WEIR_HOST_DEVICE Int3 corner() const {
+    return {static_cast<std::int32_t>(brick & 2047U) * kBrickEdge,
+            static_cast<std::int32_t>(brick >> 11U & 2047U) * kBrickEdge,
+            static_cast<std::int32_t>(brick >> 22U) * kBrickEdge};
+  }
+};
+
+/// A region: a page, or one value all over.
+struct alignas(8) RegionEntry {
+  std::uint32_t page = 0;  ///< number, from 1, and the bits below; 0: `value` all over
+  float value = 0;
+
+  static constexpr std::uint32_t kMissing = 1U << 31U;    ///< its page is not there; `value` is an approximation
+  static constexpr std::uint32_t kRequested = 1U << 30U;  ///< as brick_state::kRequested
+};
+
+/// What look-ups did not find, each once.
+struct BrickRequests {
+  BlockId* bricks = nullptr;
+  std::uint32_t* regions = nullptr;
+  std::uint32_t* brick_count = nullptr;   ///< may count beyond most_bricks
+  std::uint32_t* region_count = nullptr;  ///< may count beyond most_regions
+  std::uint32_t most_bricks = 0;
+  std::uint32_t most_regions = 0;
+};
+
+struct PageTable {
+  BlockLattice lattice;
+  RegionEntry* regions = nullptr;
+  BrickEntry* entries = nullptr;  ///< kRegionBlocks of each page; those of page 0 are not used
+  BrickRequests requests;
+
+  WEIR_HOST_DEVICE BrickEntry& entry(std::uint32_t page, const Int3& block) const {
+    return entries[static_cast<std::size_t>(page) * kRegionBlocks + BlockLattice::position_of(block)];
+  }
+
+  /// The entry of a block whose page is there.
+  WEIR_HOST_DEVICE BrickEntry find(const Int3& block) const {
+    return entry(regions[lattice.region_of(block)].page, block);
+  }
+
+  /// The entry of any block, or what comes near it: notes what is used, and what is missing.
+  WEIR_HOST_DEVICE BrickEntry find_or_request(const Int3& block) const {
+    using namespace brick_state;
+    const std::uint32_t number = lattice.region_of(block);
+    const RegionEntry region = regions[number];
+    if ((region.page & RegionEntry::kMissing) != 0) {
+      if ((region.page & RegionEntry::kRequested) == 0) request_region(number);
+      return {region.value, 0, 0, kMissing};
+    }
+    if (region.page == 0) return {region.value, 0, 0, 0};
+    BrickEntry& at = entry(region.page, block);
+    const BrickEntry found = at;
+    if ((found.state & kMissing) != 0) {
+      if ((found.state & kRequested) == 0) request_brick(at, lattice.id_of(block));
+    } else if ((found.state & kUsed) == 0) {
+      atomic_or(&at.state, kUsed);
+    }
+    return found;
+  }
+
+  WEIR_HOST_DEVICE void request_brick(BrickEntry& at, BlockId id) const {
+    // A full list stays full until it is served: nothing more is marked then.
+    if (*requests.brick_count >= requests.most_bricks) return;
+    if ((atomic_or(&at.state, brick_state::kRequested) & brick_state::kRequested) != 0) return;
+    const std::uint32_t n = atomic_add(requests.brick_count, 1U);
+    if (n < requests.most_bricks) {
+      requests.bricks[n] = id;
+    } else {
+      atomic_and(&at.state, ~brick_state::kRequested);
+    }
+  }
+  WEIR_HOST_DEVICE void request_region(std::uint32_t number) const {
+    if (*requests.region_count >= requests.most_regions) return;
+    RegionEntry& at = regions[number];
+    if ((atomic_or(&at.page, RegionEntry::kRequested) & RegionEntry::kRequested) != 0) return;
+    const std::uint32_t n = atomic_add(requests.region_count, 1U);
+    if (n < requests.most_regions) {
+      requests.regions[n] = number;
+    } else {
+      atomic_and(&at.page, ~RegionEntry::kRequested);
+    }
+  }
+};
+
+}  // namespace weir

@@ -1,0 +1,34 @@
+// A grid on one device as bricks, with all that rendering it needs there: packed, or too large for the device.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "gpu/cuda/bricks/brick_cache.h"
+#include "gpu/cuda/volume/device_macrocells.h"
+#include "gpu/cuda/volume/device_table.h"
+#include "gpu/cuda/volume/grid_bytes.h"
+
+namespace weir {
+
+/// Made and used with its device current.
+class BrickVolume {
+ public:
+  /// `bytes` are those of `grid`, on the device or in host memory that it reads; `cells` bounds of macrocells. Together
+  /// with what is made of them they take at most `memory` of the device. Throws as BrickCache, BlockDecoder and
+  /// DeviceTable.
+  BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, std::uint64_t memory);
+
+  const GridBytes& bytes() const { return bytes_; }
+  GridBytes take_bytes() && { return std::move(bytes_); }
+  BrickCache& cache() { return *cache_; }
+  DeviceMacrocells& cells() { return cells_; }
+
+ private:
+  GridBytes bytes_;
+  std::variant<std::monostate, DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> table_;
+  DeviceMacrocells cells_;
+  std::optional<BrickCache> cache_;
+};
+
+}  // namespace weir

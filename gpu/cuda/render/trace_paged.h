@@ -1,0 +1,106 @@
+// Samples of a picture of a volume whose bricks come and go.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/message.h"
+#include "format/base/seconds_since.h"
+#include "gpu/cuda/bricks/brick_cache.h"
+#include "gpu/cuda/render/render_paged.h"
+#include "gpu/cuda/runtime/device_array.h"
+
+namespace weir {
+
+/// How long one launch may keep a cancellation waiting, roughly.
+inline constexpr double kLaunchSeconds = 0.05;
+
+/// What a picture took.
+struct PagedReport {
+  std::uint64_t launches = 0;
+  std::uint64_t turns = 0;          ///< in which bricks were brought in
+  std::uint64_t bricks = 0;         ///< brought in
+  std::uint64_t decoded = 0;        ///< blocks
+  std::uint32_t least_tiles = ~0U;  ///< that were drawn at a time, of those there are
+};
+
+/// Adds samples [first, last) of every pixel to `sums` (zeros), in their order: tiles of the picture one after the
+/// other where its bricks are more than the cache holds. `task_of(sampler)` makes the picture's task; `report_done(n)`
+/// is told of n further samples of one pixel. Throws Error(usage) where the cache does not hold what the smallest tile
+/// needs, and as BrickCache::serve.
+template <Filter kFilter, class TaskOf, class Done>
+PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
+                        DeviceArray<Float3>& sums, const std::atomic<bool>* cancel, const Done& report_done) {
+  constexpr std::uint32_t kPatience = 8;  // turns of the smallest tile without a sample before that is an error
+  PagedReport report;
+  auto task = task_of(cache.template paged_sampler<kFilter>());
+  const std::uint32_t tiles = paged_tiles(task.width, task.height);
+  DeviceArray<std::uint32_t> done(sums.size());
+  DeviceArray<PagedPicture::Counts> counts(1);
+  const auto clear = [](auto& array) {
+    check_cuda(cudaMemsetAsync(array.data(), 0, array.bytes(), cudaStreamPerThread), "clearing the picture");
+  };
+  clear(done);
+  PagedPicture picture{sums.data(), done.data(), counts.data(), first, last - first, 1};
+  const std::uint64_t decoded_before = cache.counters().decoded;
+  std::uint32_t at = 0;
+  std::uint32_t count = tiles;
+  std::uint64_t brought = 0;  // for these tiles
+  std::uint32_t idle = 0;
+  std::uint64_t drawn = 0;     // samples
+  std::uint64_t reported = 0;  // of them
+  while (at < tiles) {
+    if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) break;
+    clear(counts);
+    const auto start = std::chrono::steady_clock::now();
+    launch_paged(task, picture, at, count, cudaStreamPerThread);
+    PagedPicture::Counts found{};
+    counts.download(std::span(&found, 1));
+    ++report.launches;
+    report.least_tiles = std::min(report.least_tiles, count);
+    drawn += found.finished;
+    if (drawn > reported) report_done(drawn - std::exchange(reported, drawn));
+    if (found.missed == 0) {
+      if (seconds_since(start) < kLaunchSeconds / 2) picture.at_once = std::min(2 * picture.at_once, 1U << 16U);
+      if (found.unfinished > 0) continue;
+      at += count;
+      if (brought < cache.bricks() / 4) count *= 2;
+      count = std::min(count, tiles - at);
+      brought = 0;
+      continue;
+    }
+    const PagingTurn turn = cache.serve();
+    ++report.turns;
+    report.bricks += turn.bricks;
+    brought += turn.bricks;
+    if (turn.unfit) {
+      task = task_of(cache.template paged_sampler<kFilter>());
+      clear(done);
+      clear(sums);
+      drawn = 0;
+      at = 0;
+      count = tiles;
+      continue;
+    }
+    idle = found.finished == 0 && turn.crowded() && count == 1 ? idle + 1 : 0;
+    if (turn.crowded()) count = std::max(1U, count / 2);
+    if (idle > kPatience) {
+      throw Error(ErrorKind::usage, compose("the device holds ", cache.bricks(),
+                                            " bricks, fewer than a few rays of this picture need; give ", "more ",
+                                            option("device-memory")));
+    }
+  }
+  cache.check();
+  report.decoded = cache.counters().decoded - decoded_before;
+  return report;
+}
+
+}  // namespace weir

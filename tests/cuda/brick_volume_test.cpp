@@ -1,0 +1,202 @@
+// Packed grids, and grids larger than the device memory they are given, on a device: the pictures are those of the CPU,
+// and those of a cache have the bits of those of all bricks.
+#include "gpu/cuda/render/brick_volume.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <regex>
+
+#include "format/base/error.h"
+#include "gpu/cuda/render/cuda_backend.h"
+#include "tests/cuda/support/device_reads.h"
+#include "tests/stock/test_grid.h"
+#include "tests/support/packed_grid.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::brick_volume_test {
+namespace {
+
+constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, RenderMode::mip};
+constexpr std::array kFilters{Filter::nearest, Filter::trilinear, Filter::stochastic};
+constexpr std::uint64_t kSmall = 50U << 20U;  // bytes, less than all bricks take
+
+class BrickVolumeTest : public testing::Test {
+ protected:
+  void SetUp() override { WEIR_NEEDS_DEVICE(); }
+
+  std::shared_ptr<const NvdbFile> file(std::span<const std::byte> bytes) {
+    const std::string path = (directory_.path() / "grid.nvdb").string();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return std::make_shared<const NvdbFile>(path);
+  }
+
+  // A rough ball of 200^3 voxels, its blocks raw; voxel 77 of the middle one is `odd`.
+  std::shared_ptr<const NvdbFile> ball(float odd = 0.5F) {
+    test::PackedGridOptions options;
+    options.domain = {{-3, 5, 0}, {197, 205, 200}};
+    options.range = {0, 2};
+    options.stream = [odd](const Index3& block) -> test::PackedBytes {
+      std::minstd_rand random(static_cast<std::uint32_t>(block.x * 7919 + block.y * 104729 + block.z * 1299709 + 1));
+      std::array<float, 512> values;
+      for (unsigned i = 0; i < 512; ++i) {
+        const double x = static_cast<double>(8 * block.x + (i >> 6U)) - 97;
+        const double y = static_cast<double>(8 * block.y + (i >> 3U & 7U)) - 105;
+        const double z = static_cast<double>(8 * block.z + (i & 7U)) - 100;
+        const double inside = std::max(0.0, 1 - std::sqrt(x * x + y * y + z * z) / 95);
+        values[i] = static_cast<float>(inside * (0.9 + 0.2 * static_cast<double>(random() & 65535U) / 65536));
+      }
+      if (block == Index3{12, 12, 12}) values[77] = odd;
+      return test::raw_stream(values);
+    };
+    return file(test::PackedGridBuilder::build(options).file);
+  }
+
+  static Image picture(Backend& backend, const LoadedVolume& volume, RenderMode mode, Filter filter,
+                       std::uint32_t samples = 3) {
+    Scene scene;
+    scene.mode = mode;
+    scene.volume.density = 20;
+    RenderOptions options;
+    options.width = 80;
+    options.height = 60;
+    options.filter = filter;
+    return backend.render(const_cast<LoadedVolume&>(volume), scene, options, {samples, nullptr, {}}).image;
+  }
+
+  static std::unique_ptr<Backend> cuda(std::optional<std::uint64_t> memory = std::nullopt) {
+    CudaOptions options;
+    options.memory = memory;
+    return make_cuda_backend(options);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+// Largest difference of any channel of the pixels but for the 2 % of them that differ most.
+float difference(const Image& a, const Image& b) {
+  std::vector<float> differences;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const Float3 d = a.pixels[i] - b.pixels[i];
+    differences.push_back(greater(std::abs(d.x), greater(std::abs(d.y), std::abs(d.z))));
+  }
+  std::sort(differences.begin(), differences.end());
+  return differences[differences.size() * 98 / 100];
+}
+
+TEST_F(BrickVolumeTest, MarchedPicturesOfAPackedGridAreTheCpus) {
+  const auto grid = ball();
+  const auto device = cuda();
+  const auto host = make_cpu_backend(0);
+  const auto on_device = device->load(grid, 16, nullptr);
+  const auto on_host = host->load(grid, 16, nullptr);
+  const std::regex note("all of 1[0-9]+ bricks, .* MiB, 16-bit texels, off by at most [0-9.]+e-06");
+  EXPECT_TRUE(std::regex_match(on_device->load_summary().note, note)) << on_device->load_summary().note;
+  for (const RenderMode mode : {RenderMode::dvr, RenderMode::iso, RenderMode::mip}) {
+    for (const Filter filter : {Filter::nearest, Filter::trilinear}) {
+      EXPECT_LT(difference(picture(*device, *on_device, mode, filter), picture(*host, *on_host, mode, filter)), 0.02F)
+          << render_mode_name(mode) << ' ' << static_cast<int>(filter);
+    }
+  }
+}
+
+TEST_F(BrickVolumeTest, ASmallCacheDrawsTheBitsOfAllBricks) {
+  const auto grid = ball();
+  const auto large = cuda();
+  const auto small = cuda(kSmall);
+  const auto all = large->load(grid, 16, nullptr);
+  const auto some = small->load(grid, 16, nullptr);
+  EXPECT_NE(some->load_summary().note.find("a cache of "), std::string::npos) << some->load_summary().note;
+  for (const RenderMode mode : kModes) {
+    for (const Filter filter : kFilters) {
+      EXPECT_EQ(picture(*small, *some, mode, filter).pixels, picture(*large, *all, mode, filter).pixels)
+          << render_mode_name(mode) << ' ' << static_cast<int>(filter);
+    }
+  }
+}
+
+TEST_F(BrickVolumeTest, AStockGridLargerThanItsShareIsReadFromHostMemory) {
+  const auto wave = [](const Index3& i) {
+    return 0.5F + 0.4F * std::sin(0.3F * static_cast<float>(i.x)) * std::cos(0.2F * static_cast<float>(i.y + i.z));
+  };
+  for (const GridType type : {GridType::float32, GridType::fp16}) {
+    test::TestGridOptions options;
+    options.type = type;
+    const test::TestGrid made({{0, 0, 0}, {300, 300, 270}}, wave, options);
+    const auto grid = file(made.grid().bytes());
+    const auto large = cuda();
+    const auto small = cuda(kSmall);
+    const auto all = large->load(grid, 16, nullptr);
+    const auto some = small->load(grid, 16, nullptr);
+    EXPECT_NE(some->load_summary().way.find("zero-copy"), std::string::npos);
+    EXPECT_NE(some->load_summary().note.find("more than --device-memory 50.0 MiB, so it stays in host memory"),
+              std::string::npos)
+        << some->load_summary().note;
+    EXPECT_EQ(picture(*small, *some, RenderMode::path, Filter::trilinear).pixels,
+              picture(*large, *all, RenderMode::path, Filter::trilinear).pixels)
+        << grid_type_name(type);
+  }
+}
+
+TEST_F(BrickVolumeTest, ValuesThat16BitsDoNotHoldMakeFloatTexels) {
+  const auto grid = ball(std::numeric_limits<float>::infinity());
+  const auto large = cuda();
+  const auto small = cuda(kSmall + (60U << 20U));
+  const auto all = large->load(grid, 16, nullptr);
+  const auto some = small->load(grid, 16, nullptr);
+  EXPECT_NE(all->load_summary().note.find("float texels"), std::string::npos) << all->load_summary().note;
+  for (const RenderMode mode : {RenderMode::path, RenderMode::mip}) {
+    EXPECT_EQ(picture(*small, *some, mode, Filter::trilinear).pixels,
+              picture(*large, *all, mode, Filter::trilinear).pixels);
+  }
+}
+
+TEST_F(BrickVolumeTest, TooLittleMemoryNamesWhatWouldDo) {
+  const auto grid = ball();
+  try {
+    cuda(1U << 20U)->load(grid, 16, nullptr);
+    FAIL();
+  } catch (const Error& error) {
+    const std::regex words(
+        "--device-memory 1.0 MiB is too small for this grid; give --device-memory ([0-9]+)MiB or more");
+    std::cmatch match;
+    ASSERT_TRUE(std::regex_match(error.what(), match, words)) << error.what();
+    const std::uint64_t enough = std::stoull(match[1]) << 20U;
+    const auto backend = cuda(enough);
+    EXPECT_GT(picture(*backend, *backend->load(grid, 16, nullptr), RenderMode::dvr, Filter::trilinear, 1).pixels.size(),
+              0U);
+  }
+}
+
+TEST_F(BrickVolumeTest, LoadsAndEvictionsLeaveNoMemoryBehind) {
+  const auto grid = ball();
+  const auto small = cuda(kSmall);
+  const auto used = [] {
+    cudaDeviceSynchronize();
+    std::size_t free = 0;
+    std::size_t total = 0;
+    cudaMemPool_t pool = nullptr;
+    check_cuda(cudaDeviceGetDefaultMemPool(&pool, 0), "test");
+    check_cuda(cudaMemPoolTrimTo(pool, 0), "test");
+    check_cuda(cudaMemGetInfo(&free, &total), "test");
+    return total - free;
+  };
+  auto volume = small->load(grid, 16, nullptr);
+  picture(*small, *volume, RenderMode::dvr, Filter::trilinear, 1);
+  volume.reset();
+  const std::size_t before = used();
+  for (int i = 0; i < 20; ++i) {
+    volume = small->load(grid, 16, std::move(volume));
+    picture(*small, *volume, i % 2 == 0 ? RenderMode::dvr : RenderMode::path, Filter::trilinear, 1);
+  }
+  volume.reset();
+  EXPECT_LE(used(), before + (1U << 20U));
+}
+
+}  // namespace
+}  // namespace weir::brick_volume_test

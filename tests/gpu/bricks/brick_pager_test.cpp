@@ -1,0 +1,321 @@
+// The turns of a brick cache, on the host: what is asked for comes in, what was not used goes, and bricks hold the
+// voxels that readers of files get.
+#include "gpu/cuda/bricks/brick_pager.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+
+#include "format/nanovdb/nvdb_grid.h"
+#include "gpu/math/random.h"
+#include "gpu/volume/leaf_table.h"
+#include "tests/gpu/bricks/host_machine.h"
+#include "tests/support/packed_kinds.h"
+
+namespace weir::brick_pager_test {
+namespace {
+
+template <class Texel>
+struct Cache {
+  using Texels = test::HostTexels<Texel>;
+
+  Cache(const NvdbGrid& grid, BrickPlan plan)
+      : source(*grid.packed(), grid.index_bbox()),
+        size{static_cast<std::int32_t>(plan.across) * kBrickEdge, static_cast<std::int32_t>(plan.down) * kBrickEdge,
+             (static_cast<std::int32_t>(plan.slots / (plan.across * plan.down)) + 1) * kBrickEdge},
+        memory(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)),
+        texels{&memory, size},
+        pager({}, source, plan, texels) {}
+
+  // A texel of the block's brick, `v` from its corner.
+  float texel(const BrickEntry& entry, const Int3& v) const {
+    if (entry.brick == 0) return entry.low;
+    const Int3 corner = entry.corner();
+    return entry.low + entry.span * texels.read({corner.x + v.x, corner.y + v.y, corner.z + v.z});
+  }
+
+  test::HostPackedSource source;
+  Int3 size;
+  std::vector<Texel> memory;
+  Texels texels;
+  BrickPager<test::HostMachine, Texels> pager;
+};
+
+class BrickPagerTest : public testing::Test {
+ protected:
+  BrickPagerTest() { open(test::build_packed_kinds()); }
+
+  void open(test::PackedFile file) {
+    file_ = std::move(file);
+    grid_ = std::make_unique<NvdbGrid>(NvdbGrid::open(file_.file, "a.nvdb"));
+    leaves_ = std::make_unique<LeafTable>(*grid_);
+    lattice_ = block_lattice(grid_->index_bbox());
+  }
+
+  static BrickPlan plan(std::uint32_t pages, std::uint32_t slots) {
+    return {.pages = pages, .slots = slots, .across = 5, .down = 7, .blocks = 200, .most_requests = 8192};
+  }
+
+  // Of the voxel that is `v` from the first region's corner, or the nearest one of the domain.
+  float voxel(const Int3& v) const {
+    const auto local = [](std::int32_t at, std::int32_t shift, std::int32_t extent) {
+      return std::clamp(at - shift, 0, extent - 1);
+    };
+    return leaves_->view().voxel({local(v.x, lattice_.shift.x, lattice_.extent.x),
+                                  local(v.y, lattice_.shift.y, lattice_.extent.y),
+                                  local(v.z, lattice_.shift.z, lattice_.extent.z)});
+  }
+
+  template <class Visit>
+  void for_each_block(const Visit& visit) const {
+    const Int3 last = lattice_.last_block();
+    for (std::int32_t x = lattice_.shift.x >> 3; x <= last.x; ++x) {
+      for (std::int32_t y = lattice_.shift.y >> 3; y <= last.y; ++y) {
+        for (std::int32_t z = lattice_.shift.z >> 3; z <= last.z; ++z) visit(Int3{x, y, z});
+      }
+    }
+  }
+
+  // Largest difference of the block's texels from the voxels, in spans of its brick.
+  template <class Texel>
+  double difference(const Cache<Texel>& cache, const BrickEntry& entry, const Int3& block) const {
+    double most = 0;
+    for (std::int32_t x = 0; x < kBrickEdge; ++x) {
+      for (std::int32_t y = 0; y < kBrickEdge; ++y) {
+        for (std::int32_t z = 0; z < kBrickEdge; ++z) {
+          const float expected = voxel({8 * block.x + x, 8 * block.y + y, 8 * block.z + z});
+          const float found = cache.texel(entry, {x, y, z});
+          if (expected == found) continue;
+          most = std::max(most, std::abs(static_cast<double>(expected) - found) / entry.span);
+        }
+      }
+    }
+    return most;
+  }
+
+  test::PackedFile file_;
+  std::unique_ptr<NvdbGrid> grid_;
+  std::unique_ptr<LeafTable> leaves_;
+  BlockLattice lattice_;
+};
+
+TEST_F(BrickPagerTest, AllBricksTogetherHoldAllVoxelsAndThoseNextAbove) {
+  Cache<float> floats(*grid_, plan(3, 2000));
+  Cache<std::uint16_t> words(*grid_, plan(3, 2000));
+  const std::uint32_t missing = floats.pager.bring_all_pages();
+  EXPECT_EQ(words.pager.bring_all_pages(), missing);
+  EXPECT_GT(missing, 1000U);
+  EXPECT_TRUE(floats.pager.bring_all_bricks());
+  EXPECT_TRUE(words.pager.bring_all_bricks());
+  EXPECT_EQ(floats.pager.counters().built, missing);
+  EXPECT_GT(floats.pager.counters().decoded, missing / 2);
+  std::uint32_t bricks = 0;
+  for_each_block([&](const Int3& block) {
+    const BrickEntry entry = floats.pager.table().find(block);
+    ASSERT_EQ(entry.state & brick_state::kMissing, 0U);
+    bricks += entry.brick == 0 ? 0 : 1;
+    ASSERT_EQ(difference(floats, entry, block), 0);
+    ASSERT_LE(difference(words, words.pager.table().find(block), block), 0.51 / 65535);
+  });
+  EXPECT_EQ(floats.pager.counters().free_slots, 2000 - bricks);
+  EXPECT_EQ(words.pager.counters().free_slots, 2000 - bricks);
+}
+
+TEST_F(BrickPagerTest, BlocksOfOneValueTakeNoSlot) {
+  test::PackedGridOptions options;
+  options.domain = {{-40, 0, 0}, {300, 64, 64}};
+  options.stream = [](const Index3& block) -> test::PackedBytes {
+    if (block.x >= 2) return {};
+    if (block.x < 0) return test::constant_stream(3.5F);
+    std::array<float, 512> values;
+    for (std::size_t i = 0; i < 512; ++i) values[i] = static_cast<float>(i % 77);
+    return test::raw_stream(values);
+  };
+  options.value = [](const Index3&) { return 1.25F; };
+  open(test::PackedGridBuilder::build(options));
+  Cache<std::uint16_t> cache(*grid_, plan(4, 1000));
+  EXPECT_EQ(cache.pager.bring_all_pages(), 7 * 64U);
+  EXPECT_TRUE(cache.pager.bring_all_bricks());
+  EXPECT_EQ(cache.pager.counters().free_slots, 1000 - 3 * 64U) << "two layers and the one whose upper voxels differ";
+  for_each_block(
+      [&](const Int3& block) { ASSERT_LE(difference(cache, cache.pager.table().find(block), block), 0.51 / 65535); });
+}
+
+// As the texture unit counts: voxels' centres half a texel up, in steps of 1/256.
+TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
+  Cache<float> cache(*grid_, plan(3, 2000));
+  cache.pager.bring_all_pages();
+  ASSERT_TRUE(cache.pager.bring_all_bricks());
+  const auto entries = cache.pager.take_table();
+  const BrickTable table(lattice_, entries.data());
+  Random random(1, 2, 3);
+  for (int n = 0; n < 20000; ++n) {
+    const Float3 q{random.uniform() * 210 - 3, random.uniform() * 60 - 2, random.uniform() * 54 - 1};
+    const BrickTable::Position at = table.position(q);
+    const BrickEntry& entry = entries.data()[table.index(at)];
+    ASSERT_NE(entry.brick, 0U);
+    const Float3 found = BrickTable::texel(entry, at);
+    const Int3 corner = entry.corner();
+    // Of a voxel that the position is at or above.
+    const Float3 f{found.x - 0.5F, found.y - 0.5F, found.z - 0.5F};
+    const Int3 v{static_cast<std::int32_t>(f.x), static_cast<std::int32_t>(f.y), static_cast<std::int32_t>(f.z)};
+    const Int3 in_brick{v.x - corner.x, v.y - corner.y, v.z - corner.z};
+    ASSERT_TRUE(in_brick.x >= 0 && in_brick.x < 8 && in_brick.y >= 0 && in_brick.y < 8 && in_brick.z >= 0 &&
+                in_brick.z < 8);
+    const auto expected = [](float p, std::int32_t extent) {
+      return std::nearbyint(256 * std::clamp(p, 0.0F, static_cast<float>(extent - 1))) / 256;
+    };
+    const Float3 e{expected(q.x, lattice_.extent.x), expected(q.y, lattice_.extent.y),
+                   expected(q.z, lattice_.extent.z)};
+    const Int3 i{static_cast<std::int32_t>(e.x), static_cast<std::int32_t>(e.y), static_cast<std::int32_t>(e.z)};
+    ASSERT_EQ(f.x - static_cast<float>(v.x), e.x - static_cast<float>(i.x)) << q.x;
+    ASSERT_EQ(f.y - static_cast<float>(v.y), e.y - static_cast<float>(i.y)) << q.y;
+    ASSERT_EQ(f.z - static_cast<float>(v.z), e.z - static_cast<float>(i.z)) << q.z;
+    ASSERT_EQ(cache.texel(entry, in_brick), leaves_->view().voxel(i));
+  }
+}
+
+TEST_F(BrickPagerTest, BricksThat16BitsDoNotHoldAreCounted) {
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42F}) {
+    test::PackedGridOptions options;
+    options.domain = {{0, 0, 0}, {32, 32, 32}};
+    options.stream = [odd](const Index3& block) {
+      std::array<float, 512> values{};
+      if (block == Index3{1, 2, 1}) values[77] = odd;
+      return test::raw_stream(values);
+    };
+    open(test::PackedGridBuilder::build(options));
+    Cache<std::uint16_t> words(*grid_, plan(1, 100));
+    EXPECT_EQ(words.pager.bring_all_pages(), 64U);
+    EXPECT_FALSE(words.pager.bring_all_bricks()) << odd;
+    EXPECT_EQ(words.pager.counters().unfit, 1U) << odd;
+    Cache<float> floats(*grid_, plan(1, 100));
+    floats.pager.bring_all_pages();
+    EXPECT_TRUE(floats.pager.bring_all_bricks()) << odd;
+    const BrickEntry entry = floats.pager.table().find({1, 2, 1});
+    const float found = floats.texel(entry, {77 >> 6, 77 >> 3 & 7, 77 & 7});
+    EXPECT_TRUE(found == odd || (std::isnan(odd) && std::isnan(found))) << odd;
+  }
+}
+
+// Looks all of `blocks` up, as a picture does; returns how many were there, all with the right voxels.
+template <class C, class Test>
+std::size_t look_up(C& cache, const Test& test, const std::vector<Int3>& blocks) {
+  std::size_t found = 0;
+  for (const Int3& block : blocks) {
+    const BrickEntry entry = cache.pager.table().find_or_request(block);
+    if ((entry.state & brick_state::kMissing) != 0) continue;
+    test(entry, block);
+    ++found;
+  }
+  return found;
+}
+
+TEST_F(BrickPagerTest, WhatIsAskedForComesInAndWhatWasUsedLongestAgoGoes) {
+  Cache<float> cache(*grid_, plan(3, 300));
+  std::vector<Int3> all;
+  for_each_block([&](const Int3& block) { all.push_back(block); });
+  const auto right = [&](const BrickEntry& entry, const Int3& block) {
+    ASSERT_EQ(difference(cache, entry, block), 0) << block.x << ' ' << block.y << ' ' << block.z;
+  };
+  const auto stretch = [&](std::size_t first) {
+    return std::vector<Int3>(all.begin() + first, all.begin() + first + 140);
+  };
+  const std::vector<Int3> a = stretch(0);
+  const std::vector<Int3> b = stretch(400);
+  const std::vector<Int3> c = stretch(800);
+
+  EXPECT_EQ(look_up(cache, right, a), 0U) << "its pages are not there";
+  PagingTurn turn = cache.pager.serve();
+  EXPECT_GE(turn.pages, 1U);
+  EXPECT_EQ(turn.bricks, 0U);
+  const std::size_t uniform = look_up(cache, right, a);
+  EXPECT_LT(uniform, 40U);
+  turn = cache.pager.serve();
+  EXPECT_EQ(turn.bricks, 140 - uniform);
+  EXPECT_FALSE(turn.crowded());
+  EXPECT_EQ(look_up(cache, right, a), 140U);
+  turn = cache.pager.serve();
+  EXPECT_EQ(turn.asked_bricks + turn.asked_pages, 0U);
+
+  for (const auto& blocks : {b, c}) {
+    for (int i = 0; i < 2; ++i) {
+      look_up(cache, right, blocks);
+      cache.pager.serve();
+    }
+    EXPECT_EQ(look_up(cache, right, blocks), 140U);
+    cache.pager.serve();
+  }
+  EXPECT_EQ(look_up(cache, right, b), 140U) << "only a had to go";
+  EXPECT_LT(look_up(cache, right, a), 60U);
+}
+
+TEST_F(BrickPagerTest, MoreThanTheCacheHoldsIsServedInPart) {
+  Cache<float> cache(*grid_, plan(3, 100));
+  std::vector<Int3> all;
+  for_each_block([&](const Int3& block) { all.push_back(block); });
+  const auto ignore = [](const BrickEntry&, const Int3&) {};
+  look_up(cache, ignore, all);
+  cache.pager.serve();
+  look_up(cache, ignore, all);
+  const PagingTurn turn = cache.pager.serve();
+  EXPECT_TRUE(turn.crowded());
+  EXPECT_EQ(turn.bricks, 100U);
+  EXPECT_GT(turn.asked_bricks, 1000U);
+
+  // All that is there was used, so nothing goes; once fewer blocks are looked up, their bricks come.
+  look_up(cache, ignore, all);
+  EXPECT_EQ(cache.pager.serve().bricks, 0U);
+  const std::vector<Int3> few(all.end() - 50, all.end());
+  look_up(cache, ignore, few);
+  cache.pager.serve();
+  EXPECT_EQ(look_up(
+                cache, [&](const BrickEntry& e, const Int3& b) { ASSERT_EQ(difference(cache, e, b), 0); }, few),
+            50U);
+}
+
+TEST_F(BrickPagerTest, FewerPagesThanRegionsTakeTurns) {
+  Cache<float> cache(*grid_, plan(1, 600));
+  const auto right = [&](const BrickEntry& entry, const Int3& block) { ASSERT_EQ(difference(cache, entry, block), 0); };
+  std::vector<std::vector<Int3>> by_region(3);
+  for_each_block([&](const Int3& block) { by_region[lattice_.region_of(block)].push_back(block); });
+  for (int round = 0; round < 2; ++round) {
+    for (const std::vector<Int3>& region : by_region) {
+      for (int i = 0; i < 3; ++i) {
+        look_up(cache, right, {region.begin(), region.begin() + 8});
+        cache.pager.serve();
+      }
+      EXPECT_EQ(look_up(cache, right, {region.begin(), region.begin() + 8}), 8U);
+    }
+  }
+  // Both asked for, and one page: one of them waits.
+  std::vector<Int3> both{by_region[0].front(), by_region[1].front()};
+  look_up(cache, right, both);
+  EXPECT_TRUE(cache.pager.serve().crowded());
+}
+
+TEST_F(BrickPagerTest, AFullListOfRequestsLosesNone) {
+  BrickPlan few = plan(3, 2000);
+  few.most_requests = 4096;
+  few.blocks = 5000;
+  Cache<float> whole(*grid_, few);
+  whole.pager.bring_all_pages();
+  EXPECT_TRUE(whole.pager.bring_all_bricks());
+  few.most_requests = 50;
+  Cache<float> cache(*grid_, few);
+  std::vector<Int3> all;
+  for_each_block([&](const Int3& block) { all.push_back(block); });
+  const auto right = [&](const BrickEntry& entry, const Int3& block) { ASSERT_EQ(difference(cache, entry, block), 0); };
+  std::size_t turns = 0;
+  while (look_up(cache, right, all) < all.size()) {
+    ASSERT_LE(cache.pager.serve().bricks, 50U);
+    ASSERT_LT(++turns, 60U);
+  }
+  EXPECT_GT(turns, 25U);
+}
+
+}  // namespace
+}  // namespace weir::brick_pager_test
