@@ -241,7 +241,7 @@ void run(const Options& options) {
     if (grid.packed() != nullptr) {
       volumes.push_back(nullptr);
       packed.push_back(std::make_unique<BrickVolume>(grid, GridBytes(std::move(loaded)), cells.bounds(),
-                                                     free_device_bytes(0) - kSpareDeviceBytes));
+                                                     BrickBudget{free_device_bytes(0) - kSpareDeviceBytes}));
     } else {
       packed.push_back(nullptr);
       volumes.push_back(std::make_unique<DeviceVolume>(grid, GridBytes(std::move(loaded)),

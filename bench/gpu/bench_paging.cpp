@@ -85,7 +85,8 @@ class Bench {
     const auto start = Clock::now();
     DeviceGrid loaded = load_grid(file_, {}, how);
     transfer_s_ = seconds_since(start);
-    auto volume = std::make_unique<BrickVolume>(grid(), GridBytes(std::move(loaded)), cells_.bounds(), memory);
+    auto volume =
+        std::make_unique<BrickVolume>(grid(), GridBytes(std::move(loaded)), cells_.bounds(), BrickBudget{memory});
     load_s_ = seconds_since(start);
     return volume;
   }

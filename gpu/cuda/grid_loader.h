@@ -79,8 +79,8 @@ class DeviceGrid {
 ///
 /// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and
 /// never a signal; a write through another mapping of it may go unnoticed, and the grid is then no longer the one that
-/// was validated. Throws Error(input) for a packed grid unless options.packed, Error(io) where the device has no room or fails,
-/// Error(interrupted).
+/// was validated. Throws Error(input) for a packed grid unless options.packed, Error(io) where the device has no room
+/// or fails, Error(interrupted).
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options = {},
                      cudaStream_t stream = nullptr);
 

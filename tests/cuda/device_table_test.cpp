@@ -112,7 +112,8 @@ TEST_P(DeviceTableOfType, TheAtlasFiltersToEightBits) {
   const LeafTable host(volume.grid());
   const std::vector<Float3> at = positions(volume.grid());
   const std::vector<float> values = with_table(volume.grid(), [&]<class Block>(const BlockTable<Block>& table) {
-    BrickCache bricks(std::make_unique<TableSource<Block>>(volume.grid(), table), 512U << 20U, 0, BricksKept::all);
+    BrickCache bricks(std::make_unique<TableSource<Block>>(volume.grid(), table), BrickBudget{512U << 20U},
+                      BricksKept::all);
     return test::read_smooth(bricks, Filter::trilinear, at);
   });
   const VolumeSampler expected{host.view(), Filter::trilinear};

@@ -22,7 +22,7 @@ class BlockSource {
                           const PageTable& table) = 0;
   /// Decodes blocks[i] into values[512 i] (x << 6 | y << 3 | z), i < count.
   virtual void decode(const BlockId* blocks, std::uint32_t count, float* values) = 0;
-  /// Throws Error(input) where what was decoded since the last call was damaged; waits for it.
+  /// Throws Error(input) where something that was decoded is damaged; waits for it.
   virtual void check() = 0;
 };
 

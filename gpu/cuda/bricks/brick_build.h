@@ -142,7 +142,7 @@ struct BuildBricks {
       entry.span = range.max - range.min;
       if (!finite || !is_finite(entry.span) || !is_finite(kMostTexel / entry.span)) {
         atomic_add(&counters->unfit, 1U);
-        return {0, 0, 0, 0};
+        return {0, 0, 0, brick_state::kMissing};  // so that another turn comes, which sees it
       }
       std::uint32_t bits;
       __builtin_memcpy(&bits, &entry.span, sizeof bits);

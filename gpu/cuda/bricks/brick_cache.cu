@@ -52,11 +52,10 @@ class BrickCache::Pager {
   std::optional<DevicePager<float>> floats_;
 };
 
-BrickCache::BrickCache(std::unique_ptr<BlockSource> source, std::uint64_t bytes, std::uint64_t taken, BricksKept kept)
+BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& budget, BricksKept kept)
     : source_(std::move(source)),
-      taken_(taken),
-      budget_(bytes > taken ? bytes - taken : 0),
-      bytes_(bytes),
+      budget_(budget),
+      left_(budget.bytes > budget.taken ? budget.bytes - budget.taken : 0),
       kept_(kept) {
   for (const RegionEntry& region : source_->regions()) {
     ++regions_;
@@ -75,7 +74,7 @@ BrickCache::Needs BrickCache::needs() const {
   Needs needs;
   needs.table = std::uint64_t{regions_} * (sizeof(RegionEntry) + sizeof(std::uint32_t));
   const std::uint64_t scratch =
-      std::clamp<std::uint64_t>(budget_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
+      std::clamp<std::uint64_t>(left_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
   needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
   needs.plan.most_requests = std::max(kRegionBlocks, std::min(kMostRequests, needs.plan.blocks * 2));
   needs.fixed = needs.table + scratch + needs.plan.most_requests * sizeof(BlockId);
@@ -89,8 +88,8 @@ void BrickCache::make(TexelType type) {
   texture_ = Texture();
   if (make_whole()) return;
   if (kept_ == BricksKept::all) {
-    throw Error(ErrorKind::io, cat("all bricks of the grid need more than the ", format_bytes(budget_),
-                                   " of device memory that are free"));
+    throw Error(ErrorKind::io, cat("all bricks of the grid do not fit into the ", format_bytes(left_),
+                                   " of device memory left for them, or into a texture"));
   }
   make_paged();
 }
@@ -109,15 +108,16 @@ bool BrickCache::make_whole() {
   const BlockLattice lattice = source_->lattice();
   const auto most = static_cast<std::int32_t>(kFixedPointEnd - 8);
   if (greater(lattice.extent.x, greater(lattice.extent.y, lattice.extent.z)) > most) return false;
+  if (regions_ >= 1U << 20U) return false;  // their entries are counted in 32 bits
   needs.plan.pages = regions_;
   needs.fixed += 2 * (std::uint64_t{regions_} + 1) * kPageBytes;  // pages, and the table made of them
-  if (needs.fixed > budget_ / 2) return false;
+  if (needs.fixed > left_ / 2) return false;
   needs.plan.slots = 1;
   pager_ = std::make_unique<Pager>(type_, *source_, needs.plan, 0);
   const std::uint32_t missing = pager_->with([](auto& pager) { return pager.bring_all_pages(); });
   pager_.reset();
   const TextureShape shape = shape_for(std::uint64_t{missing} + 1);
-  if (shape.size() <= missing || needs.fixed + missing * kSlotBytes + shape.size() * brick_bytes(type_) > budget_) {
+  if (shape.size() <= missing || needs.fixed + missing * kSlotBytes + shape.size() * brick_bytes(type_) > left_) {
     return false;
   }
   needs.plan.slots = std::max(1U, missing);
@@ -133,19 +133,34 @@ bool BrickCache::make_whole() {
   return true;
 }
 
+void BrickCache::fail_too_small(const Needs& needs) const {
+  // Enough for floats, too, and for the eighth that decodes.
+  const std::uint64_t most = needs.least(TexelType::float32);
+  const std::uint64_t enough = std::max(20 * needs.table, most + most / 5) + budget_.taken;
+  const auto megabytes = [](std::uint64_t bytes) { return cat((bytes >> 20U) + 1, "MiB"); };
+  if (!budget_.limited) {
+    throw Error(ErrorKind::input,
+                compose("the grid takes ", megabytes(enough), " of device memory at least, where ",
+                        format_bytes(budget_.bytes), " may be used; render it with ", option("backend", "cpu")));
+  }
+  const std::string series =
+      budget_.volumes > 1 ? cat(", ", budget_.volumes, " volumes of a series being held at a time") : std::string();
+  throw Error(ErrorKind::usage, compose(option("device-memory", format_bytes(budget_.volumes * budget_.bytes)),
+                                        " is too small for this grid", series, "; give ",
+                                        option("device-memory", megabytes(budget_.volumes * enough)), " or more"));
+}
+
+std::uint64_t BrickCache::Needs::least(TexelType type) const {
+  return fixed + 20 * kPageBytes + 2 * kLeastSlots * (brick_bytes(type) + kSlotBytes);
+}
+
 // Places for as many bricks as fit.
 void BrickCache::make_paged() {
   Needs needs = this->needs();
-  const std::uint64_t least = needs.fixed + 10 * 2 * kPageBytes + 2 * kLeastSlots * (brick_bytes(type_) + kSlotBytes);
-  if (needs.table > budget_ / 20 || budget_ < least) {
-    const std::uint64_t enough = ((std::max(20 * needs.table, least) + taken_) >> 20U) + 1;
-    throw Error(ErrorKind::usage,
-                compose(option("device-memory", format_bytes(bytes_)), " is too small for this grid; give ",
-                        option("device-memory", cat(enough, "MiB")), " or more"));
-  }
+  if (needs.table > left_ / 20 || left_ < needs.least(type_)) fail_too_small(needs);
   needs.plan.pages = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-      std::max(1U, regions_with_pages_), std::max<std::uint64_t>(budget_ / 10, kPageBytes) / kPageBytes));
-  const std::uint64_t rest = budget_ - needs.fixed - (std::uint64_t{needs.plan.pages} + 1) * kPageBytes;
+      std::max(1U, regions_with_pages_), std::max<std::uint64_t>(left_ / 10, kPageBytes) / kPageBytes));
+  const std::uint64_t rest = left_ - needs.fixed - (std::uint64_t{needs.plan.pages} + 1) * kPageBytes;
   const TextureShape shape = shape_within(rest * brick_bytes(type_) / (brick_bytes(type_) + kSlotBytes), type_);
   needs.plan.slots = static_cast<std::uint32_t>(shape.size() - 1);
   make_pager(needs.plan, shape);

@@ -24,18 +24,24 @@ enum class BricksKept {
   all,   ///< none: where there is no room, making it is an error
 };
 
+/// What a cache may take of a device.
+struct BrickBudget {
+  std::uint64_t bytes = 0;    ///< with what its source reads
+  std::uint64_t taken = 0;    ///< by that already
+  std::uint64_t volumes = 1;  ///< that are held at a time, each with as much
+  bool limited = true;        ///< by --device-memory; otherwise by what is free
+};
+
 /// Made and used with its device current, by one thread at a time.
 class BrickCache {
  public:
-  /// Takes at most `bytes` of device memory, of which `taken` already are by what the source reads. Texels have 16
-  /// bits, in a range of each brick's own, floats where that does not hold a brick's values (some not finite). Throws
-  /// Error(usage) where `bytes` are too few, with how many would do, Error(io) where the device has no room,
-  /// Error(input) where blocks are damaged.
-  BrickCache(std::unique_ptr<BlockSource> source, std::uint64_t bytes, std::uint64_t taken,
-             BricksKept kept = BricksKept::some);
+  /// Texels have 16 bits, in a range of each brick's own, floats where that does not hold a brick's values (some not
+  /// finite). Throws Error(usage) where the budget is too small, with what would do, Error(io) where the device has no
+  /// room, Error(input) where blocks are damaged.
+  BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& budget, BricksKept kept = BricksKept::some);
   ~BrickCache();
 
-  /// Whether there are fewer places than bricks.
+  /// Whether bricks come and go: there are fewer places than bricks, or an axis is too long for a BrickTable.
   bool paged() const { return paged_; }
   TexelType texel_type() const { return type_; }
   std::uint64_t bytes() const;                     ///< of device memory
@@ -56,7 +62,7 @@ class BrickCache {
   /// Of a paged one: brings in what was looked up and missing since the last call. Where that was `unfit`, all that was
   /// drawn is to be drawn again, from floats. Throws as the constructor.
   PagingTurn serve();
-  /// Throws Error(input) where a block that was decoded since the last call is damaged.
+  /// Throws Error(input) where a block that was decoded is damaged.
   void check();
   /// "16-bit texels, off by at most 1.5e-05": of all bricks so far.
   std::string texels_note() const;
@@ -68,6 +74,8 @@ class BrickCache {
     BrickPlan plan;           // without pages, slots and their shape
     std::uint64_t table = 0;  // bytes of the regions'
     std::uint64_t fixed = 0;  // bytes of that, and of all that brings bricks in
+
+    std::uint64_t least(TexelType type) const;  // bytes of the smallest cache
   };
 
   PageTable pages();
@@ -75,12 +83,12 @@ class BrickCache {
   void make(TexelType type);
   bool make_whole();
   void make_paged();
+  [[noreturn]] void fail_too_small(const Needs& needs) const;
   void make_pager(BrickPlan plan, const TextureShape& shape);
 
   std::unique_ptr<BlockSource> source_;
-  std::uint64_t taken_;
-  std::uint64_t budget_;  // what is left
-  std::uint64_t bytes_;
+  BrickBudget budget_;
+  std::uint64_t left_;  // bytes of it
   BricksKept kept_;
   std::uint32_t regions_ = 0;
   std::uint32_t regions_with_pages_ = 0;

@@ -59,6 +59,7 @@ class BrickPager {
     counters.free_slots = plan.slots;
     counters_.upload(std::span(&counters, 1));
     machine_.each(plan.slots, FreeAllSlots{slots()});
+    machine_.wait();  // another thread may use the object
   }
 
   PageTable table() {
@@ -148,7 +149,7 @@ class BrickPager {
     return entries;
   }
 
-  /// Throws Error(input) where something that was decoded since the last call was damaged; waits for all work.
+  /// Throws Error(input) where something that was decoded is damaged; waits for all work.
   void check() {
     read_counters();
     source_.check();
@@ -221,7 +222,7 @@ class BrickPager {
     listed_regions_.upload(regions);
     listed_pages_.upload(pages);
     machine_.each(kRegionBlocks * static_cast<std::uint32_t>(pages.size()),
-                  DropPages{table(), slots(), counters_.data(), listed_regions_.data(), listed_pages_.data()});
+                  DropPages{table(), slots(), counters_.data(), turn_, listed_regions_.data(), listed_pages_.data()});
     read_counters();
   }
 

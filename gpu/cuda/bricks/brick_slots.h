@@ -23,7 +23,11 @@ struct BrickSlots {
     const std::uint32_t n = slot + 1;
     return BrickEntry::pack(n % across, n / across % down, n / across / down);
   }
-  /// Inverse.
+  /// In turns since a slot was last used, as BrickCounters counts them.
+  WEIR_HOST_DEVICE std::uint32_t age(std::uint32_t slot, std::uint32_t turn) const {
+    return lesser(turn - stamps[slot], BrickCounters::kAges - 1);
+  }
+  /// Of brick().
   WEIR_HOST_DEVICE std::uint32_t slot(std::uint32_t brick) const {
     return (brick & 2047U) + across * ((brick >> 11U & 2047U) + down * (brick >> 22U)) - 1;
   }
@@ -65,8 +69,7 @@ struct AgeSlots {
         slots.stamps[i] = turn;
         page_stamps[slots.owners[i] / kRegionBlocks] = turn;
       }
-      const std::uint32_t age = turn - slots.stamps[i];
-      atomic_add(shared.ages + lesser(age, BrickCounters::kAges - 1), 1U);
+      atomic_add(shared.ages + slots.age(i, turn), 1U);
     }
     thread.meet();
     for (std::uint32_t a = thread.index(); a < BrickCounters::kAges; a += thread.count()) {
@@ -85,9 +88,7 @@ struct EvictSlots {
   std::uint32_t wanted = 0;
 
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
-    if (slots.owners[i] == BrickSlots::kFree || lesser(turn - slots.stamps[i], BrickCounters::kAges - 1) < least_age) {
-      return;
-    }
+    if (slots.owners[i] == BrickSlots::kFree || slots.age(i, turn) < least_age) return;
     if (atomic_add(&counters->evicted, 1U) >= wanted) return;
     BrickEntry& entry = entries[slots.owners[i]];
     entry = {entry.low + 0.5F * entry.span, 0, 0, brick_state::kMissing};
@@ -101,6 +102,7 @@ struct DropPages {
   PageTable table;
   BrickSlots slots;
   BrickCounters* counters = nullptr;
+  std::uint32_t turn = 0;
   const std::uint32_t* regions = nullptr;
   const std::uint32_t* pages = nullptr;
 
@@ -109,6 +111,7 @@ struct DropPages {
     BrickEntry& entry = table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks];
     if (entry.brick != 0) {
       const std::uint32_t slot = slots.slot(entry.brick);
+      atomic_add(counters->ages + slots.age(slot, turn), ~0U);  // free, no longer old
       slots.owners[slot] = BrickSlots::kFree;
       slots.free[atomic_add(&counters->free_slots, 1U)] = slot;
     }

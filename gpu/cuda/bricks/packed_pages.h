@@ -26,7 +26,7 @@ struct FillPackedPages {
     for (std::uint32_t k = 0; k < 8 && lattice.contains(block); ++k) {
       const FoundStream found = find_stream(view, lattice.id_of(lattice.above(block, k)));
       if (k == 0) value = found.data == nullptr ? found.value : 0.5F * found.means.low + 0.5F * found.means.high;
-      uniform = uniform && found.data == nullptr && !found.damaged && found.value == value;
+      uniform = uniform && found.data == nullptr && !found.damaged && same_value(found.value, value);
     }
     table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks] = {
         value, 0, 0, uniform ? 0 : brick_state::kMissing};
@@ -46,7 +46,7 @@ inline std::vector<RegionEntry> packed_regions(const PackedData& packed) {
                          std::min(at.y + (k >> 1 & 1), regions.count.y - 1),
                          std::min(at.z + (k >> 2), regions.count.z - 1)};
       const PackedRegion other = packed.region(above);
-      uniform = uniform && other.chunk == 0 && other.value == own.value;
+      uniform = uniform && other.chunk == 0 && same_value(other.value, own.value);
     }
     entries[static_cast<std::size_t>(r)] = {uniform ? 0 : RegionEntry::kMissing, own.value};
   }

@@ -23,9 +23,9 @@ void PackedSource::decode(const BlockId* blocks, std::uint32_t count, float* val
 }
 
 void PackedSource::check() {
-  if (const std::uint32_t damaged = decoder_.counts(cudaStreamPerThread).damaged; damaged > 0) {
-    throw Error(ErrorKind::input, cat(packed_.path(), ": ", damaged, " packed blocks are damaged; see weir verify"));
-  }
+  damaged_ += decoder_.counts(cudaStreamPerThread).damaged;
+  if (damaged_ == 0) return;
+  throw Error(ErrorKind::input, cat(packed_.path(), ": ", damaged_, " packed blocks are damaged; see weir verify"));
 }
 
 }  // namespace weir

@@ -21,6 +21,9 @@ inline constexpr std::uint32_t kRequested = 2;  ///< noted since requests were l
 inline constexpr std::uint32_t kUsed = 4;       ///< looked up since that was last asked
 }  // namespace brick_state
 
+/// Equal, or neither a number.
+WEIR_HOST_DEVICE inline bool same_value(float a, float b) { return a == b || (a != a && b != b); }
+
 /// A block: `low` all over where it has no brick, else low + span * texel.
 struct alignas(16) BrickEntry {
   float low = 0;

@@ -1,7 +1,7 @@
 #include "gpu/cuda/bricks/table_source.h"
 
 #include <algorithm>
-#include <bit>
+#include <optional>
 
 #include "gpu/cuda/bricks/device_machine.cuh"
 
@@ -33,7 +33,7 @@ struct FillTablePages {
     for (std::uint32_t k = 0; k < 8 && lattice.contains(block); ++k) {
       const Block other = source.blocks[table_position(source, lattice, lattice.above(block, k))];
       if (k == 0) value = other.tile_value();
-      uniform = uniform && other.units == 0 && other.tile_value() == value;
+      uniform = uniform && other.units == 0 && same_value(other.tile_value(), value);
     }
     table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks] = {
         value, 0, 0, uniform ? 0 : brick_state::kMissing};
@@ -73,8 +73,10 @@ std::vector<RegionEntry> TableSource<Block>::regions() const {
     const std::optional<float> own = tile(at);
     bool uniform = own.has_value();
     for (std::int64_t k = 1; k < 8 && uniform; ++k) {
-      uniform = tile({std::min(at.x + (k & 1), regions.count.x - 1), std::min(at.y + (k >> 1 & 1), regions.count.y - 1),
-                      std::min(at.z + (k >> 2), regions.count.z - 1)}) == own;
+      const std::optional<float> above =
+          tile({std::min(at.x + (k & 1), regions.count.x - 1), std::min(at.y + (k >> 1 & 1), regions.count.y - 1),
+                std::min(at.z + (k >> 2), regions.count.z - 1)});
+      uniform = above && same_value(*above, *own);
     }
     entries[static_cast<std::size_t>(r)] = {uniform ? 0 : RegionEntry::kMissing, own.value_or(grid_.background())};
   }

@@ -8,18 +8,18 @@
 
 namespace weir {
 
-BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, std::uint64_t memory)
+BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget)
     : bytes_(std::move(bytes)), cells_(cells) {
   std::unique_ptr<BlockSource> source;
-  std::uint64_t taken = cells_.bytes() + bytes_.device_bytes();
+  budget.taken = cells_.bytes() + bytes_.device_bytes();
   if (grid.packed() != nullptr) {
     source = std::make_unique<PackedSource>(grid, bytes_.data());
-    taken += BlockDecoder::kFixedBytes;
+    budget.taken += BlockDecoder::kFixedBytes;
   } else {
     const auto read_in_place = [&]<class Block>(DeviceTable<Block> table) {
       table_ = std::move(table);
       const auto& kept = std::get<DeviceTable<Block>>(table_);
-      taken += kept.bytes();
+      budget.taken += kept.bytes();
       source = std::make_unique<TableSource<Block>>(grid, kept.view());
     };
     if (grid.type() == GridType::float32) {
@@ -28,7 +28,7 @@ BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vecto
       read_in_place(DeviceTable<QuantisedBlock>(grid, bytes_.data()));
     }
   }
-  cache_.emplace(std::move(source), memory, taken);
+  cache_.emplace(std::move(source), budget);
 }
 
 }  // namespace weir

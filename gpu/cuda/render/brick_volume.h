@@ -14,10 +14,10 @@ namespace weir {
 /// Made and used with its device current.
 class BrickVolume {
  public:
-  /// `bytes` are those of `grid`, on the device or in host memory that it reads; `cells` bounds of macrocells. Together
-  /// with what is made of them they take at most `memory` of the device. Throws as BrickCache, BlockDecoder and
+  /// `bytes` are those of `grid`, which must outlive the object, on the device or in host memory that it reads; `cells`
+  /// bounds of macrocells. Of `budget`, what is taken already is found here. Throws as BrickCache, BlockDecoder and
   /// DeviceTable.
-  BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, std::uint64_t memory);
+  BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget);
 
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }

@@ -41,7 +41,10 @@ std::uint64_t bytes_needed(const NvdbGrid& grid) {
 struct DeviceRoom {
   std::uint64_t bytes = 0;
   std::uint64_t free = 0;  ///< of the device, all in all
-  bool limited = false;    ///< by what the caller asked for
+  std::uint64_t volumes = 1;
+  bool limited = false;  ///< by what the caller asked for
+
+  BrickBudget budget() const { return {.bytes = bytes, .volumes = volumes, .limited = limited}; }
 };
 
 /// Why a grid cannot lie on the current device; "" where it can.
@@ -49,15 +52,15 @@ std::string reason_for_zero_copy(const NvdbGrid& grid, const DeviceRoom& room) {
   const std::uint64_t needed = bytes_needed(grid);
   if (needed <= room.bytes) return "";
   if (room.limited) {
-    return compose("the grid needs ", format_bytes(needed), " of device memory, more than ",
-                   option("device-memory", format_bytes(room.bytes)), ", so it stays in host memory")
+    return compose("the grid needs ", format_bytes(room.volumes * needed), " of device memory, more than ",
+                   option("device-memory", format_bytes(room.volumes * room.bytes)), ", so it stays in host memory")
         .text();
   }
   return cat("the grid needs ", format_bytes(needed + kSpareDeviceBytes), " of device memory and ",
              format_bytes(room.free), " are free, so it stays in host memory");
 }
 
-/// A tenth of it bricks at least, beside the table.
+/// Whether a grid in host memory has a cache on the device, not its table alone.
 bool worth_bricks(const NvdbGrid& grid, std::uint64_t memory) {
   return grid.packed() != nullptr || memory >= grid.data_bytes() / 10;
 }
@@ -163,6 +166,10 @@ class CudaBackend : public Backend {
     const DeviceRoom room = room_for(grid, buffer.capacity());
     if (!how.zero_copy) note = reason_for_zero_copy(grid, room);
     how.zero_copy = how.zero_copy || !note.empty();
+    if (how.zero_copy && buffer.capacity() > 0) {
+      buffer = DeviceBuffer();
+      free_device_bytes(~std::uint64_t{0});
+    }
     if (how.zero_copy && options_.devices.size() > 1) {
       throw Error(ErrorKind::usage,
                   cat(note.empty() ? "a grid in host memory" : note, "; several devices cannot share it, use one"));
@@ -180,7 +187,7 @@ class CudaBackend : public Backend {
         use_device(device);
         GridBytes bytes = bricks.empty() ? GridBytes(std::move(loaded))
                                          : GridBytes(bricks.front()->bytes(), options_.devices.front(), device);
-        bricks.push_back(std::make_unique<BrickVolume>(grid, std::move(bytes), cells.bounds(), room.bytes));
+        bricks.push_back(std::make_unique<BrickVolume>(grid, std::move(bytes), cells.bounds(), room.budget()));
       }
       BrickCache& cache = bricks.front()->cache();
       summary.note +=
@@ -196,7 +203,8 @@ class CudaBackend : public Backend {
       use_device(device);
       GridBytes bytes = grids.empty() ? GridBytes(std::move(loaded))
                                       : GridBytes(grids.front()->bytes(), options_.devices.front(), device);
-      grids.push_back(std::make_unique<DeviceVolume>(grid, std::move(bytes), lattice, bounds));
+      grids.push_back(std::make_unique<DeviceVolume>(grid, std::move(bytes), lattice, bounds,
+                                                     room.limited ? room.bytes : ~std::uint64_t{0}));
       bounds = grids.front()->host_cells();
     }
     MacrocellGrid cells(lattice, std::move(bounds));
@@ -307,13 +315,16 @@ class CudaBackend : public Backend {
 
   // For the grid on the current device, of which `held` bytes are kept for it already.
   DeviceRoom room_for(const NvdbGrid& grid, std::uint64_t held) const {
-    if (options_.memory) return {*options_.memory / options_.volumes, 0, true};
+    if (options_.memory) return {*options_.memory / options_.volumes, 0, options_.volumes, true};
     const std::uint64_t bricks =
         grid.packed() != nullptr ? block_count(grid) * (kBrickTexels * sizeof(float) + sizeof(BrickEntry)) : 0;
     const std::uint64_t wanted = bytes_needed(grid) + bricks + kSpareDeviceBytes;
     const std::uint64_t free = free_device_bytes(wanted > held ? wanted - held : 0) + held;
     const std::uint64_t bytes = free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0;
-    return {grid.packed() != nullptr ? std::min(bytes, device_bytes() / options_.volumes) : bytes, free, false};
+    // A cache takes all it gets: the next volume of a series needs as much.
+    const std::uint64_t share = device_bytes() / options_.volumes;
+    if (grid.packed() == nullptr && bytes_needed(grid) <= bytes) return {bytes, free, options_.volumes, false};
+    return {std::min(bytes, share), std::min(free, share + kSpareDeviceBytes), options_.volumes, false};
   }
 
   template <class Run>

@@ -1,6 +1,6 @@
 #include "gpu/cuda/render/device_volume.h"
 
-#include <limits>
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -20,8 +20,10 @@ std::variant<DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> make_table(co
 
 }  // namespace
 
-DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells)
+DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells,
+                           std::uint64_t memory)
     : grid_(grid),
+      memory_(memory),
       bytes_(std::move(bytes)),
       table_(make_table(grid, bytes_.data())),
       host_cells_(cells.empty()
@@ -29,14 +31,22 @@ DeviceVolume::DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLatt
                       : std::move(cells)),
       cells_(host_cells_) {}
 
+template <class Block>
+void DeviceVolume::make_atlas(const BlockTable<Block>& table) {
+  const auto blocks = static_cast<std::uint64_t>(leaf_lattice(grid_.index_bbox()).size());
+  const std::uint64_t wanted = blocks * (kBrickTexels * texel_bytes(TexelType::share16) + 2 * sizeof(BrickEntry));
+  const std::uint64_t free = free_device_bytes(wanted + kSpareDeviceBytes);
+  const std::uint64_t taken = bytes_.device_bytes() + blocks * sizeof(Block) + cells_.bytes();
+  BrickBudget budget;
+  budget.bytes =
+      std::min(memory_ > taken ? memory_ - taken : 0, free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0);
+  atlas_.emplace(std::make_unique<TableSource<Block>>(grid_, table), budget, BricksKept::all);
+}
+
 BrickCache* DeviceVolume::atlas() {
   if (!atlas_ && atlas_refusal_.empty()) {
     try {
-      const std::uint64_t free = free_device_bytes(std::numeric_limits<std::uint64_t>::max());
-      atlas_.emplace(with_table([&]<class Block>(const BlockTable<Block>& table) {
-                       return std::unique_ptr<BlockSource>(std::make_unique<TableSource<Block>>(grid_, table));
-                     }),
-                     free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0, 0, BricksKept::all);
+      with_table([&]<class Block>(const BlockTable<Block>& table) { make_atlas(table); });
     } catch (const Error& error) {
       atlas_refusal_ = error.what();
     }

@@ -17,7 +17,8 @@ class DeviceVolume {
  public:
   /// `grid` must outlive the object. `cells`: bounds of macrocells; empty where the file has none and they are gathered
   /// here.
-  DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells);
+  DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells,
+               std::uint64_t memory = ~std::uint64_t{0});
 
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }
@@ -34,7 +35,11 @@ class DeviceVolume {
   const std::string& atlas_refusal() const { return atlas_refusal_; }
 
  private:
+  template <class Block>
+  void make_atlas(const BlockTable<Block>& table);
+
   const NvdbGrid& grid_;
+  std::uint64_t memory_;
   GridBytes bytes_;
   std::variant<DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> table_;
   std::vector<MinMax> host_cells_;

@@ -29,7 +29,7 @@ struct PagedReport {
   std::uint64_t turns = 0;          ///< in which bricks were brought in
   std::uint64_t bricks = 0;         ///< brought in
   std::uint64_t decoded = 0;        ///< blocks
-  std::uint32_t least_tiles = ~0U;  ///< that were drawn at a time, of those there are
+  std::uint32_t least_tiles = ~0U;  ///< in one launch
 };
 
 /// Adds samples [first, last) of every pixel to `sums` (zeros), in their order: tiles of the picture one after the
@@ -39,7 +39,9 @@ struct PagedReport {
 template <Filter kFilter, class TaskOf, class Done>
 PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
                         DeviceArray<Float3>& sums, const std::atomic<bool>* cancel, const Done& report_done) {
-  constexpr std::uint32_t kPatience = 8;  // turns of the smallest tile without a sample before that is an error
+  // Turns of the smallest tile without a sample before that is an error; many more where they bring something in.
+  constexpr std::uint32_t kPatience = 512;
+  constexpr std::uint32_t kInVain = 64;
   PagedReport report;
   auto task = task_of(cache.template paged_sampler<kFilter>());
   const std::uint32_t tiles = paged_tiles(task.width, task.height);
@@ -50,7 +52,7 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
   };
   clear(done);
   PagedPicture picture{sums.data(), done.data(), counts.data(), first, last - first, 1};
-  const std::uint64_t decoded_before = cache.counters().decoded;
+  std::uint64_t decoded_before = cache.counters().decoded;
   std::uint32_t at = 0;
   std::uint32_t count = tiles;
   std::uint64_t brought = 0;  // for these tiles
@@ -68,11 +70,16 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     report.least_tiles = std::min(report.least_tiles, count);
     drawn += found.finished;
     if (drawn > reported) report_done(drawn - std::exchange(reported, drawn));
+    const double seconds = seconds_since(start);
+    if (seconds > kLaunchSeconds) picture.at_once = std::max(1U, picture.at_once / 2);
     if (found.missed == 0) {
-      if (seconds_since(start) < kLaunchSeconds / 2) picture.at_once = std::min(2 * picture.at_once, 1U << 16U);
+      if (seconds < kLaunchSeconds / 2) picture.at_once = std::min(2 * picture.at_once, 1U << 16U);
       if (found.unfinished > 0) continue;
       at += count;
-      if (brought < cache.bricks() / 4) count *= 2;
+      if (brought < cache.bricks() / 4) {
+        count *= 2;
+        picture.at_once = std::max(1U, picture.at_once / 2);
+      }
       count = std::min(count, tiles - at);
       brought = 0;
       continue;
@@ -86,13 +93,18 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
       clear(done);
       clear(sums);
       drawn = 0;
+      decoded_before = 0;
+      brought = 0;
+      picture.at_once = 1;
       at = 0;
       count = tiles;
       continue;
     }
-    idle = found.finished == 0 && turn.crowded() && count == 1 ? idle + 1 : 0;
+    const bool stuck = found.finished == 0 && turn.crowded() && count == 1;
+    idle = stuck ? idle + (turn.bricks + turn.pages == 0 ? kInVain : 1) : 0;
     if (turn.crowded()) count = std::max(1U, count / 2);
     if (idle > kPatience) {
+      check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "bringing bricks in");
       throw Error(ErrorKind::usage, compose("the device holds ", cache.bricks(),
                                             " bricks, fewer than a few rays of this picture need; give ", "more ",
                                             option("device-memory")));

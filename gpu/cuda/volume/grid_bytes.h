@@ -15,13 +15,14 @@ class GridBytes {
  public:
   explicit GridBytes(DeviceGrid loaded) : loaded_(std::move(loaded)) {}
   /// Copies from `other_device` to `device`, the current one.
-  GridBytes(const GridBytes& other, int other_device, int device) : copy_(other.bytes()) {
+  GridBytes(const GridBytes& other, int other_device, int device)
+      : copy_((other.bytes() + 15) / 16 * 16), bytes_(other.bytes()) {
     check_cuda(cudaMemcpyPeer(copy_.data(), device, other.data(), other_device, other.bytes()),
                "copying a grid to another device");
   }
 
   const std::byte* data() const { return loaded_ ? loaded_->data() : copy_.data(); }
-  std::uint64_t bytes() const { return loaded_ ? loaded_->bytes() : copy_.bytes(); }
+  std::uint64_t bytes() const { return loaded_ ? loaded_->bytes() : bytes_; }
   /// Of device memory: none where they stay in the host's.
   std::uint64_t device_bytes() const { return loaded_ && loaded_->report().zero_copy ? 0 : bytes(); }
   /// For the next load; empty where this is a copy.
@@ -31,7 +32,8 @@ class GridBytes {
 
  private:
   std::optional<DeviceGrid> loaded_;
-  DeviceArray<std::byte> copy_;
+  DeviceArray<std::byte> copy_;  // up to a multiple of 16
+  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace weir

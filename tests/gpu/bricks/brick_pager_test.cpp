@@ -10,6 +10,7 @@
 #include <set>
 
 #include "format/nanovdb/nvdb_grid.h"
+#include "gpu/cuda/bricks/brick_position.h"
 #include "gpu/math/random.h"
 #include "gpu/volume/leaf_table.h"
 #include "tests/gpu/bricks/host_machine.h"
@@ -158,6 +159,14 @@ TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
     const BrickEntry& entry = entries.data()[table.index(at)];
     ASSERT_NE(entry.brick, 0U);
     const Float3 found = BrickTable::texel(entry, at);
+    const BrickPosition paged(lattice_, q);
+    ASSERT_EQ(paged.texel(entry), found) << "in a cache, too";
+    ASSERT_EQ(entries
+                  .data()[table_index({paged.block.x - (lattice_.shift.x >> 3), paged.block.y - (lattice_.shift.y >> 3),
+                                       paged.block.z - (lattice_.shift.z >> 3)},
+                                      BrickTable::blocks(lattice_))]
+                  .brick,
+              entry.brick);
     const Int3 corner = entry.corner();
     // Of a voxel that the position is at or above.
     const Float3 f{found.x - 0.5F, found.y - 0.5F, found.z - 0.5F};
@@ -178,6 +187,19 @@ TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
   }
 }
 
+TEST_F(BrickPagerTest, PositionsOfTheLongestDomainsStayInTheirBlocks) {
+  const BlockLattice longest{{(1 << 23) + 1, 1, 1}, {127, 0, 0}, {1 << 30, 8, 8}};
+  for (const float q : {0.0F, 16256.996F, 16777217.0F, 1073741824.0F, 2e9F}) {
+    const BrickPosition at(longest, {q, 3.4F, 9});
+    EXPECT_GE(at.block.x, 15);
+    EXPECT_LE(at.block.x, longest.last_block().x) << q;
+    EXPECT_LT(at.in_block.x, 8);
+    EXPECT_EQ(at.block.y, 0);
+    EXPECT_EQ(at.in_block.z, 7);
+    EXPECT_EQ(at.in_block.y, std::nearbyint(256 * 3.4F) / 256);
+  }
+}
+
 TEST_F(BrickPagerTest, BricksThat16BitsDoNotHoldAreCounted) {
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42F}) {
     test::PackedGridOptions options;
@@ -192,6 +214,14 @@ TEST_F(BrickPagerTest, BricksThat16BitsDoNotHoldAreCounted) {
     EXPECT_EQ(words.pager.bring_all_pages(), 64U);
     EXPECT_FALSE(words.pager.bring_all_bricks()) << odd;
     EXPECT_EQ(words.pager.counters().unfit, 1U) << odd;
+    Cache<std::uint16_t> some(*grid_, plan(1, 100));
+    bool seen = false;
+    for (int turn = 0; turn < 4 && !seen; ++turn) {
+      EXPECT_NE(some.pager.table().find_or_request({1, 2, 1}).state & brick_state::kMissing, 0U)
+          << "never a wrong value";
+      seen = some.pager.serve().unfit;
+    }
+    EXPECT_TRUE(seen);
     Cache<float> floats(*grid_, plan(1, 100));
     floats.pager.bring_all_pages();
     EXPECT_TRUE(floats.pager.bring_all_bricks()) << odd;
@@ -295,6 +325,35 @@ TEST_F(BrickPagerTest, FewerPagesThanRegionsTakeTurns) {
   std::vector<Int3> both{by_region[0].front(), by_region[1].front()};
   look_up(cache, right, both);
   EXPECT_TRUE(cache.pager.serve().crowded());
+}
+
+// Bricks of a dropped page are free, and old no longer.
+TEST_F(BrickPagerTest, ATurnThatDropsAPageAndFillsAllSlotsCountsEachOnce) {
+  Cache<float> cache(*grid_, plan(2, 100));
+  const auto right = [&](const BrickEntry& entry, const Int3& block) { ASSERT_EQ(difference(cache, entry, block), 0); };
+  std::vector<std::vector<Int3>> by_region(3);
+  for_each_block([&](const Int3& block) { by_region[lattice_.region_of(block)].push_back(block); });
+  const auto some = [&](std::size_t region, std::size_t first, std::size_t count) {
+    const auto begin = by_region[region].begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<Int3>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  for (int i = 0; i < 3; ++i) {  // region 2 fills 60 of 100 slots, then region 1 the others
+    look_up(cache, right, some(2, 0, 60));
+    cache.pager.serve();
+  }
+  for (int i = 0; i < 3; ++i) {
+    look_up(cache, right, some(1, 0, 40));
+    cache.pager.serve();
+  }
+  std::vector<Int3> all = some(1, 0, 120);
+  all.push_back(by_region[0].front());
+  look_up(cache, right, all);
+  const PagingTurn turn = cache.pager.serve();
+  EXPECT_EQ(turn.pages, 1U);
+  EXPECT_EQ(turn.bricks, 60U) << "those that region 2 had; 40 are in use";
+  EXPECT_EQ(look_up(cache, right, some(1, 0, 40)), 40U);
+  cache.pager.serve();
+  EXPECT_EQ(cache.pager.counters().free_slots, 0U);
 }
 
 TEST_F(BrickPagerTest, AFullListOfRequestsLosesNone) {
