@@ -165,6 +165,7 @@ class CudaBackend : public Backend {
     how.packed = true;
     const DeviceRoom room = room_for(grid, buffer.capacity());
     if (!how.zero_copy) note = reason_for_zero_copy(grid, room);
+    const bool in_bricks = grid.packed() != nullptr || (!note.empty() && worth_bricks(grid, room.bytes));
     how.zero_copy = how.zero_copy || !note.empty();
     if (how.zero_copy && buffer.capacity() > 0) {
       buffer = DeviceBuffer();
@@ -180,7 +181,7 @@ class CudaBackend : public Backend {
     LoadSummary summary{cat(load_path_name(report.path), report.zero_copy ? ", zero-copy" : ""), report.bytes,
                         report.seconds, note};
 
-    if (grid.packed() != nullptr || (!note.empty() && worth_bricks(grid, room.bytes))) {
+    if (in_bricks) {
       MacrocellGrid cells = merged.valid() ? merged.get() : MacrocellGrid(grid, edge);
       std::vector<std::unique_ptr<BrickVolume>> bricks;
       for (const int device : options_.devices) {

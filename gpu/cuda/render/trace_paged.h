@@ -105,9 +105,9 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     if (turn.crowded()) count = std::max(1U, count / 2);
     if (idle > kPatience) {
       check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "bringing bricks in");
-      throw Error(ErrorKind::usage, compose("the device holds ", cache.bricks(),
-                                            " bricks, fewer than a few rays of this picture need; give ", "more ",
-                                            option("device-memory")));
+      throw Error(ErrorKind::usage,
+                  compose("the device holds ", cache.bricks(), " bricks, fewer than a few rays of this picture need;",
+                          " give more ", option("device-memory")));
     }
   }
   cache.check();

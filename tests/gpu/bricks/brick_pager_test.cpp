@@ -5,103 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <memory>
-#include <set>
 
-#include "format/nanovdb/nvdb_grid.h"
 #include "gpu/cuda/bricks/brick_position.h"
 #include "gpu/math/random.h"
-#include "gpu/volume/leaf_table.h"
-#include "tests/gpu/bricks/host_machine.h"
-#include "tests/support/packed_kinds.h"
+#include "tests/gpu/bricks/brick_pager_fixture.h"
 
 namespace weir::brick_pager_test {
 namespace {
 
-template <class Texel>
-struct Cache {
-  using Texels = test::HostTexels<Texel>;
-
-  Cache(const NvdbGrid& grid, BrickPlan plan)
-      : source(*grid.packed(), grid.index_bbox()),
-        size{static_cast<std::int32_t>(plan.across) * kBrickEdge, static_cast<std::int32_t>(plan.down) * kBrickEdge,
-             (static_cast<std::int32_t>(plan.slots / (plan.across * plan.down)) + 1) * kBrickEdge},
-        memory(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)),
-        texels{&memory, size},
-        pager({}, source, plan, texels) {}
-
-  // A texel of the block's brick, `v` from its corner.
-  float texel(const BrickEntry& entry, const Int3& v) const {
-    if (entry.brick == 0) return entry.low;
-    const Int3 corner = entry.corner();
-    return entry.low + entry.span * texels.read({corner.x + v.x, corner.y + v.y, corner.z + v.z});
-  }
-
-  test::HostPackedSource source;
-  Int3 size;
-  std::vector<Texel> memory;
-  Texels texels;
-  BrickPager<test::HostMachine, Texels> pager;
-};
-
-class BrickPagerTest : public testing::Test {
- protected:
-  BrickPagerTest() { open(test::build_packed_kinds()); }
-
-  void open(test::PackedFile file) {
-    file_ = std::move(file);
-    grid_ = std::make_unique<NvdbGrid>(NvdbGrid::open(file_.file, "a.nvdb"));
-    leaves_ = std::make_unique<LeafTable>(*grid_);
-    lattice_ = block_lattice(grid_->index_bbox());
-  }
-
-  static BrickPlan plan(std::uint32_t pages, std::uint32_t slots) {
-    return {.pages = pages, .slots = slots, .across = 5, .down = 7, .blocks = 200, .most_requests = 8192};
-  }
-
-  // Of the voxel that is `v` from the first region's corner, or the nearest one of the domain.
-  float voxel(const Int3& v) const {
-    const auto local = [](std::int32_t at, std::int32_t shift, std::int32_t extent) {
-      return std::clamp(at - shift, 0, extent - 1);
-    };
-    return leaves_->view().voxel({local(v.x, lattice_.shift.x, lattice_.extent.x),
-                                  local(v.y, lattice_.shift.y, lattice_.extent.y),
-                                  local(v.z, lattice_.shift.z, lattice_.extent.z)});
-  }
-
-  template <class Visit>
-  void for_each_block(const Visit& visit) const {
-    const Int3 last = lattice_.last_block();
-    for (std::int32_t x = lattice_.shift.x >> 3; x <= last.x; ++x) {
-      for (std::int32_t y = lattice_.shift.y >> 3; y <= last.y; ++y) {
-        for (std::int32_t z = lattice_.shift.z >> 3; z <= last.z; ++z) visit(Int3{x, y, z});
-      }
-    }
-  }
-
-  // Largest difference of the block's texels from the voxels, in spans of its brick.
-  template <class Texel>
-  double difference(const Cache<Texel>& cache, const BrickEntry& entry, const Int3& block) const {
-    double most = 0;
-    for (std::int32_t x = 0; x < kBrickEdge; ++x) {
-      for (std::int32_t y = 0; y < kBrickEdge; ++y) {
-        for (std::int32_t z = 0; z < kBrickEdge; ++z) {
-          const float expected = voxel({8 * block.x + x, 8 * block.y + y, 8 * block.z + z});
-          const float found = cache.texel(entry, {x, y, z});
-          if (expected == found) continue;
-          most = std::max(most, std::abs(static_cast<double>(expected) - found) / entry.span);
-        }
-      }
-    }
-    return most;
-  }
-
-  test::PackedFile file_;
-  std::unique_ptr<NvdbGrid> grid_;
-  std::unique_ptr<LeafTable> leaves_;
-  BlockLattice lattice_;
-};
+using test::BrickPagerTest;
+using test::Cache;
+using test::look_up;
 
 TEST_F(BrickPagerTest, AllBricksTogetherHoldAllVoxelsAndThoseNextAbove) {
   Cache<float> floats(*grid_, plan(3, 2000));
@@ -231,19 +147,6 @@ TEST_F(BrickPagerTest, BricksThat16BitsDoNotHoldAreCounted) {
   }
 }
 
-// Looks all of `blocks` up, as a picture does; returns how many were there, all with the right voxels.
-template <class C, class Test>
-std::size_t look_up(C& cache, const Test& test, const std::vector<Int3>& blocks) {
-  std::size_t found = 0;
-  for (const Int3& block : blocks) {
-    const BrickEntry entry = cache.pager.table().find_or_request(block);
-    if ((entry.state & brick_state::kMissing) != 0) continue;
-    test(entry, block);
-    ++found;
-  }
-  return found;
-}
-
 TEST_F(BrickPagerTest, WhatIsAskedForComesInAndWhatWasUsedLongestAgoGoes) {
   Cache<float> cache(*grid_, plan(3, 300));
   std::vector<Int3> all;
@@ -252,7 +155,8 @@ TEST_F(BrickPagerTest, WhatIsAskedForComesInAndWhatWasUsedLongestAgoGoes) {
     ASSERT_EQ(difference(cache, entry, block), 0) << block.x << ' ' << block.y << ' ' << block.z;
   };
   const auto stretch = [&](std::size_t first) {
-    return std::vector<Int3>(all.begin() + first, all.begin() + first + 140);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<Int3>(begin, begin + 140);
   };
   const std::vector<Int3> a = stretch(0);
   const std::vector<Int3> b = stretch(400);
