@@ -200,7 +200,9 @@ TEST_F(JobRunnerTest, ShutDown_JobOutlastsTheGrace_WaitsAgainWithoutAnAttempt) {
   EXPECT_EQ(state(job), JobState::waiting);
   EXPECT_EQ(store_.job(job.id)->attempts, 0);
   EXPECT_EQ(store_.job(job.id)->due_ms, 0);
-  EXPECT_EQ(list_directory(directory_ / "out"), std::vector<std::string>{});
+  for (const std::string& left : list_directory(directory_ / "out")) {
+    EXPECT_NE(left.find(".nvdb.work/"), std::string::npos) << left << " is neither nothing nor where it continues";
+  }
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ template <class T>
 class HostArray {
  public:
   explicit HostArray(std::size_t size) : values_(size) {
-    std::memset(static_cast<void*>(values_.data()), 0xA5, size * sizeof(T));  // a device clears nothing
+    // A device clears nothing.
+    if (size > 0) std::memset(static_cast<void*>(values_.data()), 0xA5, size * sizeof(T));
   }
   T* data() const { return const_cast<T*>(values_.data()); }
   std::size_t size() const { return values_.size(); }
