@@ -66,8 +66,14 @@ BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& b
 
 BrickCache::~BrickCache() = default;
 
+// Null where making it again with floats has failed.
+BrickCache::Pager& BrickCache::pager() const {
+  if (!pager_) throw Error(ErrorKind::io, "the cache of bricks could not be made again; load the grid once more");
+  return *pager_;
+}
+
 PageTable BrickCache::pages() {
-  return pager_->with([](auto& pager) { return pager.table(); });
+  return pager().with([](auto& pager) { return pager.table(); });
 }
 
 BrickCache::Needs BrickCache::needs() const {
@@ -168,21 +174,21 @@ void BrickCache::make_paged() {
 }
 
 std::uint64_t BrickCache::bytes() const {
-  return texture_.bytes() + whole_.bytes() + pager_->with([](auto& pager) { return pager.bytes(); });
+  return texture_.bytes() + whole_.bytes() + pager().with([](auto& pager) { return pager.bytes(); });
 }
 
 BrickCounters BrickCache::counters() const {
-  return pager_->with([](auto& pager) { return pager.counters(); });
+  return pager().with([](auto& pager) { return pager.counters(); });
 }
 
 PagingTurn BrickCache::serve() {
-  const PagingTurn turn = pager_->with([](auto& pager) { return pager.serve(); });
+  const PagingTurn turn = pager().with([](auto& pager) { return pager.serve(); });
   if (turn.unfit) make(TexelType::float32);
   return turn;
 }
 
 void BrickCache::check() {
-  pager_->with([](auto& pager) { pager.check(); });
+  pager().with([](auto& pager) { pager.check(); });
 }
 
 std::string BrickCache::texels_note() const {

@@ -78,6 +78,7 @@ class BrickCache {
     std::uint64_t least(TexelType type) const;  // bytes of the smallest cache
   };
 
+  Pager& pager() const;
   PageTable pages();
   Needs needs() const;
   void make(TexelType type);
