@@ -4,7 +4,6 @@
 #include <bit>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "format/base/error.h"
 #include "format/base/message.h"

@@ -56,7 +56,7 @@ class BrickCache {
   /// Of a paged one.
   template <Filter kFilter>
   PagedSampler<kFilter> paged_sampler() {
-    return {pages(), texture_.object()};
+    return {{pages()}, texture_.object()};
   }
 
   /// Of a paged one: brings in what was looked up and missing since the last call. Where that was `unfit`, all that was

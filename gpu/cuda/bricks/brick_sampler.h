@@ -1,51 +1,13 @@
-// The volume that kernels render where all of its blocks are bricks of a texture. See gpu/volume/volume_sampler.h for
-// what a tracer asks of it. Look-ups are most of what such kernels do: fixed point numbers save conversions, which a
-// device does a quarter as fast as sums.
+// The volume that kernels render where all of its blocks are bricks of a texture. Look-ups are most of what such
+// kernels do: fixed point numbers save conversions, which a device does a quarter as fast as sums.
 #pragma once
 
-#include <cuda_runtime_api.h>
-#include <texture_indirect_functions.h>
-
 #include "gpu/cuda/bricks/brick_table.h"
-#include "gpu/math/random.h"
-#include "gpu/volume/volume_sampler.h"
+#include "gpu/cuda/bricks/filtered_bricks.h"
 
 namespace weir {
 
-/// Trilinear by the texture unit, which has 8 bits of each weight; or one voxel.
 template <Filter kFilter>
-struct BrickSampler {
-  BrickTable table;
-  cudaTextureObject_t texture = 0;
-
-  WEIR_HOST_DEVICE float sample(const Float3& p, [[maybe_unused]] Random& random) const {
-    if constexpr (kFilter == Filter::stochastic) {
-      // One of the eight voxels around p, drawn by its weight: the one that covers p, moved by up to half a voxel.
-      const Float3 moved{p.x - 0.5F + random.uniform(), p.y - 0.5F + random.uniform(), p.z - 0.5F + random.uniform()};
-      return look_up({std::floor(moved.x), std::floor(moved.y), std::floor(moved.z)});
-    } else {
-      return smooth(p);
-    }
-  }
-
-  WEIR_HOST_DEVICE float smooth(const Float3& p) const {
-    if constexpr (kFilter == Filter::nearest) return look_up({std::floor(p.x), std::floor(p.y), std::floor(p.z)});
-    return look_up({p.x - 0.5F, p.y - 0.5F, p.z - 0.5F});
-  }
-
- private:
-  // At local voxels, centres at whole numbers.
-  WEIR_HOST_DEVICE float look_up(const Float3& q) const {
-    const BrickTable::Position at = table.position(q);
-    const BrickEntry entry = table.entries[table.index(at)];
-    if (entry.brick == 0) return entry.low;
-    const Float3 texel = BrickTable::texel(entry, at);
-#if defined(__CUDA_ARCH__)
-    return entry.low + entry.span * tex3D<float>(texture, texel.x, texel.y, texel.z);
-#else
-    return texel.x * 0.0F;  // kernels alone see textures
-#endif
-  }
-};
+using BrickSampler = FilteredBricks<BrickTable, kFilter>;
 
 }  // namespace weir

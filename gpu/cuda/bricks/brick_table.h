@@ -52,6 +52,8 @@ struct BrickTable {
   WEIR_HOST_DEVICE std::uint32_t index(const Position& at) const {
     return (at.x >> 11U) + across * ((at.y >> 11U) + down * (at.z >> 11U)) - origin;
   }
+  /// Of the position's block.
+  WEIR_HOST_DEVICE BrickEntry entry(const Position& at) const { return entries[index(at)]; }
   /// Coordinates in the texture of a position in the brick of an entry.
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
     return {texel(entry.brick & 2047U, at.x), texel(entry.brick >> 11U & 2047U, at.y), texel(entry.brick >> 22U, at.z)};

@@ -15,7 +15,7 @@ std::vector<RegionEntry> PackedSource::regions() const { return packed_regions(p
 
 void PackedSource::fill_pages(const std::uint32_t* regions, const std::uint32_t* pages, std::uint32_t count,
                               const PageTable& table) {
-  DeviceMachine{}.each(kRegionBlocks * count, FillPackedPages{decoder_.view(), table, regions, pages});
+  DeviceMachine{}.each(kRegionBlocks * count, FillPages<PackedBlocks>{{decoder_.view()}, table, regions, pages});
 }
 
 void PackedSource::decode(const BlockId* blocks, std::uint32_t count, float* values) {

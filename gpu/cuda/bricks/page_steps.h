@@ -45,4 +45,35 @@ struct StampPages {
   }
 };
 
+/// A block as pages see it.
+struct PlainBlock {
+  bool one_value = false;
+  float value = 0;  ///< that, or one near enough to go on with
+};
+
+/// Fills the pages of regions: for each entry of each of them. `Blocks` says what a block of a lattice is: at(lattice,
+/// block).
+template <class Blocks>
+struct FillPages {
+  Blocks blocks;
+  PageTable table;
+  const std::uint32_t* regions = nullptr;
+  const std::uint32_t* pages = nullptr;
+
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    const BlockLattice& lattice = table.lattice;
+    const std::uint32_t n = i / kRegionBlocks;
+    const Int3 block = lattice.block_at(static_cast<BlockId>(regions[n]) * kRegionBlocks + i % kRegionBlocks);
+    float value = 0;
+    bool uniform = true;
+    for (std::uint32_t k = 0; k < 8 && lattice.contains(block); ++k) {
+      const PlainBlock found = blocks.at(lattice, lattice.above(block, k));
+      if (k == 0) value = found.value;
+      uniform = uniform && found.one_value && same_value(found.value, value);
+    }
+    table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks] = {
+        value, 0, 0, uniform ? 0 : brick_state::kMissing};
+  }
+};
+
 }  // namespace weir

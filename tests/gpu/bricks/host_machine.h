@@ -93,7 +93,7 @@ class HostPackedSource : public BlockSource {
   std::vector<RegionEntry> regions() const override { return packed_regions(packed_); }
   void fill_pages(const std::uint32_t* regions, const std::uint32_t* pages, std::uint32_t count,
                   const PageTable& table) override {
-    HostMachine{}.each(kRegionBlocks * count, FillPackedPages{view_, table, regions, pages});
+    HostMachine{}.each(kRegionBlocks * count, FillPages<PackedBlocks>{{view_}, table, regions, pages});
   }
   void decode(const BlockId* blocks, std::uint32_t count, float* values) override {
     for (std::uint32_t i = 0; i < count; ++i) {

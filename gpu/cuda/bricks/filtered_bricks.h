@@ -1,0 +1,50 @@
+// The volume that kernels render where its blocks are bricks of a texture. See gpu/volume/volume_sampler.h for what a
+// tracer asks of it.
+#pragma once
+
+#include <cuda_runtime_api.h>
+#include <texture_indirect_functions.h>
+
+#include "gpu/cuda/bricks/page_table.h"
+#include "gpu/math/random.h"
+#include "gpu/volume/volume_sampler.h"
+
+namespace weir {
+
+/// Trilinear by the texture unit, which has 8 bits of each weight; or one voxel. `Table` says where bricks are:
+/// position(q) of local voxels, centres at whole numbers, the entry(position) of its block, and texel(entry, position).
+template <class Table, Filter kFilter>
+struct FilteredBricks {
+  Table table;
+  cudaTextureObject_t texture = 0;
+
+  WEIR_HOST_DEVICE float sample(const Float3& p, [[maybe_unused]] Random& random) const {
+    if constexpr (kFilter == Filter::stochastic) {
+      // One of the eight voxels around p, drawn by its weight: the one that covers p, moved by up to half a voxel.
+      const Float3 moved{p.x - 0.5F + random.uniform(), p.y - 0.5F + random.uniform(), p.z - 0.5F + random.uniform()};
+      return look_up({std::floor(moved.x), std::floor(moved.y), std::floor(moved.z)});
+    } else {
+      return smooth(p);
+    }
+  }
+
+  WEIR_HOST_DEVICE float smooth(const Float3& p) const {
+    if constexpr (kFilter == Filter::nearest) return look_up({std::floor(p.x), std::floor(p.y), std::floor(p.z)});
+    return look_up({p.x - 0.5F, p.y - 0.5F, p.z - 0.5F});
+  }
+
+ private:
+  WEIR_HOST_DEVICE float look_up(const Float3& q) const {
+    const auto at = table.position(q);
+    const BrickEntry entry = table.entry(at);
+    if (entry.brick == 0) return entry.low;
+    const Float3 texel = Table::texel(entry, at);
+#if defined(__CUDA_ARCH__)
+    return entry.low + entry.span * tex3D<float>(texture, texel.x, texel.y, texel.z);
+#else
+    return texel.x * 0.0F;  // kernels alone see textures
+#endif
+  }
+};
+
+}  // namespace weir
