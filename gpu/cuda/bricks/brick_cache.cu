@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "format/base/error.h"
@@ -33,11 +34,12 @@ using DevicePager = BrickPager<DeviceMachine, SurfaceTexels<Texel>>;
 /// Of either kind of texels.
 class BrickCache::Pager {
  public:
-  Pager(TexelType type, BlockSource& source, const BrickPlan& plan, cudaSurfaceObject_t surface) {
+  Pager(TexelType type, BlockSource& source, std::span<const RegionEntry> regions, const BrickPlan& plan,
+        cudaSurfaceObject_t surface) {
     if (type == TexelType::share16) {
-      words_.emplace(DeviceMachine{}, source, plan, SurfaceTexels<unsigned short>{surface});
+      words_.emplace(DeviceMachine{}, source, regions, plan, SurfaceTexels<unsigned short>{surface});
     } else {
-      floats_.emplace(DeviceMachine{}, source, plan, SurfaceTexels<float>{surface});
+      floats_.emplace(DeviceMachine{}, source, regions, plan, SurfaceTexels<float>{surface});
     }
   }
 
@@ -53,13 +55,10 @@ class BrickCache::Pager {
 
 BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& budget, BricksKept kept)
     : source_(std::move(source)),
+      regions_(source_->regions()),
       budget_(budget),
       left_(budget.bytes > budget.taken ? budget.bytes - budget.taken : 0),
       kept_(kept) {
-  for (const RegionEntry& region : source_->regions()) {
-    ++regions_;
-    if ((region.page & RegionEntry::kMissing) != 0) ++regions_with_pages_;
-  }
   make(TexelType::share16);
 }
 
@@ -77,7 +76,7 @@ PageTable BrickCache::pages() {
 
 BrickCache::Needs BrickCache::needs() const {
   Needs needs;
-  needs.table = std::uint64_t{regions_} * (sizeof(RegionEntry) + sizeof(std::uint32_t));
+  needs.table = regions_.size() * (sizeof(RegionEntry) + sizeof(std::uint32_t));
   const std::uint64_t scratch =
       std::clamp<std::uint64_t>(left_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
   needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
@@ -104,7 +103,7 @@ void BrickCache::make_pager(BrickPlan plan, const TextureShape& shape) {
   slots_ = plan.slots;
   plan.across = shape.x;
   plan.down = shape.y;
-  pager_ = std::make_unique<Pager>(type_, *source_, plan, texture_.surface());
+  pager_ = std::make_unique<Pager>(type_, *source_, regions_, plan, texture_.surface());
 }
 
 // All bricks; false where they do not fit.
@@ -113,12 +112,12 @@ bool BrickCache::make_whole() {
   const BlockLattice lattice = source_->lattice();
   const auto most = static_cast<std::int32_t>(kFixedPointEnd - 8);
   if (greater(lattice.extent.x, greater(lattice.extent.y, lattice.extent.z)) > most) return false;
-  if (regions_ >= 1U << 20U) return false;  // their entries are counted in 32 bits
-  needs.plan.pages = regions_;
-  needs.fixed += 2 * (std::uint64_t{regions_} + 1) * kPageBytes;  // pages, and the table made of them
+  if (regions_.size() >= 1U << 20U) return false;  // their entries are counted in 32 bits
+  needs.plan.pages = static_cast<std::uint32_t>(regions_.size());
+  needs.fixed += 2 * (regions_.size() + 1) * kPageBytes;  // pages, and the table made of them
   if (needs.fixed > left_ / 2) return false;
   needs.plan.slots = 1;
-  pager_ = std::make_unique<Pager>(type_, *source_, needs.plan, 0);
+  pager_ = std::make_unique<Pager>(type_, *source_, regions_, needs.plan, 0);
   const std::uint32_t missing = pager_->with([](auto& pager) { return pager.bring_all_pages(); });
   pager_.reset();
   const TextureShape shape = shape_for(std::uint64_t{missing} + 1);
@@ -163,8 +162,11 @@ std::uint64_t BrickCache::Needs::least(TexelType type) const {
 void BrickCache::make_paged() {
   Needs needs = this->needs();
   if (needs.table > left_ / 20 || left_ < needs.least(type_)) fail_too_small(needs);
-  needs.plan.pages = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-      std::max(1U, regions_with_pages_), std::max<std::uint64_t>(left_ / 10, kPageBytes) / kPageBytes));
+  const auto missing = std::ranges::count_if(
+      regions_, [](const RegionEntry& region) { return (region.page & RegionEntry::kMissing) != 0; });
+  needs.plan.pages = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(missing)),
+                              std::max<std::uint64_t>(left_ / 10, kPageBytes) / kPageBytes));
   const std::uint64_t rest = left_ - needs.fixed - (std::uint64_t{needs.plan.pages} + 1) * kPageBytes;
   const TextureShape shape = shape_within(rest * brick_bytes(type_) / (brick_bytes(type_) + kSlotBytes), type_);
   needs.plan.slots = static_cast<std::uint32_t>(shape.size() - 1);

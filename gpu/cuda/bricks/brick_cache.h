@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gpu/cuda/bricks/block_source.h"
 #include "gpu/cuda/bricks/brick_counters.h"
@@ -88,11 +89,10 @@ class BrickCache {
   void make_pager(BrickPlan plan, const TextureShape& shape);
 
   std::unique_ptr<BlockSource> source_;
+  std::vector<RegionEntry> regions_;  // as the source has them
   BrickBudget budget_;
   std::uint64_t left_;  // bytes of it
   BricksKept kept_;
-  std::uint32_t regions_ = 0;
-  std::uint32_t regions_with_pages_ = 0;
   TexelType type_ = TexelType::share16;
   bool paged_ = false;
   std::uint32_t slots_ = 0;

@@ -27,14 +27,14 @@ class BrickPager {
   using Array = typename Machine::template Array<T>;
 
  public:
-  /// `source` must outlive the object.
-  BrickPager(Machine machine, BlockSource& source, const BrickPlan& plan, const Texels& texels)
+  /// `source`, whose regions() are `regions`, must outlive the object.
+  BrickPager(Machine machine, BlockSource& source, std::span<const RegionEntry> regions, const BrickPlan& plan,
+             const Texels& texels)
       : machine_(machine),
         source_(source),
         plan_(plan),
         texels_(texels),
-        host_regions_(source.regions()),
-        regions_(host_regions_.size()),
+        regions_(regions.size()),
         entries_(std::size_t{kRegionBlocks} * (plan.pages + 1)),
         page_stamps_(plan.pages + 1),
         page_regions_(plan.pages + 1, kNoRegion),
@@ -51,7 +51,7 @@ class BrickPager {
         blocks_(std::size_t{8} * plan.blocks),
         values_(std::size_t{512} * plan.blocks),
         batch_(std::max(1U, plan.blocks / 2)) {
-    regions_.upload(host_regions_);
+    regions_.upload(regions);
     machine_.clear(page_stamps_);
     free_pages_.resize(plan.pages);
     std::iota(free_pages_.rbegin(), free_pages_.rend(), 1U);
@@ -82,7 +82,7 @@ class BrickPager {
 
   /// Brings in a page for each region, the plan having as many, and says how many bricks are then missing.
   std::uint32_t bring_all_pages() {
-    std::vector<std::uint32_t> regions(host_regions_.size());
+    std::vector<std::uint32_t> regions(regions_.size());
     std::iota(regions.begin(), regions.end(), 0U);
     fill_pages(regions);
     Array<std::uint32_t> count(1);
@@ -275,7 +275,6 @@ class BrickPager {
   BlockSource& source_;
   BrickPlan plan_;
   Texels texels_;
-  std::vector<RegionEntry> host_regions_;  // as they were at first
   Array<RegionEntry> regions_;
   Array<BrickEntry> entries_;
   Array<std::uint32_t> page_stamps_;

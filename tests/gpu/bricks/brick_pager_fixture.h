@@ -27,7 +27,7 @@ struct Cache {
              (static_cast<std::int32_t>(plan.slots / (plan.across * plan.down)) + 1) * kBrickEdge},
         memory(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)),
         texels{&memory, size},
-        pager({}, source, plan, texels) {}
+        pager({}, source, source.regions(), plan, texels) {}
 
   // A texel of the block's brick, `v` from its corner.
   float texel(const BrickEntry& entry, const Int3& v) const {
