@@ -132,6 +132,10 @@ paging() {
   for mode in path dvr iso mip; do
     "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 || failed=1
   done
+  "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --frames 36 --scattered 3 || failed=1
+  for mode in dvr iso mip; do
+    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 --lod 2 || failed=1
+  done
   rm "$work"/*
 }
 

@@ -1,13 +1,16 @@
-// weir_bench_paging FILE.nvdb [--spp N] [--size N] [--scene FILE] [--frames N]: path tracing with all bricks of a file
-// on the device, and with caches of a half and a quarter of them: frames a second of a camera that stands still, a
-// picture of N samples, and an orbit with its worst frame, each against all bricks in the same run. Pictures must have
-// the same bits; exits with 1 where they have not, 2 for anything wrong.
+// weir_bench_paging FILE.nvdb [--mode M] [--spp N] [--size N] [--frames N] [--lod BIAS] [--scattered N]: pictures with
+// all bricks of a file on the device, and with caches of a half and a quarter of them: frames a second of a camera that
+// stands still, a picture of N samples, and an orbit with its worst frame, each against all bricks in the same run.
+// With levels of detail, what is compared against sees voxels alone, and the table says how far its picture is off.
+// Pictures of caches must have the bits of all bricks'; exits with 1 where they have not, 2 for anything wrong.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,7 @@ struct Options {
   std::uint32_t samples = 64;
   std::int32_t size = 1024;
   int frames = 360;
+  std::optional<LevelOfDetail> levels = std::nullopt;
 };
 
 RenderMode mode_of(const std::string& name) {
@@ -49,12 +53,22 @@ Options parse(int argc, char** argv) {
       if (++i == argc) throw Error(ErrorKind::usage, cat(argument, " needs a number"));
       return static_cast<std::int32_t>(parse_int(argv[i]).value());
     };
+    const auto level = [&] {
+      if (!options.levels) options.levels.emplace();
+      return static_cast<float>(number());
+    };
     if (argument == "--spp") {
       options.samples = static_cast<std::uint32_t>(number());
     } else if (argument == "--size") {
       options.size = number();
     } else if (argument == "--frames") {
       options.frames = number();
+    } else if (argument == "--lod") {
+      const float bias = level();
+      options.levels->bias = bias;
+    } else if (argument == "--scattered") {
+      const float scattered = level();
+      options.levels->scattered = scattered;
     } else if (argument == "--mode" && i + 1 < argc) {
       options.mode = mode_of(argv[++i]);
     } else {
@@ -68,6 +82,7 @@ Options parse(int argc, char** argv) {
 struct Frame {
   double seconds = 0;
   PagedReport report;
+  std::uint32_t missed = 0;  // pixels
   std::vector<Float3> sums;
 };
 
@@ -85,8 +100,9 @@ class Bench {
     const auto start = Clock::now();
     DeviceGrid loaded = load_grid(file_, {}, how);
     transfer_s_ = seconds_since(start);
-    auto volume =
-        std::make_unique<BrickVolume>(grid(), GridBytes(std::move(loaded)), cells_.bounds(), BrickBudget{memory});
+    BrickBudget budget{memory};
+    if (options_.levels) budget.levels = bytes_for_levels(memory);
+    auto volume = std::make_unique<BrickVolume>(grid(), GridBytes(std::move(loaded)), cells_.bounds(), budget);
     load_s_ = seconds_since(start);
     return volume;
   }
@@ -97,15 +113,30 @@ class Bench {
     scene_.camera.azimuth = azimuth;
     RenderOptions render;
     render.width = render.height = options_.size;
+    render.levels = options_.levels;
     setup_ = std::make_unique<RenderSetup>(volume_info(grid(), cells_), cells_, scene_, render);
   }
+  const std::optional<LevelsUsed>& levels() const { return setup_->levels(); }
 
-  /// Samples [first, last) of each pixel.
-  Frame draw(BrickVolume& volume, std::uint32_t first, std::uint32_t last) {
+  /// Whether frames do without what is missing.
+  void draft(bool on) { draft_ = on; }
+  double pixels() const { return static_cast<double>(options_.size) * options_.size; }
+  /// Samples [first, last) of each pixel, with levels of detail from `finest` on; 0: voxels alone.
+  Frame draw(BrickVolume& volume, std::uint32_t first, std::uint32_t last, int finest) {
+    if (finest == 0) return draw_seen(volume, first, last, [](const auto& sampler) { return sampler; });
+    const LevelsView<TextureSampler> levels = volume.levels(finest).view();
+    return draw_seen(volume, first, last, [&]<class Fine>(const Fine& fine) {
+      return LevelledVolume<Fine, TextureSampler>{fine, levels, setup_->levels()->choice};
+    });
+  }
+
+ private:
+  template <class Seen>
+  Frame draw_seen(BrickVolume& volume, std::uint32_t first, std::uint32_t last, const Seen& seen) {
     const DeviceTransfer transfer(setup_->transfer_function());
     volume.cells().update(transfer, cudaStreamPerThread);
     const auto task_of = [&](const auto& sampler) {
-      auto task = setup_->bare_task(sampler);
+      auto task = setup_->bare_task(seen(sampler));
       task.medium.transfer = transfer.bounds().transfer;
       task.medium.cell_opacity = volume.cells().majorants();
       task.medium.cell_values = volume.cells().bounds();
@@ -116,9 +147,17 @@ class Bench {
     check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "clearing");
     Frame frame;
     const auto start = Clock::now();
-    if (volume.cache().paged()) {
-      frame.report =
-          trace_paged<Filter::trilinear>(volume.cache(), task_of, first, last, sums, nullptr, [](std::uint64_t) {});
+    const auto draw_paged = [&]<class Sampler>(const Sampler&) {
+      if (draft_) {
+        frame.missed = trace_draft<Sampler>(volume.cache(), task_of, first, last, sums).missed;
+      } else {
+        frame.report = trace_paged<Sampler>(volume.cache(), task_of, first, last, sums, nullptr, [](std::uint64_t) {});
+      }
+    };
+    if (volume.cache().paged() && options_.mode == RenderMode::path) {
+      volume.cache().with_paged_sampler<Filter::trilinear, Noting::called>(draw_paged);
+    } else if (volume.cache().paged()) {
+      volume.cache().with_paged_sampler<Filter::trilinear, Noting::inlined>(draw_paged);
     } else {
       launch_render(task_of(volume.cache().sampler<Filter::trilinear>()), first, last, sums.data(),
                     cudaStreamPerThread);
@@ -129,21 +168,21 @@ class Bench {
     return frame;
   }
 
- private:
   const Options& options_;
   NvdbFile file_;
   Scene scene_;
   MacrocellGrid cells_;
   std::unique_ptr<RenderSetup> setup_;
+  bool draft_ = false;
   double transfer_s_ = 0;
   double load_s_ = 0;
 };
 
 /// Seconds of one frame of one sample, camera still, once it has settled.
-double settled(Bench& bench, BrickVolume& volume) {
-  for (std::uint32_t i = 0; i < 4; ++i) bench.draw(volume, i, i + 1);
+double settled(Bench& bench, BrickVolume& volume, int finest) {
+  for (std::uint32_t i = 0; i < 4; ++i) bench.draw(volume, i, i + 1, finest);
   std::vector<double> seconds;
-  for (std::uint32_t i = 4; i < 20; ++i) seconds.push_back(bench.draw(volume, i, i + 1).seconds);
+  for (std::uint32_t i = 4; i < 20; ++i) seconds.push_back(bench.draw(volume, i, i + 1, finest).seconds);
   std::ranges::sort(seconds);
   return seconds[seconds.size() / 2];
 }
@@ -163,6 +202,55 @@ std::unique_ptr<BrickVolume> cache_of(Bench& bench, std::uint64_t bricks, std::u
   return volume;
 }
 
+/// A camera that goes around, against all bricks; of caches.
+struct Orbit {
+  double ratio = 0;           // of the frames' speed
+  double worst = 1e9;         // of a frame
+  double settled = 1e9;       // of a third frame after one, camera still
+  double missed = 0;          // largest share of the pixels that missed something
+  double missed_settled = 0;  // of such third frames
+};
+
+Orbit orbit(Bench& bench, BrickVolume& all, BrickVolume& some, int finest, int frames) {
+  Orbit found;
+  double sum = 0;
+  double all_sum = 0;
+  const int rest = std::max(1, frames / 6);
+  for (int i = 0; i < frames; ++i) {
+    bench.stand_at(35 + 360.0 * i / frames);
+    const auto sample = static_cast<std::uint32_t>(i);
+    const double a = bench.draw(all, sample, sample + 1, 0).seconds;
+    const Frame frame = bench.draw(some, sample, sample + 1, finest);
+    sum += frame.seconds;
+    all_sum += a;
+    if (i > 0) {
+      found.worst = std::min(found.worst, a / frame.seconds);
+      found.missed = std::max(found.missed, frame.missed / bench.pixels());
+    }
+    if (i % rest == rest - 1) {
+      bench.draw(some, sample, sample + 1, finest);
+      bench.draw(some, sample, sample + 1, finest);
+      const Frame third = bench.draw(some, sample, sample + 1, finest);
+      found.settled = std::min(found.settled, a / third.seconds);
+      found.missed_settled = std::max(found.missed_settled, third.missed / bench.pixels());
+    }
+  }
+  found.ratio = all_sum / sum;
+  return found;
+}
+
+/// Decibels of the largest value of `expected`, of all channels.
+double psnr(const std::vector<Float3>& found, const std::vector<Float3>& expected) {
+  double squares = 0;
+  double peak = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Float3 d = found[i] - expected[i];
+    squares += static_cast<double>(dot(d, d)) / 3;
+    peak = std::max(peak, static_cast<double>(max_component(expected[i])));
+  }
+  return 10 * std::log10(peak * peak * static_cast<double>(found.size()) / squares);
+}
+
 bool run(const Options& options) {
   use_device(0);
   Bench bench(options);
@@ -172,53 +260,69 @@ bool run(const Options& options) {
   if (all->cache().paged()) throw Error(ErrorKind::usage, "all bricks do not fit on this device");
   const BrickCounters counters = all->cache().counters();
   const std::uint64_t bricks = all->cache().bricks() - counters.free_slots;
-  std::printf("%s, %s: loaded in %.3f s (transfer %.3f s), %llu bricks, %.2f decodes a brick, %.2f GB, %s\n",
+  std::string of_levels;
+  if (options.levels) of_levels = cat(", lod ", options.levels->bias, ", scattered ", options.levels->scattered);
+  std::printf("%s, %s%s: loaded in %.3f s (transfer %.3f s), %llu bricks, %.2f decodes a brick, %.2f GB, %s\n",
               options.file.substr(options.file.rfind('/') + 1).c_str(),
-              std::string(render_mode_name(options.mode)).c_str(), bench.load_s(), bench.transfer_s(),
-              static_cast<unsigned long long>(bricks),
+              std::string(render_mode_name(options.mode)).c_str(), of_levels.c_str(), bench.load_s(),
+              bench.transfer_s(), static_cast<unsigned long long>(bricks),
               static_cast<double>(counters.decoded) / static_cast<double>(counters.built),
               static_cast<double>(all->cache().bytes()) / 1e9, all->cache().texels_note().c_str());
-  const double still = settled(bench, *all);
-  const Frame whole = bench.draw(*all, 0, options.samples);
+  const double still = settled(bench, *all, 0);
+  const Frame voxels = bench.draw(*all, 0, options.samples, 0);
   std::printf("%-8s %9s %9s %7s %9s %7s %7s %8s %9s %7s %7s %7s %s\n", "share", "bricks", "still ms", "ratio",
               "picture s", "ratio", "turns", "tiles", "decodes", "orbit", "worst", "settled", "bits");
-  std::printf("%-8s %9llu %9.3f %7.3f %9.3f %7.3f\n", "all", static_cast<unsigned long long>(bricks), 1e3 * still, 1.0,
-              whole.seconds, 1.0);
+  const auto row_of_all = [&](const char* name, double still_s, double picture_s) {
+    std::printf("%-8s %9llu %9.3f %7.3f %9.3f %7.3f", name, static_cast<unsigned long long>(bricks), 1e3 * still_s,
+                still / still_s, picture_s, voxels.seconds / picture_s);
+  };
+  row_of_all("all", still, voxels.seconds);
+  std::printf("\n");
+  Frame whole = voxels;
+  int finest = 0;
+  if (bench.levels()) {
+    const auto start = Clock::now();
+    finest = all->finest_level(bench.levels()->finest);
+    all->levels(finest);
+    const double made_s = seconds_since(start);
+    const double levels_still = settled(bench, *all, finest);
+    whole = bench.draw(*all, 0, options.samples, finest);
+    row_of_all("levels", levels_still, whole.seconds);
+    std::printf("  %.1f dB to the row above; levels from %d on, made in %.3f s\n", psnr(whole.sums, voxels.sums),
+                finest, made_s);
+  }
   std::fflush(stdout);
   bool same = true;
   for (const double share : {0.5, 0.25}) {
     bench.stand_at(35);
     auto some = cache_of(bench, static_cast<std::uint64_t>(share * static_cast<double>(bricks)), free);
-    const double some_still = settled(bench, *some);
-    const Frame picture = bench.draw(*some, 0, options.samples);
+    int some_finest = 0;
+    if (finest != 0) some_finest = some->finest_level(finest);
+    const double some_still = settled(bench, *some, some_finest);
+    const Frame picture = bench.draw(*some, 0, options.samples, some_finest);
+    if (some_finest != finest) {
+      std::printf("levels from %d on\n", some_finest);
+      whole = bench.draw(*all, 0, options.samples, some_finest);
+      all->levels(finest);
+    }
     const bool equal = picture.sums == whole.sums;
     same = same && equal;
-    double sum = 0;
-    double all_sum = 0;
-    double worst = 1e9;
-    double after = 1e9;  // worst of the third frame after one, camera still
-    const int rest = std::max(1, options.frames / 6);
-    for (int i = 0; i < options.frames; ++i) {
-      bench.stand_at(35 + 360.0 * i / options.frames);
-      const auto sample = static_cast<std::uint32_t>(i);
-      const double a = bench.draw(*all, sample, sample + 1).seconds;
-      const double b = bench.draw(*some, sample, sample + 1).seconds;
-      sum += b;
-      all_sum += a;
-      if (i > 0) worst = std::min(worst, a / b);
-      if (i % rest == rest - 1) {
-        bench.draw(*some, sample, sample + 1);
-        bench.draw(*some, sample, sample + 1);
-        after = std::min(after, a / bench.draw(*some, sample, sample + 1).seconds);
-      }
-    }
+    const Orbit turned = orbit(bench, *all, *some, some_finest, options.frames);
     std::printf("%-8.2f %9llu %9.3f %7.3f %9.3f %7.3f %7llu %8u %9.2f %7.3f %7.3f %7.3f %s\n", share,
                 static_cast<unsigned long long>(some->cache().bricks()), 1e3 * some_still, still / some_still,
-                picture.seconds, whole.seconds / picture.seconds, static_cast<unsigned long long>(picture.report.turns),
-                picture.report.least_tiles,
+                picture.seconds, voxels.seconds / picture.seconds,
+                static_cast<unsigned long long>(picture.report.turns), picture.report.least_tiles,
                 static_cast<double>(some->cache().counters().decoded) /
                     static_cast<double>(std::max<std::uint64_t>(some->cache().counters().built, 1)),
-                all_sum / sum, worst, after, equal ? "same" : "OTHER");
+                turned.ratio, turned.worst, turned.settled, equal ? "same" : "OTHER");
+    bench.stand_at(35);
+    bench.draft(true);
+    const double draft_still = settled(bench, *some, some_finest);
+    const Orbit draft = orbit(bench, *all, *some, some_finest, options.frames);
+    bench.draft(false);
+    std::printf("%-8s %9s %9.3f %7.3f %41s %7.3f %7.3f %7.3f %.4f, %.4f of pixels missed something\n", "draft", "",
+                1e3 * draft_still, still / draft_still, "", draft.ratio, draft.worst, draft.settled, draft.missed,
+                draft.missed_settled);
     std::fflush(stdout);
   }
   return same;

@@ -25,6 +25,15 @@ WEIR_HOST_DEVICE constexpr T clamped(T v, T lo, T hi) {
   return v > lo ? (v < hi ? v : hi) : lo;
 }
 
+/// a b + c, rounded twice: compilers may not make one operation of it, so that it is the same in every kernel.
+WEIR_HOST_DEVICE inline float multiply_add(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fadd_rn(__fmul_rn(a, b), c);
+#else
+  return a * b + c;
+#endif
+}
+
 /// False for NaN and both infinities.
 WEIR_HOST_DEVICE inline bool is_finite(float v) { return v - v == 0.0F; }
 

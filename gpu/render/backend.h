@@ -37,8 +37,10 @@ class LoadedVolume {
 struct Picture {
   Image image;  ///< mean radiance
   ToneMapping tone;
-  double render_s = 0;     ///< of the samples alone
-  CacheCounts cache = {};  ///< of a volume that was loaded "cached"
+  double render_s = 0;       ///< of the samples alone
+  CacheCounts cache = {};    ///< of a volume that was loaded "cached"
+  std::uint64_t missed = 0;  ///< of a draft: pixels whose last sample did without something that was not there
+  int finest_level = 0;      ///< of the levels of detail that it was made with; 0: voxels alone
 };
 
 class Backend {

@@ -1,15 +1,18 @@
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "gpu/render/backend.h"
 #include "gpu/render/cpu_renderer.h"
 #include "gpu/volume/leaf_table.h"
+#include "gpu/volume/mean_pyramid.h"
 
 namespace weir {
 
@@ -17,7 +20,7 @@ namespace {
 
 class CpuVolume : public LoadedVolume {
  public:
-  virtual Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) const = 0;
+  virtual Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) = 0;
 };
 
 // The voxels of a mapped file: the leaves stay where they are, or are decoded.
@@ -25,16 +28,25 @@ struct FileVoxels {
   std::shared_ptr<const NvdbFile> file;
   LeafTable table;
 
-  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts&) const {
-    return render_cpu(setup.task(VolumeSampler{table.view(), filter}), sampling);
+  MeanPyramid pyramid(int first, int threads) const {
+    return {file->grid().index_bbox(), table.view(), first, threads};
+  }
+  // `seen(sampler)` is the volume that is rendered.
+  template <class Seen>
+  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts& /*counts*/,
+               const Seen& seen) const {
+    return render_cpu(setup.task(seen(VolumeSampler{table.view(), filter})), sampling);
   }
 };
 
 struct DenseVoxels {
   std::shared_ptr<const DenseVolume> volume;
 
-  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts&) const {
-    return render_cpu(setup.task(DenseSampler{volume->view(), filter}), sampling);
+  MeanPyramid pyramid(int first, int threads) const { return {volume->frame().domain, volume->view(), first, threads}; }
+  template <class Seen>
+  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts& /*counts*/,
+               const Seen& seen) const {
+    return render_cpu(setup.task(seen(DenseSampler{volume->view(), filter})), sampling);
   }
 };
 
@@ -43,12 +55,16 @@ struct CachedVoxels {
   std::shared_ptr<const NvdbFile> file;
   std::unique_ptr<CachedBlocks> blocks;
 
-  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts& counts) const {
+  MeanPyramid pyramid(int first, int threads) const { return {file->grid().index_bbox(), *blocks, first, threads}; }
+  template <class Seen>
+  Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts& counts,
+               const Seen& seen) const {
+    using Volume = decltype(seen(std::declval<CachedSampler>()));
     std::vector<BlockReader> readers(render_threads(sampling.threads), BlockReader(*blocks));
-    std::vector<RenderTask<CachedSampler>> tasks;
+    std::vector<RenderTask<Volume>> tasks;
     tasks.reserve(readers.size());
-    for (BlockReader& reader : readers) tasks.push_back(setup.task(CachedSampler{reader, filter}));
-    Image image = render_cpu(std::span<const RenderTask<CachedSampler>>(tasks), sampling);
+    for (BlockReader& reader : readers) tasks.push_back(setup.task(seen(CachedSampler{reader, filter})));
+    Image image = render_cpu(std::span<const RenderTask<Volume>>(tasks), sampling);
     for (const BlockReader& reader : readers) counts += reader.counts();
     return image;
   }
@@ -57,27 +73,57 @@ struct CachedVoxels {
 template <class Voxels>
 class CpuVolumeOf : public CpuVolume {
  public:
-  CpuVolumeOf(Voxels voxels, MacrocellGrid cells, const VolumeInfo& info, const LoadSummary& summary)
-      : voxels_(std::move(voxels)), cells_(std::move(cells)), info_(info), summary_(summary) {}
+  // Levels of detail take `level_bytes` at most.
+  CpuVolumeOf(Voxels voxels, MacrocellGrid cells, const VolumeInfo& info, const LoadSummary& summary,
+              std::uint64_t level_bytes)
+      : voxels_(std::move(voxels)),
+        cells_(std::move(cells)),
+        info_(info),
+        summary_(summary),
+        level_bytes_(level_bytes) {}
 
   const VolumeInfo& info() const override { return info_; }
   const LoadSummary& load_summary() const override { return summary_; }
 
-  Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) const override {
+  Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) override {
     const RenderSetup setup(info_, cells_, scene, options);
     Picture picture;
     const auto start = std::chrono::steady_clock::now();
-    picture.image = voxels_.render(setup, options.filter, sampling, picture.cache);
+    if (const MeanPyramid* levels = pyramid(setup, sampling.threads)) {
+      const LevelsView<DenseSampler> view = levels->view();
+      const auto seen = [&]<class Fine>(const Fine& fine) {
+        return LevelledVolume<Fine, DenseSampler>{fine, view, setup.levels()->choice};
+      };
+      picture.image = voxels_.render(setup, options.filter, sampling, picture.cache, seen);
+      picture.finest_level = levels->first();
+    } else {
+      picture.image =
+          voxels_.render(setup, options.filter, sampling, picture.cache, [](const auto& fine) { return fine; });
+    }
     picture.render_s = seconds_since(start);
     picture.tone = setup.tone();
     return picture;
   }
 
  private:
+  // Null where the picture has no use for levels. Kept for the next picture that wants the same ones.
+  const MeanPyramid* pyramid(const RenderSetup& setup, int threads) {
+    if (!setup.levels()) return nullptr;
+    const int first = finest_level_within(level_lattice(info_.frame.domain), setup.levels()->finest, level_bytes_);
+    if (static_cast<float>(first) > setup.levels()->coarsest) return nullptr;
+    if (!pyramid_ || pyramid_->first() != first) {
+      pyramid_.reset();
+      pyramid_.emplace(voxels_.pyramid(first, threads));
+    }
+    return &*pyramid_;
+  }
+
   Voxels voxels_;
   MacrocellGrid cells_;
   VolumeInfo info_;
   LoadSummary summary_;
+  std::uint64_t level_bytes_;
+  std::optional<MeanPyramid> pyramid_;
 };
 
 class CpuBackend : public Backend {
@@ -97,23 +143,24 @@ class CpuBackend : public Backend {
                                 cat("all blocks decoded take ", format_bytes(plan.decoded_bytes),
                                     ", so they go through a cache, more slowly"),
                                 blocks->bytes()};
-      return volume_of(CachedVoxels{file, std::move(blocks)}, *file, cell, summary);
+      return volume_of(CachedVoxels{file, std::move(blocks)}, *file, cell, summary, plan.level_bytes);
     }
     LeafTable table(grid);
     const LoadSummary summary{grid.packed() != nullptr ? "decoded" : "mapped", grid.data_bytes(), 0, "", table.bytes()};
-    return volume_of(FileVoxels{file, std::move(table)}, *file, cell, summary);
+    return volume_of(FileVoxels{file, std::move(table)}, *file, cell, summary, plan.level_bytes);
   }
 
   std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) override {
     MacrocellGrid cells = macrocells_of(*volume, cell_or_default(cell));
     const VolumeInfo info{volume->frame(), volume->range(), volume->background()};
     const LoadSummary summary{"memory", volume->bytes(), 0, "", volume->bytes() + cells.bytes()};
-    return std::make_unique<CpuVolumeOf<DenseVoxels>>(DenseVoxels{std::move(volume)}, std::move(cells), info, summary);
+    return std::make_unique<CpuVolumeOf<DenseVoxels>>(DenseVoxels{std::move(volume)}, std::move(cells), info, summary,
+                                                      available_bytes() / 8);
   }
 
   Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
                  const SampleOptions& sampling) override {
-    return static_cast<const CpuVolume&>(volume).render(scene, options, {sampling, threads_});
+    return static_cast<CpuVolume&>(volume).render(scene, options, {sampling, threads_});
   }
 
  private:
@@ -122,11 +169,11 @@ class CpuBackend : public Backend {
   // `summary` is without the macrocells.
   template <class Voxels>
   static std::unique_ptr<LoadedVolume> volume_of(Voxels voxels, const NvdbFile& file, std::int64_t cell,
-                                                 LoadSummary summary) {
+                                                 LoadSummary summary, std::uint64_t level_bytes) {
     MacrocellGrid cells(file.grid(), cell_or_default(cell));
     const VolumeInfo info = volume_info(file.grid(), cells);
     summary.memory += cells.bytes();
-    return std::make_unique<CpuVolumeOf<Voxels>>(std::move(voxels), std::move(cells), info, summary);
+    return std::make_unique<CpuVolumeOf<Voxels>>(std::move(voxels), std::move(cells), info, summary, level_bytes);
   }
 
   int threads_;

@@ -82,9 +82,15 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
   return image;
 }
 
+template <class Fine>
+using Levelled = LevelledVolume<Fine, DenseSampler>;
+
 template Image render_cpu(const RenderTask<VolumeSampler>& task, const CpuRenderOptions& options);
 template Image render_cpu(const RenderTask<DenseSampler>& task, const CpuRenderOptions& options);
 template Image render_cpu(const RenderTask<CachedSampler>& task, const CpuRenderOptions& options);
 template Image render_cpu(std::span<const RenderTask<CachedSampler>> tasks, const CpuRenderOptions& options);
+template Image render_cpu(const RenderTask<Levelled<VolumeSampler>>& task, const CpuRenderOptions& options);
+template Image render_cpu(const RenderTask<Levelled<DenseSampler>>& task, const CpuRenderOptions& options);
+template Image render_cpu(std::span<const RenderTask<Levelled<CachedSampler>>> tasks, const CpuRenderOptions& options);
 
 }  // namespace weir

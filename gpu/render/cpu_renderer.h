@@ -10,6 +10,7 @@
 #include "gpu/render/sample_options.h"
 #include "gpu/volume/cached_blocks.h"
 #include "gpu/volume/dense_volume.h"
+#include "gpu/volume/levelled_volume.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir {
@@ -22,7 +23,7 @@ struct CpuRenderOptions : SampleOptions {
 std::size_t render_threads(int threads);
 
 /// The mean of all samples. Throws Error(interrupted) where `cancel` was set, and what a look-up in the volume throws.
-/// Of VolumeSampler, DenseSampler and CachedSampler.
+/// Of VolumeSampler, DenseSampler and CachedSampler, with or without levels of detail in memory.
 template <class Volume>
 Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options);
 /// The same of volumes that only one thread at a time may use: `tasks` are of the same picture, one for each of

@@ -7,6 +7,7 @@
 #include "gpu/image/colormap.h"
 #include "gpu/math/narrow.h"
 #include "gpu/scene/scene_transfer.h"
+#include "gpu/volume/level_lattice.h"
 
 namespace weir {
 
@@ -127,6 +128,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   frame_.step = static_cast<float>(std::max(0.5, 2 * longest / (1 << 22)));
   frame_.shading = static_cast<float>(scene.volume.shading);
   frame_.max_bounces = scene.volume.max_bounces;
+  if (options.levels) levels_ = levels_for(*options.levels);
   tone_ = {.exposure = static_cast<float>(scene.lighting.exposure.value_or(defaults.exposure)),
            .soft_clip = scene.mode == RenderMode::path};
 }
@@ -134,6 +136,29 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
 const std::vector<float>& RenderSetup::majorants() const {
   if (majorants_.empty()) majorants_ = cells_.majorants(transfer_);
   return majorants_;
+}
+
+// What is nearest to the camera and farthest from it, of what is shown, bounds the levels.
+std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) const {
+  const Camera& camera = frame_.camera;
+  const float pixel = std::min(2 * length(camera.right) / static_cast<float>(frame_.width),
+                               2 * length(camera.down) / static_cast<float>(frame_.height));
+  LevelsUsed used;
+  used.choice = {camera.position, medium_.stretch, std::log2(pixel) + detail.bias, 0};
+  used.choice.scattered = used.choice.camera + detail.scattered;
+  const RayBox& box = medium_.shown;
+  const Float3& eye = camera.position;
+  const Float3 nearest{clamped(eye.x, box.low.x, box.high.x), clamped(eye.y, box.low.y, box.high.y),
+                       clamped(eye.z, box.low.z, box.high.z)};
+  const auto farther = [](float at, float low, float high) { return at - low > high - at ? low : high; };
+  const Float3 farthest{farther(eye.x, box.low.x, box.high.x), farther(eye.y, box.low.y, box.high.y),
+                        farther(eye.z, box.low.z, box.high.z)};
+  const bool scatters = frame_.mode == RenderMode::path;
+  used.coarsest = used.choice.level(farthest, scatters ? RayKind::scattered : RayKind::camera);
+  if (!(used.coarsest >= 1)) return std::nullopt;
+  used.finest =
+      static_cast<int>(clamped(used.choice.level(nearest, RayKind::camera), 1.0F, static_cast<float>(kMostLevels - 1)));
+  return used;
 }
 
 // The scene's region, or the whole domain.

@@ -15,10 +15,17 @@
 #include "gpu/scene/environment.h"
 #include "gpu/scene/scene_camera.h"
 #include "gpu/scene/transfer_function.h"
+#include "gpu/volume/level_choice.h"
 #include "gpu/volume/macrocell_grid.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir {
+
+/// How coarse a picture may see its volume.
+struct LevelOfDetail {
+  float bias = 0;       ///< levels above the one whose cubes of voxels are as wide as a pixel
+  float scattered = 0;  ///< further levels for rays after a collision; light is then a little off
+};
 
 struct RenderOptions {
   std::int32_t width = 960;   ///< pixels
@@ -28,6 +35,8 @@ struct RenderOptions {
   std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
   /// Instead of the volume's own, so that all steps of a series look alike.
   std::optional<float> background = std::nullopt;
+  /// None: every look-up sees voxels.
+  std::optional<LevelOfDetail> levels = std::nullopt;
   /// The scene's; null: loaded from where the scene says. Give it to render the scene again without loading it.
   std::shared_ptr<const Environment> environment = nullptr;
 };
@@ -41,6 +50,13 @@ struct VolumeInfo {
 
 /// Of a grid, whose values lie in `cells` where its root names no finite range.
 VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells);
+
+/// The levels that a picture can make use of.
+struct LevelsUsed {
+  LevelChoice choice;
+  int finest = 1;  ///< that a look-up may ask for; level 0 are voxels
+  float coarsest;  ///< likewise
+};
 
 class RenderSetup {
  public:
@@ -72,9 +88,13 @@ class RenderSetup {
   /// With host pointers; not present where the scene has none.
   const EnvironmentView& environment() const { return frame_.lighting.environment; }
   ToneMapping tone() const { return tone_; }
+  RenderMode mode() const { return frame_.mode; }
+  /// None where the options ask for voxels, or all look-ups come near enough to see them.
+  const std::optional<LevelsUsed>& levels() const { return levels_; }
 
  private:
   const std::vector<float>& majorants() const;
+  std::optional<LevelsUsed> levels_for(const LevelOfDetail& detail) const;
   Box shown(const Scene& scene) const;
   std::vector<Box> framed(const Scene& scene) const;
 
@@ -86,6 +106,7 @@ class RenderSetup {
   MediumProperties medium_;
   RenderFrame frame_;
   ToneMapping tone_;
+  std::optional<LevelsUsed> levels_;
 };
 
 }  // namespace weir

@@ -11,7 +11,10 @@ struct SampleOptions {
   std::uint32_t samples = 1;                  ///< per pixel
   const std::atomic<bool>* cancel = nullptr;  ///< looked at every few milliseconds of work
   /// Called with the pixel samples done so far, from any thread, one at a time.
-  std::function<void(std::uint64_t)> progress;
+  std::function<void(std::uint64_t)> progress = {};
+  /// Of a volume that comes and goes (a cache on a device): does not wait for what is missing, which the next picture
+  /// finds there, but does with what is near it. For a camera that moves; ends no sooner for `cancel`.
+  bool draft = false;
 };
 
 }  // namespace weir

@@ -12,23 +12,38 @@ namespace weir {
 /// Halvings of the interval that holds the surface: half a voxel to 1e-5 of one.
 inline constexpr int kIsoRefinements = 16;
 
+namespace detail {
+
+WEIR_HOST_DEVICE inline bool crosses(float a, float b, float iso) {
+  return is_finite(a) && is_finite(b) && (a < iso) != (b < iso);
+}
+
+}  // namespace detail
+
 /// Parameter of the first crossing along a ray that `enter` has moved into the volume, or -1. NaN and
 /// infinite values are on neither side.
 template <class Volume>
-WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso, float step) {
+WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso,
+                                float voxel_step) {
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
+  [[maybe_unused]] float before = 0;  // the last value looked at
+  [[maybe_unused]] bool looked = false;
   while (walk.next(medium.cells, ray, span)) {
     const MinMax& bounds = medium.cell_values[span.cell];
     if (iso < bounds.min || iso > bounds.max) continue;
     float a = span.t0;
     float at_a = medium.volume.smooth(ray.at(a));
+    if constexpr (kHasLevels<Volume>) {
+      // Cells bound voxels; means of them may cross in a cell that was passed over.
+      if (looked && detail::crosses(before, at_a, iso)) return a;
+    }
+    const float step = voxel_step * spacing(medium.volume, ray.at(a));
     while (a < span.t1) {
       float b = lesser(a + step, span.t1);
       if (!(b > a)) break;  // a step below the precision of t
       const float at_b = medium.volume.smooth(ray.at(b));
-      const bool crosses = is_finite(at_a) && is_finite(at_b) && (at_a < iso) != (at_b < iso);
-      if (crosses) {
+      if (detail::crosses(at_a, at_b, iso)) {
         for (int i = 0; i < kIsoRefinements; ++i) {
           const float middle = 0.5F * (a + b);
           if ((medium.volume.smooth(ray.at(middle)) < iso) == (at_a < iso)) {
@@ -42,6 +57,8 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
       a = b;
       at_a = at_b;
     }
+    before = at_a;
+    looked = true;
   }
   return -1.0F;
 }

@@ -6,18 +6,21 @@
 #include "gpu/math/random.h"
 #include "gpu/scene/lighting.h"
 #include "gpu/trace/medium.h"
+#include "gpu/volume/volume_sampler.h"
 
 namespace weir {
 
-/// Largest finite value along a ray that `enter` has moved into the volume, at samples `step` apart;
+/// Largest finite value along a ray that `enter` has moved into the volume, at samples `voxel_step` apart (as march());
 /// -infinity where there is none.
 template <class Volume>
-WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, float length, float step, float jitter) {
+WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, float length, float voxel_step,
+                                 float jitter) {
   float best = -kInfinity;
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
     if (medium.cell_values[span.cell].max <= best) continue;  // false where the bound is NaN, unknown
+    const float step = voxel_step * spacing(medium.volume, ray.at(span.t0));
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
       const float value = medium.volume.smooth(ray.at(t));

@@ -1,6 +1,6 @@
 // What a ray travels through: a volume, its transfer function, its majorants,
 // and how much light a collision keeps. One type for host and device; Volume is
-// anything with `extent`, `sample` and `smooth` (see volume_sampler.h).
+// anything with `sample` and `smooth` (see volume_sampler.h, levelled_volume.h).
 #pragma once
 
 #include "format/nanovdb/nvdb_grid.h"
@@ -8,6 +8,7 @@
 #include "gpu/math/random.h"
 #include "gpu/math/vector3.h"
 #include "gpu/scene/transfer_function.h"
+#include "gpu/volume/level_choice.h"
 
 namespace weir {
 
@@ -40,9 +41,13 @@ template <class Volume>
 struct Medium : MediumProperties {
   Volume volume;
 
-  /// At a position inside the domain; filters may draw numbers.
-  WEIR_HOST_DEVICE Rgba colour(const Float3& position, Random& random) const {
-    return transfer.at(volume.sample(position, random));
+  /// At a position inside the domain, as a ray of that kind sees it; filters may draw numbers.
+  WEIR_HOST_DEVICE Rgba colour(const Float3& position, RayKind kind, Random& random) const {
+    if constexpr (requires { volume.sample(position, kind, random); }) {
+      return transfer.at(volume.sample(position, kind, random));
+    } else {
+      return transfer.at(volume.sample(position, random));
+    }
   }
 };
 

@@ -42,7 +42,7 @@ WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lightin
     }
     Ray shadow = medium.ray(position, towards);
     const float length = enter(shadow, medium.shown);
-    const float visible = ratio_track(medium, shadow, length, random);
+    const float visible = ratio_track(medium, shadow, length, RayKind::scattered, random);
     sum += light * (visible * scattered);
   }
   return sum;
@@ -61,7 +61,8 @@ WEIR_HOST_DEVICE Float3 trace_path(const Medium<Volume>& medium, const Lighting&
   float turned = 0;  // with an environment: density with which the phase function drew `direction`
   for (int bounce = 0;; ++bounce) {
     const float length = enter(ray, medium.shown);
-    const Flight flight = length > 0.0F ? delta_track(medium, ray, length, random) : Flight{};
+    const RayKind kind = bounce == 0 ? RayKind::camera : RayKind::scattered;
+    const Flight flight = length > 0.0F ? delta_track(medium, ray, length, kind, random) : Flight{};
     if (flight.end == FlightEnd::absorbed) return radiance;
     if (flight.end == FlightEnd::escaped) {
       if (bounce == 0) return radiance + throughput * lighting.behind(direction);

@@ -16,12 +16,13 @@ inline constexpr float kOpaque = 1.0F / 2048.0F;
 /// Contribution to a pixel below which a sample is not worth the six lookups of a gradient.
 inline constexpr float kUnshaded = 1.0F / 4096.0F;
 
-/// Radiance from unit `direction`. `step` is the distance between samples, in the shortest voxel edges;
+/// Radiance from unit `direction`. `voxel_step` is the distance between samples, in the shortest voxel edges, or in
+/// edges of the cubes of voxels that are looked up;
 /// `shading` in [0, 1] blends the colour with its reflection of the lights on a surface
 /// across the gradient.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
-                              const Float3& direction, float step, float shading, Random& random) {
+                              const Float3& direction, float voxel_step, float shading, Random& random) {
   Float3 radiance;
   float transmittance = 1.0F;
   Ray ray = medium.ray(origin, direction);
@@ -32,10 +33,11 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
     if (!(medium.majorant(span.cell) > 0.0F)) continue;
+    const float step = voxel_step * spacing(medium.volume, ray.at(span.t0));
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
       const Float3 p = ray.at(t);
-      const Rgba colour = medium.colour(p, random);
+      const Rgba colour = medium.colour(p, RayKind::camera, random);
       const float sigma = medium.extinction(colour.a);
       if (!(sigma > 0.0F)) continue;
       const float through = std::exp(-sigma * step);

@@ -64,11 +64,12 @@ struct Flight {
 
 /// Flies along [0, length] of `ray`, which lies inside the volume.
 template <class Volume>
-WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray, float length, Random& random) {
+WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray, float length, RayKind kind,
+                                    Random& random) {
   TentativeCollisions tentative(medium.cells, ray, length, random);
   while (tentative.next(medium, ray)) {
     if (tentative.endless()) return {FlightEnd::absorbed, tentative.t(), {}};
-    const Rgba colour = medium.colour(ray.at(tentative.t()), random);
+    const Rgba colour = medium.colour(ray.at(tentative.t()), kind, random);
     // Strictly less: a random number of 0 does not collide with vacuum.
     if (random.uniform() * tentative.majorant() < medium.extinction(colour.a)) {
       return {FlightEnd::collided, tentative.t(), colour};
@@ -80,12 +81,13 @@ WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray
 
 /// An estimate in [0, 1] whose expectation is the transmittance along [0, length] of `ray`.
 template <class Volume>
-WEIR_HOST_DEVICE float ratio_track(const Medium<Volume>& medium, const Ray& ray, float length, Random& random) {
+WEIR_HOST_DEVICE float ratio_track(const Medium<Volume>& medium, const Ray& ray, float length, RayKind kind,
+                                   Random& random) {
   TentativeCollisions tentative(medium.cells, ray, length, random);
   float transmittance = 1.0F;
   while (tentative.next(medium, ray)) {
     if (tentative.endless()) return 0.0F;
-    const Rgba colour = medium.colour(ray.at(tentative.t()), random);
+    const Rgba colour = medium.colour(ray.at(tentative.t()), kind, random);
     transmittance *= greater(0.0F, 1.0F - medium.extinction(colour.a) / tentative.majorant());
     if (transmittance <= 0.0F) return 0.0F;
     if (transmittance < 0.1F) {  // Russian roulette: the rest hardly matters and may be long

@@ -18,6 +18,17 @@ void CachedBlocks::decode(const Int3& at, std::span<float, kLeafVoxels> values) 
   packed_->decode(packed_->stream(region, packed_position(block)), values);
 }
 
+bool CachedBlocks::read(const Int3& at, std::span<float, kLeafVoxels> values) const {
+  const LeafTableView table = table_.view();
+  const std::uint32_t entry = table.entries[table_index(at, table.count)];
+  if (entry >= table.tile_count) {
+    decode(at, values);
+    return false;
+  }
+  values[0] = table.tile_values[entry];
+  return true;
+}
+
 void BlockReader::decode(const Int3& at, std::uint32_t key) {
   blocks_->decode(at, decoded_);
   const auto turn = static_cast<std::uint32_t>(counts_.decoded++);

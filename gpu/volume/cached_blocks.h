@@ -26,6 +26,9 @@ class CachedBlocks {
   CachedBlocks(const NvdbGrid& grid, std::uint64_t cache_bytes);
 
   LeafTableView table() const { return table_.view(); }
+  /// The values of the block at the table's position `at`, past the cache; true where it has one value, which alone is
+  /// set. Throws Error(input) where its stream or directory is damaged.
+  bool read(const Int3& at, std::span<float, kLeafVoxels> values) const;
   std::uint64_t bytes() const { return table_.bytes() + cache_.bytes(); }  ///< of table, tile values and cache
 
  private:

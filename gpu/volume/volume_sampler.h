@@ -75,11 +75,29 @@ struct FilteredVolume {
 /// The voxels of a NanoVDB file.
 using VolumeSampler = FilteredVolume<LeafTableView>;
 
-/// Central differences over two voxels, in value per voxel.
+/// Of a LevelledVolume (levelled_volume.h).
+template <class Volume>
+inline constexpr bool kHasLevels = requires(const Volume& volume, const Float3& p) {
+  volume.spacing(p);
+};
+
+/// Voxels between two values that `volume` tells apart at `p`.
+template <class Volume>
+WEIR_HOST_DEVICE float spacing(const Volume& volume, const Float3& p) {
+  if constexpr (kHasLevels<Volume>) {
+    return volume.spacing(p);
+  } else {
+    return 1.0F;
+  }
+}
+
+/// Central differences over two voxels, or two cubes of voxels, in value per voxel.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 gradient(const Volume& volume, const Float3& p) {
-  const auto slope = [&](const Float3& d) { return 0.5F * volume.smooth(p + d) - 0.5F * volume.smooth(p - d); };
-  return {slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
+  const float reach = spacing(volume, p);
+  const float weight = 0.5F / reach;
+  const auto slope = [&](const Float3& d) { return weight * volume.smooth(p + d) - weight * volume.smooth(p - d); };
+  return {slope({reach, 0, 0}), slope({0, reach, 0}), slope({0, 0, reach})};
 }
 
 }  // namespace weir

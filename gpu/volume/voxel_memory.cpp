@@ -37,6 +37,7 @@ std::uint64_t decoded_bytes(const PackedData& packed) {
 }
 
 [[noreturn]] void fail_too_small(std::uint64_t needed, const VoxelMemory& memory) {
+  if (memory.levels) needed += needed / 7 + 1;
   const std::string series =
       memory.volumes > 1 ? cat(", ", memory.volumes, " volumes of a series being held at a time") : std::string();
   throw Error(ErrorKind::usage,
@@ -55,15 +56,20 @@ std::uint64_t decoded_bytes(const PackedData& packed) {
 
 VoxelPlan plan_voxels(const NvdbGrid& grid, const VoxelMemory& memory) {
   VoxelPlan plan;
+  std::uint64_t available = available_bytes();
+  std::uint64_t share = memory.ceiling.value_or(std::numeric_limits<std::uint64_t>::max()) / memory.volumes;
+  if (memory.levels) {
+    plan.level_bytes = std::min(share, available / memory.volumes) / 8;
+    share -= memory.ceiling ? plan.level_bytes : 0;
+    available -= plan.level_bytes;
+  }
   if (grid.packed() == nullptr && !memory.ceiling) return plan;
   const auto blocks = static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
   plan.fixed_bytes = blocks * sizeof(std::uint32_t) + tile_bytes(grid) + macrocell_bytes(grid);
-  const std::uint64_t share = memory.ceiling.value_or(std::numeric_limits<std::uint64_t>::max()) / memory.volumes;
   if (grid.packed() == nullptr) {
     if (plan.fixed_bytes > share) fail_too_small(plan.fixed_bytes, memory);
     return plan;
   }
-  const std::uint64_t available = available_bytes();
   const std::uint64_t most = std::min(share, available);
   if (plan.fixed_bytes + blocks * nvdb::kFloatLeafBytes <= most) return plan;
 

@@ -11,12 +11,14 @@ namespace weir {
 /// A ceiling of what volumes take in memory: tables, tile values, macrocells and decoded blocks. The pages of a mapped
 /// file are the page cache's and do not count.
 struct VoxelMemory {
-  std::optional<std::uint64_t> ceiling;  ///< bytes; none: what the machine has available
-  std::uint64_t volumes = 1;             ///< that are held at a time and share it
+  std::optional<std::uint64_t> ceiling = std::nullopt;  ///< bytes; none: what the machine has available
+  std::uint64_t volumes = 1;                            ///< that are held at a time and share it
+  bool levels = false;                                  ///< an eighth is kept for levels of detail
 };
 
-/// Nothing of a grid that is not packed and has no ceiling.
+/// Of a grid that is not packed and has no ceiling, levels alone.
 struct VoxelPlan {
+  std::uint64_t level_bytes = 0;             ///< for levels of detail, where they were asked for
   std::uint64_t fixed_bytes = 0;             ///< table, tile values and macrocells, at most
   std::uint64_t decoded_bytes = 0;           ///< of all decoded blocks, where their number decides
   std::optional<std::uint64_t> cache_bytes;  ///< of a packed grid whose decoded blocks do not fit; else none

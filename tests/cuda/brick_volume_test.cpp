@@ -24,6 +24,7 @@ namespace {
 constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, RenderMode::mip};
 constexpr std::array kFilters{Filter::nearest, Filter::trilinear, Filter::stochastic};
 constexpr std::uint64_t kSmall = 50U << 20U;  // bytes, less than all bricks take
+constexpr std::uint64_t kSmallWithLevels = 76U << 20U;
 
 class BrickVolumeTest : public testing::Test {
  protected:
@@ -58,7 +59,7 @@ class BrickVolumeTest : public testing::Test {
   }
 
   static Image picture(Backend& backend, const LoadedVolume& volume, RenderMode mode, Filter filter,
-                       std::uint32_t samples = 3) {
+                       std::uint32_t samples = 3, const std::optional<LevelOfDetail>& levels = std::nullopt) {
     Scene scene;
     scene.mode = mode;
     scene.volume.density = 20;
@@ -66,17 +67,25 @@ class BrickVolumeTest : public testing::Test {
     options.width = 80;
     options.height = 60;
     options.filter = filter;
+    options.levels = levels;
     return backend.render(const_cast<LoadedVolume&>(volume), scene, options, {samples, nullptr, {}}).image;
   }
 
-  static std::unique_ptr<Backend> cuda(std::optional<std::uint64_t> memory = std::nullopt) {
+  static std::unique_ptr<Backend> cuda(std::optional<std::uint64_t> memory = std::nullopt, bool levels = false) {
     CudaOptions options;
     options.memory = memory;
+    options.levels = levels;
     return make_cuda_backend(options);
   }
 
   TemporaryDirectory directory_;
 };
+
+int differing(const Image& a, const Image& b) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] == b.pixels[i] ? 0 : 1;
+  return count;
+}
 
 // Largest difference of any channel of the pixels but for the 2 % of them that differ most.
 float difference(const Image& a, const Image& b) {
@@ -117,6 +126,78 @@ TEST_F(BrickVolumeTest, ASmallCacheDrawsTheBitsOfAllBricks) {
       EXPECT_EQ(picture(*small, *some, mode, filter).pixels, picture(*large, *all, mode, filter).pixels)
           << render_mode_name(mode) << ' ' << static_cast<int>(filter);
     }
+  }
+}
+
+TEST_F(BrickVolumeTest, LevelsOfDetailAreTheCpus) {
+  test::TestGridOptions stock;
+  stock.type = GridType::fp16;
+  const test::TestGrid made(
+      {{-7, 0, 3}, {150, 170, 140}},
+      [](const Index3& i) { return 0.5F + 0.4F * std::sin(0.1F * static_cast<float>(i.x + 2 * i.y - i.z)); }, stock);
+  const auto device = cuda(std::nullopt, true);
+  const auto host = make_cpu_backend(0, {.levels = true});
+  for (const bool packed : {true, false}) {
+    const auto grid = packed ? ball() : file(made.file());
+    const auto on_device = device->load(grid, 16, nullptr);
+    const auto on_host = host->load(grid, 16, nullptr);
+    for (const RenderMode mode : {RenderMode::dvr, RenderMode::iso, RenderMode::mip}) {
+      for (const float bias : {0.0F, 1.5F}) {
+        const LevelOfDetail levels{bias, 0};
+        const Image found = picture(*device, *on_device, mode, Filter::trilinear, 3, levels);
+        EXPECT_LT(difference(found, picture(*host, *on_host, mode, Filter::trilinear, 3, levels)), 0.02F)
+            << packed << ' ' << render_mode_name(mode) << ' ' << bias;
+        EXPECT_NE(found.pixels, picture(*device, *on_device, mode, Filter::trilinear).pixels);
+      }
+    }
+  }
+}
+
+TEST_F(BrickVolumeTest, ASmallCacheDrawsTheBitsOfAllBricksWithLevelsOfDetail) {
+  const auto grid = ball();
+  const auto large = cuda(std::nullopt, true);
+  const auto small = cuda(kSmallWithLevels, true);
+  const auto all = large->load(grid, 16, nullptr);
+  const auto some = small->load(grid, 16, nullptr);
+  EXPECT_NE(some->load_summary().note.find("a cache of "), std::string::npos) << some->load_summary().note;
+  for (const RenderMode mode : kModes) {
+    for (const Filter filter : kFilters) {
+      // Near voxels are looked up, far ones are not; light sees coarser levels than the camera.
+      for (const LevelOfDetail& levels : {LevelOfDetail{-1.2F, 0}, LevelOfDetail{-1.2F, 2}}) {
+        const Image found = picture(*small, *some, mode, filter, 3, levels);
+        const Image expected = picture(*large, *all, mode, filter, 3, levels);
+        EXPECT_EQ(differing(found, expected), 0) << render_mode_name(mode) << ' ' << static_cast<int>(filter);
+      }
+    }
+  }
+}
+
+// Bricks that are missing are there for the next draft; with all of them there, a draft is the picture.
+TEST_F(BrickVolumeTest, DraftsBecomeThePicture) {
+  const auto grid = ball();
+  for (const bool levels : {false, true}) {
+    const auto large = cuda(std::nullopt, levels);
+    const auto small = cuda(levels ? kSmallWithLevels : kSmall, levels);
+    const auto all = large->load(grid, 16, nullptr);
+    const auto some = small->load(grid, 16, nullptr);
+    Scene scene;
+    scene.mode = RenderMode::dvr;
+    RenderOptions options;
+    options.width = 80;
+    options.height = 60;
+    if (levels) options.levels = LevelOfDetail{-1.2F, 0};
+    SampleOptions sampling;
+    const Picture exact = large->render(*all, scene, options, sampling);
+    EXPECT_EQ(exact.missed, 0U);
+    EXPECT_EQ(exact.finest_level, levels ? 1 : 0);
+    sampling.draft = true;
+    Picture draft = small->render(*some, scene, options, sampling);
+    EXPECT_GT(draft.missed, 20U) << levels;
+    EXPECT_EQ(draft.finest_level, exact.finest_level);
+    EXPECT_LT(difference(draft.image, exact.image), 0.6F) << "something is there at once";
+    for (int i = 0; i < 20 && draft.missed > 0; ++i) draft = small->render(*some, scene, options, sampling);
+    EXPECT_EQ(draft.missed, 0U);
+    EXPECT_EQ(differing(draft.image, exact.image), 0) << levels;
   }
 }
 

@@ -105,6 +105,7 @@ void render(const RenderArguments& arguments) {
                                   {"transfer_s", loaded.seconds},
                                   {"note", loaded.note}}},
                                 {"cache", to_json(picture.cache)},
+                                {"finest_level", picture.finest_level},
                                 {"load_s", load_s},
                                 {"render_s", picture.render_s}};
     std::cout << report.dump(2) << '\n';

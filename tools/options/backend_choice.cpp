@@ -11,8 +11,11 @@ namespace weir {
 std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
 #ifdef WEIR_HAVE_CUDA
   if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0)) {
-    return make_cuda_backend(
-        {.devices = choice.devices, .load = {}, .memory = choice.device_memory, .volumes = choice.memory.volumes});
+    return make_cuda_backend({.devices = choice.devices,
+                              .load = {},
+                              .memory = choice.device_memory,
+                              .volumes = choice.memory.volumes,
+                              .levels = choice.memory.levels});
   }
 #else
   if (choice.name == "cuda") {

@@ -101,6 +101,35 @@ void read_devices(const OptionRow& row, const std::string& text, Request& reques
   request.backend.devices = devices;
 }
 
+constexpr double kMostBias = 15;  // levels
+
+void read_lod(const OptionRow& row, const std::string& text, Request& request) {
+  if (text == "off") return;
+  LevelOfDetail levels;
+  if (text != "auto") {
+    const std::optional<double> bias = parse_double(text);
+    if (!bias || !(std::abs(*bias) <= kMostBias)) {
+      throw wrong_option(row.key, text, cat("auto, off, or a number of levels from -", kMostBias, " to ", kMostBias));
+    }
+    levels.bias = static_cast<float>(*bias);
+  }
+  request.options.levels = levels;
+  request.backend.memory.levels = true;
+}
+
+// After `lod`, whose row comes first.
+void read_lod_scattered(const OptionRow& row, const std::string& text, Request& request) {
+  const std::optional<double> levels = parse_double(text);
+  if (!levels || !(*levels >= 0 && *levels <= kMostBias)) {
+    throw wrong_option(row.key, text, cat("a number of levels from 0 to ", kMostBias));
+  }
+  if (*levels == 0) return;
+  if (!request.options.levels) {
+    throw Error(ErrorKind::usage, compose(option(row.key), " needs ", option("lod", "auto"), " or a number of levels"));
+  }
+  request.options.levels->scattered = static_cast<float>(*levels);
+}
+
 std::uint64_t read_bytes(const OptionRow& row, const std::string& text) {
   const std::optional<std::uint64_t> bytes = parse_bytes(text);
   if (!bytes || *bytes == 0) throw wrong_option(row.key, text, "a size above 0, like 512MiB");
@@ -199,6 +228,22 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.backend.device_memory = read_bytes(row, text);
      }},
+    {{.key = "lod",
+      .argument = "auto|off|BIAS",
+      .unit = "levels",
+      .standard = "off",
+      .help = "level of detail; auto: where a pixel is wider than a voxel, means of 2^3, 4^3 ... voxels as wide as the "
+              "pixel take their place, faster and smoother, though peaks are lost in means; BIAS: that many levels "
+              "coarser"},
+     read_lod},
+    {{.key = "lod-scattered",
+      .argument = "LEVELS",
+      .unit = "levels",
+      .standard = "0",
+      .help =
+          "with --lod, path: further levels coarser for light after its first scattering and on its way from a light: "
+          "a cache is asked for less, shadows are a little off"},
+     read_lod_scattered},
 };
 
 }  // namespace

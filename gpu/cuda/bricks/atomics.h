@@ -46,6 +46,24 @@ WEIR_HOST_DEVICE inline std::uint32_t atomic_max(std::uint32_t* at, std::uint32_
 #endif
 }
 
+/// What other threads have made of it lately: past a device's first cache.
+WEIR_HOST_DEVICE inline std::uint32_t load_fresh(const std::uint32_t* at) {
+#if defined(__CUDA_ARCH__)
+  return __ldcg(at);
+#else
+  return std::atomic_ref<std::uint32_t>(*const_cast<std::uint32_t*>(at)).load(std::memory_order_relaxed);
+#endif
+}
+
+/// For words that all threads set to the same.
+WEIR_HOST_DEVICE inline void store(std::uint32_t* at, std::uint32_t n) {
+#if defined(__CUDA_ARCH__)
+  *at = n;
+#else
+  std::atomic_ref<std::uint32_t>(*at).store(n, std::memory_order_relaxed);
+#endif
+}
+
 /// Puts `n` in the place of `expected`.
 WEIR_HOST_DEVICE inline std::uint64_t atomic_replace(std::uint64_t* at, std::uint64_t expected, std::uint64_t n) {
 #if defined(__CUDA_ARCH__)

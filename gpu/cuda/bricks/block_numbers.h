@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "gpu/cuda/bricks/atomics.h"
-#include "gpu/cuda/volume/block_lattice.h"
+#include "gpu/volume/block_lattice.h"
 
 namespace weir {
 

@@ -23,7 +23,7 @@ struct RequestMissing {
     const std::uint32_t page = first_page + i / kRegionBlocks;
     BrickEntry& entry = table.entries[static_cast<std::size_t>(page) * kRegionBlocks + i % kRegionBlocks];
     if ((entry.state & brick_state::kMissing) == 0) return;
-    table.request_brick(entry, static_cast<BlockId>(regions[page - 1]) * kRegionBlocks + i % kRegionBlocks);
+    table.requests.note(entry, static_cast<BlockId>(regions[page - 1]) * kRegionBlocks + i % kRegionBlocks);
   }
 };
 

@@ -57,7 +57,7 @@ BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& b
     : source_(std::move(source)),
       regions_(source_->regions()),
       budget_(budget),
-      left_(budget.bytes > budget.taken ? budget.bytes - budget.taken : 0),
+      left_(budget.bytes > budget.taken + budget.levels ? budget.bytes - budget.taken - budget.levels : 0),
       kept_(kept) {
   make(TexelType::share16);
 }
@@ -140,7 +140,8 @@ bool BrickCache::make_whole() {
 void BrickCache::fail_too_small(const Needs& needs) const {
   // Enough for floats, too, and for the eighth that decodes.
   const std::uint64_t most = needs.least(TexelType::float32);
-  const std::uint64_t enough = std::max(20 * needs.table, most + most / 5) + budget_.taken;
+  std::uint64_t enough = std::max(20 * needs.table, most + most / 5) + budget_.taken;
+  if (budget_.levels > 0) enough += bytes_for_levels(2 * enough);
   const auto megabytes = [](std::uint64_t bytes) { return cat((bytes >> 20U) + 1, "MiB"); };
   if (!budget_.limited) {
     throw Error(ErrorKind::input,

@@ -2,6 +2,7 @@
 // room, else as many as fit, brought in when they are looked up.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,9 +30,16 @@ enum class BricksKept {
 struct BrickBudget {
   std::uint64_t bytes = 0;    ///< with what its source reads
   std::uint64_t taken = 0;    ///< by that already
+  std::uint64_t levels = 0;   ///< of them kept for levels of detail
   std::uint64_t volumes = 1;  ///< that are held at a time, each with as much
   bool limited = true;        ///< by --device-memory; otherwise by what is free
 };
+
+/// What to keep of a budget of `bytes` for levels of detail: an eighth, or what small grids need.
+constexpr std::uint64_t bytes_for_levels(std::uint64_t bytes) {
+  constexpr std::uint64_t kSmall = std::uint64_t{24} << 20U;
+  return std::max(bytes / 8, std::min(bytes / 4, kSmall));
+}
 
 /// Made and used with its device current, by one thread at a time.
 class BrickCache {
@@ -49,15 +57,27 @@ class BrickCache {
   std::uint64_t bricks() const { return slots_; }  ///< there is room for
   BrickCounters counters() const;                  ///< as of the last turn
 
+  BlockSource& source() const { return *source_; }
+  /// source().regions().
+  const std::vector<RegionEntry>& regions() const { return regions_; }
+
   /// Of one that is not paged.
   template <Filter kFilter>
   BrickSampler<kFilter> sampler() const {
     return {BrickTable(source_->lattice(), whole_.data()), texture_.object()};
   }
-  /// Of a paged one.
-  template <Filter kFilter>
-  PagedSampler<kFilter> paged_sampler() {
-    return {{pages()}, texture_.object()};
+  /// Of a paged one: calls use(PagedSampler) with one that reaches all of the domain.
+  template <Filter kFilter, Noting kNoting, class Use>
+  decltype(auto) with_paged_sampler(const Use& use) {
+    const Int3& extent = source_->lattice().extent;
+    const bool wide = greater(extent.x, greater(extent.y, extent.z)) > FixedPositions::kMost;
+    if (wide) return use(paged_sampler<PagedSampler<kFilter, kNoting, WidePositions>>());
+    return use(paged_sampler<PagedSampler<kFilter, kNoting>>());
+  }
+  /// The same where it is known which. Only until serve() finds something unfit.
+  template <class Sampler>
+  Sampler paged_sampler() {
+    return {{pages(), decltype(Sampler::table.positions)(source_->lattice())}, texture_.object()};
   }
 
   /// Of a paged one: brings in what was looked up and missing since the last call. Where that was `unfit`, all that was

@@ -40,4 +40,21 @@ struct BrickPosition {
   }
 };
 
+/// In domains of any size, as FixedPositions in smaller ones.
+class WidePositions {
+ public:
+  using Position = BrickPosition;
+
+  WidePositions() = default;
+  explicit WidePositions(const BlockLattice& lattice) : lattice_(lattice) {}
+
+  WEIR_HOST_DEVICE Position at(const Float3& q) const { return {lattice_, q}; }
+  WEIR_HOST_DEVICE std::uint32_t region(const Position& at) const { return lattice_.region_of(at.block); }
+  WEIR_HOST_DEVICE static std::uint32_t in_region(const Position& at) { return BlockLattice::position_of(at.block); }
+  WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) { return at.texel(entry); }
+
+ private:
+  BlockLattice lattice_;
+};
+
 }  // namespace weir

@@ -16,12 +16,8 @@ struct BrickTable {
   Float3 first;                         ///< kFixedPoint + voxels from the first block's corner to the domain's
   Float3 last;                          ///< the domain's highest voxel
 
-  /// A position's fixed point bits: voxels from the first block's corner.
-  struct Position {
-    std::uint32_t x;
-    std::uint32_t y;
-    std::uint32_t z;
-  };
+  /// Counted from the first block's corner.
+  using Position = FixedPlace;
 
   BrickTable() = default;
   /// Over a domain of at most kFixedPointEnd - 8 voxels along each axis.
@@ -45,32 +41,14 @@ struct BrickTable {
   }
 
   /// Of local voxels, centres at whole numbers; those outside are moved into the domain.
-  WEIR_HOST_DEVICE Position position(const Float3& q) const {
-    return {bits(clamped(q.x, 0.0F, last.x) + first.x), bits(clamped(q.y, 0.0F, last.y) + first.y),
-            bits(clamped(q.z, 0.0F, last.z) + first.z)};
-  }
+  WEIR_HOST_DEVICE Position position(const Float3& q) const { return {q, first, last}; }
   WEIR_HOST_DEVICE std::uint32_t index(const Position& at) const {
     return (at.x >> 11U) + across * ((at.y >> 11U) + down * (at.z >> 11U)) - origin;
   }
   /// Of the position's block.
   WEIR_HOST_DEVICE BrickEntry entry(const Position& at) const { return entries[index(at)]; }
-  /// Coordinates in the texture of a position in the brick of an entry.
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
-    return {texel(entry.brick & 2047U, at.x), texel(entry.brick >> 11U & 2047U, at.y), texel(entry.brick >> 22U, at.z)};
-  }
-
- private:
-  WEIR_HOST_DEVICE static std::uint32_t bits(float v) {
-    std::uint32_t b;
-    __builtin_memcpy(&b, &v, sizeof b);
-    return b;
-  }
-  // Half a texel above the voxel, where its centre is.
-  WEIR_HOST_DEVICE static float texel(std::uint32_t brick, std::uint32_t at) {
-    const std::uint32_t b = brick * (256U * kBrickEdge) + (kFixedPointBits | (at & 2047U));
-    float v;
-    __builtin_memcpy(&v, &b, sizeof v);
-    return v - (kFixedPoint - 0.5F);
+    return entry.texel(at.x, at.y, at.z);
   }
 };
 

@@ -15,6 +15,8 @@ namespace weir {
 /// position(q) of local voxels, centres at whole numbers, the entry(position) of its block, and texel(entry, position).
 template <class Table, Filter kFilter>
 struct FilteredBricks {
+  using Blocks = Table;
+
   Table table;
   cudaTextureObject_t texture = 0;
 
@@ -27,6 +29,12 @@ struct FilteredBricks {
       return smooth(p);
     }
   }
+
+  /// Of a table that may miss entries.
+  WEIR_HOST_DEVICE static bool missed() requires requires { Table::missed(); }
+  { return Table::missed(); }
+  WEIR_HOST_DEVICE static void set_missed(bool missed) requires requires { Table::missed(); }
+  { Table::set_missed(missed); }
 
   WEIR_HOST_DEVICE float smooth(const Float3& p) const {
     if constexpr (kFilter == Filter::nearest) return look_up({std::floor(p.x), std::floor(p.y), std::floor(p.z)});

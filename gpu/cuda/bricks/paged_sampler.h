@@ -3,28 +3,49 @@
 
 #include "gpu/cuda/bricks/brick_position.h"
 #include "gpu/cuda/bricks/filtered_bricks.h"
+#include "gpu/cuda/bricks/fixed_positions.h"
 #include "gpu/cuda/bricks/page_table.h"
 #include "gpu/cuda/runtime/pixel_tile.h"
 
 namespace weir {
 
-/// Tells the thread what it missed.
+/// Tells the thread what it missed. `Positions`: FixedPositions, or WidePositions where those do not reach.
+template <class Positions, Noting kNoting>
 struct PagedTable {
-  PageTable pages;
+  using Position = typename Positions::Position;
+  static constexpr Noting kNotes = kNoting;
 
-  WEIR_HOST_DEVICE BrickPosition position(const Float3& q) const { return {pages.lattice, q}; }
-  WEIR_HOST_DEVICE BrickEntry entry(const BrickPosition& at) const {
-    const BrickEntry found = pages.find_or_request(at.block);
+  PageTable pages;
+  Positions positions;
+
+  WEIR_HOST_DEVICE Position position(const Float3& q) const { return positions.at(q); }
+  WEIR_HOST_DEVICE BrickEntry entry(const Position& at) const {
+    const BrickEntry found = pages.template find_or_request<kNoting>(positions.region(at), positions.in_region(at));
 #if defined(__CUDA_ARCH__)
     if ((found.state & brick_state::kMissing) != 0) thread_missed() = true;
 #endif
     return found;
   }
-  WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const BrickPosition& at) { return at.texel(entry); }
+  /// Whether the thread's look-ups have missed something since it was last set to false; on the host always false.
+  WEIR_HOST_DEVICE static bool missed() {
+#if defined(__CUDA_ARCH__)
+    return thread_missed();
+#else
+    return false;
+#endif
+  }
+  WEIR_HOST_DEVICE static void set_missed([[maybe_unused]] bool missed) {
+#if defined(__CUDA_ARCH__)
+    thread_missed() = missed;
+#endif
+  }
+  WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
+    return Positions::texel(entry, at);
+  }
 };
 
 /// With the values of BrickSampler.
-template <Filter kFilter>
-using PagedSampler = FilteredBricks<PagedTable, kFilter>;
+template <Filter kFilter, Noting kNoting, class Positions = FixedPositions>
+using PagedSampler = FilteredBricks<PagedTable<Positions, kNoting>, kFilter>;
 
 }  // namespace weir

@@ -8,7 +8,7 @@
 #include "format/base/host_device.h"
 #include "format/packed/block_constants.h"
 #include "format/packed/packed_layout.h"
-#include "gpu/cuda/volume/block_lattice.h"
+#include "gpu/volume/block_lattice.h"
 
 namespace weir {
 

@@ -9,7 +9,7 @@
 namespace weir {
 
 BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget)
-    : bytes_(std::move(bytes)), cells_(cells) {
+    : bytes_(std::move(bytes)), cells_(cells), level_bytes_(budget.levels) {
   std::unique_ptr<BlockSource> source;
   budget.taken = cells_.bytes() + bytes_.device_bytes();
   if (grid.packed() != nullptr) {
@@ -29,6 +29,19 @@ BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vecto
     }
   }
   cache_.emplace(std::move(source), budget);
+}
+
+int BrickVolume::finest_level(int wanted) const {
+  const BlockLattice lattice = cache_->source().lattice();
+  return DevicePyramid::finest_within({lattice.shift, lattice.extent}, wanted, level_bytes_);
+}
+
+const DevicePyramid& BrickVolume::levels(int finest) {
+  if (!levels_ || levels_->first() != finest) {
+    levels_.reset();
+    levels_.emplace(cache_->source(), cache_->regions(), finest, level_bytes_);
+  }
+  return *levels_;
 }
 
 }  // namespace weir

@@ -1,10 +1,13 @@
 // A grid on one device as bricks, with all that rendering it needs there: packed, or too large for the device.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "gpu/cuda/bricks/brick_cache.h"
+#include "gpu/cuda/bricks/device_pyramid.h"
 #include "gpu/cuda/volume/device_macrocells.h"
 #include "gpu/cuda/volume/device_table.h"
 #include "gpu/cuda/volume/grid_bytes.h"
@@ -15,20 +18,26 @@ namespace weir {
 class BrickVolume {
  public:
   /// `bytes` are those of `grid`, which must outlive the object, on the device or in host memory that it reads; `cells`
-  /// bounds of macrocells. Of `budget`, what is taken already is found here. Throws as BrickCache, BlockDecoder and
-  /// DeviceTable.
+  /// bounds of macrocells. Of `budget`, what is taken already is found here; with `levels`, an eighth is kept for
+  /// levels of detail. Throws as BrickCache, BlockDecoder and DeviceTable.
   BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget);
 
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }
   BrickCache& cache() { return *cache_; }
   DeviceMacrocells& cells() { return cells_; }
+  /// The finest level of detail from `wanted` on that there is room for. Throws as DevicePyramid.
+  int finest_level(int wanted) const;
+  /// The levels from that one on; kept for the next call with the same.
+  const DevicePyramid& levels(int finest);
 
  private:
   GridBytes bytes_;
   std::variant<std::monostate, DeviceTable<FloatBlock>, DeviceTable<QuantisedBlock>> table_;
   DeviceMacrocells cells_;
   std::optional<BrickCache> cache_;
+  std::uint64_t level_bytes_ = 0;
+  std::optional<DevicePyramid> levels_;
 };
 
 }  // namespace weir

@@ -10,6 +10,7 @@
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "gpu/cuda/render/brick_volume.h"
+#include "gpu/cuda/render/device_room.h"
 #include "gpu/cuda/render/device_volume.h"
 #include "gpu/cuda/render/render_kernel.h"
 #include "gpu/cuda/render/trace_paged.h"
@@ -18,52 +19,13 @@
 #include "gpu/cuda/volume/device_environment.h"
 #include "gpu/cuda/volume/device_memory.h"
 #include "gpu/cuda/volume/device_samplers.h"
+#include "gpu/volume/levelled_volume.h"
 
 namespace weir {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::uint64_t block_count(const NvdbGrid& grid) {
-  return static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
-}
-
-/// What a grid takes of a device that has room, apart from an atlas.
-std::uint64_t bytes_needed(const NvdbGrid& grid) {
-  // Of a packed grid's streams and its bricks, the bricks are what is looked up.
-  if (grid.packed() != nullptr) return 2 * grid.data_bytes();
-  const bool floats = grid.type() == GridType::float32;
-  return grid.data_bytes() + block_count(grid) * (floats ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
-}
-
-/// What a grid may take of a device.
-struct DeviceRoom {
-  std::uint64_t bytes = 0;
-  std::uint64_t free = 0;  ///< of the device, all in all
-  std::uint64_t volumes = 1;
-  bool limited = false;  ///< by what the caller asked for
-
-  BrickBudget budget() const { return {.bytes = bytes, .volumes = volumes, .limited = limited}; }
-};
-
-/// Why a grid cannot lie on the current device; "" where it can.
-std::string reason_for_zero_copy(const NvdbGrid& grid, const DeviceRoom& room) {
-  const std::uint64_t needed = bytes_needed(grid);
-  if (needed <= room.bytes) return "";
-  if (room.limited) {
-    return compose("the grid needs ", format_bytes(room.volumes * needed), " of device memory, more than ",
-                   option("device-memory", format_bytes(room.volumes * room.bytes)), ", so it stays in host memory")
-        .text();
-  }
-  return cat("the grid needs ", format_bytes(needed + kSpareDeviceBytes), " of device memory and ",
-             format_bytes(room.free), " are free, so it stays in host memory");
-}
-
-/// Whether a grid in host memory has a cache on the device, not its table alone.
-bool worth_bricks(const NvdbGrid& grid, std::uint64_t memory) {
-  return grid.packed() != nullptr || memory >= grid.data_bytes() / 10;
-}
 
 /// A file's grid, or a dense volume, on every device of the back end, in its order.
 class CudaVolume : public LoadedVolume {
@@ -91,7 +53,7 @@ class CudaVolume : public LoadedVolume {
   const MacrocellGrid& cells() const { return cells_; }
   bool dense() const { return !textures_.empty(); }
   bool in_bricks() const { return !bricks_.empty(); }
-  BrickVolume& bricks(std::size_t i) { return *bricks_[i]; }
+  BrickVolume& bricks(std::size_t i) const { return *bricks_[i]; }
   DeviceVolume& grid(std::size_t i) { return *grids_[i]; }
   DenseTexture& texture(std::size_t i) { return *textures_[i]; }
 
@@ -110,6 +72,12 @@ struct Share {
   int device = 0;
   std::uint32_t first = 0;  ///< samples [first, last)
   std::uint32_t last = 0;
+};
+
+/// What came of it.
+struct ShareDone {
+  std::vector<Float3> sums;
+  std::uint64_t missed = 0;  ///< as Picture
 };
 
 /// Samples in turns that grow until one takes kLaunchSeconds; `launch` starts [first, last) on the default stream.
@@ -163,9 +131,10 @@ class CudaBackend : public Backend {
     std::string note;
     LoadOptions how = options_.load;
     how.packed = true;
-    const DeviceRoom room = room_for(grid, buffer.capacity());
+    const DeviceRoom room = room_for(grid, options_, buffer.capacity());
     if (!how.zero_copy) note = reason_for_zero_copy(grid, room);
-    const bool in_bricks = grid.packed() != nullptr || (!note.empty() && worth_bricks(grid, room.bytes));
+    const bool in_bricks =
+        grid.packed() != nullptr || options_.levels || (!note.empty() && worth_bricks(grid, room.bytes));
     how.zero_copy = how.zero_copy || !note.empty();
     if (how.zero_copy && buffer.capacity() > 0) {
       buffer = DeviceBuffer();
@@ -230,6 +199,7 @@ class CudaBackend : public Backend {
     auto& loaded = static_cast<CudaVolume&>(volume);
     const RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
     const auto start = Clock::now();
+    const int finest_level = levels_for(loaded, setup);
     std::mutex reporting;
     std::uint64_t samples_done = 0;
     const auto done = [&](std::uint64_t samples) {
@@ -240,33 +210,47 @@ class CudaBackend : public Backend {
 
     // Device i takes the i-th of as many stretches of samples.
     const std::size_t count = options_.devices.size();
-    std::vector<std::future<std::vector<Float3>>> shares;
+    std::vector<std::future<ShareDone>> shares;
     for (std::size_t i = 0; i < count; ++i) {
       const auto part = [&](std::size_t k) {
         return static_cast<std::uint32_t>(static_cast<std::uint64_t>(sampling.samples) * k / count);
       };
       const Share share{options_.devices[i], part(i), part(i + 1)};
       shares.push_back(std::async(std::launch::async, [&, i, share] {
-        return render_share(loaded, i, setup, options, share, sampling.cancel, done);
+        return render_share(loaded, i, setup, finest_level, options, share, sampling, done);
       }));
     }
     Image image(options.width, options.height);
+    std::uint64_t missed = 0;
     for (auto& share : shares) {
-      const std::vector<Float3> sums = share.get();
-      for (std::size_t p = 0; p < sums.size(); ++p) image.pixels[p] += sums[p];
+      const ShareDone part = share.get();
+      for (std::size_t p = 0; p < part.sums.size(); ++p) image.pixels[p] += part.sums[p];
+      missed += part.missed;
     }
     if (sampling.cancel != nullptr && sampling.cancel->load(std::memory_order_relaxed)) {
       throw Error(ErrorKind::interrupted, "interrupted; no image was written");
     }
     const float scale = 1.0F / static_cast<float>(std::max(sampling.samples, 1U));
     for (Float3& pixel : image.pixels) pixel = pixel * scale;
-    return {std::move(image), setup.tone(), seconds_since(start)};
+    return {std::move(image), setup.tone(), seconds_since(start), {}, missed, finest_level};
   }
 
  private:
-  std::vector<Float3> render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup,
-                                   const RenderOptions& options, const Share& share, const std::atomic<bool>* cancel,
-                                   const std::function<void(std::uint64_t)>& done) const {
+  // The finest level of detail that a picture is made with; 0: with voxels alone.
+  static int levels_for(const CudaVolume& volume, const RenderSetup& setup) {
+    if (!setup.levels()) return 0;
+    if (!volume.in_bricks()) {
+      throw Error(ErrorKind::usage,
+                  compose("a volume without bricks has no levels of detail on a device; render it with ",
+                          option("lod", "off"), " or ", option("backend", "cpu")));
+    }
+    const int finest = volume.bricks(0).finest_level(setup.levels()->finest);
+    return static_cast<float>(finest) > setup.levels()->coarsest ? 0 : finest;
+  }
+
+  ShareDone render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup, int finest_level,
+                         const RenderOptions& options, const Share& share, const SampleOptions& sampling,
+                         const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
     DeviceMacrocells& cells = volume.dense()       ? volume.texture(i).cells
                               : volume.in_bricks() ? volume.bricks(i).cells()
@@ -286,9 +270,10 @@ class CudaBackend : public Backend {
       if (environment) task.lighting.environment = environment->view();
       return task;
     };
+    std::uint64_t missed = 0;
     const auto run = [&](const auto& sampler) {
       const auto task = task_of(sampler);
-      trace(share, sums.size(), cancel, done, [&](std::uint32_t first, std::uint32_t last) {
+      trace(share, sums.size(), sampling.cancel, done, [&](std::uint32_t first, std::uint32_t last) {
         launch_render(task, first, last, sums.data(), cudaStreamPerThread);
       });
     };
@@ -296,14 +281,37 @@ class CudaBackend : public Backend {
       run(TextureSampler{volume.texture(i).texture.object(), options.filter == Filter::nearest});
     } else if (volume.in_bricks()) {
       BrickCache& cache = volume.bricks(i).cache();
-      with_filter(options.filter, [&]<Filter kFilter>() {
-        if (!cache.paged()) return run(cache.sampler<kFilter>());
-        trace_paged<kFilter>(cache, task_of, share.first, share.last, sums, cancel, done);
-      });
+      // `seen(sampler)` is the volume that is rendered.
+      const auto run_bricks = [&](const auto& seen) {
+        with_filter(options.filter, [&]<Filter kFilter>() {
+          if (!cache.paged()) return run(seen(cache.sampler<kFilter>()));
+          const auto task_of_seen = [&](const auto& sampler) { return task_of(seen(sampler)); };
+          const auto draw = [&]<class Sampler>(const Sampler&) {
+            if (sampling.draft) {
+              missed = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums).missed;
+            } else {
+              trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
+            }
+          };
+          if (setup.mode() == RenderMode::path) {
+            cache.with_paged_sampler<kFilter, Noting::called>(draw);
+          } else {
+            cache.with_paged_sampler<kFilter, Noting::inlined>(draw);
+          }
+        });
+      };
+      if (finest_level == 0) {
+        run_bricks([](const auto& sampler) { return sampler; });
+      } else {
+        const LevelsView<TextureSampler> levels = volume.bricks(i).levels(finest_level).view();
+        run_bricks([&]<class Fine>(const Fine& fine) {
+          return LevelledVolume<Fine, TextureSampler>{fine, levels, setup.levels()->choice};
+        });
+      }
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
-    return sums.download();
+    return {sums.download(), missed};
   }
 
   // Calls use<Filter>() with one known when this is compiled.
@@ -312,20 +320,6 @@ class CudaBackend : public Backend {
     if (filter == Filter::nearest) return use.template operator()<Filter::nearest>();
     if (filter == Filter::stochastic) return use.template operator()<Filter::stochastic>();
     return use.template operator()<Filter::trilinear>();
-  }
-
-  // For the grid on the current device, of which `held` bytes are kept for it already.
-  DeviceRoom room_for(const NvdbGrid& grid, std::uint64_t held) const {
-    if (options_.memory) return {*options_.memory / options_.volumes, 0, options_.volumes, true};
-    const std::uint64_t bricks =
-        grid.packed() != nullptr ? block_count(grid) * (kBrickTexels * sizeof(float) + sizeof(BrickEntry)) : 0;
-    const std::uint64_t wanted = bytes_needed(grid) + bricks + kSpareDeviceBytes;
-    const std::uint64_t free = free_device_bytes(wanted > held ? wanted - held : 0) + held;
-    const std::uint64_t bytes = free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0;
-    // A cache takes all it gets: the next volume of a series needs as much.
-    const std::uint64_t share = device_bytes() / options_.volumes;
-    if (grid.packed() == nullptr && bytes_needed(grid) <= bytes) return {bytes, free, options_.volumes, false};
-    return {std::min(bytes, share), std::min(free, share + kSpareDeviceBytes), options_.volumes, false};
   }
 
   template <class Run>

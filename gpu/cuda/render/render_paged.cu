@@ -1,70 +1,6 @@
-#include "gpu/cuda/render/render_paged.h"
-
-#include "gpu/cuda/bricks/paged_sampler.h"
-#include "gpu/cuda/render/render_kernel.cuh"
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/render/render_paged.cuh"
 
 namespace weir {
-
-namespace {
-
-/// Every second bit of `n`.
-__device__ std::int32_t spread_bits(std::uint32_t n) {
-  n &= 0x55555555U;
-  n = (n | n >> 1U) & 0x33333333U;
-  n = (n | n >> 2U) & 0x0F0F0F0FU;
-  n = (n | n >> 4U) & 0x00FF00FFU;
-  return static_cast<std::int32_t>((n | n >> 8U) & 0x0000FFFFU);
-}
-
-template <class Volume, bool kPath>
-__global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks : 1)
-    render_paged_kernel(const __grid_constant__ RenderTask<Volume> task, const __grid_constant__ PagedPicture picture,
-                        std::uint32_t first_tile) {
-  __shared__ PagedPicture::Counts counts;
-  if (threadIdx.x == 0 && threadIdx.y == 0) counts = {};
-  __syncthreads();
-  const std::uint32_t tile = first_tile + blockIdx.x;
-  const std::int32_t x =
-      spread_bits(tile) * static_cast<std::int32_t>(kTileWidth) + static_cast<std::int32_t>(threadIdx.x);
-  const std::int32_t y =
-      spread_bits(tile >> 1U) * static_cast<std::int32_t>(kTileHeight) + static_cast<std::int32_t>(threadIdx.y);
-  if (x < task.width && y < task.height) {
-    const std::int64_t pixel = static_cast<std::int64_t>(y) * task.width + x;
-    Float3 sum = picture.sums[pixel];
-    const std::uint32_t before = picture.done[pixel];
-    std::uint32_t done = before;
-    const std::uint32_t last = lesser(picture.samples, before + picture.at_once);
-    while (done < last) {
-      thread_missed() = false;
-      const Float3 added = render_sample(task, kPath ? RenderMode::path : task.mode, x, y, picture.first + done);
-      if (thread_missed()) {
-        atomicAdd(&counts.missed, 1U);
-        break;
-      }
-      sum += added;
-      ++done;
-    }
-    if (done > before) {
-      picture.sums[pixel] = sum;
-      picture.done[pixel] = done;
-      atomicAdd(reinterpret_cast<unsigned long long*>(&counts.finished),
-                static_cast<unsigned long long>(done - before));
-    }
-    if (done < picture.samples) atomicAdd(&counts.unfinished, 1U);
-  }
-  __syncthreads();
-  if (threadIdx.x == 0 && threadIdx.y == 0) {
-    if (counts.finished > 0) {
-      atomicAdd(reinterpret_cast<unsigned long long*>(&picture.counts->finished),
-                static_cast<unsigned long long>(counts.finished));
-    }
-    if (counts.unfinished > 0) atomicAdd(&picture.counts->unfinished, counts.unfinished);
-    if (counts.missed > 0) atomicAdd(&picture.counts->missed, counts.missed);
-  }
-}
-
-}  // namespace
 
 std::uint32_t paged_tiles(std::int32_t width, std::int32_t height) {
   const auto across = (static_cast<std::uint32_t>(width) + kTileWidth - 1) / kTileWidth;
@@ -74,23 +10,6 @@ std::uint32_t paged_tiles(std::int32_t width, std::int32_t height) {
   return edge * edge;
 }
 
-template <class Volume>
-void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, std::uint32_t first_tile,
-                  std::uint32_t tiles, cudaStream_t stream) {
-  const dim3 threads(kTileWidth, kTileHeight);
-  if (task.mode == RenderMode::path) {
-    render_paged_kernel<Volume, true><<<tiles, threads, 0, stream>>>(task, picture, first_tile);
-  } else {
-    render_paged_kernel<Volume, false><<<tiles, threads, 0, stream>>>(task, picture, first_tile);
-  }
-  check_cuda(cudaGetLastError(), "starting the renderer");
-}
-
-template void launch_paged(const RenderTask<PagedSampler<Filter::trilinear>>&, const PagedPicture&, std::uint32_t,
-                           std::uint32_t, cudaStream_t);
-template void launch_paged(const RenderTask<PagedSampler<Filter::stochastic>>&, const PagedPicture&, std::uint32_t,
-                           std::uint32_t, cudaStream_t);
-template void launch_paged(const RenderTask<PagedSampler<Filter::nearest>>&, const PagedPicture&, std::uint32_t,
-                           std::uint32_t, cudaStream_t);
+WEIR_LAUNCH_PAGED_OF(FixedPositions);
 
 }  // namespace weir

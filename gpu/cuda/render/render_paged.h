@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "gpu/cuda/bricks/page_table.h"
 #include "gpu/render/render_task.h"
 
 namespace weir {
@@ -24,15 +25,17 @@ struct PagedPicture {
   std::uint32_t first = 0;    ///< sample
   std::uint32_t samples = 0;  ///< beyond the last
   std::uint32_t at_once = 1;  ///< samples of a pixel in one launch, at most
+  bool keep_missed = false;   ///< a sample that missed something counts as done, with what came near it
 };
 
 /// Tiles of a picture in an order that keeps neighbours together (Morton's): numbers below paged_tiles(), some of them
 /// outside the picture.
 std::uint32_t paged_tiles(std::int32_t width, std::int32_t height);
 
-/// Draws samples of the pixels of tiles [first_tile, first_tile + tiles) on `stream`. For PagedSampler.
-/// Throws Error(io) where the launch fails.
-template <class Volume>
+/// Draws samples of the pixels of tiles [first_tile, first_tile + tiles) on `stream`. For PagedSampler, with or without
+/// levels of detail; paths where it notes by calling, rays that are marched where it does not. Throws Error(io) where
+/// the launch fails.
+template <Noting kNoting, class Volume>
 void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, std::uint32_t first_tile,
                   std::uint32_t tiles, cudaStream_t stream);
 

@@ -32,18 +32,51 @@ struct PagedReport {
   std::uint32_t least_tiles = ~0U;  ///< in one launch
 };
 
+/// What a draft took.
+struct DraftReport {
+  std::uint64_t bricks = 0;  ///< brought in
+  std::uint32_t missed = 0;  ///< pixels of the last sample that did without some bricks
+};
+
+/// Adds samples [first, last) of every pixel to `sums` without waiting for bricks: where one is missing, a level of
+/// detail or its mean takes its place, and it is there for the next sample, as far as the cache holds what one sample
+/// needs. For pictures of a camera that moves. `task_of` as below. Throws as BrickCache::serve.
+template <class Sampler, class TaskOf>
+DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
+                        DeviceArray<Float3>& sums) {
+  DraftReport report;
+  auto task = task_of(cache.template paged_sampler<Sampler>());
+  DeviceArray<std::uint32_t> done(sums.size());
+  DeviceArray<PagedPicture::Counts> counts(1);
+  for (std::uint32_t sample = first; sample < last; ++sample) {
+    check_cuda(cudaMemsetAsync(done.data(), 0, done.bytes(), cudaStreamPerThread), "clearing the picture");
+    check_cuda(cudaMemsetAsync(counts.data(), 0, counts.bytes(), cudaStreamPerThread), "clearing the picture");
+    PagedPicture picture{sums.data(), done.data(), counts.data(), sample, 1, 1};
+    picture.keep_missed = true;
+    launch_paged<Sampler::Blocks::kNotes>(task, picture, 0, paged_tiles(task.width, task.height), cudaStreamPerThread);
+    PagedPicture::Counts found{};
+    counts.download(std::span(&found, 1));
+    report.missed = found.missed;
+    if (found.missed == 0) continue;
+    const PagingTurn turn = cache.serve();
+    report.bricks += turn.bricks;
+    if (turn.unfit) task = task_of(cache.template paged_sampler<Sampler>());
+  }
+  return report;
+}
+
 /// Adds samples [first, last) of every pixel to `sums` (zeros), in their order: tiles of the picture one after the
-/// other where its bricks are more than the cache holds. `task_of(sampler)` makes the picture's task; `report_done(n)`
-/// is told of n further samples of one pixel. Throws Error(usage) where the cache does not hold what the smallest tile
-/// needs, and as BrickCache::serve.
-template <Filter kFilter, class TaskOf, class Done>
+/// other where its bricks are more than the cache holds. `Sampler` is the cache's, `task_of(sampler)` makes the
+/// picture's task; `report_done(n)` is told of n further samples of one pixel. Throws Error(usage) where the cache does
+/// not hold what the smallest tile needs, and as BrickCache::serve.
+template <class Sampler, class TaskOf, class Done>
 PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
                         DeviceArray<Float3>& sums, const std::atomic<bool>* cancel, const Done& report_done) {
   // Turns of the smallest tile without a sample before that is an error; many more where they bring something in.
   constexpr std::uint32_t kPatience = 512;
   constexpr std::uint32_t kInVain = 64;
   PagedReport report;
-  auto task = task_of(cache.template paged_sampler<kFilter>());
+  auto task = task_of(cache.template paged_sampler<Sampler>());
   const std::uint32_t tiles = paged_tiles(task.width, task.height);
   DeviceArray<std::uint32_t> done(sums.size());
   DeviceArray<PagedPicture::Counts> counts(1);
@@ -63,7 +96,7 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) break;
     clear(counts);
     const auto start = std::chrono::steady_clock::now();
-    launch_paged(task, picture, at, count, cudaStreamPerThread);
+    launch_paged<Sampler::Blocks::kNotes>(task, picture, at, count, cudaStreamPerThread);
     PagedPicture::Counts found{};
     counts.download(std::span(&found, 1));
     ++report.launches;
@@ -89,7 +122,7 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     report.bricks += turn.bricks;
     brought += turn.bricks;
     if (turn.unfit) {
-      task = task_of(cache.template paged_sampler<kFilter>());
+      task = task_of(cache.template paged_sampler<Sampler>());
       clear(done);
       clear(sums);
       drawn = 0;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "gpu/cuda/bricks/brick_position.h"
+#include "gpu/cuda/bricks/fixed_positions.h"
 #include "gpu/math/random.h"
 #include "tests/gpu/bricks/brick_pager_fixture.h"
 
@@ -77,6 +78,11 @@ TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
     const Float3 found = BrickTable::texel(entry, at);
     const BrickPosition paged(lattice_, q);
     ASSERT_EQ(paged.texel(entry), found) << "in a cache, too";
+    const FixedPositions fixed(lattice_);
+    const FixedPositions::Position near = fixed.at(q);
+    ASSERT_EQ(FixedPositions::texel(entry, near), found);
+    ASSERT_EQ(fixed.region(near), lattice_.region_of(paged.block));
+    ASSERT_EQ(FixedPositions::in_region(near), BlockLattice::position_of(paged.block));
     ASSERT_EQ(entries
                   .data()[table_index({paged.block.x - (lattice_.shift.x >> 3), paged.block.y - (lattice_.shift.y >> 3),
                                        paged.block.z - (lattice_.shift.z >> 3)},
@@ -100,6 +106,21 @@ TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
     ASSERT_EQ(f.y - static_cast<float>(v.y), e.y - static_cast<float>(i.y)) << q.y;
     ASSERT_EQ(f.z - static_cast<float>(v.z), e.z - static_cast<float>(i.z)) << q.z;
     ASSERT_EQ(cache.texel(entry, in_brick), leaves_->view().voxel(i));
+  }
+}
+
+TEST_F(BrickPagerTest, FixedPositionsReachTheLastVoxelOfTheLargestDomainTheyTake) {
+  constexpr std::int32_t kMost = FixedPositions::kMost;
+  const BlockLattice largest{{kMost / 128 + 2, kMost / 128 + 2, 1}, {127, 5, 0}, {kMost, kMost, 8}};
+  const FixedPositions fixed(largest);
+  const BrickEntry entry{0, 1, 5, 0};
+  for (const float x : {0.0F, 0.25F, 100.625F, 8191.5F, kMost - 1.0F}) {
+    const Float3 q{x, kMost - 2.0F - x, 3.5F};
+    const FixedPositions::Position at = fixed.at(q);
+    const BrickPosition wide(largest, q);
+    EXPECT_EQ(fixed.region(at), largest.region_of(wide.block)) << x;
+    EXPECT_EQ(FixedPositions::in_region(at), BlockLattice::position_of(wide.block)) << x;
+    EXPECT_EQ(FixedPositions::texel(entry, at), wide.texel(entry)) << x;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "format/nanovdb/packed_data.h"
 #include "gpu/cuda/bricks/block_source.h"
+#include "gpu/cuda/bricks/brick_build.h"
 #include "gpu/cuda/bricks/packed_pages.h"
 
 namespace weir::test {

@@ -50,7 +50,7 @@ double by_scattering(const Medium<Volume>& medium, const Lighting& lighting, con
   Ray ray = medium.ray(eye, direction);
   for (int bounce = 0;; ++bounce) {
     const float length = enter(ray, medium.shown);
-    const Flight flight = length > 0 ? delta_track(medium, ray, length, random) : Flight{};
+    const Flight flight = length > 0 ? delta_track(medium, ray, length, RayKind::camera, random) : Flight{};
     if (flight.end == FlightEnd::escaped) {
       return weight * static_cast<double>((bounce == 0 ? lighting.behind(direction) : lighting.sky(direction)).x);
     }

@@ -98,7 +98,7 @@ TEST(TracePath, RouletteIsUnbiased) {
     Ray ray = dense->ray(eye, direction);
     for (;;) {
       const float length = enter(ray, dense->shown);
-      const Flight flight = length > 0 ? delta_track(*dense, ray, length, random) : Flight{};
+      const Flight flight = length > 0 ? delta_track(*dense, ray, length, RayKind::camera, random) : Flight{};
       if (flight.end != FlightEnd::collided) return weight;
       weight *= 0.9;
       const float u = random.uniform();

@@ -24,7 +24,7 @@ TEST(DeltaTrack, TransmittanceOfAHomogeneousSlab) {
     TestMedium medium({64, 64, 64}, 16, density, 1.0F, kHalf);
     const Ray ray = medium->ray({0, 31.5F, 20}, {1, 0, 0});
     const Estimate t = estimate(kDraws, [&](Random& random) {
-      return delta_track(*medium, ray, 64, random).end == FlightEnd::escaped ? 1.0 : 0.0;
+      return delta_track(*medium, ray, 64, RayKind::camera, random).end == FlightEnd::escaped ? 1.0 : 0.0;
     });
     EXPECT_NEAR(t.mean, std::exp(-0.5 * static_cast<double>(density) * 64), kSigmas * t.sigma) << density;
   }
@@ -34,7 +34,8 @@ TEST(RatioTrack, TransmittanceOfAHomogeneousSlab) {
   for (const float density : {0.002F, 0.02F, 0.1F}) {
     TestMedium medium({64, 64, 64}, 16, density, 1.0F, kHalf);
     const Ray ray = medium->ray({0, 31.5F, 20}, {1, 0, 0});
-    const Estimate t = estimate(kDraws, [&](Random& random) { return ratio_track(*medium, ray, 64, random); });
+    const Estimate t =
+        estimate(kDraws, [&](Random& random) { return ratio_track(*medium, ray, 64, RayKind::camera, random); });
     EXPECT_NEAR(t.mean, std::exp(-0.5 * static_cast<double>(density) * 64), kSigmas * t.sigma) << density;
   }
 }
@@ -46,10 +47,11 @@ TEST(DeltaTrack, TransmittanceOfARampWithTightMajorants) {
   const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
   const double expected = std::exp(-0.05 * 32);
   const Estimate delta = estimate(kDraws, [&](Random& random) {
-    return delta_track(*medium, ray, 64, random).end == FlightEnd::escaped ? 1.0 : 0.0;
+    return delta_track(*medium, ray, 64, RayKind::camera, random).end == FlightEnd::escaped ? 1.0 : 0.0;
   });
   EXPECT_NEAR(delta.mean, expected, kSigmas * delta.sigma);
-  const Estimate ratio = estimate(kDraws, [&](Random& random) { return ratio_track(*medium, ray, 64, random); });
+  const Estimate ratio =
+      estimate(kDraws, [&](Random& random) { return ratio_track(*medium, ray, 64, RayKind::camera, random); });
   EXPECT_NEAR(ratio.mean, expected, kSigmas * ratio.sigma);
   EXPECT_LT(ratio.sigma, delta.sigma);
 }
@@ -62,7 +64,7 @@ TEST(DeltaTrack, StretchedVoxelsLengthenThePath) {
   const float length = enter(ray, medium->shown);
   EXPECT_EQ(length, 64.0F);
   const Estimate t = estimate(kDraws, [&](Random& random) {
-    return delta_track(*medium, ray, length, random).end == FlightEnd::escaped ? 1.0 : 0.0;
+    return delta_track(*medium, ray, length, RayKind::camera, random).end == FlightEnd::escaped ? 1.0 : 0.0;
   });
   EXPECT_NEAR(t.mean, std::exp(-0.025 * 64), kSigmas * t.sigma);
 }
@@ -72,7 +74,7 @@ TEST(DeltaTrack, CollisionsLieWhereTheMediumIs) {
   const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
   for (std::uint32_t i = 0; i < 1000; ++i) {
     Random random(3, 4, i);
-    const Flight flight = delta_track(*medium, ray, 64, random);
+    const Flight flight = delta_track(*medium, ray, 64, RayKind::camera, random);
     ASSERT_EQ(flight.end, FlightEnd::collided);
     EXPECT_GE(flight.t, 40.0F);
     EXPECT_LT(flight.t, 43.0F);
@@ -85,10 +87,10 @@ TEST(DeltaTrack, ZeroExtinctionLetsEverythingPass) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     Random random(3, 4, i);
     const Ray ray = empty->ray({0, 0, 0}, {0.6F, 0.8F, 0});
-    EXPECT_EQ(delta_track(*empty, ray, 50, random).end, FlightEnd::escaped);
-    EXPECT_EQ(delta_track(*loose, ray, 50, random).end, FlightEnd::escaped);
-    EXPECT_EQ(ratio_track(*empty, ray, 50, random), 1.0F);
-    EXPECT_EQ(ratio_track(*loose, ray, 50, random), 1.0F);
+    EXPECT_EQ(delta_track(*empty, ray, 50, RayKind::camera, random).end, FlightEnd::escaped);
+    EXPECT_EQ(delta_track(*loose, ray, 50, RayKind::camera, random).end, FlightEnd::escaped);
+    EXPECT_EQ(ratio_track(*empty, ray, 50, RayKind::camera, random), 1.0F);
+    EXPECT_EQ(ratio_track(*loose, ray, 50, RayKind::camera, random), 1.0F);
   }
 }
 
@@ -98,10 +100,10 @@ TEST(DeltaTrack, HugeExtinctionStopsAtOnce) {
     const Ray ray = wall->ray({0, 8, 8}, {1, 0, 0});
     for (std::uint32_t i = 0; i < 100; ++i) {
       Random random(3, 4, i);
-      const Flight flight = delta_track(*wall, ray, 64, random);
+      const Flight flight = delta_track(*wall, ray, 64, RayKind::camera, random);
       ASSERT_EQ(flight.end, FlightEnd::collided);
       EXPECT_LT(flight.t, 1e-4F);
-      EXPECT_EQ(ratio_track(*wall, ray, 64, random), 0.0F);
+      EXPECT_EQ(ratio_track(*wall, ray, 64, RayKind::camera, random), 0.0F);
     }
   }
 }
@@ -111,8 +113,8 @@ TEST(DeltaTrack, HugeMajorantOverVacuumTerminates) {
   TestMedium medium({64, 64, 64}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
   const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
   Random random(1, 2, 3);
-  EXPECT_EQ(delta_track(*medium, ray, 64, random).end, FlightEnd::absorbed);
-  EXPECT_EQ(ratio_track(*medium, ray, 64, random), 0.0F);
+  EXPECT_EQ(delta_track(*medium, ray, 64, RayKind::camera, random).end, FlightEnd::absorbed);
+  EXPECT_EQ(ratio_track(*medium, ray, 64, RayKind::camera, random), 0.0F);
 }
 
 TEST(DeltaTrack, NotANumberIsVacuum) {
@@ -120,8 +122,8 @@ TEST(DeltaTrack, NotANumberIsVacuum) {
     TestMedium medium({64, 64, 64}, 16, 1, 1.0F, [bad](const Float3&) { return bad; });
     const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
     Random random(1, 2, 3);
-    EXPECT_EQ(delta_track(*medium, ray, 64, random).end, FlightEnd::escaped);
-    EXPECT_EQ(ratio_track(*medium, ray, 64, random), 1.0F);
+    EXPECT_EQ(delta_track(*medium, ray, 64, RayKind::camera, random).end, FlightEnd::escaped);
+    EXPECT_EQ(ratio_track(*medium, ray, 64, RayKind::camera, random), 1.0F);
   }
 }
 

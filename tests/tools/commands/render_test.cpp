@@ -124,6 +124,17 @@ TEST_F(Render, Refusals) {
                      option + " is \"" + memory + "\", it must be a size above 0, like 512MiB");
     }
   }
+  for (const std::string level : {"on", "16", "nan"}) {
+    expect_refused(arguments("a.png", {"--lod", level}), 2,
+                   "--lod is \"" + level + "\", it must be auto, off, or a number of levels from -15 to 15");
+  }
+  expect_refused(arguments("a.png", {"--lod", "auto", "--lod-scattered", "-1"}), 2,
+                 "--lod-scattered is \"-1\", it must be a number of levels from 0 to 15");
+  for (const std::string level : {"", "off"}) {
+    std::vector<std::string> options{"--lod-scattered", "2"};
+    if (!level.empty()) options.insert(options.end(), {"--lod", level});
+    expect_refused(arguments("a.png", options), 2, "--lod-scattered needs --lod auto or a number of levels");
+  }
   expect_refused(arguments("a.png", {"--seed", "1.5"}), 2,
                  "--seed is \"1.5\", it must be a whole number from 0 to 9223372036854775807");
   for (const std::string size : {"640", "0x480", "640x-1", "axb", "640x480x2", "99999x1", "32768x32768"}) {

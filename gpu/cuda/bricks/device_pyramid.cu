@@ -1,0 +1,36 @@
+#include "gpu/cuda/bricks/device_machine.cuh"
+#include "gpu/cuda/bricks/device_pyramid.h"
+#include "gpu/cuda/bricks/level_builder.h"
+
+namespace weir {
+
+// While a level is copied to its texture, it is there twice.
+int DevicePyramid::finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
+  return finest_level_within(lattice, wanted, bytes > kDecodedRegionBytes ? (bytes - kDecodedRegionBytes) / 2 : 0);
+}
+
+DevicePyramid::DevicePyramid(BlockSource& source, std::span<const RegionEntry> regions, int first, std::uint64_t bytes)
+    : lattice_{source.lattice().shift, source.lattice().extent}, first_(first) {
+  const DeviceMachine machine;
+  const std::uint64_t texels = 2 * level_bytes(lattice_, first);
+  DeviceArray<float> level =
+      finest_level_of(machine, source, regions, lattice_, first, bytes > texels ? bytes - texels : 0);
+  const int count = level_count(lattice_, first);
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) level = coarser_level_of(machine, lattice_, first + i - 1, level.data());
+    levels_.emplace_back(lattice_.texels(first + i));
+    levels_.back().copy(level.data(), cudaStreamPerThread);
+  }
+  machine.wait();
+}
+
+LevelsView<TextureSampler> DevicePyramid::view() const {
+  LevelsView<TextureSampler> view;
+  view.lattice = lattice_;
+  view.first = first_;
+  view.count = static_cast<int>(levels_.size());
+  for (std::size_t i = 0; i < levels_.size(); ++i) view.texels[i] = {levels_[i].object(), false};
+  return view;
+}
+
+}  // namespace weir

@@ -1,0 +1,86 @@
+// Levels of detail of the blocks of a source. `Machine` as of BrickPager.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/cuda/bricks/block_source.h"
+#include "gpu/cuda/bricks/level_steps.h"
+#include "gpu/cuda/bricks/page_table.h"
+
+namespace weir {
+
+/// Of a region that is decoded: its blocks' values and names.
+inline constexpr std::uint64_t kDecodedRegionBytes = kRegionBlocks * (512 * sizeof(float) + sizeof(BlockId));
+
+/// The finest of them; decodes as many regions together as `scratch` bytes hold, at least one. `regions` are
+/// source.regions().
+template <class Machine>
+typename Machine::template Array<float> finest_level_of(const Machine& machine, BlockSource& source,
+                                                        std::span<const RegionEntry> regions,
+                                                        const LevelLattice& levels, int level, std::uint64_t scratch) {
+  constexpr std::size_t kMostTogether = 32;  // as many as keep a device busy
+  using Numbers = typename Machine::template Array<std::uint32_t>;
+  using Floats = typename Machine::template Array<float>;
+  const BlockLattice lattice = source.lattice();
+  Floats texels(levels.size(level));
+  std::vector<std::uint32_t> plain;
+  std::vector<float> values;
+  std::vector<std::uint32_t> coded;
+  for (std::uint32_t r = 0; r < regions.size(); ++r) {
+    if ((regions[r].page & RegionEntry::kMissing) != 0) {
+      coded.push_back(r);
+    } else {
+      plain.push_back(r);
+      values.push_back(regions[r].value);
+    }
+  }
+  const std::uint32_t count = RegionTexels::count(level);
+  const auto in_batches = [](std::size_t size, std::size_t most, const auto& work) {
+    for (std::size_t first = 0; first < size; first += most) work(first, std::min(most, size - first));
+  };
+
+  if (!plain.empty()) {
+    constexpr std::size_t kPlainTogether = 1024;
+    Numbers listed(plain.size());
+    Floats listed_values(values.size());
+    listed.upload(plain);
+    listed_values.upload(values);
+    in_batches(plain.size(), kPlainTogether, [&](std::size_t first, std::size_t some) {
+      machine.each(static_cast<std::uint32_t>(some) * count,
+                   FillFinestPlain{
+                       {lattice, levels, level, listed.data() + first}, listed_values.data() + first, texels.data()});
+    });
+    machine.wait();
+  }
+  if (!coded.empty()) {
+    const std::size_t together =
+        std::clamp<std::size_t>(scratch / kDecodedRegionBytes, 1, std::min(kMostTogether, coded.size()));
+    Numbers listed(coded.size());
+    listed.upload(coded);
+    typename Machine::template Array<BlockId> blocks(together * kRegionBlocks);
+    Floats decoded(together * kRegionBlocks * 512);
+    in_batches(coded.size(), together, [&](std::size_t first, std::size_t some) {
+      const auto size = static_cast<std::uint32_t>(some * kRegionBlocks);
+      machine.each(size, ListRegionBlocks{lattice, listed.data() + first, blocks.data()});
+      source.decode(blocks.data(), size, decoded.data());
+      machine.each(static_cast<std::uint32_t>(some) * count,
+                   FillFinest{{lattice, levels, level, listed.data() + first}, decoded.data(), texels.data()});
+    });
+    source.check();
+  }
+  return texels;
+}
+
+/// Level `level` + 1.
+template <class Machine>
+typename Machine::template Array<float> coarser_level_of(const Machine& machine, const LevelLattice& levels, int level,
+                                                         const float* finer) {
+  typename Machine::template Array<float> texels(levels.size(level + 1));
+  machine.each(static_cast<std::uint32_t>(texels.size()), FillCoarser{levels, level, finer, texels.data()});
+  return texels;
+}
+
+}  // namespace weir

@@ -1,0 +1,75 @@
+// A volume with levels of detail: its voxels near the camera, means of cubes of them where a pixel is wider than a
+// voxel. For host and device.
+#pragma once
+
+#include <cmath>
+
+#include "gpu/math/random.h"
+#include "gpu/volume/level_choice.h"
+#include "gpu/volume/level_lattice.h"
+
+namespace weir {
+
+/// The levels as a look-up sees them. `Texels` has smooth(q), trilinear, texel i covering [i, i + 1), clamped to the
+/// edge.
+template <class Texels>
+struct LevelsView {
+  LevelLattice lattice;
+  int first = 1;
+  int count = 0;
+  Texels texels[kMostLevels];
+
+  /// At a position (voxels from the domain's lowest corner), `level` >= first: between two levels, their mixture.
+  WEIR_HOST_DEVICE float at(const Float3& p, float level) const {
+    const float above = lesser(level - static_cast<float>(first), static_cast<float>(count - 1));
+    const int i = static_cast<int>(above);
+    const float share = above - static_cast<float>(i);
+    const float fine = texels[i].smooth(lattice.position(p, first + i));
+    if (share == 0.0F) return fine;
+    const float coarse = texels[i + 1].smooth(lattice.position(p, first + i + 1));
+    return multiply_add(1.0F - share, fine, multiply_add(share, coarse, 0.0F));
+  }
+};
+
+/// See volume_sampler.h for what a tracer asks of a volume, and level_choice.h for the level.
+template <class Fine, class Texels>
+struct LevelledVolume {
+  Fine fine;
+  LevelsView<Texels> levels;
+  LevelChoice choice;
+
+  WEIR_HOST_DEVICE float sample(const Float3& p, RayKind kind, Random& random) const {
+    const float level = choice.level(p, kind);
+    return coarse(level) ? levels.at(p, level) : found(p, [&] { return fine.sample(p, random); });
+  }
+  /// As a ray from the camera sees it.
+  WEIR_HOST_DEVICE float smooth(const Float3& p) const {
+    const float level = choice.level(p, RayKind::camera);
+    return coarse(level) ? levels.at(p, level) : found(p, [&] { return fine.smooth(p); });
+  }
+  /// Voxels along the cubes that smooth() reads.
+  WEIR_HOST_DEVICE float spacing(const Float3& p) const {
+    const float level = choice.level(p, RayKind::camera);
+    return coarse(level) ? std::exp2(lesser(level, static_cast<float>(levels.first + levels.count - 1))) : 1.0F;
+  }
+
+ private:
+  // What look_up() finds of the voxels; of those that are missing (paged_sampler.h), the finest level.
+  template <class LookUp>
+  WEIR_HOST_DEVICE float found(const Float3& p, const LookUp& look_up) const {
+    if constexpr (requires { Fine::missed(); }) {
+      const bool before = Fine::missed();
+      Fine::set_missed(false);
+      const float value = look_up();
+      if (Fine::missed()) return levels.at(p, static_cast<float>(levels.first));
+      Fine::set_missed(before);
+      return value;
+    } else {
+      return look_up();
+    }
+  }
+  // False for a look-up at the eye itself, whose level is -infinity.
+  WEIR_HOST_DEVICE bool coarse(float level) const { return level >= static_cast<float>(levels.first); }
+};
+
+}  // namespace weir

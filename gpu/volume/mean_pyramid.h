@@ -1,0 +1,43 @@
+// Levels of detail of a volume on the CPU: means of its voxels in memory.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gpu/volume/block_lattice.h"
+#include "gpu/volume/cached_blocks.h"
+#include "gpu/volume/dense_volume.h"
+#include "gpu/volume/levelled_volume.h"
+
+namespace weir {
+
+class MeanPyramid {
+ public:
+  /// The levels from `first` (at most kMostFinest) on of a grid over `domain`; `threads` 0: all of the machine's. The
+  /// voxels are those of `table`.
+  MeanPyramid(const Box& domain, const LeafTableView& table, int first, int threads);
+  /// Of a packed grid, whose coded blocks are decoded one after the other.
+  MeanPyramid(const Box& domain, const CachedBlocks& blocks, int first, int threads);
+
+  /// Of a dense volume.
+  MeanPyramid(const Box& domain, const DenseView& voxels, int first, int threads);
+
+  LevelsView<DenseSampler> view() const;
+  int first() const { return first_; }
+
+ private:
+  template <class Blocks>
+  void fill(const Blocks& blocks, int threads);
+
+  LevelLattice lattice_;
+  int first_;
+  std::vector<std::vector<float>> levels_;
+};
+
+/// Of a grid's index box.
+inline LevelLattice level_lattice(const Box& domain) {
+  const BlockLattice blocks = block_lattice(domain);
+  return {blocks.shift, blocks.extent};
+}
+
+}  // namespace weir

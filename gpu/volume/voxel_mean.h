@@ -1,0 +1,55 @@
+// The mean of the voxels of a cube, which are given block by block. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/math/vector3.h"
+#include "gpu/volume/level_lattice.h"
+
+namespace weir {
+
+/// Of the finite values.
+struct VoxelMean {
+  double sum = 0;
+  double count = 0;
+
+  /// The voxels [low, high) of a block's 512, low corner 0: x << 6 | y << 3 | z.
+  WEIR_HOST_DEVICE void add(const float* values, const Int3& low, const Int3& high) {
+    for (std::int32_t x = low.x; x < high.x; ++x) {
+      for (std::int32_t y = low.y; y < high.y; ++y) {
+        for (std::int32_t z = low.z; z < high.z; ++z) add(values[x << 6 | y << 3 | z], 1.0);
+      }
+    }
+  }
+  /// `weight` times `value`.
+  WEIR_HOST_DEVICE void add(float value, double weight) {
+    if (!is_finite(value)) return;
+    sum += weight * static_cast<double>(value);
+    count += weight;
+  }
+  /// NaN where nothing was finite.
+  WEIR_HOST_DEVICE float value() const { return static_cast<float>(sum / count); }
+};
+
+/// Texel `i` of level `level` + 1 from the texels of `level`, each with the weight of its voxels.
+WEIR_HOST_DEVICE inline float coarser_texel(const LevelLattice& lattice, int level, const float* texels,
+                                            const Int3& i) {
+  const Int3 from = lattice.first(level);
+  const Int3 to = lattice.first(level + 1);
+  const Int3 n = lattice.texels(level);
+  VoxelMean mean;
+  for (std::int32_t k = 0; k < 8; ++k) {
+    const Int3 child{2 * (to.x + i.x) + (k & 1) - from.x, 2 * (to.y + i.y) + (k >> 1 & 1) - from.y,
+                     2 * (to.z + i.z) + (k >> 2) - from.z};
+    if (child.x < 0 || child.y < 0 || child.z < 0 || child.x >= n.x || child.y >= n.y || child.z >= n.z) continue;
+    Int3 low;
+    Int3 high;
+    lattice.voxels(child, level, low, high);
+    const double weight =
+        static_cast<double>(high.x - low.x) * static_cast<double>(high.y - low.y) * static_cast<double>(high.z - low.z);
+    mean.add(texels[table_index(child, n)], weight);
+  }
+  return mean.value();
+}
+
+}  // namespace weir

@@ -1,0 +1,157 @@
+// Pictures with levels of detail, by the CPU back end.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "gpu/render/backend.h"
+#include "tests/stock/test_grid.h"
+#include "tests/support/packed_sample.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::levels_test {
+namespace {
+
+constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, RenderMode::mip};
+
+class LevelsOfDetail : public testing::Test {
+ protected:
+  std::shared_ptr<const NvdbFile> file(std::span<const std::byte> bytes) const {
+    std::ofstream(path_, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return std::make_shared<const NvdbFile>(path_);
+  }
+  // A smooth ball of 96^3 voxels.
+  std::shared_ptr<const NvdbFile> ball() const {
+    const test::TestGrid made({{0, 0, 0}, {96, 96, 96}}, [](const Index3& i) {
+      const auto square = [](std::int64_t at) {
+        return (static_cast<float>(at) - 47.5F) * (static_cast<float>(at) - 47.5F);
+      };
+      return std::exp(-(square(i.x) + square(i.y) + square(i.z)) / 900);
+    });
+    return file(made.file());
+  }
+
+  static Scene scene_of(RenderMode mode) {
+    Scene scene;
+    scene.mode = mode;
+    scene.volume.range = {0, 1};
+    scene.volume.iso = 0.4;
+    return scene;
+  }
+  static Picture picture(Backend& backend, LoadedVolume& volume, const Scene& scene,
+                         const std::optional<LevelOfDetail>& levels, std::uint32_t samples = 16) {
+    RenderOptions options;
+    options.width = 40;
+    options.height = 30;
+    options.levels = levels;
+    return backend.render(volume, scene, options, {samples, nullptr, {}});
+  }
+
+  TemporaryDirectory directory_;
+  std::string path_ = directory_ / "a.nvdb";
+};
+
+// Root of the mean square of all channels' differences.
+float difference(const Image& a, const Image& b) {
+  float sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const Float3 d = a.pixels[i] - b.pixels[i];
+    sum += dot(d, d);
+  }
+  return std::sqrt(sum / static_cast<float>(3 * a.pixels.size()));
+}
+
+TEST_F(LevelsOfDetail, PixelsWiderThanVoxels_SeeMeansThatLookAlike) {
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto volume = backend->load(ball(), 0, nullptr);
+  for (const RenderMode mode : kModes) {
+    const Picture voxels = picture(*backend, *volume, scene_of(mode), std::nullopt, 64);
+    const Picture means = picture(*backend, *volume, scene_of(mode), LevelOfDetail{}, 64);
+    EXPECT_EQ(voxels.finest_level, 0);
+    EXPECT_EQ(means.finest_level, 1) << render_mode_name(mode);
+    EXPECT_NE(means.image.pixels, voxels.image.pixels) << render_mode_name(mode);
+    EXPECT_LT(difference(means.image, voxels.image), 0.03F) << render_mode_name(mode);
+    // Three levels coarser it is another picture, of the same ball.
+    const float coarse =
+        difference(picture(*backend, *volume, scene_of(mode), LevelOfDetail{3, 0}, 64).image, voxels.image);
+    EXPECT_GT(coarse, difference(means.image, voxels.image)) << render_mode_name(mode);
+    EXPECT_LT(coarse, 0.25F) << render_mode_name(mode);
+  }
+}
+
+TEST_F(LevelsOfDetail, PixelsNarrowerThanVoxels_SeeVoxels) {
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto volume = backend->load(ball(), 0, nullptr);
+  for (const RenderMode mode : kModes) {
+    Scene scene = scene_of(mode);
+    scene.camera.zoom = 8;
+    const Picture near = picture(*backend, *volume, scene, LevelOfDetail{});
+    EXPECT_EQ(near.finest_level, 0);
+    EXPECT_EQ(near.image.pixels, picture(*backend, *volume, scene, std::nullopt).image.pixels);
+    // A bias counts from there.
+    EXPECT_GE(picture(*backend, *volume, scene, LevelOfDetail{6, 0}).finest_level, 1);
+  }
+}
+
+TEST_F(LevelsOfDetail, ScatteredLight_MaySeeCoarserLevelsThanTheCamera) {
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto volume = backend->load(ball(), 0, nullptr);
+  Scene scene = scene_of(RenderMode::path);
+  scene.camera.zoom = 4;
+  const Picture voxels = picture(*backend, *volume, scene, std::nullopt, 64);
+  const Picture light = picture(*backend, *volume, scene, LevelOfDetail{0, 3}, 64);
+  EXPECT_GE(light.finest_level, 1);
+  EXPECT_NE(light.image.pixels, voxels.image.pixels);
+  EXPECT_LT(difference(light.image, voxels.image), 0.05F);
+  // Nothing else scatters.
+  scene.mode = RenderMode::dvr;
+  EXPECT_EQ(picture(*backend, *volume, scene, LevelOfDetail{0, 3}).finest_level, 0);
+}
+
+TEST_F(LevelsOfDetail, CacheOfPackedBlocks_GivesThePictureOfDecodedOnes) {
+  const auto packed = file(test::PackedSample::build().file);
+  const auto decoding = make_cpu_backend(2, {.levels = true});
+  const auto caching = make_cpu_backend(2, {.ceiling = 700 << 10U, .levels = true});
+  const auto decoded = decoding->load(packed, 0, nullptr);
+  const auto cached = caching->load(packed, 0, nullptr);
+  ASSERT_EQ(decoded->load_summary().way, "decoded");
+  ASSERT_EQ(cached->load_summary().way, "cached");
+  EXPECT_LE(cached->load_summary().memory, std::uint64_t{700 * 7 / 8} << 10U);
+  for (const RenderMode mode : kModes) {
+    Scene scene = scene_of(mode);
+    scene.volume.range = {-100, 800};
+    scene.volume.iso = 100;
+    const Picture expected = picture(*decoding, *decoded, scene, LevelOfDetail{2, 1}, 2);
+    const Picture found = picture(*caching, *cached, scene, LevelOfDetail{2, 1}, 2);
+    EXPECT_GE(found.finest_level, 2);
+    EXPECT_EQ(found.finest_level, expected.finest_level);
+    EXPECT_EQ(found.image.pixels, expected.image.pixels) << render_mode_name(mode);
+  }
+}
+
+TEST_F(LevelsOfDetail, DenseVolume_HasThoseOfItsFile) {
+  const auto source = ball();
+  auto values = std::make_unique<float[]>(96 * 96 * 96);
+  const LeafTable table(source->grid());
+  for (std::int32_t i = 0; i < 96 * 96 * 96; ++i) {
+    values[static_cast<std::size_t>(i)] = table.view().voxel({i % 96, i / 96 % 96, i / 96 / 96});
+  }
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto dense =
+      backend->load_dense(std::make_shared<const DenseVolume>(frame_of(source->grid()), std::move(values), 0.0F), 0);
+  const auto stored = backend->load(source, 0, nullptr);
+  for (const RenderMode mode : kModes) {
+    EXPECT_EQ(picture(*backend, *dense, scene_of(mode), LevelOfDetail{2, 0}, 2).image.pixels,
+              picture(*backend, *stored, scene_of(mode), LevelOfDetail{2, 0}, 2).image.pixels)
+        << render_mode_name(mode);
+  }
+}
+
+}  // namespace
+}  // namespace weir::levels_test
