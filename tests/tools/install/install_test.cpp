@@ -107,6 +107,7 @@ std::set<std::string> headers() {
                            "trace/tracking",
                            "scene/transfer_function",
                            "math/vector3",
+                           "volume/level_choice",
                            "volume/volume_sampler",
                            "volume/decoded_leaves",
                            "volume/block_cache",
