@@ -7,7 +7,7 @@ if(NOT TARGET weir_cuda)
 endif()
 add_library(weir_c SHARED ${sources})
 add_library(weir::c ALIAS weir_c)
-target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda>)
+target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda_expand>)
 weir_use_drivers(weir_c ${CMAKE_INSTALL_LIBDIR})
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

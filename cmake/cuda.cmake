@@ -53,12 +53,17 @@ if(CMAKE_CUDA_COMPILER)
   if(NOT WEIR_EMBED)
     file(GLOB_RECURSE renderer CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cpp
                                                 ${PROJECT_SOURCE_DIR}/gpu/cuda/*.cu)
-    list(REMOVE_ITEM renderer ${loader})
+    file(GLOB expand CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/gpu/cuda/expand/*.cu ${PROJECT_SOURCE_DIR}/gpu/cuda/packed/*.cu)
+    list(REMOVE_ITEM renderer ${loader} ${expand})
+    # A decoded value, and a leaf's statistics, have their roundings on the device, too.
+    set_source_files_properties(${expand} PROPERTIES COMPILE_OPTIONS -fmad=false)
+    add_library(weir_cuda_expand STATIC ${expand})
+    target_link_libraries(weir_cuda_expand PUBLIC weir_cuda weir_format)
     add_library(weir_cuda_backend STATIC ${renderer})
-    # A decoded value has its roundings on the device, too.
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/gpu/cuda/packed/block_decoder.cu PROPERTIES COMPILE_OPTIONS -fmad=false)
-    target_compile_definitions(weir_cuda_backend PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
-    target_link_libraries(weir_cuda_backend PUBLIC weir_cuda weir_gpu)
+    target_link_libraries(weir_cuda_backend PUBLIC weir_cuda_expand weir_gpu)
+    foreach(library weir_cuda_expand weir_cuda_backend)
+      target_compile_definitions(${library} PRIVATE CUDA_API_PER_THREAD_DEFAULT_STREAM)
+    endforeach()
   endif()
   if(WEIR_BUILD_BENCH AND NOT WEIR_EMBED)
     # As few shared libraries as it uses: it runs on machines that have a device and little else.

@@ -19,6 +19,13 @@ typedef struct weir_cuda_grid weir_cuda_grid;
  * files, one loading while the other is rendered. After a failure an earlier load holds no grid. WEIR_ERROR_IO where
  * there is no device, or no room on it; WEIR_ERROR_INPUT where the file was changed meanwhile. */
 WEIR_API weir_status weir_cuda_load(const weir_grid* grid, void* stream, weir_cuda_grid** loaded, weir_error* error);
+/* The same of a packed grid, which is decoded on the device into a grid that every NanoVDB reader knows: `as` is
+ * "float" (every decoded bit) or "fp16" (16 bits between the least and the largest value of each leaf). weir_cuda_bytes
+ * then says what that takes; while it is made, the device holds the packed grid and up to 256 MiB beside it. Of a grid
+ * that is not packed, `as` must be its own type. WEIR_ERROR_INPUT also where fp16 is to hold values that are not
+ * finite, or blocks are damaged. Since 0.2. */
+WEIR_API weir_status weir_cuda_load_as(const weir_grid* grid, const char* as, void* stream, weir_cuda_grid** loaded,
+                                       weir_error* error);
 /* The device's address of the grid, a multiple of 256, as weir_grid_data is the host's; NULL where there is none. */
 WEIR_API const void* weir_cuda_data(const weir_cuda_grid* loaded);
 WEIR_API uint64_t weir_cuda_bytes(const weir_cuda_grid* loaded); /* weir_grid_info's data_bytes */

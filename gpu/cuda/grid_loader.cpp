@@ -76,7 +76,7 @@ void require_stored_voxels(const NvdbFile& file) {
   if (file.grid().packed() == nullptr) return;
   throw Error(ErrorKind::input,
               compose(file.path(), ": is packed; the CUDA loader reads float, Fp4, Fp8, Fp16 and FpN ",
-                      "grids; convert it with ", option("encoding", "float")));
+                      "grids; load it as one of them, or convert it with ", option("encoding", "float")));
 }
 
 }  // namespace

@@ -62,8 +62,13 @@ class DeviceGrid {
  private:
   friend DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options,
                               cudaStream_t stream);
+  friend DeviceGrid load_grid_as(const NvdbFile& file, GridType as, DeviceBuffer&& buffer, const LoadOptions& options,
+                                 cudaStream_t stream);
 
   DeviceGrid() = default;
+  // One that is in `buffer`.
+  DeviceGrid(DeviceBuffer&& buffer, const LoadReport& report)
+      : data_(buffer.data()), report_(report), buffer_(std::move(buffer)) {}
   void move_to_device(CopyTask& task, const std::vector<LoadPath>& paths, DeviceBuffer& buffer);
   void stay_in_host_memory(const CopyTask& task, const std::optional<LoadPath>& only);
 
@@ -79,8 +84,8 @@ class DeviceGrid {
 ///
 /// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and
 /// never a signal; a write through another mapping of it may go unnoticed, and the grid is then no longer the one that
-/// was validated. Throws Error(input) for a packed grid unless options.packed, Error(io) where the device has no room
-/// or fails, Error(interrupted).
+/// was validated. Throws Error(input) for a packed grid unless options.packed (see expand/expanded_grid.h), Error(io)
+/// where the device has no room or fails, Error(interrupted).
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options = {},
                      cudaStream_t stream = nullptr);
 

@@ -185,8 +185,8 @@ TEST_F(GridLoaderFault, APackedGridIsForThoseWhoDecodeIt) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::input);
     EXPECT_EQ(error.what(), path +
-                                ": is packed; the CUDA loader reads float, Fp4, Fp8, Fp16 and FpN grids; convert it "
-                                "with --encoding float");
+                                ": is packed; the CUDA loader reads float, Fp4, Fp8, Fp16 and FpN grids; load it as "
+                                "one of them, or convert it with --encoding float");
   }
   LoadOptions decoding = kOptions;
   decoding.packed = true;

@@ -23,6 +23,8 @@ static void arguments(weir_grid* grid) {
   weir_cuda_grid* loaded = NULL;
   CHECK_USAGE("grid is a null pointer", weir_cuda_load(NULL, NULL, &loaded, &error));
   CHECK_USAGE("loaded is a null pointer", weir_cuda_load(grid, NULL, NULL, &error));
+  CHECK_USAGE("as is a null pointer", weir_cuda_load_as(grid, NULL, NULL, &loaded, &error));
+  CHECK_USAGE("as is \"fpn\", it must be float or fp16", weir_cuda_load_as(grid, "fpn", NULL, &loaded, &error));
   size_t bytes = 0;
   unsigned char* const file = read_file(path_of("a.nvdb"), &bytes);
   weir_grid* memory = NULL;
