@@ -67,7 +67,7 @@ void read_region(TomlReader& reader, SceneVolume& volume) {
   const toml::node* node = reader.find("region");
   if (node == nullptr) return;
   if (!node->is_array() || node->as_array()->size() != 3) {
-    reader.fail(*node, "region must be [[x0, x1], [y0, y1], [z0, z1]], voxels from x0 up to and without x1");
+    reader.fail(*node, "region must be [[x0, x1], [y0, y1], [z0, z1]], voxels, x0 inclusive, x1 exclusive");
   }
   std::array<std::int64_t, 3> lo{};
   std::array<std::int64_t, 3> hi{};

@@ -28,7 +28,7 @@ WEIR_HOST_DEVICE inline bool clip_slab(float origin, float direction, float low,
 
 }  // namespace detail
 
-/// Voxel coordinates, `low` up to and without `high`.
+/// Voxel coordinates, `low` inclusive, `high` exclusive.
 struct RayBox {
   Float3 low;
   Float3 high;

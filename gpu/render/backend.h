@@ -41,7 +41,11 @@ struct Picture {
   CacheCounts cache = {};    ///< of a volume that was loaded "cached"
   std::uint64_t missed = 0;  ///< of a draft: pixels whose last sample did without something that was not there
   int finest_level = 0;      ///< of the levels of detail that it was made with; 0: voxels alone
+  std::string levels_note;   ///< why it was made with coarser levels than it asked for, or none; empty: it was not
 };
+
+/// For Picture: levels from `first` on are there, from `wanted` on were of use, up to `coarsest`.
+std::string levels_note(int first, int wanted, float coarsest);
 
 class Backend {
  public:

@@ -89,7 +89,7 @@ class CpuVolumeOf : public CpuVolume {
     const RenderSetup setup(info_, cells_, scene, options);
     Picture picture;
     const auto start = std::chrono::steady_clock::now();
-    if (const MeanPyramid* levels = pyramid(setup, sampling.threads)) {
+    if (const MeanPyramid* levels = pyramid(setup, sampling.threads, picture.levels_note)) {
       const LevelsView<DenseSampler> view = levels->view();
       const auto seen = [&]<class Fine>(const Fine& fine) {
         return LevelledVolume<Fine, DenseSampler>{fine, view, setup.levels()->choice};
@@ -107,9 +107,10 @@ class CpuVolumeOf : public CpuVolume {
 
  private:
   // Null where the picture has no use for levels. Kept for the next picture that wants the same ones.
-  const MeanPyramid* pyramid(const RenderSetup& setup, int threads) {
+  const MeanPyramid* pyramid(const RenderSetup& setup, int threads, std::string& note) {
     if (!setup.levels()) return nullptr;
     const int first = finest_level_within(level_lattice(info_.frame.domain), setup.levels()->finest, level_bytes_);
+    note = levels_note(first, setup.levels()->finest, setup.levels()->coarsest);
     if (static_cast<float>(first) > setup.levels()->coarsest) return nullptr;
     if (!pyramid_ || pyramid_->first() != first) {
       pyramid_.reset();
@@ -181,6 +182,13 @@ class CpuBackend : public Backend {
 };
 
 }  // namespace
+
+std::string levels_note(int first, int wanted, float coarsest) {
+  if (first <= wanted) return "";
+  const std::string there = cat("levels of detail from ", wanted, " on were asked for, those from ", first,
+                                " on fit into the memory kept for them");
+  return static_cast<float>(first) > coarsest ? there + ", of which none was of use; voxels were read" : there;
+}
 
 std::unique_ptr<Backend> make_cpu_backend(int threads, const VoxelMemory& memory) {
   return std::make_unique<CpuBackend>(threads, memory);

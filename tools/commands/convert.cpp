@@ -58,7 +58,7 @@ std::string error_text(const Sidecar::CertifiedError& error) {
 void report(const Sidecar& s, const std::string& output) {
   std::string error = error_text(s.error);
   if (s.visible) error += cat(" (what the scene shows: ", error_text(s.visible->error), ')');
-  spdlog::info("{}: {} bytes, rate {:.4g}, {} of {} leaves kept, {}, {:.2f} s, {} at most", output, s.file.bytes,
+  spdlog::info("{}: {} bytes, rate {:.4g}, {} of {} leaves kept, {}, {:.2f} s, {} peak", output, s.file.bytes,
                s.budget.rate, s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
                format_bytes(s.timing.peak_rss_bytes));
 }

@@ -106,10 +106,12 @@ void render(const RenderArguments& arguments) {
                                   {"note", loaded.note}}},
                                 {"cache", to_json(picture.cache)},
                                 {"finest_level", picture.finest_level},
+                                {"levels_note", picture.levels_note},
                                 {"load_s", load_s},
                                 {"render_s", picture.render_s}};
     std::cout << report.dump(2) << '\n';
   } else {
+    if (!picture.levels_note.empty()) spdlog::info("{}: {}", arguments.input, picture.levels_note);
     spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, request.options.width,
                  request.options.height, request.sampling.samples, picture.render_s);
   }

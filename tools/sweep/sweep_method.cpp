@@ -32,7 +32,7 @@ std::vector<SweepMethod> parse_sweep_methods(std::string_view text) {
   std::vector<SweepMethod> methods;
   for (const std::string& name : split(text, ',')) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      throw usage_error(cat("--methods names \"", name, "\", the ones there are are ", sweep_method_names()));
+      throw usage_error(cat("--methods names \"", name, "\", choose from ", sweep_method_names()));
     }
     if (std::any_of(methods.begin(), methods.end(), [&](const SweepMethod& m) { return m.name == name; })) {
       throw usage_error(cat("--methods names ", name, " twice; leave one of them out"));

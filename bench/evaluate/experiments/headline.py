@@ -108,8 +108,8 @@ class Headline(Experiment):
     @staticmethod
     def _head(r):
         quality = "no error" if r["lossless"] else f"{r['psnr_db']:.1f} dB"
-        return (f"*{r['encoding']}*: the file has {r['file_bytes']:,} bytes and {quality}; the process held "
-                f"{r['peak_rss_bytes'] / 2**20:.0f} MiB at most.")
+        return (f"*{r['encoding']}*: the file has {r['file_bytes']:,} bytes and {quality}; peak memory was "
+                f"{r['peak_rss_bytes'] / 2**20:.0f} MiB.")
 
     @staticmethod
     def _lines(r):

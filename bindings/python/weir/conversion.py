@@ -108,8 +108,8 @@ def convert(
         What it raises, KeyboardInterrupt too, ends the conversion and goes on.
 
     Nothing is left of a conversion that fails or is interrupted, but for what resume keeps. The interpreter's lock is
-    free while it runs. What a user should know of a conversion that succeeds, for instance that the least size is
-    larger than the rate's, goes to the logger "weir".
+    free while it runs. Warnings, for instance that the least size is larger than the rate's, go to the logger
+    "weir".
 
     Raises UsageError (a ValueError), InputError, BudgetError or IoError; TypeError where source is something else.
     """

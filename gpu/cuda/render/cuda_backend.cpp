@@ -199,7 +199,8 @@ class CudaBackend : public Backend {
     auto& loaded = static_cast<CudaVolume&>(volume);
     const RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
     const auto start = Clock::now();
-    const int finest_level = levels_for(loaded, setup);
+    std::string note;
+    const int finest_level = levels_for(loaded, setup, note);
     std::mutex reporting;
     std::uint64_t samples_done = 0;
     const auto done = [&](std::uint64_t samples) {
@@ -232,12 +233,12 @@ class CudaBackend : public Backend {
     }
     const float scale = 1.0F / static_cast<float>(std::max(sampling.samples, 1U));
     for (Float3& pixel : image.pixels) pixel = pixel * scale;
-    return {std::move(image), setup.tone(), seconds_since(start), {}, missed, finest_level};
+    return {std::move(image), setup.tone(), seconds_since(start), {}, missed, finest_level, note};
   }
 
  private:
   // The finest level of detail that a picture is made with; 0: with voxels alone.
-  static int levels_for(const CudaVolume& volume, const RenderSetup& setup) {
+  static int levels_for(const CudaVolume& volume, const RenderSetup& setup, std::string& note) {
     if (!setup.levels()) return 0;
     if (!volume.in_bricks()) {
       throw Error(ErrorKind::usage,
@@ -245,6 +246,7 @@ class CudaBackend : public Backend {
                           option("lod", "off"), " or ", option("backend", "cpu")));
     }
     const int finest = volume.bricks(0).finest_level(setup.levels()->finest);
+    note = levels_note(finest, setup.levels()->finest, setup.levels()->coarsest);
     return static_cast<float>(finest) > setup.levels()->coarsest ? 0 : finest;
   }
 

@@ -63,7 +63,7 @@ Error missing(hid_t file, const std::string& path, const std::string& name) {
   const std::vector<std::string> near = near_names(name, names, kMostNearNames);
   if (!near.empty()) {
     return {ErrorKind::input,
-            cat(path, ": no dataset ", name, "; alike are ", joined(near), "; weir inspect lists all")};
+            cat(path, ": no dataset ", name, "; did you mean ", joined(near), "? weir inspect lists all")};
   }
   return {ErrorKind::input, cat(path, ": no dataset ", name, "; the file holds ", joined(names))};
 }

@@ -199,7 +199,7 @@ TEST(Scene, RegionTakesWholeVoxelsOnly) {
   EXPECT_EQ(*scene.volume.region, (Box{{-8, 0, 3}, {16, 1, 400}}));
   EXPECT_FALSE(parse_scene("[volume]\nalbedo = 1", "s.toml").volume.region);
   EXPECT_EQ(message("[volume]\nregion = [[0, 8], [0, 8]]"),
-            "s.toml:2:10: region must be [[x0, x1], [y0, y1], [z0, z1]], voxels from x0 up to and without x1");
+            "s.toml:2:10: region must be [[x0, x1], [y0, y1], [z0, z1]], voxels, x0 inclusive, x1 exclusive");
   EXPECT_EQ(message("[volume]\nregion = [[0, 8], [8, 8], [0, 8]]"),
             "s.toml:2:19: region has 8 to 8; it must be whole voxels, the first below the second");
   EXPECT_EQ(message("[volume]\nregion = [[0.5, 8], [0, 8], [0, 8]]"),

@@ -153,5 +153,24 @@ TEST_F(LevelsOfDetail, DenseVolume_HasThoseOfItsFile) {
   }
 }
 
+// 96^3 voxels: level 1 takes 0.5 MiB, level 2 0.07.
+TEST_F(LevelsOfDetail, MemoryForCoarserLevelsAlone_IsSaid) {
+  for (const auto& [kib, finest] : {std::pair{8192, 1}, std::pair{1024, 2}}) {
+    const auto backend =
+        make_cpu_backend(1, {.ceiling = std::uint64_t{static_cast<unsigned>(kib)} << 10U, .levels = true});
+    const auto volume = backend->load(ball(), 0, nullptr);
+    const Picture found = picture(*backend, *volume, scene_of(RenderMode::dvr), LevelOfDetail{}, 2);
+    EXPECT_EQ(found.finest_level, finest);
+    EXPECT_EQ(found.levels_note, finest == 1
+                                     ? ""
+                                     : "levels of detail from 1 on were asked for, those from 2 on fit into the "
+                                       "memory kept for them");
+  }
+  EXPECT_EQ(
+      levels_note(3, 1, 2.5F),
+      "levels of detail from 1 on were asked for, those from 3 on fit into the memory kept for them, of which none "
+      "was of use; voxels were read");
+}
+
 }  // namespace
 }  // namespace weir::levels_test

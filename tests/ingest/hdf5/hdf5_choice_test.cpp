@@ -101,9 +101,9 @@ with h5py.File("a.h5", "w") as f:
 )");
   const std::string path = scratch_.path("a.h5");
   EXPECT_EQ(refused("a.h5", dataset_options("fields/desnity")),
-            path + ": no dataset /fields/desnity; alike are /fields/density; weir inspect lists all");
+            path + ": no dataset /fields/desnity; did you mean /fields/density? weir inspect lists all");
   EXPECT_EQ(refused("a.h5", dataset_options("/temperature")),
-            path + ": no dataset /temperature; alike are /fields/Temperature; weir inspect lists all");
+            path + ": no dataset /temperature; did you mean /fields/Temperature? weir inspect lists all");
   EXPECT_EQ(refused("a.h5", dataset_options("/x/y/z")),
             path + ": no dataset /x/y/z; the file holds /v, /fields/Temperature, /fields/density");
   EXPECT_EQ(refused("a.h5", dataset_options("fields/")),

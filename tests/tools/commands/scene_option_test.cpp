@@ -53,7 +53,7 @@ TEST_F(SceneOption, RefusesScenesByNameAndPlace) {
           "s.toml: nothing in it says what can be seen; give [volume] opacity and range, or region, or "
           "leave out --scene");
   refused("[volume]\nregion = [[0, 9], [0, 9]]",
-          "s.toml:2:10: region must be [[x0, x1], [y0, y1], [z0, z1]], voxels from x0 up to and without x1");
+          "s.toml:2:10: region must be [[x0, x1], [y0, y1], [z0, z1]], voxels, x0 inclusive, x1 exclusive");
   const CommandResult missing =
       run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "--scene", directory_ / "no.toml"});
   EXPECT_EQ(missing.exit_code, 3);

@@ -248,7 +248,7 @@ TEST_F(SweepCommand, Refusals) {
   };
   EXPECT_EQ(refusal({"--rates", "8,8"}, 2), "weir: --rates holds 8 twice; leave one of them out\n");
   EXPECT_EQ(refusal({"--methods", ""}, 2),
-            "weir: --methods names \"\", the ones there are are auto, packed, fpn, float, fp4, fp8, fp16, paper, "
+            "weir: --methods names \"\", choose from auto, packed, fpn, float, fp4, fp8, fp16, paper, "
             "paper32, zfp\n");
   EXPECT_EQ(refusal({"--dims", "32,32,31"}, 2).find("weir: " + input + ": --dims 32,32,31 contradicts"), 0U);
   EXPECT_EQ(run_weir({"sweep", directory_ / "none.raw", "-o", out_}).exit_code, 3);

@@ -36,9 +36,8 @@ TEST(SweepMethod, ByName) {
   EXPECT_EQ(methods[0].options, (std::map<std::string, std::string>{{"preset", "paper"}, {"brick", "32"}}));
   EXPECT_TRUE(methods[1].is_zfp());
   EXPECT_FALSE(methods[2].is_zfp());
-  EXPECT_EQ(
-      refusal([] { parse_sweep_methods("auto,lzma"); }),
-      "--methods names \"lzma\", the ones there are are auto, packed, fpn, float, fp4, fp8, fp16, paper, paper32, zfp");
+  EXPECT_EQ(refusal([] { parse_sweep_methods("auto,lzma"); }),
+            "--methods names \"lzma\", choose from auto, packed, fpn, float, fp4, fp8, fp16, paper, paper32, zfp");
   EXPECT_EQ(refusal([] { parse_sweep_methods("auto,zfp,auto"); }), "--methods names auto twice; leave one of them out");
 }
 
