@@ -1,5 +1,10 @@
 // What an input does not say itself.
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compressor/options/conversion_request.h"
@@ -42,9 +47,43 @@ void read_roi(const OptionRow& row, const std::string& text, Request& request) {
   request.source.roi = box;
 }
 
+// weir's names, C's, and numpy's with or without a byte order.
+std::optional<ScalarType> parse_type_of_any(std::string_view name) {
+  if (const std::optional<ScalarType> type = parse_scalar(name)) return type;
+  constexpr std::array<std::pair<std::string_view, ScalarType>, 13> kOthers{{{"float", ScalarType::float32},
+                                                                             {"double", ScalarType::float64},
+                                                                             {"u1", ScalarType::uint8},
+                                                                             {"i1", ScalarType::int8},
+                                                                             {"u2", ScalarType::uint16},
+                                                                             {"i2", ScalarType::int16},
+                                                                             {"u4", ScalarType::uint32},
+                                                                             {"i4", ScalarType::int32},
+                                                                             {"u8", ScalarType::uint64},
+                                                                             {"i8", ScalarType::int64},
+                                                                             {"f2", ScalarType::float16},
+                                                                             {"f4", ScalarType::float32},
+                                                                             {"f8", ScalarType::float64}}};
+  if (!name.empty() && std::string_view("<>|=").find(name.front()) != std::string_view::npos) name.remove_prefix(1);
+  for (const auto& [other, type] : kOthers) {
+    if (name == other) return type;
+  }
+  return std::nullopt;
+}
+
 void read_type(const OptionRow& row, const std::string& text, Request& request) {
-  request.source.type = parse_scalar(text);
+  request.source.type = parse_type_of_any(text);
   if (!request.source.type) throw wrong_option(row.key, text, cat("one of ", scalar_names()));
+  if (text.front() == '<' || text.front() == '>') request.source.big_endian = text.front() == '>';
+}
+
+// After `type`, whose row comes first and which may have said it.
+void read_endian(const OptionRow& row, const std::string& text, Request& request) {
+  const bool big = read_choice(row, text) == 1;
+  if (request.source.big_endian.value_or(big) != big) {
+    throw usage_error(compose(option(row.key), " is \"", text, "\", and the byte order that ", option("type"),
+                              " names is the other one"));
+  }
+  request.source.big_endian = big;
 }
 
 void read_offset(const OptionRow& row, const std::string& text, Request& request) {
@@ -80,12 +119,11 @@ constexpr ConversionOption kInputOptions[] = {
     {{.key = "type",
       .argument = "TYPE",
       .standard = "the name's",
-      .help = "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, float32 or float64"},
+      .help = "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, float32 or float64; float, double, "
+              "f4, <f4 and the like"},
      read_type},
     {{.key = "endian", .argument = "little|big", .standard = "the name's, else little", .help = "byte order"},
-     [](const OptionRow& row, const std::string& text, Request& r) {
-       r.source.big_endian = read_choice(row, text) == 1;
-     }},
+     read_endian},
     {{.key = "offset", .argument = "BYTES", .unit = "bytes", .standard = "0", .help = "bytes before the first value"},
      read_offset},
     {{.key = "dataset",
@@ -134,12 +172,15 @@ constexpr ConversionOption kInputOptions[] = {
 std::span<const ConversionOption> input_options() { return kInputOptions; }
 
 Index3 read_dims(std::string_view key, const std::string& text) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const std::vector<std::string> parts = split(text, text.find('x') == std::string::npos ? ',' : 'x');
   std::vector<std::int64_t> dims;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : parts) {
     if (const auto number = parse_int(part)) dims.push_back(*number);
   }
-  if (dims.size() != 3 || split(text, ',').size() != 3) {
-    throw wrong_option(key, text, "X,Y,Z, three whole numbers of voxels");
+  if (dims.size() != 3 || parts.size() != 3) throw wrong_option(key, text, "X,Y,Z, three whole numbers of voxels");
+  if (!std::ranges::all_of(dims, [](std::int64_t n) { return n >= 1 && n <= kMost; })) {
+    throw wrong_option(key, text, cat("X,Y,Z, three whole numbers of voxels, each from 1 to ", kMost));
   }
   return {dims[0], dims[1], dims[2]};
 }

@@ -31,7 +31,10 @@ void read_rate(const OptionRow& row, const std::string& text, Request& request) 
 
 void read_psnr(const OptionRow& row, const std::string& text, Request& request) {
   request.conversion.budget.kind = Budget::Kind::psnr;
-  request.conversion.budget.target = read_number(row, text, -1000, 1000, "a number of dB, 60 for instance");
+  constexpr double kLeastDecibels = 1e-3;
+  constexpr double kMostDecibels = 1000;
+  request.conversion.budget.target =
+      read_number(row, text, kLeastDecibels, kMostDecibels, "a number of dB above 0, 60 for instance");
 }
 
 void read_max_error(const OptionRow& row, const std::string& text, Request& request) {

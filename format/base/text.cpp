@@ -18,15 +18,20 @@ std::optional<T> parse_whole(std::string_view text) {
   return value;
 }
 
-constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"KiB", 1024.0},
-                                                                     {"MiB", 1048576.0},
-                                                                     {"GiB", 1073741824.0},
-                                                                     {"TiB", 1099511627776.0},
-                                                                     {"KB", 1e3},
-                                                                     {"MB", 1e6},
-                                                                     {"GB", 1e9},
-                                                                     {"TB", 1e12},
-                                                                     {"B", 1.0}}};
+// K, M, G and T are binary, as in other commands.
+constexpr std::array<std::pair<std::string_view, double>, 13> kUnits{{{"KiB", 1024.0},
+                                                                      {"MiB", 1048576.0},
+                                                                      {"GiB", 1073741824.0},
+                                                                      {"TiB", 1099511627776.0},
+                                                                      {"KB", 1e3},
+                                                                      {"MB", 1e6},
+                                                                      {"GB", 1e9},
+                                                                      {"TB", 1e12},
+                                                                      {"B", 1.0},
+                                                                      {"K", 1024.0},
+                                                                      {"M", 1048576.0},
+                                                                      {"G", 1073741824.0},
+                                                                      {"T", 1099511627776.0}}};
 
 }  // namespace
 

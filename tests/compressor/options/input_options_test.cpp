@@ -32,6 +32,44 @@ TEST(InputOptions, EmptyTexts_AreNotGiven) {
   EXPECT_TRUE(options.index.empty());
 }
 
+TEST(InputOptions, SizesAndTypes_AreTakenAsOthersWriteThem) {
+  EXPECT_EQ(parse({{"dims", "64x32x16"}}).extent, (Index3{64, 32, 16}));
+  for (const auto& [name, type] : {std::pair{"f4", ScalarType::float32},
+                                   {"<f4", ScalarType::float32},
+                                   {">f8", ScalarType::float64},
+                                   {"float", ScalarType::float32},
+                                   {"double", ScalarType::float64},
+                                   {"|u1", ScalarType::uint8},
+                                   {"=i2", ScalarType::int16},
+                                   {"f2", ScalarType::float16}}) {
+    EXPECT_EQ(parse({{"type", name}}).type, type) << name;
+  }
+  EXPECT_EQ(parse({{"type", "f4"}}).big_endian, std::nullopt);
+  EXPECT_EQ(parse({{"type", "<f4"}}).big_endian, false);
+  EXPECT_EQ(parse({{"type", ">f4"}}).big_endian, true);
+  EXPECT_EQ(parse({{"type", ">f4"}, {"endian", "big"}}).big_endian, true);
+  EXPECT_EQ(parse({{"offset", "2K"}}).offset, 2048U);
+  EXPECT_EQ(parse({{"offset", "3M"}}).offset, 3U << 20U);
+  EXPECT_EQ(message_of([] {
+              parse({{"type", ">f4"}, {"endian", "little"}});
+            }),
+            "--endian is \"little\", and the byte order that --type names is the other one");
+  EXPECT_EQ(message_of([] {
+              parse({{"type", "f3"}});
+            }),
+            "--type is \"f3\", it must be one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, "
+            "float32, float64");
+}
+
+TEST(InputOptions, ImpossibleDims_AreRefused) {
+  for (const std::string dims : {"0,4,4", "4,-1,4", "4x4x2147483648", "9223372036854775807,9223372036854775807,4"}) {
+    EXPECT_EQ(message_of([&] {
+                parse({{"dims", dims}});
+              }),
+              "--dims is \"" + dims + "\", it must be X,Y,Z, three whole numbers of voxels, each from 1 to 2147483647");
+  }
+}
+
 TEST(InputOptions, AllGiven) {
   const SourceOptions options = parse({{"dims", "3,4,5"},
                                        {"type", "uint16"},
@@ -57,13 +95,9 @@ TEST(InputOptions, AllGiven) {
   EXPECT_EQ(options.missing, StoredValue{std::int64_t{-9999}});
 }
 
-TEST(InputOptions, ImpossibleExtents_AreParsedForTheSourceToRefuse) {
-  EXPECT_EQ(parse({{"dims", "-1,0,5"}}).extent, (Index3{-1, 0, 5}));
-}
-
 TEST(InputOptions, Dims) {
   const std::string form = ", it must be X,Y,Z, three whole numbers of voxels";
-  for (const std::string text : {"3,4", "3,4,5,6", "3x4x5", "3,4,", "3,4,5.5", "3,4,99999999999999999999"}) {
+  for (const std::string text : {"3,4", "3,4,5,6", "3x4,5", "3,4,", "3,4,5.5", "3,4,99999999999999999999"}) {
     EXPECT_EQ(message_of([&] { parse({{"dims", text}}); }), "--dims is \"" + text + "\"" + form);
   }
 }

@@ -89,17 +89,15 @@ TEST_F(BadInput, DimsThatAreNoExtent) {
   const auto refused = [&](const std::string& dims, int exit_code, const std::string& line) {
     expect_convert_refused(path, {"--dims", dims, "--type", "uint8"}, exit_code, line);
   };
-  const std::string range = "; each axis must be 1 to 2147483647";
-  refused("8,0,8", 3, path + ": extent 8x0x8 has 0 voxels along y" + range);
-  refused("-8,8,8", 3, path + ": extent -8x8x8 has -8 voxels along x" + range);
-  refused("8,8,2147483648", 3, path + ": extent 8x8x2147483648 has 2147483648 voxels along z" + range);
   refused("2147483647,2147483647,2147483647", 3,
           path + ": extent 2147483647x2147483647x2147483647 at 4 bytes a voxel overflows 64 bits; check the extent");
   const auto form = [](const std::string& dims) {
     return "--dims is \"" + dims + "\", it must be X,Y,Z, three whole numbers of voxels";
   };
-  for (const char* dims : {"18446744073709551624,8,8", "8,8", "8,8,8,8", "8,8,", "8.5,8,8", "8x8x8", "eight"})
+  for (const char* dims : {"18446744073709551624,8,8", "8,8", "8,8,8,8", "8,8,", "8.5,8,8", "8x8,8", "eight"})
     refused(dims, 2, form(dims));
+  for (const char* dims : {"8,0,8", "-8,8,8", "8,8,2147483648"})
+    refused(dims, 2, form(dims) + ", each from 1 to 2147483647");
 }
 
 TEST_F(BadInput, UnknownType) {

@@ -152,9 +152,9 @@ TEST(Sample, BadArguments) {
   expect_refusal(run_weir({"sample", "zero", "-o", path}), 2,
                  path + ": extent unknown; give --dims X,Y,Z or name it NAME_XxYxZ_TYPE.raw");
   expect_refusal(run_weir({"sample", "zero", "--dims", "0,8,8", "-o", path}), 2,
-                 "extent 0,8,8 is out of range; every axis must be 1 to 2147483647 and the volume below 2^60 voxels");
+                 "--dims is \"0,8,8\", it must be X,Y,Z, three whole numbers of voxels, each from 1 to 2147483647");
   expect_refusal(run_weir({"sample", "zero", "--dims", "-8,8,8", "-o", path}), 2,
-                 "extent -8,8,8 is out of range; every axis must be 1 to 2147483647 and the volume below 2^60 voxels");
+                 "--dims is \"-8,8,8\", it must be X,Y,Z, three whole numbers of voxels, each from 1 to 2147483647");
   expect_refusal(run_weir({"sample", "zero", "--dims", "8,8", "-o", path}), 2,
                  "--dims is \"8,8\", it must be X,Y,Z, three whole numbers of voxels");
   expect_refusal(run_weir({"sample", "nan", "--dims", "8,8,8", "--type", "uint8", "-o", path}), 2,
