@@ -114,6 +114,7 @@ class Bench {
     RenderOptions render;
     render.width = render.height = options_.size;
     render.levels = options_.levels;
+    wide_.reset();
     setup_ = std::make_unique<RenderSetup>(volume_info(grid(), cells_), cells_, scene_, render);
   }
   const std::optional<LevelsUsed>& levels() const { return setup_->levels(); }
@@ -123,23 +124,33 @@ class Bench {
   double pixels() const { return static_cast<double>(options_.size) * options_.size; }
   /// Samples [first, last) of each pixel, with levels of detail from `finest` on; 0: voxels alone.
   Frame draw(BrickVolume& volume, std::uint32_t first, std::uint32_t last, int finest) {
-    if (finest == 0) return draw_seen(volume, first, last, [](const auto& sampler) { return sampler; });
+    if (finest == 0)
+      return draw_seen(
+          volume, first, last, [](const auto& sampler) { return sampler; }, false);
+    if (!wide_) {
+      setup_->widen_cells();
+      wide_.emplace(setup_->cells().bounds());
+    }
     const LevelsView<TextureSampler> levels = volume.levels(finest).view();
-    return draw_seen(volume, first, last, [&]<class Fine>(const Fine& fine) {
-      return LevelledVolume<Fine, TextureSampler>{fine, levels, setup_->levels()->choice};
-    });
+    return draw_seen(
+        volume, first, last,
+        [&]<class Fine>(const Fine& fine) {
+          return LevelledVolume<Fine, TextureSampler>{fine, levels, setup_->levels()->choice};
+        },
+        true);
   }
 
  private:
   template <class Seen>
-  Frame draw_seen(BrickVolume& volume, std::uint32_t first, std::uint32_t last, const Seen& seen) {
+  Frame draw_seen(BrickVolume& volume, std::uint32_t first, std::uint32_t last, const Seen& seen, bool levelled) {
     const DeviceTransfer transfer(setup_->transfer_function());
-    volume.cells().update(transfer, cudaStreamPerThread);
+    DeviceMacrocells& cells = wide_ && levelled ? *wide_ : volume.cells();
+    cells.update(transfer, cudaStreamPerThread);
     const auto task_of = [&](const auto& sampler) {
       auto task = setup_->bare_task(seen(sampler));
       task.medium.transfer = transfer.bounds().transfer;
-      task.medium.cell_opacity = volume.cells().majorants();
-      task.medium.cell_values = volume.cells().bounds();
+      task.medium.cell_opacity = cells.majorants();
+      task.medium.cell_values = cells.bounds();
       return task;
     };
     DeviceArray<Float3> sums(static_cast<std::size_t>(options_.size) * static_cast<std::size_t>(options_.size));
@@ -149,7 +160,7 @@ class Bench {
     const auto start = Clock::now();
     const auto draw_paged = [&]<class Sampler>(const Sampler&) {
       if (draft_) {
-        frame.missed = trace_draft<Sampler>(volume.cache(), task_of, first, last, sums).missed;
+        frame.missed = trace_draft<Sampler>(volume.cache(), task_of, first, last, sums, [](std::uint64_t) {}).missed;
       } else {
         frame.report = trace_paged<Sampler>(volume.cache(), task_of, first, last, sums, nullptr, [](std::uint64_t) {});
       }
@@ -173,6 +184,7 @@ class Bench {
   Scene scene_;
   MacrocellGrid cells_;
   std::unique_ptr<RenderSetup> setup_;
+  std::optional<DeviceMacrocells> wide_;  // for pictures with levels
   bool draft_ = false;
   double transfer_s_ = 0;
   double load_s_ = 0;

@@ -86,7 +86,7 @@ class CpuVolumeOf : public CpuVolume {
   const LoadSummary& load_summary() const override { return summary_; }
 
   Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) override {
-    const RenderSetup setup(info_, cells_, scene, options);
+    RenderSetup setup(info_, cells_, scene, options);
     Picture picture;
     const auto start = std::chrono::steady_clock::now();
     if (const MeanPyramid* levels = pyramid(setup, sampling.threads, picture.levels_note)) {
@@ -107,11 +107,12 @@ class CpuVolumeOf : public CpuVolume {
 
  private:
   // Null where the picture has no use for levels. Kept for the next picture that wants the same ones.
-  const MeanPyramid* pyramid(const RenderSetup& setup, int threads, std::string& note) {
+  const MeanPyramid* pyramid(RenderSetup& setup, int threads, std::string& note) {
     if (!setup.levels()) return nullptr;
     const int first = finest_level_within(level_lattice(info_.frame.domain), setup.levels()->finest, level_bytes_);
     note = levels_note(first, setup.levels()->finest, setup.levels()->coarsest);
-    if (static_cast<float>(first) > setup.levels()->coarsest) return nullptr;
+    if (!levels_are_of_use(first, setup.levels()->coarsest)) return nullptr;
+    setup.widen_cells();
     if (!pyramid_ || pyramid_->first() != first) {
       pyramid_.reset();
       pyramid_.emplace(voxels_.pyramid(first, threads));
@@ -156,7 +157,7 @@ class CpuBackend : public Backend {
     const VolumeInfo info{volume->frame(), volume->range(), volume->background()};
     const LoadSummary summary{"memory", volume->bytes(), 0, "", volume->bytes() + cells.bytes()};
     return std::make_unique<CpuVolumeOf<DenseVoxels>>(DenseVoxels{std::move(volume)}, std::move(cells), info, summary,
-                                                      available_bytes() / 8);
+                                                      memory_.ceiling.value_or(available_bytes()) / 8);
   }
 
   Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
@@ -183,11 +184,14 @@ class CpuBackend : public Backend {
 
 }  // namespace
 
+bool levels_are_of_use(int first, float coarsest) { return first > 0 && coarsest > static_cast<float>(first - 1); }
+
 std::string levels_note(int first, int wanted, float coarsest) {
-  if (first <= wanted) return "";
-  const std::string there = cat("levels of detail from ", wanted, " on were asked for, those from ", first,
-                                " on fit into the memory kept for them");
-  return static_cast<float>(first) > coarsest ? there + ", of which none was of use; voxels were read" : there;
+  if (first > 0 && first <= wanted) return "";
+  const std::string asked = cat("levels of detail from ", wanted, " on were asked for, ");
+  if (first == 0) return asked + "but there is no memory for them; voxels were read";
+  const std::string there = cat(asked, "those from ", first, " on fit into the memory kept for them");
+  return levels_are_of_use(first, coarsest) ? there : there + ", of which none was of use; voxels were read";
 }
 
 std::unique_ptr<Backend> make_cpu_backend(int threads, const VoxelMemory& memory) {

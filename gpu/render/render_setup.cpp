@@ -133,8 +133,16 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
            .soft_clip = scene.mode == RenderMode::path};
 }
 
+// A texel of level l reaches one and a half times 2^l voxels, and a look-up between two levels reads the coarser one.
+void RenderSetup::widen_cells() {
+  const int coarsest = static_cast<int>(std::min(std::ceil(levels_->coarsest), static_cast<float>(kMostLevels)));
+  wide_cells_.emplace(cells_.widened(std::int64_t{3} << coarsest >> 1));
+  medium_.cell_values = wide_cells_->bounds().data();
+  majorants_.clear();
+}
+
 const std::vector<float>& RenderSetup::majorants() const {
-  if (majorants_.empty()) majorants_ = cells_.majorants(transfer_);
+  if (majorants_.empty()) majorants_ = cells().majorants(transfer_);
   return majorants_;
 }
 
@@ -144,7 +152,8 @@ std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) c
   const float pixel = std::min(2 * length(camera.right) / static_cast<float>(frame_.width),
                                2 * length(camera.down) / static_cast<float>(frame_.height));
   LevelsUsed used;
-  used.choice = {camera.position, medium_.stretch, std::log2(pixel) + detail.bias, 0};
+  // Cubes have as many voxels along each axis: where voxels are longest, they must not be wider than the pixel.
+  used.choice = {camera.position, medium_.stretch, std::log2(pixel / max_component(medium_.stretch)) + detail.bias, 0};
   used.choice.scattered = used.choice.camera + detail.scattered;
   const RayBox& box = medium_.shown;
   const Float3& eye = camera.position;
@@ -155,7 +164,7 @@ std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) c
                         farther(eye.z, box.low.z, box.high.z)};
   const bool scatters = frame_.mode == RenderMode::path;
   used.coarsest = used.choice.level(farthest, scatters ? RayKind::scattered : RayKind::camera);
-  if (!(used.coarsest >= 1)) return std::nullopt;
+  if (!(used.coarsest > 0)) return std::nullopt;
   used.finest =
       static_cast<int>(clamped(used.choice.level(nearest, RayKind::camera), 1.0F, static_cast<float>(kMostLevels - 1)));
   return used;

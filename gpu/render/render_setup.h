@@ -91,6 +91,9 @@ class RenderSetup {
   RenderMode mode() const { return frame_.mode; }
   /// None where the options ask for voxels, or all look-ups come near enough to see them.
   const std::optional<LevelsUsed>& levels() const { return levels_; }
+  /// For a picture with levels up to the coarsest it can use: from now on cells bound what look-ups of them reach.
+  void widen_cells();
+  const MacrocellGrid& cells() const { return wide_cells_ ? *wide_cells_ : cells_; }
 
  private:
   const std::vector<float>& majorants() const;
@@ -100,6 +103,7 @@ class RenderSetup {
 
   Box domain_;
   const MacrocellGrid& cells_;
+  std::optional<MacrocellGrid> wide_cells_;
   TransferFunction transfer_;
   mutable std::vector<float> majorants_;  ///< empty until asked for
   std::shared_ptr<const Environment> environment_;

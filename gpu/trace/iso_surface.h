@@ -27,18 +27,12 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
                                 float voxel_step) {
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
-  [[maybe_unused]] float before = 0;  // the last value looked at
-  [[maybe_unused]] bool looked = false;
   while (walk.next(medium.cells, ray, span)) {
     const MinMax& bounds = medium.cell_values[span.cell];
     if (iso < bounds.min || iso > bounds.max) continue;
     float a = span.t0;
     float at_a = medium.volume.smooth(ray.at(a));
-    if constexpr (kHasLevels<Volume>) {
-      // Cells bound voxels; means of them may cross in a cell that was passed over.
-      if (looked && detail::crosses(before, at_a, iso)) return a;
-    }
-    const float step = voxel_step * spacing(medium.volume, ray.at(a));
+    const float step = voxel_step * lesser(spacing(medium.volume, ray.at(a)), medium.cells.edge);
     while (a < span.t1) {
       float b = lesser(a + step, span.t1);
       if (!(b > a)) break;  // a step below the precision of t
@@ -57,8 +51,6 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
       a = b;
       at_a = at_b;
     }
-    before = at_a;
-    looked = true;
   }
   return -1.0F;
 }

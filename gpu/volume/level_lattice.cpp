@@ -2,10 +2,6 @@
 
 #include <algorithm>
 
-#include "format/base/error.h"
-#include "format/base/message.h"
-#include "format/base/text.h"
-
 namespace weir {
 
 std::uint64_t level_bytes(const LevelLattice& lattice, int first) {
@@ -14,14 +10,14 @@ std::uint64_t level_bytes(const LevelLattice& lattice, int first) {
   return texels * sizeof(float);
 }
 
-int finest_level_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
+int finest_level_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes, std::int32_t longest) {
+  constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 31U;  // table_index()
   for (int level = std::clamp(wanted, 1, kMostFinest); level <= kMostFinest; ++level) {
+    const Int3 n = lattice.texels(level);
+    if (greater(n.x, greater(n.y, n.z)) > longest || lattice.size(level) > kMostTexels) continue;
     if (level_bytes(lattice, level) <= bytes) return level;
   }
-  throw Error(ErrorKind::usage,
-              compose("levels of detail of this grid take ", format_bytes(level_bytes(lattice, kMostFinest)),
-                      " at least, where ", format_bytes(bytes),
-                      " are kept for them, an eighth of the memory; give more, or ", option("lod", "off")));
+  return 0;
 }
 
 }  // namespace weir

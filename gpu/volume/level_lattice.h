@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "gpu/math/vector3.h"
 
@@ -63,7 +64,8 @@ std::uint64_t level_bytes(const LevelLattice& lattice, int first);
 inline constexpr int kMostFinest = 5;
 
 /// The finest level from `wanted` on, at least 1 and at most kMostFinest, whose texels and those of all coarser ones
-/// take at most `bytes`. Throws Error(usage) where there is none, with the bytes that would do.
-int finest_level_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes);
+/// take at most `bytes`, at most `longest` of them along an axis; 0 where there is none.
+int finest_level_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes,
+                        std::int32_t longest = std::numeric_limits<std::int32_t>::max());
 
 }  // namespace weir

@@ -39,13 +39,11 @@ struct LevelledVolume {
   LevelChoice choice;
 
   WEIR_HOST_DEVICE float sample(const Float3& p, RayKind kind, Random& random) const {
-    const float level = choice.level(p, kind);
-    return coarse(level) ? levels.at(p, level) : found(p, [&] { return fine.sample(p, random); });
+    return at(p, choice.level(p, kind), [&] { return fine.sample(p, random); });
   }
   /// As a ray from the camera sees it.
   WEIR_HOST_DEVICE float smooth(const Float3& p) const {
-    const float level = choice.level(p, RayKind::camera);
-    return coarse(level) ? levels.at(p, level) : found(p, [&] { return fine.smooth(p); });
+    return at(p, choice.level(p, RayKind::camera), [&] { return fine.smooth(p); });
   }
   /// Voxels along the cubes that smooth() reads.
   WEIR_HOST_DEVICE float spacing(const Float3& p) const {
@@ -54,6 +52,16 @@ struct LevelledVolume {
   }
 
  private:
+  // Voxels below the level before the first, a mixture up to it; look_up() reads voxels. -infinity at the eye.
+  template <class LookUp>
+  WEIR_HOST_DEVICE float at(const Float3& p, float level, const LookUp& look_up) const {
+    const float above = level - static_cast<float>(levels.first - 1);
+    if (above >= 1.0F) return levels.at(p, level);
+    const float voxels = found(p, look_up);
+    if (!(above > 0.0F)) return voxels;
+    return multiply_add(1.0F - above, voxels,
+                        multiply_add(above, levels.at(p, static_cast<float>(levels.first)), 0.0F));
+  }
   // What look_up() finds of the voxels; of those that are missing (paged_sampler.h), the finest level.
   template <class LookUp>
   WEIR_HOST_DEVICE float found(const Float3& p, const LookUp& look_up) const {

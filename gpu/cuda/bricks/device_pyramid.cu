@@ -6,7 +6,8 @@ namespace weir {
 
 // While a level is copied to its texture, it is there twice.
 int DevicePyramid::finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
-  return finest_level_within(lattice, wanted, bytes > kDecodedRegionBytes ? (bytes - kDecodedRegionBytes) / 2 : 0);
+  return finest_level_within(lattice, wanted, bytes > kDecodedRegionBytes ? (bytes - kDecodedRegionBytes) / 2 : 0,
+                             kMaxTextureEdge);
 }
 
 DevicePyramid::DevicePyramid(BlockSource& source, std::span<const RegionEntry> regions, int first, std::uint64_t bytes)

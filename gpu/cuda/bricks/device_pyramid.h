@@ -14,7 +14,7 @@ namespace weir {
 
 class DevicePyramid {
  public:
-  /// The finest level from `wanted` on that can be made within `bytes`; throws Error(usage) where none can.
+  /// The finest level from `wanted` on that can be made within `bytes`; 0: none.
   static int finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes);
   /// The levels from `first` on of all blocks of `source`, whose regions() are `regions`; `bytes` as above. Throws
   /// Error(io) where the device has no room, Error(input) where blocks are damaged.

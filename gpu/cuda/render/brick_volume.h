@@ -26,7 +26,7 @@ class BrickVolume {
   GridBytes take_bytes() && { return std::move(bytes_); }
   BrickCache& cache() { return *cache_; }
   DeviceMacrocells& cells() { return cells_; }
-  /// The finest level of detail from `wanted` on that there is room for. Throws as DevicePyramid.
+  /// The finest level of detail from `wanted` on that there is room for; 0: none.
   int finest_level(int wanted) const;
   /// The levels from that one on; kept for the next call with the same.
   const DevicePyramid& levels(int finest);

@@ -78,6 +78,7 @@ struct Share {
 struct ShareDone {
   std::vector<Float3> sums;
   std::uint64_t missed = 0;  ///< as Picture
+  bool drawn = false;        ///< there were samples for it
 };
 
 /// Samples in turns that grow until one takes kLaunchSeconds; `launch` starts [first, last) on the default stream.
@@ -182,6 +183,10 @@ class CudaBackend : public Backend {
   }
 
   std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) override {
+    if (options_.levels) {
+      throw Error(ErrorKind::usage, compose("a dense volume has no levels of detail on a device; give ",
+                                            option("lod", "off"), " or ", option("backend", "cpu")));
+    }
     MacrocellGrid cells = macrocells_of(*volume, cell == 0 ? kDeviceMacrocell : cell);
     const auto start = Clock::now();
     std::vector<std::unique_ptr<DenseTexture>> textures;
@@ -197,10 +202,11 @@ class CudaBackend : public Backend {
   Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
                  const SampleOptions& sampling) override {
     auto& loaded = static_cast<CudaVolume&>(volume);
-    const RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
+    RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
     const auto start = Clock::now();
     std::string note;
     const int finest_level = levels_for(loaded, setup, note);
+    if (finest_level > 0) setup.widen_cells();
     std::mutex reporting;
     std::uint64_t samples_done = 0;
     const auto done = [&](std::uint64_t samples) {
@@ -226,7 +232,7 @@ class CudaBackend : public Backend {
     for (auto& share : shares) {
       const ShareDone part = share.get();
       for (std::size_t p = 0; p < part.sums.size(); ++p) image.pixels[p] += part.sums[p];
-      missed += part.missed;
+      if (part.drawn) missed = part.missed;  // the last sample is the last share's
     }
     if (sampling.cancel != nullptr && sampling.cancel->load(std::memory_order_relaxed)) {
       throw Error(ErrorKind::interrupted, "interrupted; no image was written");
@@ -247,14 +253,17 @@ class CudaBackend : public Backend {
     }
     const int finest = volume.bricks(0).finest_level(setup.levels()->finest);
     note = levels_note(finest, setup.levels()->finest, setup.levels()->coarsest);
-    return static_cast<float>(finest) > setup.levels()->coarsest ? 0 : finest;
+    return levels_are_of_use(finest, setup.levels()->coarsest) ? finest : 0;
   }
 
   ShareDone render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup, int finest_level,
                          const RenderOptions& options, const Share& share, const SampleOptions& sampling,
                          const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
-    DeviceMacrocells& cells = volume.dense()       ? volume.texture(i).cells
+    std::optional<DeviceMacrocells> wide;
+    if (finest_level > 0) wide.emplace(setup.cells().bounds());
+    DeviceMacrocells& cells = wide                 ? *wide
+                              : volume.dense()     ? volume.texture(i).cells
                               : volume.in_bricks() ? volume.bricks(i).cells()
                                                    : volume.grid(i).cells();
     const DeviceTransfer transfer(setup.transfer_function());
@@ -290,7 +299,7 @@ class CudaBackend : public Backend {
           const auto task_of_seen = [&](const auto& sampler) { return task_of(seen(sampler)); };
           const auto draw = [&]<class Sampler>(const Sampler&) {
             if (sampling.draft) {
-              missed = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums).missed;
+              missed = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums, done).missed;
             } else {
               trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
             }
@@ -313,7 +322,7 @@ class CudaBackend : public Backend {
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
-    return {sums.download(), missed};
+    return {sums.download(), missed, share.first < share.last};
   }
 
   // Calls use<Filter>() with one known when this is compiled.

@@ -16,7 +16,13 @@ std::uint64_t block_count(const NvdbGrid& grid) {
   return static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
 }
 
-/// What a grid takes of a device that has room, apart from an atlas.
+/// What the bricks of a grid that is not packed take, roughly: of each leaf one, and one beside it.
+std::uint64_t brick_bytes_of(const NvdbGrid& grid) {
+  const std::uint64_t bricks = std::min<std::uint64_t>(block_count(grid), std::uint64_t{2} * grid.node_counts()[0]);
+  return bricks * (kBrickTexels * sizeof(std::uint16_t)) + 2 * block_count(grid) * sizeof(BrickEntry);
+}
+
+/// What a grid takes of a device that has room, apart from bricks.
 std::uint64_t bytes_needed(const NvdbGrid& grid) {
   // Of a packed grid's streams and its bricks, the bricks are what is looked up.
   if (grid.packed() != nullptr) return 2 * grid.data_bytes();
@@ -46,7 +52,9 @@ DeviceRoom room_for(const NvdbGrid& grid, const CudaOptions& options, std::uint6
 }
 
 std::string reason_for_zero_copy(const NvdbGrid& grid, const DeviceRoom& room) {
-  const std::uint64_t needed = bytes_needed(grid);
+  std::uint64_t needed = bytes_needed(grid);
+  // Levels of detail are of bricks: better the leaves in host memory than few bricks beside them.
+  if (room.levels > 0 && grid.packed() == nullptr) needed += brick_bytes_of(grid);
   if (needed <= room.bytes - room.levels) return "";
   const std::string with_levels = room.levels > 0 ? " without what is kept for levels of detail" : "";
   if (room.limited) {

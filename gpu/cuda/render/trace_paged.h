@@ -40,10 +40,11 @@ struct DraftReport {
 
 /// Adds samples [first, last) of every pixel to `sums` without waiting for bricks: where one is missing, a level of
 /// detail or its mean takes its place, and it is there for the next sample, as far as the cache holds what one sample
-/// needs. For pictures of a camera that moves. `task_of` as below. Throws as BrickCache::serve.
-template <class Sampler, class TaskOf>
+/// needs. For pictures of a camera that moves. `task_of` and `report_done` as below. Throws as BrickCache::serve and
+/// check.
+template <class Sampler, class TaskOf, class Done>
 DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
-                        DeviceArray<Float3>& sums) {
+                        DeviceArray<Float3>& sums, const Done& report_done) {
   DraftReport report;
   auto task = task_of(cache.template paged_sampler<Sampler>());
   DeviceArray<std::uint32_t> done(sums.size());
@@ -57,11 +58,13 @@ DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     PagedPicture::Counts found{};
     counts.download(std::span(&found, 1));
     report.missed = found.missed;
+    report_done(found.finished);
     if (found.missed == 0) continue;
     const PagingTurn turn = cache.serve();
     report.bricks += turn.bricks;
     if (turn.unfit) task = task_of(cache.template paged_sampler<Sampler>());
   }
+  if (report.bricks > 0) cache.check();
   return report;
 }
 

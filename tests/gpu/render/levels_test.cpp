@@ -1,6 +1,7 @@
 // Pictures with levels of detail, by the CPU back end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -99,6 +100,56 @@ TEST_F(LevelsOfDetail, PixelsNarrowerThanVoxels_SeeVoxels) {
   }
 }
 
+// Cells bound what levels reach: a picture does not depend on their size, and nothing behind their borders is lost.
+TEST_F(LevelsOfDetail, HardEdges_LookTheSameWithAnyMacrocells) {
+  const test::TestGrid made({{0, 0, 0}, {96, 96, 96}}, [](const Index3& i) {
+    const auto square = [](std::int64_t at) { return (at - 48) * (at - 48); };
+    return square(i.x) + square(i.y) + square(i.z) < 31 * 31 ? 1.0F : 0.0F;
+  });
+  const auto grid = file(made.file());
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto small = backend->load(grid, 16, nullptr);
+  const auto large = backend->load(grid, 512, nullptr);
+  const auto mean = [](const Image& image) {
+    float sum = 0;
+    for (const Float3& p : image.pixels) sum += p.x + p.y + p.z;
+    return sum / static_cast<float>(image.pixels.size());
+  };
+  for (const LevelOfDetail& levels : {LevelOfDetail{0, 3}, LevelOfDetail{1, 0}, LevelOfDetail{3, 0}}) {
+    for (const RenderMode mode : kModes) {
+      // Of cubes a third of the ball wide, steps along a ray show.
+      if (levels.bias > 1 && (mode == RenderMode::iso || mode == RenderMode::mip)) continue;
+      Scene scene = scene_of(mode);
+      scene.lighting.background = Double3{0, 0, 0};
+      scene.camera.framing = Framing::volume;
+      const Image of_small = picture(*backend, *small, scene, levels, 64).image;
+      const Image of_large = picture(*backend, *large, scene, levels, 64).image;
+      EXPECT_GT(mean(of_small), 0);
+      EXPECT_NEAR(mean(of_small) / mean(of_large), 1, mode == RenderMode::path ? 0.05 : 0.02)
+          << render_mode_name(mode) << ' ' << levels.bias << ' ' << levels.scattered;
+    }
+  }
+}
+
+TEST_F(LevelsOfDetail, Surface_IsFoundWhereCellsOfVoxelsDoNotHoldIt) {
+  // A slab whose means cross the iso value in cells of zeros alone.
+  const test::TestGrid made({{0, 0, 0}, {96, 96, 96}},
+                            [](const Index3& i) { return i.x >= 17 && i.x < 79 ? 1.0F : 0.0F; });
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  const auto volume = backend->load(file(made.file()), 16, nullptr);
+  const auto hits = [&](const std::optional<LevelOfDetail>& levels) {
+    Scene scene = scene_of(RenderMode::iso);
+    scene.camera.azimuth = 0;
+    const Image image = picture(*backend, *volume, scene, levels, 1).image;
+    return std::ranges::count_if(image.pixels, [&](const Float3& p) { return !(p == image.at(0, 0)); });
+  };
+  const auto expected = static_cast<double>(hits(std::nullopt));
+  EXPECT_GT(expected, 100);
+  for (const float bias : {0.0F, 1.0F, 2.0F, 3.0F}) {
+    EXPECT_NEAR(static_cast<double>(hits(LevelOfDetail{bias, 0})), expected, 0.25 * expected) << bias;
+  }
+}
+
 TEST_F(LevelsOfDetail, ScatteredLight_MaySeeCoarserLevelsThanTheCamera) {
   const auto backend = make_cpu_backend(2, {.levels = true});
   const auto volume = backend->load(ball(), 0, nullptr);
@@ -111,6 +162,7 @@ TEST_F(LevelsOfDetail, ScatteredLight_MaySeeCoarserLevelsThanTheCamera) {
   EXPECT_LT(difference(light.image, voxels.image), 0.05F);
   // Nothing else scatters.
   scene.mode = RenderMode::dvr;
+  scene.camera.zoom = 12;
   EXPECT_EQ(picture(*backend, *volume, scene, LevelOfDetail{0, 3}).finest_level, 0);
 }
 
@@ -166,10 +218,12 @@ TEST_F(LevelsOfDetail, MemoryForCoarserLevelsAlone_IsSaid) {
                                      : "levels of detail from 1 on were asked for, those from 2 on fit into the "
                                        "memory kept for them");
   }
+  const std::string asked = "levels of detail from 1 on were asked for, ";
+  EXPECT_EQ(levels_note(3, 1, 2.5F), asked + "those from 3 on fit into the memory kept for them");
   EXPECT_EQ(
-      levels_note(3, 1, 2.5F),
-      "levels of detail from 1 on were asked for, those from 3 on fit into the memory kept for them, of which none "
-      "was of use; voxels were read");
+      levels_note(3, 1, 2),
+      asked + "those from 3 on fit into the memory kept for them, of which none was of use; " + "voxels were read");
+  EXPECT_EQ(levels_note(0, 1, 2), asked + "but there is no memory for them; voxels were read");
 }
 
 }  // namespace
