@@ -233,8 +233,7 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
       .unit = "levels",
       .standard = "off",
       .help = "level of detail; auto: where a pixel is wider than a voxel, means of 2^3, 4^3 ... voxels as wide as the "
-              "pixel take their place, faster and smoother, though peaks are lost in means; BIAS: that many levels "
-              "coarser"},
+              "pixel take their place, smoother, though peaks are lost in means; BIAS: that many levels coarser"},
      read_lod},
     {{.key = "lod-scattered",
       .argument = "LEVELS",
