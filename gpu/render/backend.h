@@ -44,11 +44,6 @@ struct Picture {
   std::string levels_note;   ///< why it was made with coarser levels than it asked for, or none; empty: it was not
 };
 
-/// For Picture: levels from `first` on are there (0: none), from `wanted` on were of use, up to `coarsest`.
-std::string levels_note(int first, int wanted, float coarsest);
-/// Whether levels from `first` on change a picture: look-ups mix the voxels with them from one level below on.
-bool levels_are_of_use(int first, float coarsest);
-
 class Backend {
  public:
   virtual ~Backend() = default;

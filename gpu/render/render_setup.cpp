@@ -87,6 +87,16 @@ VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells) {
   return {frame_of(grid), value_range(grid, cells), grid.background()};
 }
 
+bool levels_are_of_use(int first, float coarsest) { return first > 0 && coarsest > static_cast<float>(first - 1); }
+
+std::string levels_note(int first, int wanted, float coarsest) {
+  if (first > 0 && first <= wanted) return "";
+  const std::string asked = cat("levels of detail from ", wanted, " on were asked for, ");
+  if (first == 0) return asked + "but there is no memory for them; voxels were read";
+  const std::string there = cat(asked, "those from ", first, " on fit into the memory kept for them");
+  return levels_are_of_use(first, coarsest) ? there : there + ", of which none was of use; voxels were read";
+}
+
 RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
                          const RenderOptions& options)
     : domain_(volume.frame.domain),

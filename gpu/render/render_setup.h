@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "format/nanovdb/macrocells.h"
@@ -57,6 +58,12 @@ struct LevelsUsed {
   int finest = 1;  ///< that a look-up may ask for; level 0 are voxels
   float coarsest;  ///< likewise
 };
+
+/// What to say of a picture: levels from `first` on are there (0: none), from `wanted` on were of use, up to
+/// `coarsest`. Empty where it has what it asked for.
+std::string levels_note(int first, int wanted, float coarsest);
+/// Whether levels from `first` on change a picture: look-ups mix the voxels with them from one level below on.
+bool levels_are_of_use(int first, float coarsest);
 
 class RenderSetup {
  public:

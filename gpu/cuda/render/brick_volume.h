@@ -18,8 +18,8 @@ namespace weir {
 class BrickVolume {
  public:
   /// `bytes` are those of `grid`, which must outlive the object, on the device or in host memory that it reads; `cells`
-  /// bounds of macrocells. Of `budget`, what is taken already is found here; with `levels`, an eighth is kept for
-  /// levels of detail. Throws as BrickCache, BlockDecoder and DeviceTable.
+  /// bounds of macrocells. Of `budget`, what is taken already is found here; of its `levels`, levels of detail are
+  /// made. Throws as BrickCache, BlockDecoder and DeviceTable.
   BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget);
 
   const GridBytes& bytes() const { return bytes_; }
