@@ -3,9 +3,9 @@
 # a dense texture, and whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
-#     --bin    a folder with weir, weir_tests_cuda and weir_bench_{load,decode,frames,paging}; default: build/release, built
-#     --edge   of the largest cloud, default 2048
-#     STEP     checks, load, decode, frames, paging, pictures, largest; default: all of them
+#     --bin    a folder with weir, weir_tests_cuda and weir_bench_{load,decode,encode,frames,paging}; default: build/release, built
+#     --edge   of the cloud of cold and largest, default 2048
+#     STEP     checks, load, decode, encode, frames, paging, pictures, cold, largest; default: all of them
 #
 # Exit code 1 where a check fails, or loading is below 0.8 of the device's rate.
 set -euo pipefail
@@ -20,17 +20,17 @@ while [[ ${1:-} == --* ]]; do
   esac
   shift 2
 done
-[ $# -gt 0 ] || set -- checks load decode frames paging pictures largest
+[ $# -gt 0 ] || set -- checks load decode encode frames paging pictures cold largest
 for step; do
   case $step in
-    checks | load | decode | frames | paging | pictures | largest) ;;
+    checks | load | decode | encode | frames | paging | pictures | cold | largest) ;;
     *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
   esac
 done
 if [ -z "$bin" ]; then
-  tools/build.sh release weir weir_tests_cuda weir_bench_{load,decode,frames,paging}
+  tools/build.sh release weir weir_tests_cuda weir_bench_{load,decode,encode,frames,paging}
   mkdir -p build/gpu
-  for name in weir weir_tests_cuda bench/weir_bench_{load,decode,frames,paging}; do
+  for name in weir weir_tests_cuda bench/weir_bench_{load,decode,encode,frames,paging}; do
     ln -sf "../release/$name" "build/gpu/${name##*/}"
   done
   bin=build/gpu
@@ -73,7 +73,7 @@ noise() {
 }
 # picture NAME ARGUMENTS: a line with the seconds of a picture of 1024 x 1024 pixels.
 picture() {
-  "$bin/weir" render "$work/cloud1024.float.nvdb" -o "$work/p.png" --size 1024x1024 --json --progress never \
+  "$bin/weir" render "$work/cloud1024.float.nvdb" -o "$work/p.png" --overwrite --size 1024x1024 --json --progress never \
     --log-level error "${@:2}" >"$work/p.json" || failed=1
   printf '%-44s %s\n' "$1" "$(grep -E '"(render_s|way)"' "$work/p.json" | tr -d '\n' | tr -s ' ')"
 }
@@ -88,7 +88,7 @@ checks() {
   for tool in memcheck racecheck synccheck; do
     echo "compute-sanitizer $tool"
     timeout 300 compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
-      --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*:BlockDecoderTest.*:BrickVolumeTest.ASmall*' |
+      --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*:BlockDecoderTest.*:DeviceCoder.*:BrickVolumeTest.ASmall*:BrickVolumeTest.Levels*:ExpandedGridTest.*' |
       tail -n 3 || failed=1
   done
 }
@@ -108,6 +108,23 @@ packed() {
     rm "$work/${1}512.packed.nvdb.json"
   done
   rm "$work/${1}512.raw"
+}
+
+# The survey and the encoding of 1024^3 values; then the whole command with either backend, to the same bytes.
+encode() {
+  "$bin/weir_bench_encode" || failed=1
+  for kind in cloud turbulence; do
+    local name=$work/${kind}1024
+    [ -e "$name.raw" ] || quiet "$bin/weir" sample "$kind" --dims 1024,1024,1024 -o "$name.raw"
+    for backend in cpu cuda cpu cuda; do
+      "$bin/weir" convert "$name.raw" --dims 1024,1024,1024 --type float32 --memory 8GiB --encoding packed --rate 20 \
+        --backend "$backend" -o "$name.$backend.nvdb" --overwrite --resume off --json --progress never --log-level error \
+        >"$work/c.json" || failed=1
+      printf '%-44s %s\n' "$kind, --backend $backend" "$(grep -E '"(survey_s|encode_s|total_s)"' "$work/c.json" | tr -d '\n' | tr -s ' ')"
+    done
+    cmp "$name.cpu.nvdb" "$name.cuda.nvdb" || failed=1
+    rm "$name".*
+  done
 }
 
 decode() {
@@ -162,15 +179,44 @@ pictures() {
   rm "$work"/*
 }
 
+# forget FILE: drops it from the page cache.
+forget() { sync "$1" && dd if="$1" iflag=nocache count=0 status=none; }
+# seconds COMMAND...: how long it takes.
+seconds() {
+  local start
+  start=$(date +%s.%N)
+  "$@" >"$work/log" 2>&1 || { cat "$work/log"; failed=1; }
+  awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.2f s\n", b - a }'
+}
+
+cold() {
+  local file=$work/cloud$edge.packed.nvdb
+  volume cloud "$edge" packed --rate 20
+  rm "$work/cloud$edge.raw"
+  echo "== cloud $edge, $(stat -c %s "$file") bytes, from the disk"
+  forget "$file"
+  printf 'reading the file           %s' "$(seconds cat "$file")"; echo
+  for mode in dvr path; do
+    forget "$file"
+    printf 'weir render --mode %-4s    %s' $mode "$(seconds "$bin/weir" render "$file" -o "$work/p.png" --mode $mode \
+      --size 1024x1024 --json --progress never --log-level error)"
+    grep -E '"(load_s|render_s)"' "$work/log" | tr -d '\n' | tr -s ' '; echo
+    rm "$work/p.png"
+  done
+  rm "$work"/*
+}
+
 nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader
 for step; do
   case $step in
     checks) checks ;;
     load) load ;;
     decode) decode ;;
+    encode) encode ;;
     frames) frames ;;
     paging) paging ;;
     pictures) pictures ;;
+    cold) cold ;;
     largest) cloud "$edge" ;;
   esac
 done

@@ -3,11 +3,12 @@
 
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/c/*.cpp)
 if(NOT TARGET weir_cuda)
-  list(FILTER sources EXCLUDE REGEX "/cuda_grid\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "/cuda_[a-z]+\\.cpp$")
 endif()
 add_library(weir_c SHARED ${sources})
 add_library(weir::c ALIAS weir_c)
-target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda_expand>)
+target_link_libraries(weir_c PRIVATE weir_compressor weir_gpu_core $<TARGET_NAME_IF_EXISTS:weir_cuda_expand>
+                             $<TARGET_NAME_IF_EXISTS:weir_cuda_push> $<TARGET_NAME_IF_EXISTS:weir_cuda_encode>)
 weir_use_drivers(weir_c ${CMAKE_INSTALL_LIBDIR})
 target_include_directories(weir_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -67,6 +68,14 @@ function(weir_c_tests)
   add_dependencies(weir_tests_c weir_c_parts_test)
   if(TARGET weir_cuda)
     target_link_libraries(weir_c_cuda_test PRIVATE CUDA::cudart_static)
+    # The example of docs/embedding.md; ctest runs it where there is a device.
+    add_executable(weir_push_cuda ${PROJECT_SOURCE_DIR}/examples/push_cuda/gray_scott.cu)
+    target_link_libraries(weir_push_cuda PRIVATE weir_c Threads::Threads)
+    set_target_properties(weir_push_cuda PROPERTIES OUTPUT_NAME gray_scott_cuda
+                                                    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests_c)
+    add_test(NAME examples/push_cuda COMMAND weir_push_cuda 100 40 20 ${CMAKE_BINARY_DIR}/tests_c)
+    set_tests_properties(examples/push_cuda PROPERTIES SKIP_REGULAR_EXPRESSION "no CUDA-capable device|driver")
+    add_dependencies(weir_tests_c weir_push_cuda)
   endif()
   if(TARGET weir_tests_tools)  # those of the installed library
     target_link_libraries(weir_tests_tools PRIVATE weir_c)

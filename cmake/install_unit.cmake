@@ -1,4 +1,4 @@
-# Run by cmake --install: the unit WEIR_UNIT, written for /usr, made to fit the prefix there is.
+# Run by cmake --install: the unit WEIR_UNIT, written for /usr, made to fit the prefix there is, and WEIR_EXAMPLE.
 
 set(folder ${CMAKE_INSTALL_PREFIX}/lib/systemd/system)
 file(INSTALL ${WEIR_UNIT} DESTINATION ${folder})
@@ -6,3 +6,10 @@ get_filename_component(name ${WEIR_UNIT} NAME)
 file(READ ${WEIR_UNIT} unit)
 string(REPLACE "/usr/" "${CMAKE_INSTALL_PREFIX}/" unit "${unit}")
 file(WRITE $ENV{DESTDIR}${folder}/${name} "${unit}")
+
+# The configuration to start from, where the unit looks for them: /etc/weir beside /usr, PREFIX/etc/weir elsewhere.
+get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/etc ABSOLUTE)
+if(CMAKE_INSTALL_PREFIX MATCHES "/usr$")
+  get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/../etc ABSOLUTE)
+endif()
+file(INSTALL ${WEIR_EXAMPLE} DESTINATION ${etc}/weir)

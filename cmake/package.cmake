@@ -26,7 +26,7 @@ set(CPACK_PACKAGE_CONTACT ${WEIR_MAINTAINER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "converter of dense volumes to NanoVDB files of exactly the size asked")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "\
 weir stands between a simulation and a renderer: volumes of any size (HDF5,
-NetCDF-4, OpenVDB, NRRD, MetaImage, NIfTI, VTK, raw) stream through bounded
+NetCDF-4, Zarr, OpenVDB, NRRD, MetaImage, NIfTI, VTK, raw) stream through bounded
 memory into standard NanoVDB files that meet a byte budget to the byte, or an
 error with as few bytes as meet it, each with a certificate of what it lost.
 It renders them, watches directories beside a running simulation, and has the
@@ -36,7 +36,8 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "hdf5-filter-plugin, libnanovdb-tools, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm ${packaging}/triggers)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "hdf5-filter-plugin, libnanovdb-tools, python3-numpy, python3-urllib3, python3-xarray")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm ${packaging}/triggers
+    ${packaging}/conffiles)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

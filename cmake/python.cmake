@@ -34,16 +34,25 @@ foreach(module IN LISTS modules)
   configure_file(${module} ${package}/${name} COPYONLY)
 endforeach()
 
+# What importlib.metadata reads, and xarray finds its engine "weir" by.
+set(WEIR_PYTHON_METADATA weir-${PROJECT_VERSION}.dist-info)
+set(metadata ${CMAKE_BINARY_DIR}/python/${WEIR_PYTHON_METADATA})
+configure_file(${PROJECT_SOURCE_DIR}/bindings/python/metadata/METADATA.in ${metadata}/METADATA @ONLY)
+configure_file(${PROJECT_SOURCE_DIR}/bindings/python/metadata/entry_points.txt ${metadata}/entry_points.txt COPYONLY)
+
 # weir_install_python(): the module. Debian's interpreter looks below /usr/local in a folder of its own version, which
 # cmake --install fills, and below /usr in one of all 3.x, which is the package's.
 set(WEIR_PYTHON_MODULES ${modules})
 function(weir_install_python)
-  set(local lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages/weir)
-  set(debian lib/python3/dist-packages/weir)
-  install(TARGETS weir_python LIBRARY DESTINATION ${local} COMPONENT python)
-  install(FILES ${WEIR_PYTHON_MODULES} DESTINATION ${local} COMPONENT python)
-  install(TARGETS weir_python LIBRARY DESTINATION ${debian} COMPONENT debian EXCLUDE_FROM_ALL)
-  install(FILES ${WEIR_PYTHON_MODULES} DESTINATION ${debian} COMPONENT debian EXCLUDE_FROM_ALL)
+  set(local lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages)
+  set(debian lib/python3/dist-packages)
+  set(metadata ${CMAKE_BINARY_DIR}/python/${WEIR_PYTHON_METADATA})
+  install(TARGETS weir_python LIBRARY DESTINATION ${local}/weir COMPONENT python)
+  install(FILES ${WEIR_PYTHON_MODULES} DESTINATION ${local}/weir COMPONENT python)
+  install(DIRECTORY ${metadata} DESTINATION ${local} COMPONENT python)
+  install(TARGETS weir_python LIBRARY DESTINATION ${debian}/weir COMPONENT debian EXCLUDE_FROM_ALL)
+  install(FILES ${WEIR_PYTHON_MODULES} DESTINATION ${debian}/weir COMPONENT debian EXCLUDE_FROM_ALL)
+  install(DIRECTORY ${metadata} DESTINATION ${debian} COMPONENT debian EXCLUDE_FROM_ALL)
   install(FILES ${PROJECT_SOURCE_DIR}/bindings/paraview/weir_reader.py DESTINATION ${CMAKE_INSTALL_DATADIR}/weir/paraview)
 endfunction()
 

@@ -77,13 +77,16 @@ function(weir_library name)
   target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
 endfunction()
 
-# weir_embed_page(TARGET FOLDER): the files of FOLDER, compiled into TARGET as page_files() (daemon/http/page_files.h).
-function(weir_embed_page target folder)
+# weir_embed_page(TARGET FOLDER FUNCTION HEADER): the files of FOLDER, compiled into TARGET as FUNCTION(), which HEADER
+# declares.
+function(weir_embed_page target folder function header)
   set(page ${PROJECT_SOURCE_DIR}/${folder})
-  set(source ${CMAKE_BINARY_DIR}/page_files.cpp)
+  set(source ${CMAKE_BINARY_DIR}/${function}.cpp)
   file(GLOB files CONFIGURE_DEPENDS ${page}/*)
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_page.cmake)
-  add_custom_command(OUTPUT ${source} COMMAND ${CMAKE_COMMAND} -D PAGE=${page} -D OUTPUT=${source} -P ${script}
+  add_custom_command(OUTPUT ${source}
+                     COMMAND ${CMAKE_COMMAND} -D PAGE=${page} -D FUNCTION=${function} -D HEADER=${header}
+                             -D OUTPUT=${source} -P ${script}
                      DEPENDS ${files} ${script} COMMENT "Embedding ${folder}" VERBATIM)
   target_sources(${target} PRIVATE ${source})
 endfunction()
@@ -106,8 +109,8 @@ function(weir_test_libraries)
 endfunction()
 
 # weir_leave_out(VARIABLE): takes from the test sources in it those that include, themselves or through a header of
-# tests/, what this build was left without: HDF5, OpenVDB or the tests' own stock readers, which need OpenVDB, zfp; and
-# those in a folder hdf5/ of a build without HDF5.
+# tests/, what this build was left without: HDF5, OpenVDB or the tests' own stock readers, which need OpenVDB, zfp. Of a
+# build without HDF5 also those in a folder hdf5/ and those in users/ whose inputs h5py or netCDF4 write.
 function(weir_leave_out variable)
   set(missing)
   if(NOT WEIR_HDF5)
@@ -123,7 +126,7 @@ function(weir_leave_out variable)
     list(APPEND missing zfp\\.h tools/sweep/zfp_)
   endif()
   if(NOT WEIR_DAEMON)
-    list(APPEND missing "daemon/" tools/service/ tools/describe/describe_config)
+    list(APPEND missing "daemon/" tools/service/ tools/view/ tools/describe/describe_config)
   endif()
   if(NOT missing)
     return()
@@ -151,6 +154,9 @@ function(weir_leave_out variable)
   set(kept)
   foreach(source IN LISTS ${variable})
     file(STRINGS ${source} found REGEX "#include [<\"](${pattern})" LIMIT_COUNT 1)
+    if(NOT WEIR_HDF5 AND NOT found AND source MATCHES "/users/")
+      file(STRINGS ${source} found REGEX "h5py|netCDF4" LIMIT_COUNT 1)
+    endif()
     if(found OR (NOT WEIR_HDF5 AND source MATCHES "/hdf5/"))
       file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR}/tests ${source})
       weir_skip_test(${name} "this build was left without what it includes")
@@ -175,13 +181,13 @@ function(weir_tests name)
   add_executable(weir_tests_${name} ${sources})
   set(library weir_${name})
   if(name STREQUAL "cuda")  # they try the renderer too
-    set(library weir_cuda_backend)
+    set(library weir_cuda_backend weir_cuda_encode)
   endif()
   if(name STREQUAL "ingest" AND WEIR_HDF5)
     set(library weir_ingest_hdf5)
   endif()
   weir_use_drivers(weir_tests_${name})
-  if(name STREQUAL "tools" OR name STREQUAL "daemon")  # they run the command
+  if(name MATCHES "^(tools|daemon|users)$")  # they run the command
     set(library weir_tools)
     add_dependencies(weir_tests_${name} weir)
     set(installs)
@@ -223,7 +229,7 @@ function(weir_add_gtests target)
   set(alone *Memory*:*Ceiling*)
   if(target STREQUAL "weir_tests_daemon")
     gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER ${WEIR_TESTS}-*SmallQueue*:*TwoThousandFiles*:${WEIR_TESTS_LEFT_OUT})
-    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER *SmallQueue*:*TwoThousandFiles* TEST_LIST ${target}_locked
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER *SmallQueue*:*TwoThousandFiles*-${WEIR_TESTS_LEFT_OUT} TEST_LIST ${target}_locked
                          PROPERTIES RESOURCE_LOCK inotify)
     return()
   endif()
@@ -244,17 +250,34 @@ function(weir_skip_test name why)
   set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
 
-# weir_loader_tests(): the grid loader and its tests with the pretended CUDA runtime of tests/fake_cuda/, as the program
-# weir_tests_loader, which needs CUDA's headers and no device.
+# weir_loader_tests(): the grid loader, what takes slabs from a device, and their tests with the pretended CUDA runtime of
+# tests/fake_cuda/, as the program weir_tests_loader, which needs CUDA's headers and no device.
 function(weir_loader_tests)
   set(root ${PROJECT_SOURCE_DIR})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
                                       ${root}/tests/fake_cuda/*.cpp)
   add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/gpu/cuda/push/device_slabs.cpp
                                    ${root}/tests/cuda/grid_loader_test.cpp)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
   target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
   weir_add_gtests(weir_tests_loader)
+endfunction()
+
+# weir_coder_tests(): conversions whose packed blocks a device surveys and encodes, with the pretended CUDA runtime and the
+# kernels' steps on the host, as the program weir_tests_coder, which needs CUDA's headers and no device.
+function(weir_coder_tests)
+  set(root ${PROJECT_SOURCE_DIR})
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_coder/*.cpp ${root}/gpu/cuda/encode/*.cpp)
+  add_executable(weir_tests_coder ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
+                                  ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/load/pinned_memory.cpp
+                                  ${root}/tests/compressor/support/memory_volume.cpp
+                                  ${root}/tests/compressor/support/crash_file_system.cpp
+                                  ${root}/tests/compressor/support/hard_cases.cpp)
+  target_compile_definitions(weir_tests_coder PRIVATE WEIR_HAVE_CUDA)
+  target_include_directories(weir_tests_coder SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
+  target_link_libraries(weir_tests_coder PRIVATE weir_compressor weir_test_support GTest::gtest_main)
+  weir_add_gtests(weir_tests_coder)
 endfunction()
 
 # weir_benchmarks(): every bench/NAME.cpp as the Google Benchmark program NAME in the build folder's bench/.

@@ -25,7 +25,9 @@ constexpr std::int64_t kRegionsAtATime = 4;
 /// What one thread has seen; the order of merging does not matter.
 class DifferenceTally {
  public:
-  void add_leaf(const Block& block, const NvdbGrid& grid, const NodeLattice& leaves, const Index3& leaf) {
+  // `marks_missing`: a source voxel may be missing_value().
+  void add_leaf(const Block& block, const NvdbGrid& grid, const NodeLattice& leaves, const Index3& leaf,
+                bool marks_missing) {
     const Box node = leaves.node_box(leaf);
     const Box inside = leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node, inside, 0.0F, source_);
@@ -37,6 +39,9 @@ class DifferenceTally {
     nonfinite_decoded_ += difference.nonfinite_decoded;
     different_ += difference.different;
     nonfinite_different_ += difference.nonfinite_different;
+    zeros_lost_ += difference.zeros_lost;
+    zeros_ += zeros_inside(node, inside);
+    if (marks_missing && difference.nonfinite > 0) count_missing(node, inside);
     // Voxels outside are zeros, which would widen the range.
     widen(inside == node ? difference.range : range_inside(node, inside));
     if (difference.max_abs > 0.0 && difference.max_abs >= max_abs_) {
@@ -50,6 +55,10 @@ class DifferenceTally {
     nonfinite_decoded_ += other.nonfinite_decoded_;
     different_ += other.different_;
     nonfinite_different_ += other.nonfinite_different_;
+    missing_ += other.missing_;
+    missing_different_ += other.missing_different_;
+    zeros_ += other.zeros_;
+    zeros_lost_ += other.zeros_lost_;
     widen(other.range_);
     if (other.max_abs_ > 0.0) offer_maximum(other.max_abs_, other.max_abs_at_);
   }
@@ -62,6 +71,10 @@ class DifferenceTally {
     c.nonfinite_decoded = nonfinite_decoded_;
     c.different = different_;
     c.nonfinite_different = nonfinite_different_;
+    c.missing = missing_;
+    c.missing_different = missing_different_;
+    c.zeros = zeros_;
+    c.zeros_lost = zeros_lost_;
     if (c.finite > 0) c.range = range_;
     if (max_abs_ > 0.0) c.max_abs_at = max_abs_at_;
     const MinMax range = c.range.value_or(MinMax{0.0F, 0.0F});
@@ -89,6 +102,22 @@ class DifferenceTally {
         for (std::int64_t x = inside.lo.x; x < inside.hi.x; ++x) visit(Index3{x, y, z});
       }
     }
+  }
+
+  std::uint64_t zeros_inside(const Box& node, const Box& inside) const {
+    if (inside == node) return static_cast<std::uint64_t>(std::count(source_.begin(), source_.end(), 0.0F));
+    std::uint64_t zeros = 0;
+    for_each_inside(inside, [&](const Index3& i) { zeros += source_[position(i - node.lo)] == 0.0F ? 1 : 0; });
+    return zeros;
+  }
+
+  void count_missing(const Box& node, const Box& inside) {
+    for_each_inside(inside, [&](const Index3& i) {
+      const std::size_t at = position(i - node.lo);
+      if (!is_missing(source_[at])) return;
+      ++missing_;
+      if (!is_missing(decoded_[at])) ++missing_different_;
+    });
   }
 
   MinMax range_inside(const Box& node, const Box& inside) const {
@@ -137,6 +166,10 @@ class DifferenceTally {
   std::uint64_t nonfinite_decoded_ = 0;
   std::uint64_t different_ = 0;
   std::uint64_t nonfinite_different_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t missing_different_ = 0;
+  std::uint64_t zeros_ = 0;
+  std::uint64_t zeros_lost_ = 0;
   LeafValues source_{};
   LeafValues decoded_{};
 };
@@ -173,6 +206,7 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
   std::vector<Box> boxes;
   for (std::int64_t i = 0; i < plan.size(); ++i) boxes.push_back(plan.voxel_box(plan.leaf_box(i)));
 
+  const bool marks_missing = source.info().mapping.marks_missing();
   tbb::enumerable_thread_specific<DifferenceTally> tallies;
   StreamOptions stream;
   stream.cancel = options.cancel;
@@ -184,8 +218,9 @@ Comparison compare_volumes(VolumeSource& source, const NvdbGrid& grid, const std
   }
   const ConversionLoss loss = stream_blocks(source, boxes, stream, [&](const Block& block) {
     const TraceSpan span(options.trace, "compare", block.values.size_bytes());
-    for_each_leaf(plan.lattice, plan.leaf_box(static_cast<std::int64_t>(block.index)), options.release_pages,
-                  [&](const Index3& leaf) { tallies.local().add_leaf(block, grid, plan.lattice, leaf); });
+    for_each_leaf(
+        plan.lattice, plan.leaf_box(static_cast<std::int64_t>(block.index)), options.release_pages,
+        [&](const Index3& leaf) { tallies.local().add_leaf(block, grid, plan.lattice, leaf, marks_missing); });
   });
   DifferenceTally total;
   for (const DifferenceTally& tally : tallies) total.merge(tally);

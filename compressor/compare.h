@@ -28,10 +28,14 @@ struct CompareOptions {
 struct Comparison {
   std::uint64_t voxels = 0;
   std::uint64_t finite = 0;               ///< source voxels that are finite: the error is over these
-  std::uint64_t nonfinite = 0;            ///< source voxels that are NaN or infinite
+  std::uint64_t nonfinite = 0;            ///< source voxels that are NaN or infinite, or hold no data
+  std::uint64_t missing = 0;              ///< those that hold no data
   std::uint64_t nonfinite_decoded = 0;    ///< finite source voxels that read NaN or infinite; not in the error's sums
   std::uint64_t different = 0;            ///< finite source voxels that do not read bit for bit
   std::uint64_t nonfinite_different = 0;  ///< the same of those that are not finite: replaced, or dropped
+  std::uint64_t missing_different = 0;    ///< and of those that hold no data
+  std::uint64_t zeros = 0;                ///< source voxels that are 0
+  std::uint64_t zeros_lost = 0;           ///< those that read another value
   std::optional<MinMax> range;            ///< of the finite source voxels
   std::optional<Index3> max_abs_at;       ///< of those with the largest error the first in x-fastest order; none for 0
   Certificate error;                      ///< lossless: different = 0, whatever became of what is not finite

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compressor/conversion_control.h"
+#include "compressor/look_ahead.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"
@@ -40,14 +41,37 @@ Error with_its_cause(const Error& error, const SourceInfo& info) {
   return error;
 }
 
+// Where a volume is not what it looks like, by what its file says of axes and values.
+void say_axes(const SourceInfo& info, const Notice& notice) {
+  const std::string volume = cat(info.path, ": ", info.dataset, info.dataset.empty() ? "" : ": ");
+  for (std::size_t i = 0; notice && i < info.details.axes.size(); ++i) {
+    const std::string& note = info.details.axes.at(i).note;
+    const std::string& label = info.axis_labels.at(i);
+    if (note.empty()) continue;
+    const Message line = cat(volume, "axis ", "xyz"[i], label.empty() ? "" : " (", label, label.empty() ? "" : ")",
+                             info.details.axes.at(i).reversed ? " " : ": ", note);
+    const bool irregular = !info.details.axes.at(i).coordinates.empty();
+    notice(irregular ? compose(line, ", ", info.spacing.at(i), " apart; ", option("spacing"), " sets another distance")
+                     : line);
+  }
+  for (const std::string& note : {info.details.order_note, info.details.values_note, info.details.chunks_note}) {
+    if (notice && !note.empty()) notice(cat(volume, note));
+  }
+  if (!notice || info.details.units_note.empty()) return;
+  notice(compose(volume, info.details.units_note, ": positions are in different units; ", option("spacing"), " and ",
+                 option("origin"), " set them in one"));
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
+  say_axes(info, control.notice);
   const Box domain = info.domain();
   const std::size_t processors = processors_or_all(options.processors);
-  const std::uint64_t resident = held + source.working_bytes();
+  const std::uint64_t coding = control.coder == nullptr ? 0 : control.coder->host_bytes();
+  const std::uint64_t resident = held + source.working_bytes() + coding;
   std::size_t threads =
       choose_threads(options.threads, processors, options.memory, resident, domain, region_bytes(options));
   if (options.threads == 0 && threads < processors && control.notice) {
@@ -85,10 +109,24 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     if (journal != nullptr) return journal->open(name);
     return work.spill();
   };
-  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions, team), {}};
+  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions, team), {}, {}};
   if (visibility) stores.faces.emplace(spill("faces"), leaves);
-  const std::optional<LadderAim> ladders = surveyed_ladders(options, info);
-  if (ladders) stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
+  std::optional<LadderAim> ladders = surveyed_ladders(options, info);
+  if (ladders) {
+    stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
+    LadderState& state = journal == nullptr ? stores.ladders : journal->state.ladders;
+    if (!state.decided && surveyed.done.empty()) {
+      if (const auto outlook = look_ahead(source, reading, stores.rows, options, *ladders, stream)) {
+        state = decided_by(*outlook);
+        state.built = true;
+      }
+    }
+    if (state.decided && state.built) {
+      ladders->near_everywhere = state.near_rungs;
+      ladders->window = state.window();
+    }
+    ladders->coder = control.coder;
+  }
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
     return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),

@@ -9,6 +9,7 @@
 #include "format/base/error.h"
 #include "format/base/message.h"
 #include "format/base/trace.h"
+#include "format/packed/block_coder.h"
 #include "ingest/plan/block_stream.h"
 
 namespace weir {
@@ -20,8 +21,9 @@ struct ConversionControl {
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   Notice notice;
   std::function<void(std::uint64_t bytes)>
-      planned;             ///< of the file, before room is taken for it; again where it is replanned
-  Trace* trace = nullptr;  ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
+      planned;                  ///< of the file, before room is taken for it; again where it is replanned
+  BlockCoder* coder = nullptr;  ///< surveys and encodes packed blocks, where there is one; the bytes are the same
+  Trace* trace = nullptr;       ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
 };
 
 /// For passes that `control`, which must outlive them, watches and stops.

@@ -41,19 +41,22 @@ std::string states_of(std::span<const FileState> files) {
 std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
 
 std::string budget_text(const Budget& budget) {
-  return cat(static_cast<int>(budget.kind), ' ', exact(budget.rate), ' ', budget.bytes, ' ', exact(budget.target));
+  return cat(static_cast<int>(budget.kind), ' ', exact(budget.rate), ' ', budget.bytes, ' ', exact(budget.target),
+             budget.at_most ? " at most" : "");
 }
 
 std::string mapping_text(const ValueMapping& mapping) {
   std::string text = cat(exact(mapping.scale), ' ', exact(mapping.offset));
   for (const StoredValue& value : mapping.missing) text += cat(' ', stored_value_text(value));
+  if (mapping.keeps_missing) text += " as data";
   return text;
 }
 
 }  // namespace
 
 std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options) {
-  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "within", "direct-io", "overwrite"})
+  for (const char* name :
+       {"output", "memory", "threads", "bandwidth", "work-dir", "within", "direct-io", "overwrite", "backend"})
     options.erase(name);
   return options;
 }
@@ -85,6 +88,8 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"format", source.format},
       {"dataset", source.dataset},
       {"index", index},
+      {"component", source.details.component},
+      {"levels", source.details.levels},
       {"extent", position(source.extent)},
       {"index origin", position(source.index_origin)},
       {"type", std::string(scalar_name(source.type))},
@@ -99,6 +104,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"background", options.background ? exact(static_cast<double>(*options.background)) : "found"},
       {"paper background", options.paper_background ? "yes" : "no"},
       {"nonfinite", policy_name(options.non_finite)},
+      {"missing policy", missing_policy_name(options)},
       {"weir", cat(options.provenance.version, ' ', options.provenance.commit)},
   };
   for (const auto& [name, value] : deciding_options(options.provenance.options)) identity["--" + name] = value;

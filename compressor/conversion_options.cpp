@@ -44,4 +44,18 @@ std::string policy_name(NonFinitePolicy policy) {
   throw Error(ErrorKind::internal, "unknown policy for non-finite values");
 }
 
+std::string missing_policy_name(const ConversionOptions& options) {
+  switch (options.missing) {
+    case MissingPolicy::automatic:
+      return options.non_finite == NonFinitePolicy::keep ? "nan" : policy_name(options.non_finite);
+    case MissingPolicy::error:
+      return "error";
+    case MissingPolicy::background:
+      return "background";
+    case MissingPolicy::keep:
+      return "keep";
+  }
+  throw Error(ErrorKind::internal, "unknown policy for missing values");
+}
+
 }  // namespace weir

@@ -30,6 +30,19 @@ Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
 }
 
+void describe_details(const FieldDetails& details, Sidecar::Source& source) {
+  source.long_name = details.long_name;
+  source.component = details.component;
+  if (details.time) source.time = Sidecar::Time{details.time->value, details.time->units, details.time->calendar};
+  for (std::size_t i = 0; i < details.axes.size(); ++i) {
+    source.axis_units.at(i) = details.axes.at(i).units;
+    if (details.axes.at(i).reversed) source.reversed_axes.emplace_back(1, "xyz"[i]);
+  }
+  const auto& [x, y, z] = details.axes;
+  if (x.coordinates.empty() && y.coordinates.empty() && z.coordinates.empty()) return;
+  source.irregular_axes = {x.coordinates, y.coordinates, z.coordinates};
+}
+
 }  // namespace
 
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
@@ -49,8 +62,10 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   sidecar.source.unit_si = info.unit_si;
   sidecar.source.scale = info.mapping.scale;
   sidecar.source.offset = info.mapping.offset;
+  describe_details(info.details, sidecar.source);
   sidecar.source.files_digest = info.files_digest;
-  sidecar.missing.count = survey.missing;
+  sidecar.missing.count = info.mapping.keeps_missing ? survey.loss.unmarked : survey.missing;
+  sidecar.missing.policy = info.mapping.keeps_missing ? "keep" : missing_policy_name(options);
   for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));
   sidecar.conversion_loss = {survey.loss.inexact, survey.loss.overflow, survey.loss.max_abs_error};
   sidecar.histogram = histogram_of(survey);
@@ -68,10 +83,14 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
   sidecar.budget.kind = size.kind;
   if (size.kind == "rate") sidecar.budget.requested = options.budget.rate;
   if (options.budget.by_error()) sidecar.budget.requested = options.budget.target;
+  if (options.budget.kind == Budget::Kind::automatic && size.kind == "psnr") {
+    sidecar.budget.requested = kDefaultLeastDb;
+  }
   if (size.kind == "size") sidecar.budget.requested = static_cast<double>(options.budget.bytes);
   sidecar.budget.file_bytes = size.bytes;
   sidecar.budget.dense_float32_bytes = dense_bytes;
   sidecar.budget.rate = static_cast<double>(dense_bytes) / static_cast<double>(size.bytes);
+  sidecar.zeros = {file.plan.zeros, file.plan.tiles.zeros_lost + encoded.errors.zeros_lost};
   sidecar.selection = {metric_name(options.metric),
                        fill_name(options.fill),
                        options.brick,

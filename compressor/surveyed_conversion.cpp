@@ -13,13 +13,15 @@
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_identity.h"
+#include "compressor/default_notice.h"
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
+#include "compressor/refused_values.h"
+#include "compressor/select/budget_outlook.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
-#include "compressor/select/near_use.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
 #include "format/base/error.h"
@@ -35,23 +37,6 @@ namespace weir {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
-  if (survey.non_finite == 0) return;
-  const Index3& at = survey.first_non_finite;
-  const std::uint64_t beyond = std::min(survey.loss.overflow, survey.non_finite);
-  const std::uint64_t others = survey.non_finite - beyond;
-  std::string what;
-  if (others > 0) what = cat(others, others == 1 ? " voxel is" : " voxels are", " NaN or infinite");
-  if (beyond > 0) {
-    what = cat(what, others > 0 ? " and " : "", beyond, beyond == 1 ? " voxel is" : " voxels are",
-               " finite but beyond the 3.4e+38 of float32");
-  }
-  throw Error(ErrorKind::input, compose(info.path, ": ", what, ", the first (", survey.first_non_finite_value,
-                                        beyond > 0 ? " as float32" : "", ") at ", at.x, ",", at.y, ",", at.z,
-                                        beyond > 0 ? "; scale the values, or choose" : "; choose", " ",
-                                        option("nonfinite", "background"), " or ", option("nonfinite", "keep")));
-}
 
 Background choose_background(const ConversionOptions& options, const Survey& survey, const RowStore& rows,
                              VolumeSource& source, const BlockPlan& plan, const StreamOptions& stream) {
@@ -88,13 +73,16 @@ FileRequest request_for(const ConversionOptions& options, const Survey& survey, 
   return request;
 }
 
-PackedRequest packed_request(const ConversionOptions& options, const Survey& survey, const SourceInfo& info) {
+// `background` takes the place of what is not finite.
+PackedRequest packed_request(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
+                             float background) {
   PackedRequest packed;
   packed.preview = options.preview;
   packed.lattice = lattice_of(info);
   BlockConstants& c = packed.constants;
-  c.minimum = survey.min;
-  c.maximum = survey.max;
+  const bool replaced = options.non_finite != NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
+  c.minimum = replaced ? std::min(survey.min, background) : survey.min;
+  c.maximum = replaced ? std::max(survey.max, background) : survey.max;
   c.coarsest = coarsest_step(survey.min, survey.max);
   if (packed.lattice) {
     c.lattice_minimum = packed.lattice->minimum;
@@ -105,6 +93,14 @@ PackedRequest packed_request(const ConversionOptions& options, const Survey& sur
   c.below_more = kBelowMore;
   c.tables = built_in_tables();
   return packed;
+}
+
+// Fewer voxels have trees that take most of what the default rate gives: what it would keep of them is no result. What
+// is weighed by a scene, or chosen by the paper's distances, has no such bound, and FP4 does not reach every one.
+bool raises_default(const ConversionOptions& options, const Box& domain) {
+  constexpr std::int64_t kSmall = std::int64_t{128} * 128 * 128;
+  return options.budget.kind == Budget::Kind::automatic && domain.voxels() < kSmall && !options.scene &&
+         options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
 // What the squares over `finite` voxels may sum up to for a PSNR.
@@ -180,6 +176,7 @@ class SurveyedConversion {
     const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
+    say_quality();
     digest(encoded);
     sidecar_.timing.encode_s = seconds_since(encoding);
     commit(encoded);
@@ -198,7 +195,7 @@ class SurveyedConversion {
 
   // The background and the source's digest, at the same time.
   void find_background() {
-    if (options_.non_finite == NonFinitePolicy::error) refuse_non_finite(survey_, info_);
+    refuse_values(options_, survey_, info_);
     Journal* const journal = parts_.journal;
     const bool known = journal != nullptr && journal->state.background;
     const auto find = [&] {
@@ -218,28 +215,58 @@ class SurveyedConversion {
     if (journal->resumable()) journal->save();
   }
 
-  // Packed blocks of which the background is a part, and those of which nearly everything is kept.
-  void finish_ladders(const FileRequest& request) {
+  // Packed blocks of which the background is a part, and those of which nearly everything is kept. Sets the window of
+  // the request.
+  void finish_ladders(FileRequest& request) {
     std::optional<LadderAim> aim = surveyed_ladders(options_, info_);
     if (!aim) return;
+    LadderState& state = ladders();
+    if (aim->has_rungs() && !state.decided) state = decided_by(outlook_of(request, stores_.rows));
+    if (aim->near_rungs && state.near_rungs && !state.built) state.built = state.rebuilt = true;
+    request.packed.window = state.window();
     MissingLadders missing;
+    missing.all = state.rebuilt;
     missing.filled = !aim->background && !aim->keeps_non_finite && survey_.missing + survey_.non_finite > 0;
-    if (aim->near_rungs && uses_near_rungs(request, stores_.rows)) missing.near = NearRungs::yes;
-    if (!missing.filled && missing.near == NearRungs::no) return;
-    aim->background = background_.value;
-    complete_ladders(parts_.source, reading_.survey, stores_.rows, *aim, missing, stream_);
+    complete(*aim, missing);
   }
+
+  // The cut of the file that was planned lies outside the window of the request: another one is taken, at last none.
+  void move_window(FileRequest& request, double cut) {
+    LadderState& state = ladders();
+    const auto window = state.moves++ == 0 ? KeyWindow::about(cut) : std::nullopt;
+    state.centre = window ? std::optional(window->centre) : std::nullopt;
+    request.packed.window = window;
+    if (!state.built) return;  // all rungs are there
+    state.rebuilt = true;
+    complete(*surveyed_ladders(options_, info_), {false, true});
+  }
+
+  void complete(LadderAim aim, const MissingLadders& missing) {
+    if (!missing.all && !missing.filled) return;
+    const LadderState& state = ladders();
+    if (!aim.background) aim.background = background_.value;
+    if (state.built) {
+      aim.near_everywhere = state.near_rungs;
+      aim.window = state.window();
+    }
+    // What an earlier process saved of them must not be taken for what is built now.
+    if (missing.all && parts_.journal != nullptr && parts_.journal->resumable()) parts_.journal->save_now();
+    complete_ladders(parts_.source, reading_.survey, stores_.rows, aim, missing, stream_);
+  }
+
+  LadderState& ladders() { return parts_.journal == nullptr ? stores_.ladders : parts_.journal->state.ladders; }
 
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.
   FileRequest make_request() {
     FileRequest request = request_for(options_, survey_, background_.value, info_.domain());
-    request.packed = packed_request(options_, survey_, info_);
+    request.packed = packed_request(options_, survey_, info_, request.rule.fill.background);
     if (parts_.seen) {
       shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.work, stores_.rows);
       stores_.faces.reset();
       request.rule.visibility = &*parts_.seen;
     }
-    request.squared_error = allowed_error(options_.budget, survey_, parts_.seen ? shown_.finite : survey_.finite);
+    if (raises_default(options_, info_.domain())) request.budget.target = kDefaultLeastDb;
+    request.squared_error = allowed_error(request.budget, survey_, parts_.seen ? shown_.finite : survey_.finite);
     return request;
   }
 
@@ -251,11 +278,21 @@ class SurveyedConversion {
         encode_file({parts_.source, reading_.encode, reading_.reading, stores_.rows, parts_.work, parts_.output,
                      parts_.journal, options_.scene ? visible_values(options_.scene->scene) : "", stream_,
                      [&] { team_.run([&] { start_pass(parts_.control, "encode", voxels); }); }, parts_.control.notice,
-                     parts_.control.planned},
+                     parts_.control.planned, [&](FileRequest& outside, double cut) { move_window(outside, cut); },
+                     parts_.control.coder},
                     std::move(request));
     const Message& notice = encoded.file.size.notice;
-    if (!notice.empty() && parts_.control.notice) parts_.control.notice(notice);
+    // Of a lossless file that nobody asked for say_quality says all.
+    const bool own_choice = options_.budget.kind == Budget::Kind::automatic && encoded.file.size.kind == "lossless";
+    if (!notice.empty() && !own_choice && parts_.control.notice) parts_.control.notice(notice);
     return encoded;
+  }
+
+  // What nobody asked for is said, by what it does to the values.
+  void say_quality() {
+    if (options_.budget.kind != Budget::Kind::automatic || !parts_.control.notice) return;
+    const Message line = default_notice(sidecar_, options_.output);
+    if (!line.empty()) parts_.control.notice(line);
   }
 
   // All of the file but its leaves.

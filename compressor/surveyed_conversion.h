@@ -8,6 +8,7 @@
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_options.h"
 #include "compressor/packed/ladder_builder.h"
+#include "compressor/packed/ladder_state.h"
 #include "compressor/plan/reading_plan.h"
 #include "compressor/resume/journal.h"
 #include "compressor/resume/work_directory.h"
@@ -54,6 +55,7 @@ std::uint64_t region_bytes(const ConversionOptions& options);
 struct SurveyStores {
   RowStore rows;
   std::optional<LeafStore<LeafFaces>> faces;  ///< with a scene; given back once it is used
+  LadderState ladders;                        ///< of packed blocks, as the survey built them
 };
 
 /// Writes the volume that `survey` and `stores` tell of, and its sidecar, which it returns. `started` is when the

@@ -116,6 +116,7 @@ void Service::run() {
     log_.error("state-file-fault", {{"reason", error.what()}});
   }
   runner_.configure(config_);
+  runner_.resume_thumbnails();
   watch_trees();
   history_.keep(config_.service.history_days);
   await_signal();

@@ -1,6 +1,7 @@
 #include "daemon/service_control.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -35,8 +36,9 @@ JobView view_of(const Job& job) {
   view.bytes_written = job.result.bytes_written;
   view.peak_rss_bytes = job.result.peak_rss_bytes;
   for (const JobOutput& output : job.result.outputs) {
-    view.outputs.push_back({output.path, output.bytes, output.rate, output.psnr_db, !output.psnr_db,
-                            !output.thumbnail.empty(), output.max_error, output.min, output.max});
+    const bool finite = output.psnr_db && std::isfinite(*output.psnr_db);
+    view.outputs.push_back({output.path, output.bytes, output.rate, finite ? output.psnr_db : std::nullopt,
+                            !output.psnr_db, !output.thumbnail.empty(), output.max_error, output.min, output.max});
   }
   return view;
 }
@@ -158,7 +160,7 @@ void ServiceControl::retry_rest(std::chrono::milliseconds pause) {
 JobChange ServiceControl::cancel(std::int64_t id) {
   const std::optional<Job> job = store_.job(id);
   if (!job) return JobChange::no_such_job;
-  if (!store_.cancel(id)) return JobChange::wrong_state;
+  if (!store_.cancel(id)) return runner_.end_rendering(*job) ? JobChange::made : JobChange::wrong_state;
   runner_.cancelled(*job);
   return JobChange::made;
 }

@@ -231,7 +231,7 @@ void WatchedTree::look(const std::string& path, Time now) {
   const JobStore::Observation seen = store_.observe(config_.label, path, sample.identity, options_);
   if (seen.change == JobStore::Change::created) {
     log_.info("discovered", {{"job", seen.job.id}, {"source", path}, {"bytes", sample.identity.bytes}});
-  } else if (seen.change == JobStore::Change::changed && seen.before == JobState::running) {
+  } else if (seen.change == JobStore::Change::changed) {  // it may run, or its thumbnails be rendered
     superseded_.push_back(seen.job.id);
   }
   if (seen.job.state == JobState::running && tracked_.at(path).written && may_hide_a_write(seen.job)) {

@@ -5,8 +5,10 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/amrex/amrex_source.h"
 #include "ingest/drivers/hdf5_driver.h"
 #include "ingest/drivers/hdf5_signature.h"
+#include "ingest/files/input_directory.h"
 #include "ingest/files/input_file.h"
 #include "ingest/meta_image/meta_image_source.h"
 #include "ingest/nifti/nifti_source.h"
@@ -16,8 +18,10 @@
 #include "ingest/source/source_view.h"
 #include "ingest/vdb/nvdb_source.h"
 #include "ingest/vdb/vdb_source.h"
+#include "ingest/vectors/magnitude_source.h"
 #include "ingest/vtk/vtk_legacy_source.h"
 #include "ingest/vtk/vtk_xml_source.h"
+#include "ingest/zarr/zarr_source.h"
 
 namespace weir {
 namespace {
@@ -36,26 +40,47 @@ constexpr std::array kFormats{
                  .container = true},
     SourceFormat{
         .name = "nifti", .recognises = recognises_nifti, .open = open_nifti, .list = list_nifti, .container = true},
-    SourceFormat{
-        .name = "openvdb", .recognises = recognises_vdb, .open = open_vdb, .list = list_vdb, .container = true},
+    SourceFormat{.name = "openvdb",
+                 .recognises = recognises_vdb,
+                 .open = open_vdb,
+                 .list = list_vdb,
+                 .container = true,
+                 .vectors = true},
     SourceFormat{
         .name = "nanovdb", .recognises = recognises_nvdb, .open = open_nvdb, .list = list_nvdb, .container = true},
     SourceFormat{.name = "vtk-xml",
                  .recognises = recognises_vtk_xml,
                  .open = open_vtk_xml,
                  .list = list_vtk_xml,
-                 .container = true},
+                 .container = true,
+                 .vectors = true},
     SourceFormat{.name = "vtk-legacy",
                  .recognises = recognises_vtk_legacy,
                  .open = open_vtk_legacy,
                  .list = list_vtk_legacy,
-                 .container = true},
+                 .container = true,
+                 .vectors = true},
+    SourceFormat{.name = "amrex",
+                 .recognises = recognises_amrex,
+                 .open = open_amrex,
+                 .list = list_amrex,
+                 .container = true,
+                 .levels = true,
+                 .directory = true},
+    SourceFormat{.name = "zarr",
+                 .recognises = recognises_zarr,
+                 .open = open_zarr,
+                 .list = list_zarr,
+                 .container = true,
+                 .directory = true,
+                 .chunks = true},
     // Asked late: its signature may lie anywhere behind a user block.
     SourceFormat{.name = "hdf5",
                  .recognises = recognises_hdf5,
                  .open = open_by_hdf5_driver,
                  .list = list_by_hdf5_driver,
-                 .container = true},
+                 .container = true,
+                 .vectors = true},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },
@@ -78,14 +103,60 @@ void refuse_foreign_options(const std::string& path, const SourceFormat& format,
   }
   if (!format.container) {
     refuse(!options.dataset.empty(), option("dataset"), "files that hold several volumes");
-    refuse(!options.index.empty(), option("index"), "arrays of more than three axes");
+    refuse(!options.magnitude.empty(), option("magnitude"), "files that hold several volumes");
+    refuse(!options.index.empty() || !options.index_choices.empty(), option("index"), "arrays of more than three axes");
   }
+  if (!format.vectors)
+    refuse(options.component.has_value(), option("component"), "arrays of vectors in HDF5, VTK and OpenVDB files");
+  if (!format.levels) {
+    refuse(options.level.has_value(), option("level"), "AMReX plotfiles");
+    refuse(options.upsampling.has_value(), option("upsample"), "AMReX plotfiles");
+  }
+  if (!format.chunks) {
+    refuse(options.missing_chunks != MissingChunks::fill, option("missing-chunks", "error"), "Zarr arrays");
+  }
+}
+
+/// The position that options.index_choices stand for in `path`.
+std::vector<std::int64_t> chosen_position(const std::string& path, const SourceFormat& format,
+                                          const SourceOptions& options) {
+  const std::vector<DatasetInfo> datasets = format.list(path, options);
+  const DatasetInfo& dataset = dataset_of_choices(path, datasets, options);
+  const auto positions = chosen_positions(dataset.name.empty() ? path : cat(path, ": ", dataset.name),
+                                          dataset.index_axes, options.index_choices);
+  if (positions.size() == 1) return positions.front();
+  throw usage_error(compose(path, ": ", option("index"), " stands for ", positions.size(),
+                            " volumes, and one is read here; give one position on each axis"));
+}
+
+std::unique_ptr<VolumeSource> open_file(const std::string& path, const SourceOptions& options);
+
+std::unique_ptr<VolumeSource> open_magnitude(const std::string& path, const SourceOptions& options) {
+  if (options.keeps_missing) {
+    throw Error(ErrorKind::usage, compose(path, ": ", option("magnitude"), " makes no length of values that stand for ",
+                                          "\"no data\"; leave out ", option("missing-policy", "keep")));
+  }
+  std::vector<std::unique_ptr<VolumeSource>> components;
+  SourceOptions of_one = options;
+  of_one.magnitude.clear();
+  for (const std::string& dataset : options.magnitude) {
+    of_one.dataset = dataset;
+    components.push_back(open_file(path, of_one));
+  }
+  return magnitude_of(std::move(components));
 }
 
 std::unique_ptr<VolumeSource> open_file(const std::string& path, const SourceOptions& options) {
   const SourceFormat& format = format_of(path);
   refuse_foreign_options(path, format, options);
-  return format.open(path, options);
+  if (!options.magnitude.empty()) return open_magnitude(path, options);
+  if (options.dataset.find('\n') != std::string::npos) {
+    throw usage_error(compose(path, ": ", option("dataset"), " is given more than once, and one volume is read here"));
+  }
+  if (options.index_choices.empty() || !options.index.empty()) return format.open(path, options);
+  SourceOptions chosen = options;
+  chosen.index = chosen_position(path, format, options);
+  return format.open(path, chosen);
 }
 
 }  // namespace
@@ -94,14 +165,21 @@ std::span<const SourceFormat> source_formats() { return kFormats; }
 
 const SourceFormat& format_of(const std::string& path) {
   std::array<std::byte, kMagicBytes> bytes{};
-  InputFile file(path, DirectIo::off);
+  const auto directory = head_in_directory(path);
+  InputFile file(directory.value_or(path), DirectIo::off);
   const auto head = std::span(bytes).first(std::min<std::uint64_t>(kMagicBytes, file.size()));
   file.read_buffered(0, head, ReadPath::through);
-  return *std::find_if(kFormats.begin(), kFormats.end(),
-                       [&](const SourceFormat& f) { return f.recognises(path, head); });
+  const auto format = std::find_if(kFormats.begin(), kFormats.end(), [&](const SourceFormat& f) {
+    return (f.directory || !directory) && f.recognises(path, head);
+  });
+  if (format == kFormats.end()) {
+    throw input_error(path, "is a directory, and its Header is not that of an AMReX plotfile; name a file in it");
+  }
+  return *format;
 }
 
-std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options) {
+std::unique_ptr<VolumeSource> open_source(const std::string& named, const SourceOptions& options) {
+  const std::string path = without_last_slash(named);
   auto source =
       place_source(options.stack ? open_stack(path, options, open_source) : open_file(path, options), options);
   const ScalarType type = source->info().type;
@@ -109,7 +187,8 @@ std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceO
     throw Error(ErrorKind::usage, compose(path, ": ", option("missing"), " is ", stored_value_text(*options.missing),
                                           ", and no ", scalar_name(type), " is; give a value of that type"));
   }
-  return options.roi ? crop_source(std::move(source), *options.roi) : std::move(source);
+  if (!options.roi) return source;
+  return crop_to(std::move(source), *options.roi);
 }
 
 }  // namespace weir

@@ -18,7 +18,8 @@ namespace weir {
 /// One format. All functions are thread-safe.
 struct SourceFormat {
   std::string_view name;  ///< as in SourceInfo::format
-  /// Whether a file is of this format, by its path and its first kMagicBytes bytes (fewer in a shorter file).
+  /// Whether a file is of this format, by its path and its first kMagicBytes bytes (fewer in a shorter file); a
+  /// directory by those of the file in it that says what it is (kDirectoryHeads).
   bool (*recognises)(std::string_view path, std::span<const std::byte> head);
   std::unique_ptr<VolumeSource> (*open)(const std::string& path, const SourceOptions& options);
   /// What the file holds, in the file's order. Reads no values. Throws what open throws, but for a choice
@@ -26,6 +27,10 @@ struct SourceFormat {
   std::vector<DatasetInfo> (*list)(const std::string& path, const SourceOptions& options);
   bool raw_shape = false;  ///< takes --dims, --type, --endian and --offset
   bool container = false;  ///< takes --dataset and --index
+  bool vectors = false;    ///< takes --component
+  bool levels = false;     ///< takes --level and --upsample
+  bool directory = false;  ///< its inputs may be directories, which a file in them names (kDirectoryHeads)
+  bool chunks = false;     ///< takes --missing-chunks
 };
 
 inline constexpr std::size_t kMagicBytes = 16;
@@ -33,7 +38,8 @@ inline constexpr std::size_t kMagicBytes = 16;
 /// In the order they are asked; the last one takes every file.
 std::span<const SourceFormat> source_formats();
 
-/// The format that opens `path`. Throws Error(input) where the file cannot be read at all.
+/// The format that opens `path`, a file or a directory that holds a file of kDirectoryHeads. Throws Error(input) where
+/// it cannot be read at all.
 const SourceFormat& format_of(const std::string& path);
 
 /// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi.

@@ -18,7 +18,7 @@ mkdir -p demo
 "$weir" convert "$volume" --rate 8 -o demo/cloud.nvdb --overwrite
 "$weir" verify demo/cloud.nvdb
 "$weir" inspect demo/cloud.nvdb
-"$weir" render demo/cloud.nvdb -o demo/cloud.png --size 640x480 --spp 32 --colormap white
+"$weir" render demo/cloud.nvdb -o demo/cloud.png --size 640x480 --spp 32 --colormap white --overwrite
 
 cat <<TEXT
 

@@ -1,4 +1,4 @@
-// --log-level, of every command.
+// --log-level and --quiet, of every command.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -15,6 +15,8 @@ void add_log_level(CLI::App& command) {
           "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->default_str("info");
+  command.add_flag_callback(
+      "-q,--quiet", [] { spdlog::set_level(spdlog::level::err); }, "errors only, and no progress: --log-level error");
 }
 
 }  // namespace weir

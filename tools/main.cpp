@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -11,11 +12,15 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/options/help_words.h"
+#include "tools/options/parse_message.h"
 #include "tools/report/printable.h"
 
 namespace {
@@ -46,8 +51,6 @@ void log_in_lines() {
   spdlog::set_formatter(std::move(formatter));
 }
 
-std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -65,6 +68,7 @@ int main(int argc, char** argv) {
     weir::add_convert(app);
     weir::add_render(app);
     weir::add_play(app);
+    weir::add_view(app);
     weir::add_sample(app);
     weir::add_compare(app);
     weir::add_flip(app);
@@ -74,9 +78,14 @@ int main(int argc, char** argv) {
     weir::add_jobs(app);
     weir::add_status(app);
     weir::add_retry(app);
+    weir::add_cancel(app);
+    weir::add_pause(app);
+    weir::add_resume(app);
     weir::add_completion(app);
     weir::add_man(app);
-    app.parse(argc, argv);
+    std::vector<std::string> words = weir::with_help_option(app, {argv + std::min(argc, 1), argv + argc});
+    std::ranges::reverse(words);  // as parse takes them
+    app.parse(std::move(words));
     if (app.get_subcommands().empty()) {
       return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
     }
@@ -88,7 +97,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
-    return fail(first_line(error.what()) + "; see weir --help", static_cast<int>(weir::ErrorKind::usage));
+    return fail(weir::parse_message(app, error), static_cast<int>(weir::ErrorKind::usage));
   } catch (const weir::ExitStatus& status) {
     return status.code;
   } catch (const weir::Error& error) {

@@ -12,13 +12,13 @@ build=(
   g++ cmake ninja-build git ca-certificates
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
-  libzfp-dev libsqlite3-dev libcairo2-dev pkg-config
+  libzfp-dev libblosc-dev libzstd-dev libjpeg-dev libsqlite3-dev libcairo2-dev pkg-config
 )
 package=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
 test=(
   libgtest-dev libnanovdb-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   libopenmpi-dev openmpi-bin
-  python3-h5py python3-netcdf4 python3-nibabel hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
+  python3-h5py python3-netcdf4 python3-nibabel python3-xarray python3-dask python3-zarr python3-urllib3 python3-fsspec hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
   hdf5-filter-plugin-zfp-serial groff-base zsh fish gfortran pkg-config
 )
 check=(libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck)

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # The checks, in three sizes:
-#   tools/test.sh          the tests of the release build.
+#   tools/test.sh          the tests of the release build, but four that take minutes.
 #   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled; the format of C++, the shell
-#                          scripts and the structure of the sources checked; the tests again with AddressSanitizer and
-#                          UndefinedBehaviorSanitizer (but heavy ones) and, where threads run, with ThreadSanitizer; a
-#                          short run of each fuzzer. The tests once more of a build without HDF5, OpenVDB and all else that
-#                          is optional.
-#   tools/test.sh --full   besides, the heavy ones with the sanitizers, the property tests over a thousand volumes, and
-#                          clang-tidy.
+#                          scripts and the structure of the sources checked; the tests of the libraries and the daemon (but
+#                          heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where threads run,
+#                          with ThreadSanitizer; a short run of each fuzzer. The tests of the readers and the command once
+#                          more of a build without HDF5, OpenVDB and all else that is optional.
+#   tools/test.sh --full   besides, those that take minutes, the heavy ones and those of the command with the sanitizers,
+#                          the property tests over a thousand volumes, Zarr against npm's zarrita, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
 # N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
@@ -169,12 +169,12 @@ run_asan() {
     return 0
   fi
   # What measures the process would measure the sanitizer.
-  [[ $size != full ]] || export WEIR_TESTS_LEFT_OUT='*Memory*:*Ceiling*'
+  [[ $size != full ]] || export WEIR_TESTS_LEFT_OUT='*Memory*:*Ceiling*' WEIR_TEST_FOLDERS='format;ingest;compressor;daemon;gpu;tools'
   if build asan; then
     run_fuzzers
     run_tests asan
   fi
-  unset WEIR_TESTS_LEFT_OUT
+  unset WEIR_TESTS_LEFT_OUT WEIR_TEST_FOLDERS
 }
 
 run_property_tests() {
@@ -189,6 +189,16 @@ run_property_tests() {
   done
   ((tests >= 3)) || failed+=("property tests: $tests were found")
   end
+}
+
+# Zarr arrays against what npm's zarrita reads of them.
+run_zarrita() {
+  if ! has npm || ! npm install --prefix build/npm --no-audit --no-fund zarrita@0.7 >"$logs/npm.log" 2>&1; then
+    skip "Zarr against zarrita" "npm is not there, or cannot install it; see $logs/npm.log"
+    return 0
+  fi
+  WEIR_NODE_MODULES=$PWD/build/npm/node_modules check "Zarr against zarrita" build/release/weir_tests_ingest \
+    --gtest_filter='ZarrOracle.*' || true
 }
 
 check_format() {
@@ -231,9 +241,9 @@ if [[ $size != test ]]; then
 fi
 targets=(weir weir_tests)
 [[ $size == test ]] || targets=() # all, with the benchmarks
-[[ $size != full ]] || export WEIR_MANY_FILES=2000 WEIR_KILLS=200
+[[ $size != full ]] || export WEIR_MANY_FILES=2000 WEIR_KILLS=200 WEIR_TESTS_LEFT_OUT=''
 if build release "${targets[@]}"; then run_tests release; fi
-unset WEIR_MANY_FILES WEIR_KILLS
+unset WEIR_MANY_FILES WEIR_KILLS WEIR_TESTS_LEFT_OUT
 if [[ $size != test ]]; then
   if build core; then run_tests core; fi
   run_asan
@@ -241,6 +251,7 @@ if [[ $size != test ]]; then
 fi
 if [[ $size == full ]]; then
   run_property_tests
+  run_zarrita
   check_tidy
 fi
 

@@ -184,7 +184,7 @@ class Bench {
       const auto files = make_posix_file_system();
       std::string file = cat(name, "_", edge_, ".png");
       std::replace(file.begin(), file.end(), ' ', '_');
-      ImageFile(*files, cat(options_.pictures, "/", file)).commit(image, setup_->tone());
+      ImageFile(*files, cat(options_.pictures, "/", file), true).commit(image, setup_->tone());
     }
     if (first_.pixels.empty()) first_ = image;
     double sum = 0;

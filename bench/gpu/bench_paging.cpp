@@ -114,7 +114,6 @@ class Bench {
     RenderOptions render;
     render.width = render.height = options_.size;
     render.levels = options_.levels;
-    wide_.reset();
     setup_ = std::make_unique<RenderSetup>(volume_info(grid(), cells_), cells_, scene_, render);
   }
   const std::optional<LevelsUsed>& levels() const { return setup_->levels(); }
@@ -126,26 +125,22 @@ class Bench {
   Frame draw(BrickVolume& volume, std::uint32_t first, std::uint32_t last, int finest) {
     if (finest == 0)
       return draw_seen(
-          volume, first, last, [](const auto& sampler) { return sampler; }, false);
-    if (!wide_) {
-      setup_->widen_cells();
-      wide_.emplace(setup_->cells().bounds());
-    }
+          volume, first, last, [](const auto& sampler) { return sampler; }, 0);
     const LevelsView<TextureSampler> levels = volume.levels(finest).view();
     return draw_seen(
         volume, first, last,
         [&]<class Fine>(const Fine& fine) {
           return LevelledVolume<Fine, TextureSampler>{fine, levels, setup_->levels()->choice};
         },
-        true);
+        finest);
   }
 
  private:
   template <class Seen>
-  Frame draw_seen(BrickVolume& volume, std::uint32_t first, std::uint32_t last, const Seen& seen, bool levelled) {
+  Frame draw_seen(BrickVolume& volume, std::uint32_t first, std::uint32_t last, const Seen& seen, int finest) {
     const DeviceTransfer transfer(setup_->transfer_function());
-    DeviceMacrocells& cells = wide_ && levelled ? *wide_ : volume.cells();
-    cells.update(transfer, cudaStreamPerThread);
+    DeviceMacrocells& cells = finest > 0 ? levelled_ : volume.cells();
+    if (finest == 0) cells.update(transfer, cudaStreamPerThread);
     const auto task_of = [&](const auto& sampler) {
       auto task = setup_->bare_task(seen(sampler));
       task.medium.transfer = transfer.bounds().transfer;
@@ -158,6 +153,10 @@ class Bench {
     check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "clearing");
     Frame frame;
     const auto start = Clock::now();
+    if (finest > 0) {  // part of a frame: they change with the camera
+      levelled_ = volume.levelled_cells(finest, cells_.lattice(), setup_->levels()->choice, draft_);
+      levelled_.update(transfer, cudaStreamPerThread);
+    }
     const auto draw_paged = [&]<class Sampler>(const Sampler&) {
       if (draft_) {
         frame.missed = trace_draft<Sampler>(volume.cache(), task_of, first, last, sums, [](std::uint64_t) {}).missed;
@@ -184,7 +183,7 @@ class Bench {
   Scene scene_;
   MacrocellGrid cells_;
   std::unique_ptr<RenderSetup> setup_;
-  std::optional<DeviceMacrocells> wide_;  // for pictures with levels
+  DeviceMacrocells levelled_{std::vector<MinMax>()};  // for pictures with levels
   bool draft_ = false;
   double transfer_s_ = 0;
   double load_s_ = 0;

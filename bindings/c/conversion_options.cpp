@@ -21,10 +21,10 @@ namespace {
 constexpr std::uint64_t kMaxMemory = std::uint64_t{1} << 50U;
 constexpr std::size_t kMaxNameBytes = 255;
 
-constexpr std::array kTypes{ScalarType::uint8,   ScalarType::int8,    ScalarType::uint16, ScalarType::int16,
-                            ScalarType::uint32,  ScalarType::int32,   ScalarType::uint64, ScalarType::int64,
-                            ScalarType::float16, ScalarType::float32, ScalarType::float64};
-static_assert(WEIR_UINT8 == 1 && WEIR_FLOAT64 == kTypes.size());
+constexpr std::array kTypes{ScalarType::uint8,   ScalarType::int8,    ScalarType::uint16,  ScalarType::int16,
+                            ScalarType::uint32,  ScalarType::int32,   ScalarType::uint64,  ScalarType::int64,
+                            ScalarType::float16, ScalarType::float32, ScalarType::float64, ScalarType::bfloat16};
+static_assert(WEIR_UINT8 == 1 && WEIR_BFLOAT16 == kTypes.size());
 
 void require_in(std::string_view member, std::int32_t value, std::int32_t first, std::size_t count) {
   const auto last = first + static_cast<std::int32_t>(count) - 1;
@@ -34,7 +34,7 @@ void require_in(std::string_view member, std::int32_t value, std::int32_t first,
 /// The choice of the option `key` that `value` stands for: the enumerators of weir.h are in the order of the table.
 std::string choice(std::string_view key, std::int32_t value) {
   const std::vector<std::string> choices = split(conversion_option(key).argument, '|');
-  require_in(key, value, 0, choices.size());
+  require_in(key_wording({std::string(key), {}}), value, 0, choices.size());
   return choices[static_cast<std::size_t>(value)];
 }
 
@@ -63,6 +63,7 @@ void give_budget(const weir_convert_options& o, GivenOptions& given) {
   } else {
     require_zero("size", static_cast<double>(o.size), "WEIR_BUDGET_SIZE");
   }
+  if (o.at_most != 0) given["at-most"] = "true";
 }
 
 /// What a command line would have said: the record in the sidecar.
@@ -74,6 +75,8 @@ GivenOptions given_method(const weir_convert_options& o) {
   given["metric"] = choice("metric", o.metric);
   given["fill"] = choice("fill", o.fill);
   given["nonfinite"] = choice("nonfinite", o.nonfinite);
+  if (o.missing_policy != WEIR_MISSING_POLICY_AUTO)
+    given["missing-policy"] = choice("missing-policy", o.missing_policy);
   if (o.metric != WEIR_METRIC_SSE || (o.brick != 0 && o.brick != 8)) given["brick"] = cat(o.brick == 0 ? 8 : o.brick);
   if (o.has_background != 0) {
     given["background"] = exact(static_cast<double>(o.background));
@@ -144,10 +147,10 @@ ConversionOptions read_options(const weir_convert_options& o) {
   const GivenOptions method = given_method(o);
   GivenOptions given = method;
   given["threads"] = cat(o.threads);
+  if (o.backend != WEIR_BACKEND_AUTO) given["backend"] = choice("backend", o.backend);
   if (o.overwrite != 0) given["overwrite"] = "true";
   if (o.work_dir != nullptr) given["work-dir"] = o.work_dir;
   ConversionOptions options = read_conversion_request(given).conversion;
-  if (o.reserved != 0) throw usage(cat("reserved is ", o.reserved, ", it must be 0"));
   // Of a library, what it takes besides the process: any size that the volume's own check (plan_memory) lets pass.
   if (o.memory > kMaxMemory) throw usage(cat("memory is ", o.memory, " bytes, it must be at most 2^50"));
   if (o.memory != 0) options.memory = o.memory;
@@ -163,6 +166,19 @@ SourceOptions read_input_options(const weir_input_options* given) {
   if (o.offset != 0) texts["offset"] = cat(o.offset);
   if (o.dataset != nullptr) texts["dataset"] = o.dataset;
   give_index(o, texts);
+  if (o.component != nullptr) {
+    if (*o.component == '\0') throw usage("component is empty; give a position, x, y, z or magnitude, or NULL");
+    texts["component"] = o.component;
+  }
+  if (o.magnitude != nullptr) texts["magnitude"] = o.magnitude;
+  if (o.has_level != 0) {
+    texts["level"] = cat(o.level);
+  } else if (o.level != 0) {
+    throw usage(cat("level is ", o.level, ", and has_level is 0; set it"));
+  }
+  if (o.upsample != WEIR_UPSAMPLE_CONSTANT) texts["upsample"] = choice("upsample", o.upsample);
+  if (o.missing_chunks != WEIR_MISSING_CHUNKS_FILL)
+    texts["missing-chunks"] = choice("missing-chunks", o.missing_chunks);
   if (const auto missing = missing_of(o.missing)) texts["missing"] = stored_value_text(*missing);
   if (!all_zero(o.spacing)) texts["spacing"] = joined(o.spacing, 3);
   if (o.has_origin != 0) {
@@ -175,6 +191,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
       texts["roi"] += cat(i == 0 ? "" : ",", o.roi_min[i], ":", o.roi_max[i]);
     }
   }
+  if (!all_zero(o.ghost)) texts["ghost"] = joined(o.ghost, 3);
   if (o.type != 0) texts["type"] = scalar_name(scalar_type(o.type));
   require_in("endian", o.endian, WEIR_ENDIAN_AUTO, WEIR_ENDIAN_BIG + 1);
   if (o.endian != WEIR_ENDIAN_AUTO) texts["endian"] = o.endian == WEIR_ENDIAN_LITTLE ? "little" : "big";

@@ -12,6 +12,7 @@
 #include "format/base/text.h"
 #include "format/io/memory_file_system.h"
 #include "format/output/output_files.h"
+#include "gpu/packed/coder_choice.h"
 #include "ingest/source_registry.h"
 
 struct weir_buffer {
@@ -24,8 +25,10 @@ namespace weir::c {
 namespace {
 
 /// An array of these values.
-std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void* data, const std::int64_t* stride) {
+std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void* data, const std::int64_t* stride,
+                                          const weir_convert_options& given) {
   DenseArray array = read_volume(volume);
+  array.keeps_missing = given.missing_policy == WEIR_MISSING_POLICY_KEEP;
   array.data = required(data, "data");
   array.stride = stride == nullptr ? packed_stride(array.extent, array.type)
                                    : std::array<std::int64_t, 3>{stride[0], stride[1], stride[2]};
@@ -41,7 +44,11 @@ void convert(VolumeSource& source, ConversionOptions options, const weir_convert
   options.memory += resident_bytes();
   options.resume = Resume::off;
   Callbacks callbacks(given);
-  convert_volume(source, options, callbacks.control(), files);
+  ConversionControl control = callbacks.control();
+  const std::unique_ptr<BlockCoder> coder =
+      choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
+  control.coder = coder.get();
+  convert_volume(source, options, control, files);
 }
 
 }  // namespace
@@ -61,8 +68,8 @@ weir_status weir_input_options_init(weir_input_options* options, size_t struct_s
 weir_status weir_convert(const weir_volume* volume, const void* data, const int64_t stride[3],
                          const weir_convert_options* options, const char* output, weir_error* error) {
   return guarded(error, [&] {
-    const auto source = open_values(volume, data, stride);
     const weir_convert_options given = options_or_defaults(options);
+    const auto source = open_values(volume, data, stride, given);
     ConversionOptions conversion = read_options(given);
     conversion.output = checked_output(output);
     convert(*source, std::move(conversion), given, *make_posix_file_system());
@@ -73,8 +80,8 @@ weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, 
                                    const weir_convert_options* options, weir_buffer** buffer, weir_error* error) {
   return guarded(error, [&] {
     required(buffer, "buffer");
-    const auto source = open_values(volume, data, stride);
     const weir_convert_options given = options_or_defaults(options);
+    const auto source = open_values(volume, data, stride, given);
     ConversionOptions conversion = read_options(given);
     if (!conversion.work_dir.empty()) {
       throw usage(cat("work_dir is \"", conversion.work_dir, "\", and nothing goes to a disk; leave it NULL"));
@@ -103,6 +110,7 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     SourceOptions source_options = read_input_options(input_options);
     const weir_convert_options given = options_or_defaults(options);
     ConversionOptions conversion = read_options(given);
+    source_options.keeps_missing = conversion.missing == MissingPolicy::keep;
     conversion.output = checked_output(output);
     std::error_code ignored;
     if (std::filesystem::equivalent(path, conversion.output, ignored)) {

@@ -5,6 +5,7 @@
 #include "bindings/c/status.h"
 #include "format/base/error.h"
 #include "format/io/file_mapping.h"
+#include "format/sidecar/is_of.h"
 
 using namespace weir;
 
@@ -26,7 +27,7 @@ void weir_grid::take_sidecar(std::string text) {
   try {
     Sidecar sidecar = parse_sidecar(text, "sidecar");
     // That of another volume, after a crash between two renames say, certifies nothing either.
-    if (sidecar.file.bytes != grid().bytes().size() || sidecar.file.head_checksum != grid().head_checksum()) return;
+    if (!is_of(sidecar, grid())) return;
     sidecar_ = std::move(sidecar);
     text_ = std::move(text);
   } catch (const Error&) {

@@ -1,34 +1,48 @@
-#include <memory>
 #include <utility>
 
-#include "bindings/c/conversion_options.h"
+#include "bindings/c/open_push.h"
 #include "bindings/c/status.h"
-#include "bindings/c/weir.h"
-#include "compressor/push/pushed_volume.h"
-
-/// What outlives a PushedVolume comes before it.
-struct weir_push {
-  explicit weir_push(const weir_convert_options& given) : callbacks(given), files(weir::make_posix_file_system()) {}
-
-  weir::c::Callbacks callbacks;
-  std::unique_ptr<weir::FileSystem> files;
-  std::unique_ptr<weir::PushedVolume> volume;
-};
+#include "gpu/packed/coder_choice.h"
+#include "ingest/values/array_source.h"
 
 using namespace weir;
 using namespace weir::c;
+
+namespace weir::c {
+
+std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_convert_options* options,
+                                      const char* output) {
+  SourceInfo info = array_info(read_volume(volume));
+  const weir_convert_options given = options_or_defaults(options);
+  auto made = std::make_unique<weir_push>(given);
+  ConversionOptions conversion = read_options(given);
+  info.mapping.keeps_missing = conversion.missing == MissingPolicy::keep;
+  conversion.output = checked_output(output);
+  ConversionControl control = made->callbacks.control();
+  made->coder =
+      choose_coder(conversion.backend, conversion.encoding == Encoding::packed, conversion.memory, control.notice);
+  control.coder = made->coder.get();
+  made->volume = std::make_unique<PushedVolume>(std::move(info), conversion, control, *made->files);
+  return made;
+}
+
+std::array<std::int64_t, 3> slab_stride(const PushedVolume& volume, const std::int64_t* stride) {
+  if (stride == nullptr) return packed_stride(volume.info().extent, volume.info().type);
+  return {stride[0], stride[1], stride[2]};
+}
+
+void end_push(weir_push& push) {
+  if (push.in_flight) push.in_flight->finish();
+  push.volume->end();
+}
+
+}  // namespace weir::c
 
 weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                             weir_push** push, weir_error* error) {
   return guarded(error, [&] {
     required(push, "push");
-    SourceInfo info = array_info(read_volume(volume));
-    const weir_convert_options given = options_or_defaults(options);
-    auto made = std::make_unique<weir_push>(given);
-    ConversionOptions conversion = read_options(given);
-    conversion.output = checked_output(output);
-    made->volume = std::make_unique<PushedVolume>(std::move(info), conversion, made->callbacks.control(), *made->files);
-    *push = made.release();
+    *push = begin_push(volume, options, output).release();
   });
 }
 
@@ -36,16 +50,12 @@ weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* 
                            weir_error* error) {
   return guarded(error, [&] {
     PushedVolume& volume = *required(push, "push")->volume;
-    if (stride == nullptr) {
-      volume.slab(z0, nz, data);
-    } else {
-      volume.slab(z0, nz, data, {stride[0], stride[1], stride[2]});
-    }
+    volume.slab(z0, nz, data, slab_stride(volume, stride));
   });
 }
 
 weir_status weir_push_end(weir_push* push, weir_error* error) {
-  return guarded(error, [&] { required(push, "push")->volume->end(); });
+  return guarded(error, [&] { end_push(*required(push, "push")); });
 }
 
 void weir_push_free(weir_push* push) { delete push; }

@@ -21,6 +21,9 @@ inline constexpr std::size_t kFirstBytes = sizeof(T);
 template <>
 inline constexpr std::size_t kFirstBytes<weir_convert_options> = offsetof(weir_convert_options, preview);
 
+template <>
+inline constexpr std::size_t kFirstBytes<weir_input_options> = offsetof(weir_input_options, component);
+
 /// Zeros but for struct_size.
 template <typename T>
 weir_status init_struct(T* target, std::size_t bytes) noexcept {

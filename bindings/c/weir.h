@@ -72,7 +72,8 @@ enum {
   WEIR_INT64 = 8,
   WEIR_FLOAT16 = 9,
   WEIR_FLOAT32 = 10,
-  WEIR_FLOAT64 = 11
+  WEIR_FLOAT64 = 11,
+  WEIR_BFLOAT16 = 12 /* the upper half of a float32. Since 0.2 */
 };
 
 /* A volume's description, without its values. */
@@ -80,9 +81,10 @@ typedef struct weir_volume {
   size_t struct_size;
   int64_t extent[3];   /* voxels, each 1 to 2^31 - 1; required */
   double spacing[3];   /* world units per voxel, > 0; all 0: 1, 1, 1 */
-  double origin[3];    /* world position of voxel (0, 0, 0) */
+  double origin[3];    /* world position of the centre of voxel (0, 0, 0) */
   const char* name;    /* of the grid in the file, at most 255 bytes; NULL: "density" */
-  const char* missing; /* the value that stands for "no data", as text ("-9999", "nan"); NULL: none */
+  const char* missing; /* the value that stands for "no data", as text ("-9999", "nan"); NULL: none. What becomes of
+                          such voxels: missing_policy */
   int32_t type;        /* WEIR_UINT8 ...; required */
   int32_t reserved;    /* 0 */
 } weir_volume;
@@ -92,12 +94,13 @@ WEIR_API weir_status weir_volume_init(weir_volume* volume, size_t struct_size);
 
 /* What decides the size of the file. */
 enum {
-  WEIR_BUDGET_AUTO = 0,      /* rate 8, or the smallest possible file where that is larger */
+  WEIR_BUDGET_AUTO = 0,      /* rate 8, or the smallest possible file where that is larger; of less than 128^3 voxels at
+                                least 40 dB, see docs/budget.md */
   WEIR_BUDGET_RATE = 1,      /* ceil(float32 bytes of the volume / budget) bytes; budget 2^-20 to 2^60 */
   WEIR_BUDGET_SIZE = 2,      /* size bytes, at least 1 */
   WEIR_BUDGET_PSNR = 3,      /* as few bytes as keep budget dB or more */
   WEIR_BUDGET_MAX_ERROR = 4, /* as few bytes as keep each voxel within budget >= 0, in the values' unit */
-  WEIR_BUDGET_LOSSLESS = 5   /* as many bytes as every bit of every voxel needs */
+  WEIR_BUDGET_LOSSLESS = 5   /* as many bytes as every bit of every valid voxel needs */
 };
 /* How leaves are stored. For an open file it is never AUTO. */
 enum {
@@ -115,12 +118,26 @@ enum {
   WEIR_PREVIEW_ON = 1,
   WEIR_PREVIEW_OFF = 2
 };
+/* What surveys and encodes packed blocks; the bytes are the same. weir-mpi has the CPU alone. */
+enum {
+  WEIR_BACKEND_AUTO = 0, /* a CUDA device where one answers, the library is built for it and memory is 1 GiB or more */
+  WEIR_BACKEND_CPU = 1,
+  WEIR_BACKEND_CUDA = 2
+};
 /* What the budget is spent on: squared error, or the distances of a brick's range to the background. */
 enum { WEIR_METRIC_SSE = 0, WEIR_METRIC_FARTHEST = 1, WEIR_METRIC_CLOSEST = 2, WEIR_METRIC_MEDIAN = 3 };
 /* What dropped blocks read. */
 enum { WEIR_FILL_MEAN = 0, WEIR_FILL_BACKGROUND = 1 };
 /* What happens to NaN and infinite voxels: WEIR_ERROR_INPUT, replaced by the background, or kept. */
 enum { WEIR_NONFINITE_ERROR = 0, WEIR_NONFINITE_BACKGROUND = 1, WEIR_NONFINITE_KEEP = 2 };
+/* What happens to voxels that hold no data (weir_volume's missing, a file's _FillValue): what happens to NaN, as which
+ * they are kept; WEIR_ERROR_INPUT; replaced by the background; or their values are data. */
+enum {
+  WEIR_MISSING_POLICY_AUTO = 0,
+  WEIR_MISSING_POLICY_ERROR = 1,
+  WEIR_MISSING_POLICY_BACKGROUND = 2,
+  WEIR_MISSING_POLICY_KEEP = 3
+};
 
 typedef struct weir_convert_options {
   size_t struct_size;
@@ -147,8 +164,10 @@ typedef struct weir_convert_options {
   int32_t overwrite; /* not 0: replace an existing output */
   int32_t threads;   /* 0: one per core */
   /* Since 0.2. */
-  int32_t preview;  /* WEIR_PREVIEW_...; for WEIR_ENCODING_PACKED */
-  int32_t reserved; /* 0 */
+  int32_t preview;        /* WEIR_PREVIEW_...; for WEIR_ENCODING_PACKED */
+  int32_t missing_policy; /* WEIR_MISSING_POLICY_... */
+  int32_t at_most;        /* not 0: with WEIR_BUDGET_SIZE or _RATE a shorter file, not padding, where less is enough */
+  int32_t backend;        /* WEIR_BACKEND_...; for WEIR_ENCODING_PACKED; AUTO: a device where memory is 1 GiB or more */
 } weir_convert_options;
 WEIR_API weir_status weir_convert_options_init(weir_convert_options* options, size_t struct_size);
 
@@ -177,6 +196,8 @@ WEIR_API const char* weir_buffer_sidecar(const weir_buffer* buffer); /* JSON tex
 WEIR_API void weir_buffer_free(weir_buffer* buffer);
 
 enum { WEIR_ENDIAN_AUTO = 0, WEIR_ENDIAN_LITTLE = 1, WEIR_ENDIAN_BIG = 2 };
+enum { WEIR_UPSAMPLE_CONSTANT = 0, WEIR_UPSAMPLE_LINEAR = 1 };
+enum { WEIR_MISSING_CHUNKS_FILL = 0, WEIR_MISSING_CHUNKS_ERROR = 1 };
 
 /* What a file does not say itself. */
 typedef struct weir_input_options {
@@ -184,7 +205,7 @@ typedef struct weir_input_options {
   int64_t extent[3];    /* of a raw file; all 0: as its name says, NAME_XxYxZ_TYPE.raw */
   uint64_t offset;      /* bytes before a raw file's first value */
   const char* dataset;  /* in a file that holds several; NULL: the only one */
-  const int64_t* index; /* index_count positions on the leading axes of an array of more than three */
+  const int64_t* index; /* index_count positions on the axes before the last three, below 0 from the end */
   size_t index_count;
   const char* missing; /* as weir_volume's, besides what the file says */
   double spacing[3];   /* in place of the file's; all 0: the file's */
@@ -195,6 +216,15 @@ typedef struct weir_input_options {
   int32_t endian; /* of a raw file, WEIR_ENDIAN_...; AUTO: as its name says, else little */
   int32_t has_origin;
   int32_t stack; /* not 0: the path is a pattern, "plane_%05d.raw": one volume from many files along z */
+  /* Since 0.2. */
+  const char* component;  /* of an array of vectors: "0", "1", ..., "x", "y", "z" or "magnitude"; NULL: none */
+  int64_t ghost[3];       /* layers of ghost cells that are left out at both ends of each axis */
+  int32_t level;          /* of an AMReX plotfile, with has_level: the finest level that is read, 0 the coarsest */
+  int32_t has_level;      /* 0: the finest there is */
+  int32_t upsample;       /* of an AMReX plotfile, where only coarser levels have values: WEIR_UPSAMPLE_... */
+  int32_t missing_chunks; /* of a Zarr array, what chunks that are not stored read as: WEIR_MISSING_CHUNKS_... */
+  const char* magnitude;  /* "u,v,w": datasets, in place of `dataset`, that are the components of the vectors whose
+                           * length is the volume; NULL: none */
 } weir_input_options;
 WEIR_API weir_status weir_input_options_init(weir_input_options* options, size_t struct_size);
 
@@ -246,7 +276,7 @@ typedef struct weir_grid_info {
   int64_t extent[3];    /* voxels of the domain, the bounding box of active voxels; all 0: there is none */
   int64_t index_min[3]; /* of its lowest voxel */
   double spacing[3];    /* world units per voxel */
-  double origin[3];     /* world position of index (0, 0, 0) */
+  double origin[3];     /* world position of the centre of voxel (0, 0, 0) */
   double range[2];      /* of the decoded active values, as the file says */
   double background;    /* what voxels outside the domain read */
   uint64_t file_bytes;
@@ -261,7 +291,7 @@ typedef struct weir_grid_info {
   uint64_t nonfinite;     /* NaN and infinite voxels of the source */
   uint64_t missing;       /* voxels without data */
   int32_t certified;
-  int32_t lossless;
+  int32_t lossless; /* over the voxels that are neither nonfinite nor missing */
   int32_t encoding; /* WEIR_ENCODING_... */
   int32_t reserved;
 } weir_grid_info;

@@ -1,4 +1,4 @@
-/* Grids on a CUDA device: weir.h's companion, in libraries that were built with CUDA. */
+/* Grids on a CUDA device, and volumes out of its memory: weir.h's companion, in libraries that were built with CUDA. */
 #ifndef WEIR_CUDA_H
 #define WEIR_CUDA_H
 
@@ -32,6 +32,27 @@ WEIR_API uint64_t weir_cuda_bytes(const weir_cuda_grid* loaded); /* weir_grid_in
 WEIR_API double weir_cuda_seconds(const weir_cuda_grid* loaded); /* that loading took */
 /* The device of the load must be current. */
 WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
+
+/* ---- Push: a volume out of the memory of a device. Since 0.2 --------------------------------------------------- */
+
+/* weir_push_slab for values on the calling thread's current device: `data` is the device's address of voxel (0, 0, z0),
+ * memory that its kernels can read; it and the strides are multiples of the bytes of a value. The copy follows the work
+ * queued in `stream` (a cudaStream_t, NULL: the default one), and the call returns once it is queued: work that is
+ * queued there afterwards may change the values. Slabs cross the bus through page-locked host memory: four pieces of
+ * 8 MiB, or two planes where a plane is larger, besides options->memory; a call waits while these are full. Planes are
+ * checked as by weir_push_slab. A failure of a copy ends the push, and is the status of a later call. All slabs come
+ * from one device; slabs of weir_push_slab may come between. Where `data` is host memory, or there is no device, it is
+ * taken as weir_push_slab takes it, once the work in `stream` is done. */
+WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t nz, const void* data,
+                                           const int64_t stride[3], void* stream, weir_error* error);
+/* Before the first slab of a device: up to `bytes` of its memory, a plane's or more, may hold slabs until they have
+ * crossed the bus, in a stream of the lowest priority. A call then waits only while that is full. The memory is taken
+ * with the first slab, and given back by weir_push_free. */
+WEIR_API weir_status weir_push_device_memory(weir_push* push, uint64_t bytes, weir_error* error);
+/* weir_convert for values on the device, after the work queued in `stream`: begins a push, takes one slab and ends. */
+WEIR_API weir_status weir_convert_device(const weir_volume* volume, const void* data, const int64_t stride[3],
+                                         void* stream, const weir_convert_options* options, const char* output,
+                                         weir_error* error);
 
 #ifdef __cplusplus
 }

@@ -84,7 +84,10 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
       info = array_info(array);
       made->type = array.type;
       conversion = read_options(given);
+      info.mapping.keeps_missing = conversion.missing == MissingPolicy::keep;
       conversion.output = checked_output(output);
+      if (conversion.backend == CoderChoice::cuda)
+        throw usage("backend is WEIR_BACKEND_CUDA, and ranks encode on the CPU");
     });
     require_alike(made->team, said_by_all(info, conversion));
     conversion.processors = made->team.own_cores();

@@ -1,8 +1,11 @@
 #include "bindings/python/convert.h"
 
+#include <pybind11/stl.h>
+
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -14,11 +17,14 @@
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/output/output_files.h"
-#include "ingest/series.h"
+#include "gpu/packed/coder_choice.h"
+#include "ingest/series_names.h"
 #include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
 #include "ingest/values/array_source.h"
 #include "tools/options/given_options.h"
+#include "tools/options/result_directory.h"
+#include "tools/options/series_checks.h"
 #include "tools/options/table_options.h"
 #include "tools/report/finished_output.h"
 
@@ -41,19 +47,22 @@ ConversionRequest make_request(const std::string& output, const GivenOptions& gi
 
 using OpenSource = std::function<std::unique_ptr<VolumeSource>()>;
 
-std::string convert(const ConversionOptions& options, const OpenSource& open, const py::object& progress) {
-  std::string sidecar;
+Sidecar convert(const ConversionOptions& options, const OpenSource& open, const py::object& progress) {
+  std::optional<Sidecar> sidecar;
   run_watched(progress, [&](Watch& watch) {
     ConversionControl control;
     control.cancel = &watch.cancelled();
     control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     control.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
     control.notice = [&](const Message& line) { watch.notice(line); };
+    const std::unique_ptr<BlockCoder> coder =
+        choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
+    control.coder = coder.get();
     const std::unique_ptr<FileSystem> files = make_posix_file_system();
     const std::unique_ptr<VolumeSource> source = open();
-    sidecar = to_json_text(convert_volume(*source, options, control, *files));
+    sidecar = convert_volume(*source, options, control, *files);
   });
-  return sidecar;
+  return *std::move(sidecar);
 }
 
 DenseArray dense_array(const py::array& array, const std::string& type, const SourceOptions& options) {
@@ -67,49 +76,99 @@ DenseArray dense_array(const py::array& array, const std::string& type, const So
   if (options.origin) dense.origin = *options.origin;
   dense.name = options.dataset;
   if (options.missing) dense.missing.push_back(*options.missing);
+  dense.keeps_missing = options.keeps_missing;
   return dense;
+}
+
+std::string text_at(const py::dict& dict, const char* key) {
+  return dict.contains(key) ? dict[key].cast<std::string>() : "";
+}
+
+// What `meaning` says of the values and axes, for the sidecar.
+void add_meaning(const py::dict& meaning, DenseArray& array) {
+  array.units = text_at(meaning, "units");
+  array.details.long_name = text_at(meaning, "long_name");
+  if (meaning.contains("time")) {
+    const auto [value, units] = meaning["time"].cast<std::pair<double, std::string>>();
+    array.details.time = TimePoint{value, units, {}};
+  }
+  if (!meaning.contains("axes")) return;
+  std::size_t i = 0;
+  for (const py::handle handle : meaning["axes"]) {
+    const auto axis = handle.cast<py::dict>();
+    AxisDetails& details = array.details.axes.at(i);
+    array.axis_labels.at(i) = text_at(axis, "name");
+    details.units = text_at(axis, "units");
+    details.note = text_at(axis, "note");
+    if (axis.contains("coordinates")) details.coordinates = axis["coordinates"].cast<std::vector<double>>();
+    ++i;
+  }
 }
 
 }  // namespace
 
-std::string convert_file(const std::string& source, const std::string& output, const GivenOptions& options,
-                         const py::object& progress) {
+std::vector<std::string> convert_files(const std::string& source, const std::string& output,
+                                       const GivenOptions& options, bool several, const py::object& progress) {
   ConversionRequest request = make_request(output, options);
-  SeriesStep step;
-  {
-    const py::gil_scoped_release unlocked;
-    const std::vector<SeriesStep> steps = expand_series(std::vector{source}, request.source);
-    if (steps.size() != 1)
-      throw usage_error(cat(source, ": names ", steps.size(), " volumes; convert them one by one"));
-    step = steps.front();
-    request.conversion.output = series_outputs(steps, output).front();
-    check_output(step.path, request.conversion.output);
+  const Budget budget = request.conversion.budget;
+  std::vector<SeriesStep> steps;
+  std::vector<std::string> outputs;
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  std::optional<ResultDirectory> directory;
+  SeriesExtents extents(budget);
+  const auto open_step = [&](const SeriesStep& step) {
+    request.source.dataset = step.dataset;
+    request.source.index = step.index;
+    return open_source(step.path, request.source);
+  };
+  run_watched(py::none(), [&](Watch& watch) {
+    steps = expand_series(std::vector{source}, request.source, [&](const Message& line) { watch.notice(line); });
+    if (!several && steps.size() != 1) {
+      throw usage_error(compose(source, ": names ", cat(steps.size()), " volumes; give ", option("dataset"),
+                                " as a list for all of them, or convert them one by one"));
+    }
+    outputs = series_outputs(steps, output, request.source);
+    check_outputs(steps, outputs, request.conversion.overwrite);
+    extents.check_all(steps, open_step);
+    if (output.ends_with('/')) directory.emplace(*files, directory_of(output));
+  });
+  std::vector<Sidecar> sidecars;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    request.conversion.output = outputs[i];
+    request.source.spool_directory =
+        request.conversion.work_dir.empty() ? directory_of(outputs[i]) : request.conversion.work_dir;
+    const auto open = [&] {
+      std::unique_ptr<VolumeSource> opened = open_step(steps[i]);
+      extents.check(steps[i], opened->info());
+      return opened;
+    };
+    sidecars.push_back(convert(request.conversion, open, progress));
   }
-  request.source.dataset = step.dataset;
-  request.source.index = step.index;
-  request.source.spool_directory =
-      request.conversion.work_dir.empty() ? directory_of(request.conversion.output) : request.conversion.work_dir;
-  return convert(
-      request.conversion, [&] { return open_source(step.path, request.source); }, progress);
+  std::vector<std::string> texts;
+  for (const Sidecar& sidecar : sidecars) texts.push_back(to_json_text(sidecar));
+  return texts;
 }
 
 std::string convert_array(const py::array& source, const std::string& type, const std::string& output,
-                          const GivenOptions& options, const py::object& progress) {
+                          const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
   ConversionRequest request = make_request(output, options);
-  constexpr std::array<std::string_view, 5> kOfArrays{"dataset", "missing", "spacing", "origin", "roi"};
+  constexpr std::array<std::string_view, 7> kOfArrays{"dataset", "missing", "missing-policy", "spacing",
+                                                      "origin",  "roi",     "ghost"};
   if (const std::string key = given_input_option(options, kOfArrays); !key.empty()) {
     throw usage_error(compose(option(key), " says how to read a file; source is an array"));
   }
   check_output({}, output);
   request.conversion.resume = Resume::off;
-  const DenseArray array = dense_array(source, type, request.source);
-  return convert(
+  DenseArray array = dense_array(source, type, request.source);
+  add_meaning(meaning, array);
+  return to_json_text(convert(
       request.conversion,
       [&] {
         std::unique_ptr<VolumeSource> all = open_array(array);
-        return request.source.roi ? crop_source(std::move(all), *request.source.roi) : std::move(all);
+        if (!request.source.roi) return all;
+        return crop_to(std::move(all), *request.source.roi);
       },
-      progress);
+      progress));
 }
 
 }  // namespace weir::python

@@ -5,16 +5,20 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <vector>
 
 #include "format/base/option_row.h"
 
 namespace weir::python {
 
-/// Converts the file at `source` to `output` (empty: beside it), options as of `weir convert`; the sidecar as JSON.
-std::string convert_file(const std::string& source, const std::string& output, const GivenOptions& options,
-                         const pybind11::object& progress);
-/// The same of an array [z, y, x] of scalars named `type` in this machine's byte order, which is read where it is.
+/// Converts what `source` and the options name to `output` (empty: beside it), options as of `weir convert`; the
+/// sidecar of each volume as JSON. Where not `several`, Error(usage) is thrown for more than one.
+std::vector<std::string> convert_files(const std::string& source, const std::string& output,
+                                       const GivenOptions& options, bool several, const pybind11::object& progress);
+/// Converts an array [z, y, x] of scalars named `type` in this machine's byte order, which is read where it is.
+/// `meaning` may have "units", "long_name", "time" (a number and its units), and "axes", of x, y and z, each with
+/// "name", "units", "coordinates" and "note".
 std::string convert_array(const pybind11::array& source, const std::string& type, const std::string& output,
-                          const GivenOptions& options, const pybind11::object& progress);
+                          const GivenOptions& options, const pybind11::dict& meaning, const pybind11::object& progress);
 
 }  // namespace weir::python

@@ -27,9 +27,22 @@ const char* class_of(ErrorKind kind) {
   return "Error";
 }
 
+py::str decoded_text(const std::string& text) {
+  PyObject* decoded = PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size()));
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 void raise(const Error& error) {
-  const py::object type = py::module_::import("weir.errors").attr(class_of(error.kind()));
-  PyErr_SetObject(type.ptr(), python_text(error.message()).ptr());
+  const py::module_ errors = py::module_::import("weir.errors");
+  py::object raised;
+  if (const auto& failure = error.system_failure()) {
+    raised = errors.attr("system_error")(class_of(error.kind()), failure->errno_value, python_text(error.message()),
+                                         decoded_text(failure->path));
+  } else {
+    raised = errors.attr(class_of(error.kind()))(python_text(error.message()));
+  }
+  PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }
 
 }  // namespace
@@ -44,11 +57,6 @@ void translate_errors() {
   });
 }
 
-py::str python_text(const Message& message) {
-  const std::string text = message.worded(key_wording);
-  PyObject* decoded = PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size()));
-  if (decoded == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<py::str>(decoded);
-}
+py::str python_text(const Message& message) { return decoded_text(message.worded(key_wording)); }
 
 }  // namespace weir::python

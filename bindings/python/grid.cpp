@@ -4,11 +4,15 @@
 #include <utility>
 
 #include "bindings/python/levels.h"
+#include "bindings/python/range_reader.h"
+#include "bindings/python/remote_source.h"
+#include "bindings/python/strided_read.h"
 #include "bindings/python/watch.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/nanovdb/macrocells.h"
 #include "format/nanovdb/nvdb_header.h"
+#include "format/sidecar/is_of.h"
 #include "format/sidecar/sidecar.h"
 #include "gpu/volume/macrocell_grid.h"
 #include "ingest/source_registry.h"
@@ -46,6 +50,32 @@ Grid::Grid(const std::string& path) : path_(path), file_(std::make_shared<Opened
   file_->source = open_source(path, first_grid(*file_->file));
 }
 
+Grid::Grid(const std::string& url, const py::function& fetch, const std::string& cache)
+    : path_(url), file_(std::make_shared<Opened>()) {
+  const std::optional<std::uint64_t> bytes = parse_bytes(cache);
+  if (!bytes) throw Error(ErrorKind::usage, cat("cache is '", cache, "', it must be a size as 67108864 or '256MiB'"));
+  run_watched(py::none(), [&, reader = python_range_reader(fetch)](Watch&) {
+    file_->remote = std::make_unique<RemoteGrid>(url, reader, *bytes);
+    file_->source = std::make_unique<RemoteSource>(*file_->remote);
+  });
+}
+
+void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const {
+  if (remote == nullptr) return use();
+  const Index3 lo = grid().index_bbox().lo;
+  std::vector<Box> wanted = boxes();
+  for (Box& box : wanted) box = {lo + box.lo, lo + box.hi};
+  remote->with_blocks(wanted, use);
+}
+
+std::shared_ptr<Grid::Opened> Grid::with_file(const char* what) const {
+  auto file = shared();
+  if (file->file == nullptr) {
+    throw Error(ErrorKind::usage, cat(path_, ": ", what, " reads all of the file; copy it to this machine"));
+  }
+  return file;
+}
+
 std::shared_ptr<Grid::Opened> Grid::shared() const {
   if (file_ == nullptr) throw Error(ErrorKind::usage, cat(path_, ": is closed; open it again with weir.open"));
   return file_;
@@ -65,17 +95,27 @@ Triple Grid::extent() const { return triple(opened().grid().index_bbox().extent(
 Triple Grid::index_origin() const { return triple(opened().grid().index_bbox().lo); }
 Position Grid::spacing() const { return std::tuple_cat(opened().grid().voxel_size()); }
 Position Grid::origin() const { return std::tuple_cat(opened().grid().world_origin()); }
-std::uint64_t Grid::bytes() const { return opened().file->bytes().size(); }
+std::uint64_t Grid::bytes() const {
+  const Opened& file = opened();
+  return file.file != nullptr ? file.file->bytes().size() : file.remote->bytes();
+}
 int Grid::levels() const { return level_count(opened().source->info().extent); }
 
 std::optional<std::string> Grid::sidecar() const {
-  const NvdbFile& file = *opened().file;
+  const auto file = with_file("its sidecar");
   const std::string path = sidecar_path(path_);
   if (!std::filesystem::exists(path)) return std::nullopt;
-  const Sidecar sidecar = read_sidecar(path);
-  if (sidecar.file.bytes != file.bytes().size() || sidecar.file.head_checksum != file.grid().head_checksum()) {
+  return text_of(read_sidecar(path), path);
+}
+
+std::string Grid::checked_sidecar(const std::string& text, const std::string& path) const {
+  return text_of(parse_sidecar(text, path), path);
+}
+
+std::string Grid::text_of(const Sidecar& sidecar, const std::string& path) const {
+  if (!is_of(sidecar, opened().grid())) {
     throw Error(ErrorKind::input, cat(path, ": is of a file of ", sidecar.file.bytes, " bytes with another checksum, ",
-                                      path_, " has ", file.bytes().size(), " bytes; convert it again"));
+                                      path_, " has ", bytes(), " bytes; convert it again"));
   }
   return to_json_text(sidecar);
 }
@@ -84,8 +124,26 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
   const auto file = shared();
   const Box box{index3(lo), index3(hi)};
   py::array_t<float> array = make_array(box.extent());
+  const auto voxels = [&] {
+    const std::int64_t edge = std::int64_t{1} << level;
+    return std::vector{Box{box.lo * edge, min(box.hi * edge, file->source->info().extent)}};
+  };
   run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
-    read_level(*file->source, level, box, values, watch.cancelled());
+    file->with_boxes(voxels, [&] { read_level(*file->source, level, box, values, watch.cancelled()); });
+  });
+  return array;
+}
+
+py::array_t<float> Grid::read_strided(const Triple& first, const Triple& step, const Triple& count) const {
+  const auto file = shared();
+  const Index3 from = index3(first);
+  const Index3 by = index3(step);
+  const Index3 number = index3(count);
+  const std::array<Stride, 3> axes{{{from.x, by.x, number.x}, {from.y, by.y, number.y}, {from.z, by.z, number.z}}};
+  py::array_t<float> array = make_array(number);
+  run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
+    file->with_boxes([&] { return strided_boxes(axes, {}); },
+                     [&] { python::read_strided(*file->source, axes, values, watch.cancelled()); });
   });
   return array;
 }
@@ -93,10 +151,13 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
 std::tuple<std::int64_t, Triple, py::array_t<float>, py::array_t<float>> Grid::macrocells() const {
   const auto file = shared();
   std::optional<MacrocellGrid> cells;
-  {
-    const py::gil_scoped_release unlocked;
-    cells.emplace(file->grid(), kMacrocell);
-  }
+  run_watched(py::none(), [&](Watch&) {
+    if (file->remote == nullptr) return void(cells.emplace(file->grid(), kMacrocell));
+    if (!has_macrocells(file->grid())) {
+      throw Error(ErrorKind::usage, cat(path_, ": has no macrocells; copy the file to this machine to gather them"));
+    }
+    file->remote->with_macrocells([&] { cells.emplace(file->grid(), kMacrocell); });
+  });
   const CellLattice lattice = cells->lattice();
   const Index3 count{lattice.count.x, lattice.count.y, lattice.count.z};
   py::array_t<float> low = make_array(count);
@@ -112,7 +173,7 @@ std::tuple<std::int64_t, Triple, py::array_t<float>, py::array_t<float>> Grid::m
 }
 
 std::vector<std::tuple<std::string, std::string, std::string, bool>> Grid::verify(const py::object& progress) const {
-  const auto file = shared();
+  const auto file = with_file("verify");
   std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
   run_watched(progress, [&](Watch& watch) {
     VerificationWatch verification;

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,8 @@
 
 #include "format/base/option_row.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "format/remote/remote_grid.h"
+#include "format/sidecar/sidecar.h"
 #include "gpu/volume/leaf_table.h"
 #include "gpu/volume/volume_sampler.h"
 #include "ingest/source/volume_source.h"
@@ -29,6 +32,10 @@ class Grid {
  public:
   /// Maps and checks the file; reads no values. Throws as NvdbFile and open_source.
   explicit Grid(const std::string& path);
+  /// A packed file elsewhere: `fetch` is called with a list of (offset, bytes) and returns as many `bytes` objects, or
+  /// raises; `cache` as of RemoteGrid, "256MiB". What it raises goes on to whoever called. Throws as RemoteGrid, and
+  /// Error(usage) where `cache` is no size.
+  Grid(const std::string& url, const pybind11::function& fetch, const std::string& cache);
 
   /// Lets go of the file. Everything but closed() throws Error(usage) from then on; calls of other threads that are
   /// under way end as if it were open.
@@ -46,10 +53,15 @@ class Grid {
   std::uint64_t bytes() const;
   int levels() const;
 
-  /// The sidecar's JSON; nullopt where there is none. Throws Error(input) where it is of another file.
+  /// The sidecar's JSON; nullopt where there is none. Throws Error(input) where it is of another file, and Error(usage)
+  /// where the grid lies elsewhere.
   std::optional<std::string> sidecar() const;
+  /// The same of its text, read from `path`.
+  std::string checked_sidecar(const std::string& text, const std::string& path) const;
   /// float32 [z, y, x] of the box at a level: levels.h.
   pybind11::array_t<float> read(const Triple& lo, const Triple& hi, int level) const;
+  /// float32 [z, y, x] of `count` voxels along each axis, from `first` on in steps of `step`: strided_read.h.
+  pybind11::array_t<float> read_strided(const Triple& first, const Triple& step, const Triple& count) const;
   /// float32 values at `points` (N x 3: x, y, z in voxels from the lowest corner): volume_sampler.h.
   pybind11::array_t<float> sample(const pybind11::array_t<float, pybind11::array::c_style>& points,
                                   bool trilinear) const;
@@ -63,15 +75,23 @@ class Grid {
  private:
   /// What calls share; the last one of them closes the file.
   struct Opened {
-    std::shared_ptr<const NvdbFile> file;
+    std::shared_ptr<const NvdbFile> file;  ///< null where it lies elsewhere
+    std::unique_ptr<RemoteGrid> remote;    ///< else null
     std::unique_ptr<VolumeSource> source;
     std::once_flag table_made;
-    std::optional<LeafTable> table;  ///< for samples
+    std::optional<LeafTable> table;  ///< for samples, of a file
 
-    const NvdbGrid& grid() const { return file->grid(); }
+    const NvdbGrid& grid() const { return file != nullptr ? file->grid() : remote->grid(); }
+    /// Calls `use` while what touches boxes(), in voxels from the lowest one, can be read from `source`; of a file
+    /// nobody asks for them.
+    void with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const;
   };
 
   Opened& opened() const;
+  // Throws Error(input) where the sidecar, read from `path`, is of another file.
+  std::string text_of(const Sidecar& sidecar, const std::string& path) const;
+  // Throws Error(usage) where the grid lies elsewhere; `what` needs a file.
+  std::shared_ptr<Opened> with_file(const char* what) const;
   std::shared_ptr<Opened> shared() const;
 
   std::string path_;

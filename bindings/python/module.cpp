@@ -14,10 +14,10 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of weir; use the package weir.";
   m.attr("__version__") = WEIR_VERSION;
   weir::python::translate_errors();
-  m.def("convert_file", &weir::python::convert_file, py::arg("source"), py::arg("output"), py::arg("options"),
-        py::arg("progress"));
+  m.def("convert_files", &weir::python::convert_files, py::arg("source"), py::arg("output"), py::arg("options"),
+        py::arg("several"), py::arg("progress"));
   m.def("convert_array", &weir::python::convert_array, py::arg("source").noconvert(), py::arg("type"),
-        py::arg("output"), py::arg("options"), py::arg("progress"));
+        py::arg("output"), py::arg("options"), py::arg("meaning"), py::arg("progress"));
   py::class_<Grid>(m, "Grid")
       .def(py::init<const std::string&>(), py::arg("path"))
       .def("close", &Grid::close)
@@ -33,9 +33,17 @@ PYBIND11_MODULE(_core, m) {
       .def_property_readonly("bytes", &Grid::bytes)
       .def_property_readonly("levels", &Grid::levels)
       .def("sidecar", &Grid::sidecar)
+      .def("checked_sidecar", &Grid::checked_sidecar, py::arg("text"), py::arg("path"))
       .def("read", &Grid::read, py::arg("lo"), py::arg("hi"), py::arg("level"))
+      .def("read_strided", &Grid::read_strided, py::arg("first"), py::arg("step"), py::arg("count"))
       .def("sample", &Grid::sample, py::arg("points").noconvert(), py::arg("trilinear"))
       .def("macrocells", &Grid::macrocells)
       .def("render", &Grid::render, py::arg("options"), py::arg("linear"), py::arg("progress"))
       .def("verify", &Grid::verify, py::arg("progress"));
+  m.def(
+      "open_remote",
+      [](const std::string& url, const py::function& fetch, const std::string& cache) {
+        return std::make_unique<Grid>(url, fetch, cache);
+      },
+      py::arg("url"), py::arg("fetch"), py::arg("cache"));
 }

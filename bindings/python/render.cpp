@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bindings/python/grid.h"
 #include "bindings/python/watch.h"
 #include "gpu/image/image_output.h"
 #include "tools/options/picture_options.h"
+#include "tools/plot/color_bar.h"
+#include "tools/report/quantity_title.h"
 
 namespace weir::python {
 
@@ -36,7 +39,7 @@ py::array display_pixels(const Picture& picture) {
 }  // namespace
 
 py::array Grid::render(const GivenOptions& options, bool linear, const py::object& progress) const {
-  const auto file = shared();
+  const auto file = with_file("render");
   Picture picture;
   run_watched(progress, [&](Watch& watch) {
     PictureRequest request = read_picture_request(options);
@@ -44,8 +47,14 @@ py::array Grid::render(const GivenOptions& options, bool linear, const py::objec
     request.sampling.progress = [&](std::uint64_t done) { watch.advance(done); };
     const std::unique_ptr<Backend> backend = make_backend(request.backend);
     const std::unique_ptr<LoadedVolume> volume = backend->load(file->file, 0, nullptr);
+    std::optional<Image> bar;
+    if (request.colorbar) {
+      bar = draw_color_bar(picture_transfer(volume->info(), request.scene, request.options),
+                           quantity_title(*file->file), request.options.height);
+    }
     watch.start("render", request.pixel_samples());
     picture = backend->render(*volume, request.scene, request.options, request.sampling);
+    if (bar) picture = with_color_bar(picture, *bar);
   });
   return linear ? linear_pixels(picture.image) : display_pixels(picture);
 }

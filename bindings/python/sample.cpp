@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include "bindings/python/grid.h"
+#include "bindings/python/sampled_blocks.h"
+#include "bindings/python/watch.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir::python {
@@ -12,25 +14,48 @@ namespace py = pybind11;
 namespace {
 
 /// Positions between which a thread may change; a look-up takes some 50 ns.
-constexpr py::ssize_t kGrain = 4096;
+constexpr std::size_t kGrain = 4096;
+
+// `positions`: x, y, z of one after the other.
+template <class Volume>
+void sample_all(const Volume& volume, std::span<const float> positions, float* values) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain),
+                    [&](const tbb::blocked_range<std::size_t>& part) {
+                      for (std::size_t i = part.begin(); i < part.end(); ++i) {
+                        const float* const at = &positions[3 * i];
+                        values[i] = volume.smooth({at[0], at[1], at[2]});
+                      }
+                    });
+}
 
 }  // namespace
 
 py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& points, bool trilinear) const {
   const auto file = shared();
-  const py::ssize_t count = points.shape(0);
-  py::array_t<float> array(count);
-  const float* at = points.data();
-  float* values = array.mutable_data();
+  const Filter filter = trilinear ? Filter::trilinear : Filter::nearest;
+  const std::span<const float> positions(points.data(), static_cast<std::size_t>(points.size()));
+  py::array_t<float> array(points.shape(0));
+  float* const values = array.mutable_data();
+  if (file->remote != nullptr) {
+    run_watched(py::none(), [&](Watch& watch) {
+      const NvdbGrid& grid = file->grid();
+      file->with_boxes([&] { return sampled_blocks(positions, grid.index_bbox()); },
+                       [&] {
+                         for (std::span<const float> left = positions; !left.empty();) {
+                           watch.stop_if_cancelled();
+                           const std::span<const float> part = left.first(std::min(3 * kGrain, left.size()));
+                           const DecodedBlocks blocks(grid, sampled_blocks(part, grid.index_bbox()));
+                           sample_all(FilteredVolume<DecodedBlocks>{blocks, filter}, part,
+                                      values + (positions.size() - left.size()) / 3);
+                           left = left.subspan(part.size());
+                         }
+                       });
+    });
+    return array;
+  }
   const py::gil_scoped_release unlocked;
   std::call_once(file->table_made, [&] { file->table.emplace(file->grid()); });
-  const VolumeSampler volume{file->table->view(), trilinear ? Filter::trilinear : Filter::nearest};
-  tbb::parallel_for(tbb::blocked_range<py::ssize_t>(0, count, kGrain),
-                    [&](const tbb::blocked_range<py::ssize_t>& part) {
-                      for (py::ssize_t i = part.begin(); i < part.end(); ++i) {
-                        values[i] = volume.smooth({at[3 * i], at[3 * i + 1], at[3 * i + 2]});
-                      }
-                    });
+  sample_all(VolumeSampler{file->table->view(), filter}, positions, values);
   return array;
 }
 

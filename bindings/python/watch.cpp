@@ -19,7 +19,8 @@ constexpr std::chrono::milliseconds kPause{50};
 void deliver(Watch& watch, const py::object& progress) {
   for (const Watch::Event& event : watch.take()) {
     if (event.pass.empty()) {
-      py::module_::import("logging").attr("getLogger")("weir").attr("warning")("%s", python_text(event.notice));
+      const char* const level = event.notice.is_remark() ? "info" : "warning";
+      py::module_::import("logging").attr("getLogger")("weir").attr(level)("%s", python_text(event.notice));
     } else if (!progress.is_none()) {
       progress(event.pass, event.done, event.total);
     }

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "compressor/encode/coded_regions.h"
 #include "compressor/encode/leaf_encoder.h"
 #include "compressor/encode/packed_encoder.h"
 #include "compressor/survey/surveyed_leaves.h"
@@ -66,11 +69,54 @@ std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
   return target.packed != nullptr ? make_packed_encoder(target) : make_leaf_encoder(target);
 }
 
-// Calls visit(region, places, surveyed, x) for every x layer of every region of a block that holds kept leaves;
-// `for_each(begin, end, action)` is the loop to use.
+// The values of a block where a coder is to look at them; null where there is none.
+std::unique_ptr<LoadedBlocks> load_block(const EncodeTarget& target, const Block& block, const Box& leaf_box) {
+  if (target.packed == nullptr || target.packed->coder == nullptr) return nullptr;
+  const NodeLattice& leaves = target.tree.leaves;
+  return target.packed->coder->load(
+      block.values, block.voxels, {leaves.node_box(leaf_box.lo).lo, leaves.node_box(leaf_box.hi - Index3{1, 1, 1}).hi});
+}
+
+// for_each_layer(), by batches of regions whose streams a coder writes: the next while those of one are taken.
 template <typename ForEach, typename Visit>
-void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Box& leaf_box, const ForEach& for_each,
-                    const Visit& visit) {
+void for_each_coded_layer(const EncodeTarget& target, const SourceInfo& info, const Box& leaf_box, LoadedBlocks& loaded,
+                          const ForEach& for_each, const Visit& visit) {
+  const TreeRegions& tree = target.tree;
+  std::vector<std::int64_t> regions;
+  for_each_in(regions_under(tree, leaf_box), [&](const Index3& at) {
+    const std::int64_t region = tree.region_lattice.linear(at);
+    if (tree.regions[static_cast<std::size_t>(region)].leaves > 0) regions.push_back(region);
+  });
+  std::span<const std::int64_t> left(regions);
+  const auto begin_next = [&] {
+    auto batch = std::make_unique<CodedBatch>(target, leaf_box, left, loaded);
+    left = left.subspan(batch->regions().size());
+    return batch;
+  };
+  std::unique_ptr<CodedBatch> next = left.empty() ? nullptr : begin_next();
+  while (next) {
+    const std::unique_ptr<CodedBatch> batch = std::move(next);
+    if (!left.empty()) next = begin_next();
+    batch->wait();
+    const std::span<const CodedBatch::Region> part = batch->regions();
+    for_each(std::int64_t{0}, static_cast<std::int64_t>(part.size()), [&](std::int64_t i) {
+      const CodedBatch::Region& region = part[static_cast<std::size_t>(i)];
+      const SurveyedLeaves surveyed(target.rows, region.box, info);
+      for_each(region.box.lo.x, region.box.hi.x,
+               [&](std::int64_t x) { visit(region.index, region.places, surveyed, x, &region.coded); });
+    });
+  }
+}
+
+// Calls visit(region, places, surveyed, x, coded) for every x layer of every region of a block that holds kept leaves;
+// `for_each(begin, end, action)` is the loop to use. `coded` may be null.
+template <typename ForEach, typename Visit>
+void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
+                    const ForEach& for_each, const Visit& visit) {
+  if (const std::unique_ptr<LoadedBlocks> loaded = load_block(target, block, leaf_box)) {
+    for_each_coded_layer(target, info, leaf_box, *loaded, for_each, visit);
+    return;
+  }
   const TreeRegions& tree = target.tree;
   const Box regions = regions_under(tree, leaf_box);
   for_each(std::int64_t{0}, volume(regions.extent()), [&](std::int64_t i) {
@@ -79,7 +125,7 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bo
     const RegionPlaces places = places_of(target, region);
     const Box box = intersect(tree.leaf_box(region), leaf_box);
     const SurveyedLeaves surveyed(target.rows, box, info);
-    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x); });
+    for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x, nullptr); });
   });
 }
 
@@ -128,12 +174,12 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     work_in_place(source, voxel_boxes, stream, [&](const Block& block) {
       const Box& leaf_box = leaf_boxes[block.index];
       LayerEncoder& encoder = *encoders.local();
-      for_each_layer(
-          target, source.info(), leaf_box, in_turn,
-          [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
-            const TraceSpan span(target.trace, "encode");
-            encoder.add_layer(block, leaf_box, region, places, surveyed, x);
-          });
+      for_each_layer(target, source.info(), block, leaf_box, in_turn,
+                     [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed,
+                         std::int64_t x, const CodedRegion* coded) {
+                       const TraceSpan span(target.trace, "encode");
+                       encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
+                     });
       encoder.finish();
     });
     tell(voxel_boxes.size());
@@ -144,14 +190,14 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   };
   stream_blocks(source, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
-    for_each_layer(
-        target, source.info(), leaf_box, in_parallel,
-        [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x) {
-          const TraceSpan span(target.trace, "encode");
-          LayerEncoder& encoder = *encoders.local();
-          encoder.add_layer(block, leaf_box, region, places, surveyed, x);
-          encoder.finish();
-        });
+    for_each_layer(target, source.info(), block, leaf_box, in_parallel,
+                   [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x,
+                       const CodedRegion* coded) {
+                     const TraceSpan span(target.trace, "encode");
+                     LayerEncoder& encoder = *encoders.local();
+                     encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
+                     encoder.finish();
+                   });
   });
   tell(voxel_boxes.size());
 }

@@ -61,12 +61,20 @@ std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   return records;
 }
 
-EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
-  EncodedFile encoded;
-  {
-    const TraceSpan span(job.stream.trace, "select");
-    encoded.file = plan_file(request, job.rows, job.work);
+FilePlan select_file(const EncodeJob& job, FileRequest& request) {
+  for (;;) {
+    FilePlan file = [&] {
+      const TraceSpan span(job.stream.trace, "select");
+      return plan_file(request, job.rows, job.work);
+    }();
+    if (!request.packed.window || !file.cut || request.packed.window->holds(*file.cut)) return file;
+    job.move_window(request, *file.cut);
   }
+}
+
+EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
+  EncodedFile encoded;
+  encoded.file = select_file(job, request);
   const FilePlan& file = encoded.file;
   std::shared_ptr<File> records = open_targets(job, file);
   if (job.planned) job.planned(file.size.bytes);
@@ -79,7 +87,7 @@ EncodedFile encode_once(const EncodeJob& job, const FileRequest& request) {
     const bool bounded = request.budget.kind == Budget::Kind::max_error;
     encoded.packed = std::make_unique<PackedTarget>(
         PackedTarget{*file.streams, *file.packed, request.packed.constants, request.packed.lattice,
-                     bounded ? std::optional(request.budget.target) : std::nullopt});
+                     bounded ? std::optional(request.budget.target) : std::nullopt, job.coder});
   }
   job.pass_started();
   const TraceSpan span(job.stream.trace, "encode pass");
@@ -118,6 +126,7 @@ bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
     case Budget::Kind::lossless:
       return tiles.exact && leaves.exact;
     case Budget::Kind::automatic:
+      return request.budget.target == 0 || seen_error(encoded) <= request.squared_error;
     case Budget::Kind::size:
     case Budget::Kind::rate:
       break;
@@ -129,7 +138,10 @@ bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
 struct Attempts {
   static constexpr int kMostEstimated = 6;  // then comes one that is sure
 
-  FileRequest request;
+  const FileRequest asked;
+  const RowStore& rows;
+  WorkDirectory& work;
+  FileRequest request = asked;
   int number = 0;
   std::optional<double> met = {};  // the planned error of an earlier file that met the target
 
@@ -137,6 +149,10 @@ struct Attempts {
   // estimates; decoded values decide. Throws Error(budget) where the encoding asked for has nothing better left.
   bool adjust(const EncodedFile& encoded) {
     const bool kept = keeps_promise(encoded, request);
+    if (!kept && request.budget.kind == Budget::Kind::automatic) {
+      raise_quality();
+      return true;
+    }
     if (encoded.file.encoding == Encoding::float32) {
       if (kept) return false;
       throw Error(ErrorKind::internal, cat(request.path, ": float leaves miss what was asked; report this"));
@@ -166,6 +182,19 @@ struct Attempts {
   }
 
  private:
+  // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
+  void raise_quality() {
+    request = asked;
+    number = -1;
+    met.reset();
+    const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+    if (request.encoding == Encoding::automatic || request.encoding == Encoding::float32) {
+      request.budget.kind = Budget::Kind::lossless;
+      if (plan_file(request, rows, work).size.bytes < dense) return;
+    }
+    request.budget.kind = Budget::Kind::psnr;
+  }
+
   // Every leaf is kept as well as this encoding can.
   bool keeps_everything(const EncodedFile& encoded) const {
     return encoded.file.plan.expected_error > request.planned_error || request.planned_error == 0;
@@ -183,8 +212,11 @@ struct Attempts {
 
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
   request.planned_error = request.squared_error;
-  Attempts attempts{std::move(request), 0, {}};
-  if (job.journal != nullptr && job.journal->state.attempt && job.journal->state.attempt->seen == job.seen) {
+  Attempts attempts{std::move(request), job.rows, job.work};
+  // A volume that the default may be raised for is small: its attempts begin anew, so that they come to the same file.
+  const bool may_raise = attempts.asked.budget.kind == Budget::Kind::automatic && attempts.asked.budget.target > 0;
+  if (!may_raise && job.journal != nullptr && job.journal->state.attempt &&
+      job.journal->state.attempt->seen == job.seen) {
     const Checkpoint::Attempt& interrupted = *job.journal->state.attempt;
     attempts.number = interrupted.number;
     attempts.request.planned_error = interrupted.planned_error;

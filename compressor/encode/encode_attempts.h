@@ -43,6 +43,9 @@ struct EncodeJob {
   std::function<void()> pass_started;                ///< may throw Error(interrupted)
   Notice notice;                                     ///< may be empty
   std::function<void(std::uint64_t bytes)> planned;  ///< may be empty
+  /// Called where the cut of a plan lies outside the request's window: builds other ladders and sets their window.
+  std::function<void(FileRequest&, double cut)> move_window;
+  BlockCoder* coder = nullptr;  ///< of packed blocks
 };
 
 /// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.

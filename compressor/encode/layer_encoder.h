@@ -16,6 +16,7 @@
 #include "format/io/file_system.h"
 #include "format/layout/nvdb_type.h"
 #include "format/layout/tree_layout.h"
+#include "format/packed/block_coder.h"
 #include "format/packed/block_constants.h"
 #include "format/packed/lattice_block.h"
 #include "ingest/plan/block_stream.h"
@@ -29,6 +30,7 @@ struct PackedTarget {
   BlockConstants constants;
   std::optional<Lattice> lattice;   ///< of the whole volume
   std::optional<double> max_error;  ///< where the budget bounds it
+  BlockCoder* coder = nullptr;      ///< encodes many blocks at a time, where there is one
 };
 
 struct EncodeTarget {
@@ -51,6 +53,8 @@ struct RegionPlaces {
   std::optional<StreamPlaces> streams;  ///< of packed blocks
 };
 
+class CodedRegion;
+
 /// One per thread.
 class LayerEncoder {
  public:
@@ -59,9 +63,10 @@ class LayerEncoder {
   LayerEncoder(const LayerEncoder&) = delete;
   LayerEncoder& operator=(const LayerEncoder&) = delete;
 
-  /// The kept leaves of one x layer of one region, as far as they lie in the block.
+  /// The kept leaves of one x layer of one region, as far as they lie in the block. `coded`, where given, has streams
+  /// of some of them.
   virtual void add_layer(const Block& block, const Box& leaf_box, std::int64_t region, const RegionPlaces& places,
-                         const SurveyedLeaves& surveyed, std::int64_t x) = 0;
+                         const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) = 0;
   /// Writes what is still held; call before the thread turns to another block.
   virtual void finish() = 0;
 };

@@ -19,7 +19,7 @@ class LeafEncoder final : public LayerEncoder {
   explicit LeafEncoder(const EncodeTarget& target) : target_(target) {}
 
   void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
-                 const SurveyedLeaves& surveyed, std::int64_t x) override {
+                 const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* /*coded*/) override {
     const LeafPlaces& places = *of_region.leaves;
     const TreeRegions& tree = target_.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
@@ -114,6 +114,7 @@ class LeafEncoder final : public LayerEncoder {
         records_.back().squared_error = leaf.squared_error;
         records_.back().max_abs = leaf.max_abs;
         records_.back().exact = leaf.exact ? 1 : 0;
+        records_.back().zeros_lost = leaf.zeros_lost;
       }
     }
     batch_ = 0;

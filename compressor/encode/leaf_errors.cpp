@@ -39,6 +39,7 @@ LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, 
       squares.add(record.squared_error);
       errors.max_abs = std::max(errors.max_abs, record.max_abs);
       errors.exact = errors.exact && record.exact != 0;
+      errors.zeros_lost += record.zeros_lost;
     }
     errors.squared = squares.value();
   };
@@ -52,6 +53,7 @@ LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, 
     squares.add(region.squared);
     total.max_abs = std::max(total.max_abs, region.max_abs);
     total.exact = total.exact && region.exact;
+    total.zeros_lost += region.zeros_lost;
   }
   total.squared = squares.value();
   return total;

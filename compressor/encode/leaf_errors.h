@@ -11,7 +11,8 @@ namespace weir {
 struct LeafErrors {
   double squared = 0;  ///< sum over the finite in-domain values
   double max_abs = 0;
-  bool exact = true;  ///< every voxel reads the bits it should
+  bool exact = true;             ///< every voxel reads the bits it should
+  std::uint64_t zeros_lost = 0;  ///< zeros that read another value
 };
 
 /// Sums the records of all kept leaves, or of those that can be seen by the choices `seen_by`: leaf by leaf in a

@@ -27,7 +27,8 @@ struct LeafRecord {
   // Of a quantised leaf, decoded, over the finite in-domain values.
   double squared_error = 0;
   double max_abs = 0;
-  std::uint64_t exact = 1;  ///< 0: some voxel reads other bits than it should
+  std::uint32_t exact = 1;       ///< 0: some voxel reads other bits than it should
+  std::uint32_t zeros_lost = 0;  ///< zeros that read another value
 };
 static_assert(sizeof(LeafRecord) == 104, "records are spilled as they are");
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "compressor/encode/coded_regions.h"
 #include "compressor/encode/record_batch.h"
 #include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
@@ -31,7 +32,7 @@ class PackedEncoder final : public LayerEncoder {
   }
 
   void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
-                 const SurveyedLeaves& surveyed, std::int64_t x) override {
+                 const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) override {
     const StreamPlaces& places = *of_region.streams;
     const TreeRegions& tree = target_.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
@@ -44,7 +45,12 @@ class PackedEncoder final : public LayerEncoder {
         if (!places.kept(position)) continue;
         surveyed.check(leaf, block.values, block.voxels);
         add_ends(chunk, places, position);
-        add_stream(block, leaf, chunk + places.offset(position), places, position);
+        const std::optional<CodedStream> known = coded == nullptr ? std::nullopt : coded->find(leaf);
+        if (known) {
+          take_stream(block, leaf, chunk + places.offset(position), *known);
+        } else {
+          add_stream(block, leaf, chunk + places.offset(position), places, position);
+        }
         records_.add(region.first_leaf + places.ordinal(position), decoded_, node_, inside_, loss());
       }
     }
@@ -78,11 +84,24 @@ class PackedEncoder final : public LayerEncoder {
     append(chunk + places.base(group), std::span(ends).first(2 * count));
   }
 
-  void add_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const StreamPlaces& places,
-                  std::size_t position) {
+  void gather(const Block& block, const Index3& leaf) {
     node_ = target_.tree.leaves.node_box(leaf);
     inside_ = target_.tree.leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
+  }
+
+  // Of finite values, which a coder has encoded.
+  void take_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const CodedStream& known) {
+    gather(block, leaf);
+    replaced_ = false;
+    std::copy(known.decoded.begin(), known.decoded.end(), decoded_.begin());
+    append(offset, known.bytes);
+    if (packed_.rule.preview) write_corner(leaf);
+  }
+
+  void add_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const StreamPlaces& places,
+                  std::size_t position) {
+    gather(block, leaf);
     values_ = source_;
     replaced_ = target_.fill.non_finite != NonFinitePolicy::keep && !all_finite(source_);
     if (replaced_) {
@@ -116,11 +135,11 @@ class PackedEncoder final : public LayerEncoder {
     std::vector<std::byte>& scratch = exact_;
     scratch.resize(4096);
     if (step == PlannedStreams::kBoundedStep) {
-      bytes = write_bounded(values_, *packed_.max_error, scratch);
+      bytes = exact_block_.write_bounded(values_, *packed_.max_error, scratch);
     } else if (stream.size() == kRawStreamBytes) {
       bytes = encode_raw(values_, scratch);
     } else {
-      bytes = write_exact(values_, packed_.lattice, scratch);
+      bytes = exact_block_.write(values_, packed_.lattice, scratch);
     }
     if (bytes != stream.size()) fail({}, "has another length than was planned");
     std::copy_n(scratch.begin(), bytes, stream.begin());
@@ -151,7 +170,7 @@ class PackedEncoder final : public LayerEncoder {
 
   static LeafLoss as_loss(const LeafDifference& difference) {
     return {difference.squared_error, difference.max_abs,
-            difference.different == 0 && difference.nonfinite_different == 0};
+            difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
   }
 
   void append(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -177,6 +196,7 @@ class PackedEncoder final : public LayerEncoder {
   const PackedTarget& packed_;
   TransformBlock transform_;
   RoundedBlock rounded_;
+  ExactBlock exact_block_;
   Box node_;
   Box inside_;
   LeafValues source_{};    // outside the domain: anything

@@ -32,6 +32,7 @@ void RecordBatch::compute() {
     record.squared_error = losses_[i].squared_error;
     record.max_abs = losses_[i].max_abs;
     record.exact = losses_[i].exact ? 1 : 0;
+    record.zeros_lost = losses_[i].zeros_lost;
     held_.push_back(record);
   }
   count_ = 0;

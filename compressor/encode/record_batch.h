@@ -15,7 +15,8 @@ namespace weir {
 struct LeafLoss {
   double squared_error = 0;
   double max_abs = 0;
-  bool exact = true;  ///< every voxel reads the bits it should
+  bool exact = true;             ///< every voxel reads the bits it should
+  std::uint32_t zeros_lost = 0;  ///< zeros that read another value
 };
 
 /// One per thread.

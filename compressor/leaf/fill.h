@@ -11,8 +11,8 @@ namespace weir {
 enum class FillMode { mean, background };
 
 /// What becomes of NaN and infinite voxels: an error before anything is written, the background, or
-/// kept as they are (their leaves are then always kept). Missing voxels are NaN where those are kept,
-/// and the background otherwise.
+/// kept as they are (their leaves are then always kept). Missing voxels (MissingPolicy) that are read as such are NaN
+/// where those are kept, and the background otherwise.
 enum class NonFinitePolicy { error, background, keep };
 
 struct Fill {

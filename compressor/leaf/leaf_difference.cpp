@@ -23,6 +23,7 @@ struct DifferenceLanes {
   Ints8 nonfinite_decoded{};
   Ints8 different{};
   Ints8 nonfinite_different{};
+  Ints8 zeros_lost{};
 };
 
 WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes* halves) {
@@ -56,6 +57,7 @@ WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceL
       lanes.nonfinite_decoded -= s_finite & ~d_finite;
       lanes.different -= differs & s_finite;
       lanes.nonfinite_different -= differs & ~s_finite;
+      lanes.zeros_lost -= (s == none) & (d != none);
     }
     halves[half] = lanes;
   }
@@ -88,6 +90,7 @@ LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded
       result.nonfinite_decoded += static_cast<std::uint32_t>(lanes.nonfinite_decoded[l]);
       result.different += static_cast<std::uint32_t>(lanes.different[l]);
       result.nonfinite_different += static_cast<std::uint32_t>(lanes.nonfinite_different[l]);
+      result.zeros_lost += static_cast<std::uint32_t>(lanes.zeros_lost[l]);
     }
   }
   return result;

@@ -15,6 +15,7 @@ struct LeafDifference {
   std::uint32_t nonfinite_decoded = 0;    ///< decoded ones that are not, where the source is
   std::uint32_t different = 0;            ///< finite source voxels whose bits differ
   std::uint32_t nonfinite_different = 0;  ///< and not finite ones
+  std::uint32_t zeros_lost = 0;           ///< source voxels equal to 0 whose decoded value is not
   MinMax range{};                         ///< of the finite source voxels; min > max where there is none
 };
 

@@ -128,14 +128,55 @@ WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const Level
   }
 }
 
-float top_code(unsigned bits) { return static_cast<float>((1U << bits) - 1U); }
+std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
-bool usable(const Quantiser& q, float top) {
-  return q.quantum >= kLeastQuantum && std::isfinite(q.minimum) && std::isfinite(q.quantum * top) &&
-         std::isfinite(q.quantum * top + q.minimum);
+Levels levels_of(const Quantiser& q) {
+  return {q.minimum, q.quantum, q.quantum > 0 ? 1 / q.quantum : 0.0F, static_cast<float>(q.top)};
+}
+
+// A level, as a reader decodes it.
+float level_of(std::uint32_t code, const Quantiser& q) {
+  const float product = static_cast<float>(code) * q.quantum;
+  return product + q.minimum;
+}
+
+// The code of `v`, as nearest() finds it.
+std::uint32_t code_of(float v, const Quantiser& q, std::uint32_t most) {
+  const float t = std::clamp((v - q.minimum) * (1 / q.quantum), 0.0F, static_cast<float>(most));
+  return static_cast<std::uint32_t>((t + kRounder) - kRounder);
+}
+
+bool usable(const Quantiser& q) {
+  return q.quantum >= kLeastQuantum && std::isfinite(q.quantum) && std::isfinite(q.minimum);
 }
 
 double width_of(const ValueRange& range) { return static_cast<double>(range.max) - static_cast<double>(range.min); }
+
+// Whether no level lies below the range; a least value of zero is a level.
+bool begins_inside(const Quantiser& q, const ValueRange& range) {
+  return range.min == 0 ? q.minimum == 0 : q.minimum >= range.min;
+}
+
+// The largest quantum, but for a rounding or two, whose level `code` does not lie above the range.
+float quantum_up_to(std::uint32_t code, float minimum, const ValueRange& range) {
+  const double width = static_cast<double>(range.max) - static_cast<double>(minimum);
+  auto quantum = static_cast<float>(std::min(width, kWidest) / static_cast<double>(code));
+  while (quantum > 0 && level_of(code, {minimum, quantum, 0}) > range.max) quantum = std::nextafter(quantum, 0.0F);
+  return quantum;
+}
+
+// The highest code that values take whose level does not lie above the range, and whose code * quantum is a number.
+std::uint32_t top_inside(const Quantiser& q, const ValueRange& range, std::uint32_t most) {
+  const double width = static_cast<double>(range.max) - static_cast<double>(q.minimum);
+  const double last = std::min(width, kWidest) / static_cast<double>(q.quantum) + 1;
+  std::uint32_t code = code_of(range.max, q, most);
+  if (last < static_cast<double>(code)) code = static_cast<std::uint32_t>(last);
+  while (code > 0 && !(level_of(code, q) <= range.max)) --code;
+  return code;
+}
+
+// Where float has no two levels.
+Quantiser one_level(const ValueRange& range) { return {range.min == 0 ? 0.0F : range.mean, 0, 0}; }
 
 // Whether float has levels of `bits` bits for some of the range at least.
 bool divisible(const ValueRange& range, unsigned bits) {
@@ -155,7 +196,7 @@ class Fitter {
 
   void set_bits(unsigned bits) {
     bits_ = bits;
-    top_ = top_code(bits);
+    most_ = most_code(bits);
     best_ = std::numeric_limits<double>::infinity();
   }
 
@@ -164,15 +205,21 @@ class Fitter {
     const double width = width_of(range_);
     const double half = std::min(width * share, kWidest) / 2;
     const double middle = share == 1 ? static_cast<double>(range_.min) + width / 2 : static_cast<double>(range_.mean);
-    refine({share == 1 && width <= kWidest ? range_.min : static_cast<float>(middle - half),
-            static_cast<float>(2 * half / static_cast<double>(top_))},
-           rounds);
+    Quantiser q{share == 1 && width <= kWidest ? range_.min : static_cast<float>(middle - half),
+                static_cast<float>(2 * half / static_cast<double>(most_)), 0};
+    if (!begins_inside(q, range_)) {
+      q.minimum = range_.min;
+      q.quantum = static_cast<float>((middle + half - static_cast<double>(range_.min)) / static_cast<double>(most_));
+    }
+    if (middle + half >= static_cast<double>(range_.max)) q.quantum = quantum_up_to(most_, q.minimum, range_);
+    refine(q, rounds);
   }
 
   // The same from the levels of `q`.
   void refine(Quantiser q, int rounds) {
     double last = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < rounds && usable(q, top_); ++round) {
+    for (int round = 0; round < rounds && usable(q); ++round) {
+      q.top = top_inside(q, range_, most_);
       const Sums sums = assigned(q);
       if (sums.squares < best_) {
         best_ = sums.squares;
@@ -190,34 +237,79 @@ class Fitter {
 
  private:
   Sums assigned(const Quantiser& q) const {
-    const Levels levels{q.minimum, q.quantum, 1 / q.quantum, top_};
+    const Levels levels = levels_of(q);
     Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
     if (bits_ >= 8) {
       sums.squares = measure(values_.data(), values_.size(), levels, scale_);
       return sums;
     }
-    // The sum of (deviation - (code * quantum + minimum))^2, multiplied out.
-    const auto scale = static_cast<double>(scale_);
-    const double quantum = static_cast<double>(q.quantum) * scale;
-    const double minimum = (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * scale;
-    const auto n = static_cast<double>(values_.size());
-    sums.squares = squares_ + quantum * (quantum * sums.code_squares - 2 * sums.code_values) +
-                   minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_));
+    sums.squares = followed(sums, q);
     // A difference that small is the roundings of what it is between.
     if (!(sums.squares > kCancelled * squares_)) sums.squares = measure(values_.data(), values_.size(), levels, scale_);
     return sums;
   }
 
-  // Least squares of value = minimum + code * quantum; false where all values have one code.
+  // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
+  double followed(const Sums& sums, const Quantiser& q) const {
+    const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
+    const double minimum = scaled(q.minimum);
+    const auto n = static_cast<double>(values_.size());
+    return squares_ + quantum * (quantum * sums.code_squares - 2 * sums.code_values) +
+           minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_));
+  }
+
+  // Least squares of value = minimum + code * quantum, the first level in the range; false where all values have one
+  // code.
   bool refit(const Sums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * sums.code_squares - sums.codes * sums.codes;
     if (!(determinant > 0)) return false;
     const double slope = (n * sums.code_values - sums.codes * deviation_) / determinant;
-    const double offset = (deviation_ - slope * sums.codes) / n;
-    q.quantum = static_cast<float>(slope * unscale_);
-    q.minimum = static_cast<float>(static_cast<double>(range_.mean) + offset * unscale_);
+    q = from_mean((deviation_ - slope * sums.codes) / n, slope);
+    if (!begins_inside(q, range_)) {
+      const double least = scaled(range_.min);
+      q = from_mean(least, (sums.code_values - least * sums.codes) / sums.code_squares);
+      q.minimum = range_.min;
+    }
+    if (usable(q)) end_inside(sums, q);
     return true;
+  }
+
+  // Where the level of the largest value lies above the range, levels that end at that value may cost less than giving
+  // it the level below.
+  void end_inside(const Sums& sums, Quantiser& q) const {
+    const std::uint32_t highest = code_of(range_.max, q, most_);
+    if (highest == 0 || !(level_of(highest, q) > range_.max)) return;
+    Quantiser ended = ending_at_largest(sums, highest);
+    if (!begins_inside(ended, range_)) ended.minimum = range_.min;
+    ended.quantum = std::min(ended.quantum, quantum_up_to(highest, ended.minimum, range_));
+    const auto error = [&](std::uint32_t code) {
+      return (static_cast<double>(range_.max) - static_cast<double>(level_of(code, q))) * static_cast<double>(scale_);
+    };
+    const double capped = error(highest - 1) * error(highest - 1) - error(highest) * error(highest);
+    if (highest == 1 || followed(sums, ended) < followed(sums, q) + capped) q = ended;
+  }
+
+  // Least squares of value = largest - (code of the largest - code) * quantum.
+  Quantiser ending_at_largest(const Sums& sums, std::uint32_t highest) const {
+    const auto n = static_cast<double>(values_.size());
+    const auto code = static_cast<double>(highest);
+    const double largest = scaled(range_.max);
+    const double steps = code * n - sums.codes;
+    const double step_squares = code * (code * n - 2 * sums.codes) + sums.code_squares;
+    const double step_values = code * deviation_ - sums.code_values;
+    const double slope = (steps * largest - step_values) / step_squares;
+    return from_mean(largest - code * slope, slope);
+  }
+
+  // A value as a scaled deviation.
+  double scaled(float value) const {
+    return (static_cast<double>(value) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
+  }
+  // Of levels in scaled deviations.
+  Quantiser from_mean(double minimum, double quantum) const {
+    return {static_cast<float>(static_cast<double>(range_.mean) + minimum * unscale_),
+            static_cast<float>(quantum * unscale_), 0};
   }
 
   std::span<const float> values_;
@@ -228,8 +320,8 @@ class Fitter {
   double deviation_;  // sum of the deviations: what rounding the mean left
   double squares_;    // sum of their squares
   unsigned bits_ = 0;
-  float top_ = 0;
-  double best_ = 0;  // squared error, scaled
+  std::uint32_t most_ = 0;  // 2^bits - 1
+  double best_ = 0;         // squared error, scaled
   Quantiser quantiser_;
 };
 
@@ -239,7 +331,7 @@ class Fitter {
 bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
   if (bits == 16) return true;
   std::array<std::uint16_t, kLeafVoxels> codes;
-  quantise(values, quantiser, bits, std::span(codes).first(values.size()));
+  quantise(values, quantiser, std::span(codes).first(values.size()));
   std::array<std::uint16_t, 256> taken{};
   for (const std::uint16_t code : std::span(codes).first(values.size())) ++taken[code];
   const std::size_t few = values.size() >> (bits + 3);  // an eighth of what codes taken alike would have
@@ -250,24 +342,21 @@ bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, uns
 }  // namespace
 
 Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
-  const float top = top_code(bits);
-  const double width = width_of(range);
-  if (width > kWidest) return {range.mean, 0};
-  const Quantiser q{range.min, static_cast<float>(width / static_cast<double>(top))};
-  return usable(q, top) ? q : Quantiser{range.mean, 0};
+  const std::uint32_t most = most_code(bits);
+  if (width_of(range) > kWidest) return one_level(range);
+  const Quantiser q{range.min, quantum_up_to(most, range.min, range), most};
+  return usable(q) ? q : one_level(range);
 }
 
 Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
   // Levels of fewer bits are levels of more.
-  if (!divisible(range, bits)) {
-    return bits == 1 ? Quantiser{range.mean, 0} : fit_quantiser(values, range, bits / 2);
-  }
+  if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2);
   Fitter fitter(values, range);
   const auto fit = [&](unsigned width) {
     fitter.set_bits(width);
     fitter.start(1, width <= 4 ? 3 : 2);
     if (width <= 2) fitter.start(0.45, 3);
-    return fitter.found() ? fitter.quantiser() : Quantiser{range.mean, 0};
+    return fitter.found() ? fitter.quantiser() : one_level(range);
   };
   std::array<Quantiser, 5> tried{fit(bits)};  // each at half the bits of the one before
   std::size_t count = 1;
@@ -302,11 +391,8 @@ std::array<double, 3> estimated_errors(std::span<const float> values, const Valu
   return errors;
 }
 
-void quantise(std::span<const float> values, const Quantiser& quantiser, unsigned bits,
-              std::span<std::uint16_t> codes) {
-  const float reciprocal = quantiser.quantum > 0 ? 1 / quantiser.quantum : 0.0F;
-  nearest_codes(values.data(), values.size(), {quantiser.minimum, quantiser.quantum, reciprocal, top_code(bits)},
-                codes.data());
+void quantise(std::span<const float> values, const Quantiser& quantiser, std::span<std::uint16_t> codes) {
+  nearest_codes(values.data(), values.size(), levels_of(quantiser), codes.data());
 }
 
 }  // namespace weir

@@ -8,10 +8,11 @@
 
 namespace weir {
 
-/// value = fl(fl(code * quantum) + minimum), code in 0 .. 2^bits - 1.
+/// value = fl(fl(code * quantum) + minimum), code in 0 .. top.
 struct Quantiser {
   float minimum = 0;
-  float quantum = 0;  ///< >= 0; 0: one level
+  float quantum = 0;      ///< >= 0; 0: one level
+  std::uint32_t top = 0;  ///< highest code that values take, at most 2^bits - 1
 };
 
 /// What a fit needs to know of the values.
@@ -26,11 +27,12 @@ struct ValueRange {
 /// the whole range at first and, at 1 and 2 bits, over less of it around the mean as well, each refitted by
 /// least squares (Lloyd's iteration with equidistant levels, as in k-means). More starts and more rounds
 /// gain less than 0.2 dB on the volumes of the tests.
+/// Every value decodes to a level inside the range, and where the least value is zero, zeros decode to zero.
 /// Levels are at most float's largest number apart, so that code * quantum is one: values of a wider range may lie
 /// beyond the outer levels. Where the range is so small that the quantum has no reciprocal there is one level, the
-/// mean. Where few levels are taken, those of fewer bits are tried as well, so that more bits never do worse: values
-/// near a lattice may lie on the levels of a few bits, and beside those of many. The same on every machine: fixed
-/// lanes, nothing fused.
+/// mean, or zero where the least value is zero. Where few levels are taken, those of fewer bits are tried as well, so
+/// that more bits never do worse: values near a lattice may lie on the levels of a few bits, and beside those of many.
+/// The same on every machine: fixed lanes, nothing fused.
 Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
 
 /// What the squared error of fit_quantiser will be at 1, 2 and 4 bits, from a third of the work: within 15 % on
@@ -38,11 +40,11 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
                                        double squares);
 
-/// Levels over the whole range: the largest error is half a quantum, and the roundings of the decoder. One level, the
-/// mean, where float cannot hold them.
+/// Levels over the whole range, none beyond it: the largest error is half a quantum, and the roundings of the decoder.
+/// One level, the mean or zero as there, where float cannot hold them.
 Quantiser range_quantiser(const ValueRange& range, unsigned bits);
 
-/// The code of each value, the nearest level. `codes` is as long as `values`.
-void quantise(std::span<const float> values, const Quantiser& quantiser, unsigned bits, std::span<std::uint16_t> codes);
+/// The code of each value, the nearest level up to the top. `codes` is as long as `values`.
+void quantise(std::span<const float> values, const Quantiser& quantiser, std::span<std::uint16_t> codes);
 
 }  // namespace weir

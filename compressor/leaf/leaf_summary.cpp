@@ -40,6 +40,7 @@ double sum(LaneArray lanes) {
 struct Scan {
   std::uint32_t differ;      // bits in which any value differs from the first
   std::uint32_t non_finite;  // of all values
+  std::uint32_t zeros;
 };
 
 WEIR_SIMD Scan scan_bits(const float* values, std::size_t count) {
@@ -47,13 +48,15 @@ WEIR_SIMD Scan scan_bits(const float* values, std::size_t count) {
   std::memcpy(&first, values, sizeof first);
   std::uint32_t differ = 0;
   std::uint32_t non_finite = 0;
+  std::uint32_t zeros = 0;
   for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t bits;
     std::memcpy(&bits, values + i, sizeof bits);
     differ |= bits ^ first;
     non_finite += (bits & 0x7F800000U) == 0x7F800000U ? 1U : 0U;
+    zeros += (bits & 0x7FFFFFFFU) == 0 ? 1U : 0U;
   }
-  return {differ, non_finite};
+  return {differ, non_finite, zeros};
 }
 
 struct Moments {
@@ -143,7 +146,7 @@ Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
 void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, LeafRow& row) {
   if (differ == 0) {
     row.min = row.max = row.mean = values[0];
-    row.flags = LeafRow::kUniform;
+    row.same_bits = 1;
     return;
   }
   const Moments moments = first_moments(values, count);
@@ -164,6 +167,7 @@ LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, Uni
   const Scan scan = scan_bits(data, count);
   row.digest = scan.differ == 0 ? uniform_digest(values, last) : leaf_digest(values);
   row.finite = static_cast<std::uint16_t>(count - scan.non_finite);
+  row.zeros = scan.zeros & 0x7FFFU;
   row.sample = std::isfinite(data[sample_at]) ? data[sample_at] : std::numeric_limits<float>::quiet_NaN();
   if (scan.non_finite == 0) {
     summarize_finite(data, count, scan.differ, row);

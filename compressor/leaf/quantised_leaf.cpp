@@ -29,9 +29,9 @@ void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t
 Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit) {
   const ValueRange range = leaf_range(values);
   // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
-  if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front())};
+  if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front()), 0};
   if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
-    return {range.min, lattice->step};
+    return {range.min, lattice->step, lattice->largest};
   }
   return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits);
 }
@@ -53,7 +53,7 @@ void quantise_part(const LeafValues& values, const Box& node, const Box& inside,
   const unsigned bits = 1U << leaf.bits_log2;
   leaf.quantiser = choose_quantiser(seen, bits, fit);
   std::array<std::uint16_t, kLeafVoxels> codes;
-  quantise(seen, leaf.quantiser, bits, std::span(codes).first(count));
+  quantise(seen, leaf.quantiser, std::span(codes).first(count));
   count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
   extend_outside(node, inside, leaf.codes);
@@ -69,10 +69,12 @@ LeafValues inside_only(const LeafValues& values, const LeafValues& decoded, cons
 // Error and exactness of a leaf of finite values; the squared error is no finite number where one is not. In the
 // lanes of difference_of().
 WEIR_SIMD void measure_lanes(const float* source, const float* decoded, std::array<Doubles8, 2>& squares,
-                             std::array<Doubles8, 2>& largest, std::uint32_t& differ) {
+                             std::array<Doubles8, 2>& largest, std::uint32_t& differ, std::uint32_t& zeros_lost) {
   std::array<Doubles8, 2> sum{};
   std::array<Doubles8, 2> most{};
   Ints8 bits{};
+  Ints8 lost{};
+  const Floats8 zero{};
   for (std::size_t i = 0; i < kLeafVoxels; i += 16) {
     for (std::size_t half = 0; half < 2; ++half) {
       Floats8 s;
@@ -88,19 +90,24 @@ WEIR_SIMD void measure_lanes(const float* source, const float* decoded, std::arr
       std::memcpy(&s_bits, &s, sizeof s);
       std::memcpy(&d_bits, &d, sizeof d);
       bits |= s_bits ^ d_bits;
+      lost -= (s == zero) & (d != zero);
     }
   }
   squares = sum;
   largest = most;
   differ = 0;
-  for (int l = 0; l < 8; ++l) differ |= static_cast<std::uint32_t>(bits[l]);
+  zeros_lost = 0;
+  for (int l = 0; l < 8; ++l) {
+    differ |= static_cast<std::uint32_t>(bits[l]);
+    zeros_lost += static_cast<std::uint32_t>(lost[l]);
+  }
 }
 
 void measure(const LeafValues& source, QuantisedLeaf& leaf) {
   std::array<Doubles8, 2> squares;
   std::array<Doubles8, 2> largest;
   std::uint32_t differ = 0;
-  measure_lanes(source.data(), leaf.decoded.data(), squares, largest, differ);
+  measure_lanes(source.data(), leaf.decoded.data(), squares, largest, differ, leaf.zeros_lost);
   std::array<double, 16> lanes;
   std::memcpy(lanes.data(), squares.data(), sizeof lanes);
   for (std::size_t half = 8; half > 0; half /= 2) {
@@ -121,7 +128,7 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   const bool whole = inside == node;
   if (whole) {
     leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit);
-    quantise(values, leaf.quantiser, 1U << bits_log2, leaf.codes);
+    quantise(values, leaf.quantiser, leaf.codes);
   } else {
     quantise_part(values, node, inside, fit, leaf);
   }

@@ -19,6 +19,7 @@ struct QuantisedLeaf {
   double squared_error = 0;                        ///< over the finite in-domain values of the source
   double max_abs = 0;                              ///< the same
   bool exact = true;                               ///< every in-domain value decodes to its own bits
+  std::uint32_t zeros_lost = 0;                    ///< in-domain values equal to 0 that decode to another
 };
 
 /// What a quantiser is to make least: the squared error, or the largest one.

@@ -26,9 +26,17 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
     throw usage_error(compose(option("metric", metric_name(options.metric)), " has no error target; ", option("psnr"),
                               " and ", option("max-error"), " select by sse"));
   }
+  if (options.budget.at_most && !options.budget.by_size()) {
+    throw usage_error(compose(option("at-most"), " needs ", option("size"), " or ", option("rate")));
+  }
   if (options.metric == Metric::sse && options.brick != 8) {
     throw usage_error(compose(option("brick", options.brick), " is for ", option("metric", "farthest"),
                               ", closest or median; sse chooses single leaves"));
+  }
+  if (options.missing == MissingPolicy::background && options.non_finite == NonFinitePolicy::keep) {
+    throw usage_error(compose(option("nonfinite", "keep"), " keeps every NaN, and ",
+                              option("missing-policy", "background"), " none of those that stand for \"no data\"; use ",
+                              option("nonfinite", "background"), " or leave out ", option("missing-policy")));
   }
 }
 

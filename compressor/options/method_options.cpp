@@ -73,7 +73,8 @@ constexpr ConversionOption kMethodOptions[] = {
     {{.key = "nonfinite",
       .argument = "error|background|keep",
       .standard = "error",
-      .help = "what becomes of NaN and infinite voxels"},
+      .help = "what becomes of voxels without a number: NaN, infinite and, unless --missing-policy says otherwise, "
+              "those that hold no data"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.conversion.non_finite =
            std::array{NonFinitePolicy::error, NonFinitePolicy::background, NonFinitePolicy::keep}.at(
@@ -88,7 +89,11 @@ constexpr ConversionOption kMethodOptions[] = {
     {{.key = "rate",
       .argument = "RATE",
       .standard = "8",
-      .help = "the file is exactly ceil(float32 bytes of the volume / RATE) long",
+      .help =
+          "the file is exactly ceil(float32 bytes of the volume / RATE) long. Without any budget the rate is 8. Then a "
+          "volume whose smallest possible file is longer gets that file, and one of less than 128^3 voxels gets at "
+          "least "
+          "40 dB",
       .group = "budget"},
      read_rate},
     {{.key = "psnr",
@@ -103,8 +108,14 @@ constexpr ConversionOption kMethodOptions[] = {
       .help = "the smallest file in which every voxel is within that of its value, checked on decoded values",
       .group = "budget"},
      read_max_error},
-    {{.key = "lossless", .help = "the smallest file that preserves every bit of every voxel", .group = "budget"},
+    {{.key = "lossless",
+      .help = "the smallest file that preserves every bit of every voxel that holds a value",
+      .group = "budget"},
      read_lossless},
+    {{.key = "at-most", .help = "with --size or --rate: a shorter file, not padding, where the volume needs less"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.budget.at_most = read_flag(row, text);
+     }},
     {{.key = "encoding",
       .argument = "auto|float|fpn|fp4|fp8|fp16|packed",
       .standard = "auto",

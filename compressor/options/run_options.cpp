@@ -47,6 +47,15 @@ constexpr ConversionOption kRunOptions[] = {
       .standard = "0",
       .help = "0: all of the machine's, for convert as many of them as --memory holds"},
      read_threads},
+    {{.key = "backend",
+      .argument = "auto|cpu|cuda",
+      .standard = "auto",
+      .help = "what surveys and encodes packed blocks; the bytes are the same. auto: cuda where there is a device and "
+              "--memory is 1GiB or more"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.backend =
+           std::array{CoderChoice::automatic, CoderChoice::cpu, CoderChoice::cuda}.at(read_choice(row, text));
+     }},
     {{.key = "work-dir",
       .argument = "DIRECTORY",
       .standard = "a hidden directory beside the output",

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "compressor/leaf/leaf_lattice.h"
-#include "format/packed/block_encode.h"
+#include "format/base/simd.h"
 
 namespace weir {
 namespace {
@@ -21,28 +22,53 @@ BlockConstants constants_of(const std::optional<Lattice>& lattice) {
   return constants;
 }
 
-std::optional<Lattice> own_lattice(const LeafValues& block) {
-  const auto [low, high] = std::minmax_element(block.begin(), block.end());
-  if (!(std::isfinite(*low) && std::isfinite(*high) && *low < *high)) return std::nullopt;
-  for (const float v : block) {
-    if (!std::isfinite(v)) return std::nullopt;
+// The least and the largest value of a block; none where one is not finite.
+struct FiniteRange {
+  float low;
+  float high;
+  bool finite;
+};
+
+WEIR_SIMD FiniteRange finite_range(const float* values) {
+  Floats8 low;
+  std::memcpy(&low, values, sizeof low);
+  Floats8 high = low;
+  Floats8 differences{};  // of each value and itself: not 0 where it is not finite
+  for (unsigned i = 0; i < 512; i += 8) {
+    Floats8 v;
+    std::memcpy(&v, values + i, sizeof v);
+    differences += v - v;
+    low = v < low ? v : low;
+    high = v > high ? v : high;
   }
-  const auto lattice = find_lattice(block, *low, *high);
+  FiniteRange range{low[0], high[0], true};
+  for (int l = 0; l < 8; ++l) {
+    range.low = low[l] < range.low ? low[l] : range.low;
+    range.high = high[l] > range.high ? high[l] : range.high;
+    range.finite = range.finite && differences[l] == 0;
+  }
+  return range;
+}
+
+std::optional<Lattice> own_lattice(const LeafValues& block) {
+  const FiniteRange range = finite_range(block.data());
+  if (!range.finite || !(range.low < range.high)) return std::nullopt;
+  const auto lattice = find_lattice(block, range.low, range.high);
   if (!lattice) return std::nullopt;
-  return Lattice{*low, lattice->step, static_cast<std::uint32_t>(std::bit_width(lattice->largest))};
+  return Lattice{range.low, lattice->step, static_cast<std::uint32_t>(std::bit_width(lattice->largest))};
 }
 
 constexpr double kMostCodes = 16777216;  // of a lattice: 24 bits
 
 }  // namespace
 
-std::uint32_t write_exact(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
-                          FloatOrder order) {
+std::uint32_t ExactBlock::write(const LeafValues& block, const std::optional<Lattice>& lattice,
+                                std::span<std::byte> out, FloatOrder order) const {
   const std::optional<Lattice> own = lattice ? std::nullopt : own_lattice(block);
-  return encode_exact(constants_of(lattice), own, block, out, order);
+  return encode_exact(coder_, constants_of(lattice), own, block, out, order);
 }
 
-std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) {
+std::uint32_t ExactBlock::write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) const {
   const auto [low, high] = std::minmax_element(block.begin(), block.end());
   const float minimum = *low;
   // Half a quantum, and what the two roundings of the decoder add.
@@ -63,7 +89,7 @@ std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span
   }
   const Lattice lattice{minimum, quantum,
                         static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint32_t>(largest)))};
-  return encode_exact(constants_of(std::nullopt), lattice, rounded, out);
+  return encode_exact(coder_, constants_of(std::nullopt), lattice, rounded, out);
 }
 
 }  // namespace weir

@@ -8,16 +8,25 @@
 #include <span>
 
 #include "format/leaf/leaf_codec.h"
+#include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
+#include "format/packed/value_encoder.h"
 
 namespace weir {
 
-/// Writes the shortest stream that gives every bit of `block` back; `lattice` is the file's. Returns its bytes.
-std::uint32_t write_exact(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
-                          FloatOrder order = FloatOrder::used);
+/// One per thread.
+class ExactBlock {
+ public:
+  /// Writes the shortest stream that gives every bit of `block` back; `lattice` is the file's. Returns its bytes.
+  std::uint32_t write(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
+                      FloatOrder order = FloatOrder::used) const;
 
-/// The same for finite values rounded so that each is within `max_error` of its own. 0 where no lattice of 24 bits
-/// does that.
-std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out);
+  /// The same for finite values rounded so that each is within `max_error` of its own. 0 where no lattice of 24 bits
+  /// does that.
+  std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) const;
+
+ private:
+  ValueEncoder coder_{built_in_tables(), ValueEncoder::Kind::lattice};
+};
 
 }  // namespace weir

@@ -5,24 +5,16 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "compressor/packed/exact_block.h"
 #include "format/packed/block_decode.h"
 
 namespace weir {
 namespace {
 
-constexpr double kDeadZone = 0.6;              // steps below which a coefficient becomes 0
-constexpr std::int32_t kMeanSteps = 4;         // of a ladder before the first coefficient counts
+constexpr std::uint32_t kMeanBits = 8;         // of a mean alone but for its code
 constexpr double kMeanError = 0.5 + 1.0 / 16;  // quanta that a decoded mean of kMostBoundedMeanBits is off by
 constexpr std::uint32_t kUniformBytes = 5;     // kind and value
-
-// The coarsest step of at most `size`.
-std::int32_t coarsest_of_at_most(double size) {
-  std::int32_t step = std::clamp(-2 * (std::ilogb(size) + 1), kLeastStep, kMostStep);
-  while (step<kMostStep&& static_cast<double>(step_size(step))> size) ++step;
-  return step;
-}
 
 bool have_same_bits(const LeafValues& block) {
   const auto first = std::bit_cast<std::uint32_t>(block[0]);
@@ -69,7 +61,7 @@ float least_of_type(ScalarType type) {
 
 std::optional<Lattice> lattice_of(const SourceInfo& source) {
   const std::uint32_t bits = bits_of_type(source.type);
-  if (bits == 0 || source.mapping.scales()) return std::nullopt;
+  if (bits == 0 || !source.values_as_stored()) return std::nullopt;
   return Lattice{least_of_type(source.type), 1.0F, bits};
 }
 
@@ -101,62 +93,116 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
     build_bounded(block, *aim_.max_error, ladder);
     return ladder;
   }
-  set_exact(block, near, ladder);
-  if (aim_.lossless || !transform_.set(block)) return ladder;
-  const double energy = filled == Filled::no ? transform_.energy() : row.sse;
-  add_rungs(row, energy, ladder);
-  if (near == NearRungs::yes) add_near_rungs(block, energy, ladder);
+  // What a budget can buy is seldom exact: floats on no lattice are looked at that closely where it may be, or where
+  // most are zero, of which whole numbers in the floats' order take fewer bytes than rungs that round.
+  const bool may_be_exact = aim_.lossless || (near == NearRungs::yes && !aim_.window);
+  set_exact(block, may_be_exact ? FloatOrder::used : FloatOrder::unused, ladder);
+  if (aim_.lossless) return ladder;
+  bool more = true;
+  if (transform_.set(block)) {
+    const double energy = filled == Filled::no ? transform_.energy() : row.sse;
+    add_rungs(
+        row, energy, transform_.largest(), [&](std::size_t rung) { return transform_.cost(ladder.step(rung)); },
+        ladder);
+    if (near == NearRungs::yes) more = add_near_rungs(block, row, energy, ladder);
+  }
+  const bool sparse = 2U * row.zeros > row.finite;
+  const bool on_no_lattice = ladder.exact_bytes == kRawStreamBytes;
+  if (near == NearRungs::yes && !may_be_exact && on_no_lattice && (more || sparse)) {
+    set_exact(block, FloatOrder::used, ladder);
+  }
   return ladder;
 }
 
-void LadderBuilder::add_near(const LeafValues& block, PackedLadder& ladder) {
-  set_exact(block, NearRungs::yes, ladder);
-  if (transform_.set(block)) add_near_rungs(block, transform_.energy(), ladder);
-}
-
-void LadderBuilder::set_exact(const LeafValues& block, NearRungs near, PackedLadder& ladder) {
-  // What a budget of bytes can buy is seldom exact: floats on no lattice are then not looked at that closely.
-  const FloatOrder order = aim_.lossless || near == NearRungs::yes ? FloatOrder::used : FloatOrder::unused;
-  ladder.exact_bytes = static_cast<std::uint16_t>(write_exact(block, aim_.lattice, stream_, order));
+void LadderBuilder::set_exact(const LeafValues& block, FloatOrder order, PackedLadder& ladder) {
+  ladder.exact_bytes = static_cast<std::uint16_t>(exact_.write(block, aim_.lattice, stream_, order));
   ladder.exact = is_ordered(stream_) ? ExactKind::ordered : ExactKind::values;
 }
 
-void LadderBuilder::add_rungs(const LeafRow& row, double energy, PackedLadder& ladder) {
-  const double largest = transform_.largest();
+std::optional<PackedLadder> LadderBuilder::build_from(const BlockFigures& figures, std::span<const RungCost> costs,
+                                                      const LeafRow& row) const {
+  if (figures.lattice != 0) return std::nullopt;
+  PackedLadder ladder;
+  ladder.exact_bytes = static_cast<std::uint16_t>(kRawStreamBytes);
+  if (figures.transformed == 0) return ladder;
+  bool enough = true;
+  const auto cost_of = [&](std::size_t rung) {
+    const std::size_t at = rung - figures.first_rung;
+    const bool known = rung >= figures.first_rung && at < figures.rungs && costs[at].bits != 0;
+    enough = enough && known;
+    return known ? TransformBlock::Cost{costs[at].bits, costs[at].squared_error}
+                 : TransformBlock::Cost{kNotCodedBits, 0};
+  };
+  add_rungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder);
+  return enough ? std::optional(ladder) : std::nullopt;
+}
+
+template <class CostOf>
+void LadderBuilder::add_rungs(const LeafRow& row, double energy, double largest, const CostOf& cost_of,
+                              PackedLadder& ladder) const {
   if (!(energy > 0 && largest > 0)) return;
-  const std::int32_t first = coarsest_of_at_most(largest / kDeadZone);
-  ladder.first_step = static_cast<std::int16_t>(first - kMeanSteps);
+  ladder.first_step = static_cast<std::int16_t>(first_rung_step(largest));
   // Finer than float32 resolves the values themselves: nothing is gained.
   const double finest = static_cast<double>(std::max(std::fabs(row.min), std::fabs(row.max))) * 0x1p-24;
-  for (std::size_t rung = 0; rung < PackedLadder::kMostRungs; ++rung) {
-    const std::int32_t step = ladder.step(rung);
+  std::size_t end = 0;
+  while (end < PackedLadder::kMostRungs) {
+    const std::int32_t step = ladder.step(end);
     if (step < kLeastStep || step > kMostStep || static_cast<double>(step_size(step)) < finest) break;
-    const TransformBlock::Cost cost = rung < 2 ? TransformBlock::Cost{8, energy} : transform_.cost(step);
-    if (cost.bits + 8 >= 8U * ladder.exact_bytes) break;
-    const double share = std::min(1.0, cost.squared_error / energy);
-    ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits), ErrorShare(share)};
-    ladder.count = static_cast<std::uint8_t>(rung + 1);
+    ++end;
+  }
+  // Sets a rung unless exact is shorter; returns its bits.
+  const auto build_rung = [&](std::size_t rung) {
+    const bool mean = rung < PackedLadder::kMeanRungs;
+    const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanBits, energy} : cost_of(rung);
+    if (cost.bits + 8 >= 8U * ladder.exact_bytes) return cost.bits;
+    ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits),
+                          ErrorShare(std::min(1.0, cost.squared_error / energy))};
+    ladder.count = std::max(ladder.count, static_cast<std::uint8_t>(rung + 1));
+    return cost.bits;
+  };
+  if (aim_.window) {
+    for (std::size_t rung = 0; rung < std::min(end, PackedLadder::kMeanRungs); ++rung) build_rung(rung);
+    rungs_within(*aim_.window, row.sse, start_rung(*aim_.window, ladder), PackedLadder::kMeanRungs, end,
+                 [&](std::size_t rung) {
+                   if (ladder.rungs[rung].bits == 0) build_rung(rung);
+                   return ladder.point(rung);
+                 });
+    return;
+  }
+  // Bits hardly ever fall from a rung to the next, and never by so many.
+  constexpr std::uint32_t kNoMore = 2048;
+  for (std::size_t rung = 0; rung < end; ++rung) {
+    if (build_rung(rung) > 8U * ladder.exact_bytes + kNoMore) break;
   }
 }
 
-void LadderBuilder::add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder) {
-  ladder.near_count = 0;
-  if (!(energy > 0)) return;
+bool LadderBuilder::add_near_rungs(const LeafValues& block, const LeafRow& row, double energy, PackedLadder& ladder) {
+  if (!(energy > 0)) return true;
   rounded_.set(block);
   const int finest = rounded_.exponent() - RoundedBlock::kMostBits;
   const int coarsest = finest + static_cast<int>(PackedLadder::kMostNear) - 1;
-  if (coarsest > std::numeric_limits<std::int8_t>::max() || finest < std::numeric_limits<std::int8_t>::min()) return;
+  if (coarsest > std::numeric_limits<std::int8_t>::max() || finest < std::numeric_limits<std::int8_t>::min())
+    return true;
   ladder.near_exponent = static_cast<std::int8_t>(coarsest);
-  for (int exponent = coarsest; exponent >= finest; --exponent) {
-    const auto cost = rounded_.cost(exponent);
-    if (!cost && ladder.near_count == 0) {  // of one value, far from zero
-      --ladder.near_exponent;
-      continue;
-    }
-    if (!cost || cost->bytes >= ladder.exact_bytes) break;
-    const double share = std::min(1.0, cost->squared_error / energy);
-    ladder.near[ladder.near_count++] = {static_cast<std::uint16_t>(cost->bytes), ErrorShare(share)};
+  // Sets a rung unless exact is shorter, or the block is of one value so rounded.
+  const auto build_rung = [&](std::size_t rung) {
+    const auto cost = rounded_.cost(coarsest - static_cast<int>(rung));
+    if (!cost || cost->bytes >= ladder.exact_bytes) return;
+    ladder.near[rung] = {static_cast<std::uint16_t>(cost->bytes),
+                         ErrorShare(std::min(1.0, cost->squared_error / energy))};
+    ladder.near_count = std::max(ladder.near_count, static_cast<std::uint8_t>(rung + 1));
+  };
+  if (aim_.window) {
+    std::array<bool, PackedLadder::kMostNear> tried{};
+    const auto point = [&](std::size_t rung) {
+      if (!std::exchange(tried[rung], true)) build_rung(rung);
+      return ladder.near_point(rung);
+    };
+    return rungs_within(*aim_.window, row.sse, start_near_rung(*aim_.window, ladder), 0, PackedLadder::kMostNear, point)
+        .more;
   }
+  for (std::size_t rung = 0; rung < PackedLadder::kMostNear; ++rung) build_rung(rung);
+  return true;
 }
 
 // The coarsest step at which every value is within `max_error`.
@@ -167,13 +213,13 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
   const double rounding = (deviation + std::fabs(mean)) * 0x1p-20;
   const double allowed = max_error - rounding;
   if (deviation < allowed) {
-    const std::int32_t step = coarsest_of_at_most(std::sqrt(512.0) / kMeanError * (allowed - deviation));
+    const std::int32_t step = coarsest_step_within(std::sqrt(512.0) / kMeanError * (allowed - deviation));
     // Where coefficients would count at that step, the trials below find as much.
     if (transform_.cost(step).bits <= 8) return step;
   }
   LeafValues decoded;
   constexpr int kTrials = 16;
-  std::int32_t step = coarsest_of_at_most(8 * max_error);
+  std::int32_t step = coarsest_step_within(8 * max_error);
   for (int trial = 0; trial < kTrials && step <= kMostStep; ++trial, ++step) {
     const TransformBlock::Cost cost = transform_.cost(step);
     // No largest error is below the root of the mean square.
@@ -192,10 +238,10 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
 }
 
 void LadderBuilder::build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder) {
-  const std::uint32_t bounded = write_bounded(block, max_error, stream_);
+  const std::uint32_t bounded = exact_.write_bounded(block, max_error, stream_);
   // On a lattice as coarse as the error allows, exact is shorter.
   const std::uint32_t exact =
-      bounded == 0 || aim_.lattice ? write_exact(block, aim_.lattice, stream_) : kRawStreamBytes;
+      bounded == 0 || aim_.lattice ? exact_.write(block, aim_.lattice, stream_) : kRawStreamBytes;
   const bool rounds = bounded > 0 && bounded < exact;
   ladder.exact = rounds ? ExactKind::bounded : ExactKind::values;
   ladder.exact_bytes = static_cast<std::uint16_t>(rounds ? bounded : exact);

@@ -4,17 +4,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compressor/leaf/leaf_row.h"
+#include "compressor/packed/exact_block.h"
+#include "compressor/packed/ladder_window.h"
 #include "compressor/packed/packed_ladder.h"
 #include "format/leaf/leaf_codec.h"
+#include "format/packed/block_coder.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
 #include "format/packed/rounded_block.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
+
+/// Whether a ladder has near rungs, and its exact kind predicts floats.
+enum class NearRungs { no, yes };
 
 /// What ladders are built for.
 struct LadderAim {
@@ -24,13 +31,28 @@ struct LadderAim {
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
   bool near_rungs = false;           ///< a budget of bytes, or of an error, may buy them
+  bool near_everywhere = false;      ///< it is known to, so that all blocks get them, and not a sample alone
+  /// Where the cut is known to lie: the rungs that it cannot choose are left out.
+  std::optional<KeyWindow> window{};
+  BlockCoder* coder = nullptr;  ///< looks at the rungs of many blocks at a time, where there is one
+
+  /// Who looks at rungs in the survey. Exact kinds and near rungs are looked at here.
+  BlockCoder* surveying_coder() const {
+    return has_rungs() && !lattice && !(near_rungs && near_everywhere) ? coder : nullptr;
+  }
+  /// Which rungs it looks at.
+  RungAsk rung_ask() const { return window ? RungAsk{false, window->step()} : RungAsk{}; }
+
+  /// Which ladder a block gets in the survey.
+  NearRungs near_for(bool sampled) const {
+    return near_rungs && (near_everywhere || sampled) ? NearRungs::yes : NearRungs::no;
+  }
+  /// Whether ladders lead from few bytes to many, and a budget chooses.
+  bool has_rungs() const { return !lossless && !max_error; }
 };
 
 /// The lattice that all values of a source lie on, where its type says so.
 std::optional<Lattice> lattice_of(const SourceInfo& source);
-
-/// Whether a ladder has near rungs, and its exact kind predicts floats.
-enum class NearRungs { no, yes };
 
 class LadderBuilder {
  public:
@@ -39,8 +61,9 @@ class LadderBuilder {
   /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
   /// the survey knows of them.
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near);
-  /// Adds near rungs, and floats in order, to a ladder that build() has built of that block without them.
-  void add_near(const LeafValues& block, PackedLadder& ladder);
+  /// The same of what a coder has found of the block, for NearRungs::no. Nullopt where that is not enough.
+  std::optional<PackedLadder> build_from(const BlockFigures& figures, std::span<const RungCost> costs,
+                                         const LeafRow& row) const;
   /// Of one whose in-domain values have the same bits.
   static PackedLadder uniform();
   /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
@@ -51,16 +74,19 @@ class LadderBuilder {
   // Whether the background is a part of the block. Its error does not count then: that of the whole is a bound.
   enum class Filled { no, yes };
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled);
-  // The errors of the rungs are shares of `energy`.
-  void add_rungs(const LeafRow& row, double energy, PackedLadder& ladder);
-  void set_exact(const LeafValues& block, NearRungs near, PackedLadder& ladder);
-  void add_near_rungs(const LeafValues& block, double energy, PackedLadder& ladder);
+  // The errors of the rungs are shares of `energy`; cost(rung) is TransformBlock::cost() at its step.
+  template <class CostOf>
+  void add_rungs(const LeafRow& row, double energy, double largest, const CostOf& cost_of, PackedLadder& ladder) const;
+  void set_exact(const LeafValues& block, FloatOrder order, PackedLadder& ladder);
+  // Returns whether a cut may choose what is finer than those it adds.
+  bool add_near_rungs(const LeafValues& block, const LeafRow& row, double energy, PackedLadder& ladder);
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
 
   LadderAim aim_;
   TransformBlock transform_;
   RoundedBlock rounded_;
+  ExactBlock exact_;
   std::vector<std::byte> stream_ = std::vector<std::byte>(4096);
 };
 

@@ -6,6 +6,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+
+#include "format/packed/block_steps.h"
 
 namespace weir {
 
@@ -30,8 +33,14 @@ class ErrorShare {
   std::uint16_t code_ = kNone;  // e << 10 | m
 };
 
+/// What a way to keep a block takes and leaves.
+struct RungPoint {
+  double bytes = 0;
+  double share = 0;  ///< of the block's energy
+};
+
 struct PackedRung {
-  std::uint16_t bits = 0;  ///< of the stream but for the code of its mean
+  std::uint16_t bits = 0;  ///< of the stream but for the code of its mean; 0: not built, or no better than exact
   ErrorShare error;        ///< of the block's energy
 };
 
@@ -46,7 +55,7 @@ inline constexpr std::uint8_t kExactLevel = 63;
 
 /// Values rounded to multiples of a power of two: where a transform's error ends at what float32 resolves.
 struct NearRung {
-  std::uint16_t bytes = 0;  ///< of the stream
+  std::uint16_t bytes = 0;  ///< of the stream; 0: not built, or no better than exact
   ErrorShare error;         ///< of the block's energy
 };
 
@@ -58,24 +67,31 @@ enum class ExactKind : std::uint8_t {
 };
 
 struct PackedLadder {
-  static constexpr std::size_t kMostRungs = 22;
+  static constexpr std::size_t kMostRungs = kLadderRungs;
+  static constexpr std::size_t kMeanRungs = kLadderMeanRungs;
   static constexpr std::size_t kMostNear = 12;
 
   std::int16_t first_step = 0;  ///< step number of rung 0
-  std::uint8_t count = 0;       ///< rungs, from coarse to fine
+  std::uint8_t count = 0;       ///< rungs, from coarse to fine, up to the last one that is built
   ExactKind exact{};
   std::uint16_t exact_bytes = 0;  ///< of the stream of the exact kind
   std::int8_t near_exponent = 0;  ///< of the coarsest near rung's quantum; each further one's is half of that
-  std::uint8_t near_count = 0;
+  std::uint8_t near_count = 0;    ///< near rungs up to the last one that is built
   std::array<PackedRung, kMostRungs> rungs{};
   std::array<NearRung, kMostNear> near{};  ///< from coarse to fine
 
-  /// Step number of a rung: by whole octaves to where the first coefficient counts, then by half ones, by whole ones
-  /// again, and at last, for what is nearly lossless, by two.
-  std::int32_t step(std::size_t rung) const {
-    const auto r = static_cast<std::int32_t>(rung);
-    return first_step + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
+  /// Of a rung or a near rung but for the code of its mean; nullopt where it is not built.
+  std::optional<RungPoint> point(std::size_t rung) const {
+    if (rungs[rung].bits == 0) return std::nullopt;
+    return RungPoint{rungs[rung].bits / 8.0, rungs[rung].error.value()};
   }
+  std::optional<RungPoint> near_point(std::size_t rung) const {
+    if (near[rung].bytes == 0) return std::nullopt;
+    return RungPoint{static_cast<double>(near[rung].bytes), near[rung].error.value()};
+  }
+
+  /// Step number of a rung.
+  std::int32_t step(std::size_t rung) const { return rung_step(first_step, static_cast<std::int32_t>(rung)); }
 };
 static_assert(sizeof(PackedLadder) == 144, "ladders are spilled as they are");
 

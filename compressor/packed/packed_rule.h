@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "compressor/packed/ladder_window.h"
 #include "format/packed/packed_layout.h"
 
 namespace weir {
@@ -10,6 +12,8 @@ namespace weir {
 struct PackedRule {
   bool preview = true;        ///< the tree holds each block's mean, for readers of others
   std::int32_t coarsest = 0;  ///< step number that a step field of 0 stands for
+  /// Rungs that no cut within it can choose are left out, whether they are built or not.
+  std::optional<KeyWindow> window{};
 };
 
 /// Step fields have 6 bits.

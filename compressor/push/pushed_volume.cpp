@@ -72,11 +72,14 @@ struct PushedFiles {
       control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
     }
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
-    stores.emplace(SurveyStores{RowStore(work.spill(), leaves, segment_regions), {}});
+    stores.emplace(SurveyStores{RowStore(work.spill(), leaves, segment_regions), {}, {}});
     if (faces) stores->faces.emplace(work.spill(), leaves);
     spool.emplace(work.spill(), work.spill(), leaves, info.type);
-    const std::optional<LadderAim> ladders = surveyed_ladders(options, info);
-    if (ladders) stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill(), leaves));
+    std::optional<LadderAim> ladders = surveyed_ladders(options, info);
+    if (ladders) {
+      stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill(), leaves));
+      ladders->coder = control.coder;
+    }
     survey.emplace(info, stores->rows, faces ? &*stores->faces : nullptr, surveys_widths(options), control.trace,
                    ladders);
   }
@@ -113,11 +116,26 @@ class PushedVolume::State {
 
   void slab(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
     check_going_on();
-    const Taking taking(*this, z0, nz, data);
-    const Box domain = info_.domain();
-    const Box box{{domain.lo.x, domain.lo.y, domain.lo.z + z0}, {domain.hi.x, domain.hi.y, domain.lo.z + z0 + nz}};
-    intake_->add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
+    if (data == nullptr) throw Error(ErrorKind::usage, cat(info_.path, ": the slab's data is a null pointer"));
+    const Taking taking(*this, z0, nz);
+    add(z0, nz, data, stride);
   }
+
+  void expect(std::int64_t z0, std::int64_t nz) {
+    check_going_on();
+    const std::lock_guard lock(mutex_);
+    take_planes(z0, nz);
+    expected_planes_ += nz;
+  }
+
+  void fill(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
+    check_going_on();
+    add(z0, nz, data, stride);
+    const std::lock_guard lock(mutex_);
+    expected_planes_ -= nz;
+  }
+
+  void fail(const Error& error) { intake_->fail(error); }
 
   Sidecar end() {
     const auto started = std::chrono::steady_clock::now();
@@ -140,9 +158,9 @@ class PushedVolume::State {
   // A slab from its planes being checked to the call's return.
   class Taking {
    public:
-    Taking(State& state, std::int64_t z0, std::int64_t nz, const void* data) : state_(state) {
+    Taking(State& state, std::int64_t z0, std::int64_t nz) : state_(state) {
       const std::lock_guard lock(state_.mutex_);
-      state_.take_planes(z0, nz, data);
+      state_.take_planes(z0, nz);
       ++state_.slabs_in_progress_;
     }
     ~Taking() {
@@ -226,8 +244,13 @@ class PushedVolume::State {
     }
   }
 
-  void take_planes(std::int64_t z0, std::int64_t nz, const void* data) {
-    if (data == nullptr) throw Error(ErrorKind::usage, cat(info_.path, ": the slab's data is a null pointer"));
+  void add(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
+    const Box domain = info_.domain();
+    const Box box{{domain.lo.x, domain.lo.y, domain.lo.z + z0}, {domain.hi.x, domain.hi.y, domain.lo.z + z0 + nz}};
+    intake_->add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
+  }
+
+  void take_planes(std::int64_t z0, std::int64_t nz) {
     if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
       throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, " planes from ", z0,
                                         " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
@@ -250,6 +273,11 @@ class PushedVolume::State {
       throw Error(ErrorKind::usage,
                   cat(info_.path, ": ", slabs_in_progress_, slabs_in_progress_ == 1 ? " slab is" : " slabs are",
                       " still being taken; end once every call has returned"));
+    }
+    if (expected_planes_ > 0) {
+      throw Error(ErrorKind::usage,
+                  cat(info_.path, ": ", expected_planes_, expected_planes_ == 1 ? " plane is" : " planes are",
+                      " still expected; end once their values have come"));
     }
     ended_ = true;
   }
@@ -275,9 +303,10 @@ class PushedVolume::State {
   std::optional<PushedFiles> files_;  // none once the push has ended
   BlockPlan slices_;
   tbb::enumerable_thread_specific<PageBuffer> floats_;  // of a slice
-  std::mutex mutex_;                                    // of the next four
+  std::mutex mutex_;                                    // of the next five
   PlaneSet given_;
   std::int64_t slabs_in_progress_ = 0;
+  std::int64_t expected_planes_ = 0;  // whose values have not come
   bool ended_ = false;
   std::optional<Error> failure_;  // of the end
   std::optional<SliceIntake> intake_;
@@ -296,6 +325,16 @@ void PushedVolume::slab(std::int64_t z0, std::int64_t nz, const void* data, cons
 void PushedVolume::slab(std::int64_t z0, std::int64_t nz, const void* data) {
   slab(z0, nz, data, packed_stride(state_->info().extent, state_->info().type));
 }
+
+void PushedVolume::expect(std::int64_t z0, std::int64_t nz) { state_->expect(z0, nz); }
+
+void PushedVolume::fill(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
+  state_->fill(z0, nz, data, stride);
+}
+
+void PushedVolume::fail(const Error& error) { state_->fail(error); }
+
+const SourceInfo& PushedVolume::info() const { return state_->info(); }
 
 Sidecar PushedVolume::end() { return state_->end(); }
 

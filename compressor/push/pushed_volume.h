@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "compressor/conversion.h"
+#include "format/base/error.h"
 #include "format/io/file_system.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/source/volume_source.h"
@@ -49,10 +50,21 @@ class PushedVolume {
   /// Without gaps, x fastest: Fortran's a(x, y, z), C's a[z][y][x].
   void slab(std::int64_t z0, std::int64_t nz, const void* data);
 
+  /// The same in two steps, for values that arrive later. `expect` checks and takes the planes, as slab does without
+  /// data; `fill` gives the values of planes that were expected, in any number of calls, each plane once.
+  void expect(std::int64_t z0, std::int64_t nz);
+  void fill(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride);
+  /// Ends the push with `error`, unless it has ended already: values that were expected will not come. That is then the
+  /// answer of every later call, and nothing is left on the disk.
+  void fail(const Error& error);
+
+  /// Extent, type and path as the push was begun.
+  const SourceInfo& info() const;
+
   /// Writes the volume and its sidecar, which it returns; the volume has the bytes that convert_volume gives for the
   /// same values and options. Sidecar::Timing is of this call. Throws Error(usage) naming the planes that are missing,
-  /// which can still be given, and where slabs are still being taken. Any other Error is final, as for slab, and of the
-  /// output nothing is left.
+  /// which can still be given, and where slabs are still being taken or expected. Any other Error is final, as for
+  /// slab, and of the output nothing is left.
   Sidecar end();
 
  private:

@@ -1,7 +1,6 @@
 #include "compressor/push/slice_intake.h"
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 #include "format/base/index.h"
@@ -15,16 +14,6 @@ std::size_t buffer_bytes(const BlockPlan& plan, std::size_t value_bytes) {
 }
 
 PlaneMask lowest_planes(std::int64_t count) { return static_cast<PlaneMask>((1U << static_cast<unsigned>(count)) - 1); }
-
-Error as_error(const std::exception_ptr& failure) {
-  try {
-    std::rethrow_exception(failure);
-  } catch (const Error& error) {
-    return error;
-  } catch (const std::exception& other) {
-    return {ErrorKind::internal, other.what()};
-  }
-}
 
 }  // namespace
 
@@ -128,7 +117,7 @@ void SliceIntake::work() {
     work_until_the_end(lock);
   } catch (...) {
     if (!lock.owns_lock()) lock.lock();
-    if (!failure_) failure_ = as_error(std::current_exception());
+    if (!failure_) failure_ = error_in_flight();
   }
   for_workers_.notify_all();
   if (failure_ && running_ == 1) sink_.abandon();

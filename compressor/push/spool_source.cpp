@@ -141,6 +141,7 @@ class SpoolSource final : public VolumeSource {
                                         kNativeIsBig, info_.mapping, std::span(&value, 1));
     loss.inexact *= static_cast<std::uint64_t>(part.voxels());
     loss.overflow *= static_cast<std::uint64_t>(part.voxels());
+    loss.unmarked *= static_cast<std::uint64_t>(part.voxels());
     for_each_row(part, box, values, [&](std::span<float> row) { std::ranges::fill(row, value); });
     return loss;
   }

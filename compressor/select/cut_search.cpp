@@ -17,24 +17,24 @@ PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) cons
   return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
 }
 
-// Calls visit(key, bytes, gain) for everything below the upper nodes that can be bought.
+// Calls visit(region, key, bytes, gain) for everything below the upper nodes that can be bought.
 template <typename Visit>
 void CutSearch::for_each_key(const Visit& visit) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
-    visit(region.key, rule_.region_bytes(), region.opening_gain);
+    visit(index, region.key, rule_.region_bytes(), region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
     rule_.gains(tree_, rows, gains);
     for (const LeafGain& leaf : gains) {
       for (std::uint32_t i = 0; i < leaf.step_count; ++i) {
-        visit(step_key(leaf, i, region.key), leaf.steps[i].bytes, leaf.steps[i].gain);
+        visit(index, step_key(leaf, i, region.key), leaf.steps[i].bytes, leaf.steps[i].gain);
       }
     }
   });
 }
 
-double CutSearch::find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above) const {
+Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
   // Radix selection from the top: 16 bits of the keys a pass, weights counted per bucket, until the bucket
   // that the goal is reached in is small enough to be sorted.
   constexpr int kDigit = 16;
@@ -50,7 +50,7 @@ double CutSearch::find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above
   };
   using Buckets = std::vector<Bucket>;
   std::uint64_t prefix = 0;
-  above = 0;
+  PurchaseGoal::Weight above = 0;
   for (int shift = 64 - kDigit; shift >= 0; shift -= kDigit) {
     // What is required is bought whatever the goal.
     const auto matches = [&](double key, int bits) {
@@ -65,8 +65,9 @@ double CutSearch::find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above
       bucket.weight += weight;
       ++bucket.items;
     };
-    for_each_key(
-        [&](double key, std::uint64_t bytes, double gain) { count(local.local(), key, goal.weight(bytes, gain)); });
+    for_each_key([&](std::int64_t, double key, std::uint64_t bytes, double gain) {
+      count(local.local(), key, goal.weight(bytes, gain));
+    });
     Buckets total(kBuckets);
     for (const Buckets& buckets : local) {
       for (std::size_t i = 0; i < kBuckets; ++i) total[i] += buckets[i];
@@ -85,42 +86,48 @@ double CutSearch::find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above
         for (const Bucket& bucket : total) all += bucket.weight;
         goal.limit = all > *goal.left ? all - *goal.left : 0;
       }
-      if (goal.unit != 0 && above >= goal.limit) return std::numeric_limits<double>::max();
+      if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
     }
     std::size_t bucket = kBuckets;
     while (bucket > 0 && goal.admits_all(above, total[bucket - 1].weight)) above += total[--bucket].weight;
-    if (bucket == 0) return 0;  // everything may be bought
+    if (bucket == 0) return {0, above};  // everything may be bought
     prefix = prefix << kDigit | (bucket - 1);
     if (shift == 0) break;
     if (total[bucket - 1].items <= kSortedItems) {
       return sorted_threshold(goal, above, [&](double key) { return matches(key, shift); });
     }
   }
-  return std::bit_cast<double>(prefix);
+  return {std::bit_cast<double>(prefix), above};
 }
 
-double CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above,
-                                   const std::function<bool(double)>& matches) const {
+Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above,
+                                      const std::function<bool(double)>& matches) const {
   struct Purchase {
     double key;
+    std::int64_t region;  // -1: an upper node
     PurchaseGoal::Weight weight;
   };
   tbb::enumerable_thread_specific<std::vector<Purchase>> local;
-  for_each_key([&](double key, std::uint64_t bytes, double gain) {
-    if (matches(key)) local.local().push_back({key, goal.weight(bytes, gain)});
+  for_each_key([&](std::int64_t region, double key, std::uint64_t bytes, double gain) {
+    if (matches(key)) local.local().push_back({key, region, goal.weight(bytes, gain)});
   });
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);
   for (const Upper& upper : tree_.uppers) {
-    if (matches(upper.key)) items.push_back({upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain)});
+    if (matches(upper.key)) items.push_back({upper.key, -1, goal.weight(rule_.upper_bytes(), upper.opening_gain)});
   }
-  std::sort(items.begin(), items.end(), [](const Purchase& a, const Purchase& b) { return a.key > b.key; });
+  std::sort(items.begin(), items.end(),
+            [](const Purchase& a, const Purchase& b) { return a.key != b.key ? a.key > b.key : a.region < b.region; });
   for (std::size_t i = 0; i < items.size();) {
-    const double key = items[i].key;
+    Threshold found{items[i].key, above, std::vector<std::int64_t>{}};
     PurchaseGoal::Weight weight = 0;
-    for (; i < items.size() && items[i].key == key; ++i) weight += items[i].weight;
-    if (!goal.admits_all(above, weight)) return key;
+    for (; i < items.size() && items[i].key == found.key; ++i) {
+      weight += items[i].weight;
+      const std::int64_t region = items[i].region;
+      if (region >= 0 && (found.tied->empty() || found.tied->back() != region)) found.tied->push_back(region);
+    }
+    if (!goal.admits_all(above, weight)) return found;
     above += weight;
   }
   throw Error(ErrorKind::internal, "the selection's cut lies in no bucket");

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
@@ -35,21 +36,28 @@ struct PurchaseGoal {
   }
 };
 
+/// Where buying ends.
+struct Threshold {
+  double key = 0;                  ///< everything above it is bought; 0: everything can be
+  PurchaseGoal::Weight above = 0;  ///< the sum of that
+  /// Regions, rising, that have something of that very key, or are it; none where the search did not look.
+  std::optional<std::vector<std::int64_t>> tied{};
+};
+
 class CutSearch {
  public:
   /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object.
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree)
       : rule_(rule), rows_(rows), tree_(tree) {}
 
-  /// The smallest key for which everything above it can be bought for `goal`; `above` is the sum of that. 0: everything
-  /// can be bought.
-  double find_threshold(PurchaseGoal& goal, PurchaseGoal::Weight& above) const;
+  /// The smallest key for which everything above it can be bought for `goal`.
+  Threshold find_threshold(PurchaseGoal& goal) const;
 
  private:
   template <typename Visit>
   void for_each_key(const Visit& visit) const;
-  double sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight& above,
-                          const std::function<bool(double)>& matches) const;
+  Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above,
+                             const std::function<bool(double)>& matches) const;
 
   const GainRule& rule_;
   const RowStore& rows_;

@@ -77,6 +77,7 @@ class Candidate {
     FilePlan file;
     file.encoding = encoding_;
     file.fill = request_.rule.fill;
+    file.cut = selection_.cut_key();
     file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
     file.packed = selection_.rule().packed;
     if (file.packed) {
@@ -93,7 +94,9 @@ class Candidate {
   static GainRule rule_of(const FileRequest& request, Encoding encoding, bool preview) {
     GainRule rule = request.rule;
     rule.encoding = encoding;
-    if (encoding == Encoding::packed) rule.packed = PackedRule{preview, request.packed.constants.coarsest};
+    if (encoding == Encoding::packed) {
+      rule.packed = PackedRule{preview, request.packed.constants.coarsest, request.packed.window};
+    }
     if (request.budget.kind == Budget::Kind::max_error) rule.max_error = request.budget.target;
     return rule;
   }
@@ -116,8 +119,7 @@ bool countable(const FilePlan& file) { return countable(file.plan.layout.counts)
 // Why a quantised file cannot be lossless.
 std::string lossy_leaves_text(const Candidate& quantised) {
   const std::uint64_t leaves = quantised.bytes().lossy_leaves;
-  return cat(leaves, leaves == 1 ? " leaf holds" : " leaves hold",
-             " values that no lattice of 16 bits gives back bit for bit");
+  return cat(leaves, leaves == 1 ? " block needs" : " blocks need", " full float32");
 }
 
 // Whether the file is expected to do what its plan was asked for.
@@ -154,7 +156,6 @@ FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirec
     throw Error(ErrorKind::usage, compose(option("encoding", "packed"), " drops no block to the background; leave out ",
                                           option("fill", "background")));
   }
-  constexpr std::uint64_t kLeastOfPreview = 10;  // a file is this many times as long as its preview
   const auto plan_with = [&](bool preview) {
     Candidate candidate(request, Encoding::packed, rows, work, preview);
     return plan_by_budget(request, Encoding::packed, candidate);
@@ -196,7 +197,7 @@ FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDir
   }
   FileSize size = plain.size_for(request.budget);
   if (!quantised.lossless()) {
-    size.notice = cat(request.path, ": lossless takes float32 leaves, ", lossy_leaves_text(quantised));
+    size.notice = cat(request.path, ": ", lossy_leaves_text(quantised), " to be lossless");
   }
   return plain.plan(size);
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "compressor/packed/ladder_window.h"
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/leaf_choice.h"
@@ -28,6 +29,8 @@ struct PackedRequest {
   Preview preview = Preview::automatic;
   BlockConstants constants;        ///< but for `coarsest`, its tables outlive the file
   std::optional<Lattice> lattice;  ///< of the whole volume
+  /// Ladders have the rungs that cuts within it can choose; none: all rungs.
+  std::optional<KeyWindow> window{};
 };
 
 /// A file, planned to its last offset.
@@ -39,7 +42,8 @@ struct FilePlan {
   std::optional<PackedRule> packed;                ///< of a packed file
   std::unique_ptr<PlannedStreamsStore> streams{};  ///< of a packed file
   FileSize size;
-  TreePlan plan;  ///< its layout is padded to the size
+  std::optional<double> cut{};  ///< the key at which buying ended; none where all was bought, or only what is required
+  TreePlan plan;                ///< its layout is padded to the size
   /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
   /// which is exact. Infinite where there is none.
   double float_error = std::numeric_limits<double>::infinity();

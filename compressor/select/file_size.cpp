@@ -59,8 +59,8 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
       size = {bytes_at_rate(dense_bytes, budget.rate), "rate", ""};
       if (size.bytes < minimum) {
         return {minimum, "minimum",
-                compose(path, ": ", option("rate", 8), " would be ", size.bytes,
-                        " bytes, less than the smallest tree; writing that: ", minimum, " bytes")};
+                compose(path, ": ", option("rate", 8), " would be ", size.bytes, size.bytes == 1 ? " byte" : " bytes",
+                        ", less than the smallest possible file, ", minimum, " bytes; writing that")};
       }
       break;
     case Budget::Kind::rate:
@@ -78,9 +78,17 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
   if (size.bytes > full) {
     const char* all = bytes.by_scene            ? ": what the scene shows takes no more than "
                       : bytes.lossy_leaves == 0 ? ": lossless takes "
-                                                : ": the best this encoding can takes ";
-    size.notice =
-        cat(path, all, full, " bytes; the other ", size.bytes - full, " of the ", size.bytes, " asked are padding");
+                                                : ": the best that this encoding can do takes ";
+    if (budget.at_most) {
+      const char* kept = bytes.by_scene            ? ": all that the scene shows in "
+                         : bytes.lossy_leaves == 0 ? ": lossless in "
+                                                   : ": the best that this encoding can do, in ";
+      size.notice = compose(path, kept, full, " bytes; ", size.bytes, " were allowed").as_remark();
+      size.bytes = full;
+    } else {
+      size.notice = compose(path, all, full, " bytes; the other ", size.bytes - full, " of the ", size.bytes,
+                            " asked are padding, which ", option("at-most"), " leaves out");
+    }
   }
   return size;
 }

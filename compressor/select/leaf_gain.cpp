@@ -291,16 +291,19 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
   if (nothing_does && !leaf.required) return;
   std::array<PackedPoint, PackedLadder::kMostRungs + PackedLadder::kMostNear> ways;
   std::size_t count = 0;
-  const auto add = [&](KeptLevel first, std::size_t rungs) {
-    for (std::size_t rung = 0; rung < rungs; ++rung) {
+  const auto add = [&](KeptLevel first, const RungRange& rungs) {
+    for (std::size_t rung = rungs.first; rung < rungs.end; ++rung) {
       const auto level = static_cast<KeptLevel>(first + rung);
       const std::uint32_t bytes = stream(level);
       if (bytes > 0) ways[count++] = {bytes, weights.kept * packed_error(ladder, level, row, voxels), level};
     }
   };
-  add(1, ladder.count);
-  add(kFirstNearLevel, ladder.near_count);
-  if (ladder.near_count > 0) {
+  LadderRange range{{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};
+  if (packed->window) range = range_within(*packed->window, ladder, row);
+  add(1, {0, std::min<std::size_t>(PackedLadder::kMeanRungs, ladder.count)});
+  add(1, range.rungs);
+  add(kFirstNearLevel, range.near);
+  if (range.near.first < range.near.end) {
     std::sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(count),
               [](const PackedPoint& a, const PackedPoint& b) {
                 return a.bytes != b.bytes ? a.bytes < b.bytes : a.level < b.level;

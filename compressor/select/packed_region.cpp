@@ -47,6 +47,19 @@ float mean_of(const RegionRows& rows, float fallback) {
   return count == 0 ? fallback : static_cast<float>(sum.value() / static_cast<double>(count));
 }
 
+// The means that a block's stream may have. `whole`: it has no voxels outside the domain, which would take part in the
+// mean. `filled`: the background takes the place of voxels that are not finite.
+MinMax mean_range(const LeafRow& row, bool whole, bool filled, float background) {
+  if (!whole) {
+    return filled ? MinMax{std::min(row.min, background), std::max(row.max, background)} : MinMax{row.min, row.max};
+  }
+  if (!filled) return {row.mean, row.mean};
+  const double share = static_cast<double>(row.finite) / static_cast<double>(kLeafVoxels);
+  const auto mean =
+      static_cast<float>(share * static_cast<double>(row.mean) + (1 - share) * static_cast<double>(background));
+  return {mean, mean};
+}
+
 }  // namespace
 
 SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill) {
@@ -55,10 +68,10 @@ SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, co
   region.value = uniform ? *uniform : mean_of(rows, fill.background);
   MinMax means = kNoBounds;
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
-    if (row.uniform() || row.finite == 0) return;
-    // Voxels outside the domain take part in the mean of a block on the border.
-    const bool whole = leaves.voxels(leaf) == leaves.node_box(leaf);
-    widen(means, whole ? MinMax{row.mean, row.mean} : MinMax{row.min, row.max});
+    const Box voxels = leaves.voxels(leaf);
+    const bool filled = row.finite < voxels.voxels() && fill.non_finite != NonFinitePolicy::keep;
+    if (row.finite == 0 || (row.uniform() && !filled)) return;
+    widen(means, mean_range(row, voxels == leaves.node_box(leaf), filled, fill.background));
   });
   if (means.min <= means.max) region.means = {means.min, means.max};
   return region;
@@ -70,6 +83,7 @@ std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, c
   if (level == kExactLevel) return ladder.exact_bytes;
   if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].bytes;
   const std::size_t rung = level - 1U;
+  if (ladder.rungs[rung].bits == 0) return 0;
   const std::int32_t step = ladder.step(rung);
   if (step < rule.coarsest || step >= rule.coarsest + kPackedSteps) return 0;
   const unsigned bits = mean_bits(means, step);

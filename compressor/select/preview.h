@@ -7,4 +7,7 @@ namespace weir {
 /// most a tenth of the file.
 enum class Preview { automatic, on, off };
 
+/// With Preview::automatic, a file is at least that many times as long as its preview.
+inline constexpr unsigned kLeastOfPreview = 10;
+
 }  // namespace weir

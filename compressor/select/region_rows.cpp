@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 
@@ -34,9 +35,10 @@ RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& b
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit) {
-  // One task: a segment of regions along x, whose rows are read in long runs.
-  const std::int64_t segment = store.segment_regions();
+  // One task: a segment of regions along x, whose rows are read in long runs; shorter where threads would have no work.
   const Index3 extent = regions.extent();
+  const std::int64_t busy = 4 * static_cast<std::int64_t>(tbb::this_task_arena::max_concurrency());
+  const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, store.segment_regions());
   const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
   tbb::enumerable_thread_specific<RowBuffers> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {

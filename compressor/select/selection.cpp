@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "compressor/select/cut_search.h"
@@ -87,17 +88,23 @@ TreeLayout Selection::layout_of(const Purchases& bought) const {
   return make_layout(counts);
 }
 
-void Selection::resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought) {
+void Selection::resolve_ties(const PurchaseGoal& goal, const Threshold& threshold) {
   cut_.tie_region = static_cast<std::int64_t>(tree_.regions.size());
+  PurchaseGoal::Weight bought = threshold.above;
   const auto buy = [&](std::uint64_t bytes, double gain) {
     const PurchaseGoal::Weight weight = goal.weight(bytes, gain);
     if (!goal.admits(bought, weight)) return false;
     bought += weight;
     return true;
   };
+  std::vector<std::int64_t> every;
+  if (!threshold.tied) {
+    every.resize(tree_.regions.size());
+    std::iota(every.begin(), every.end(), 0);
+  }
   RowBuffers buffers;
   RegionGains gains;
-  for (std::int64_t index = 0; index < static_cast<std::int64_t>(tree_.regions.size()); ++index) {
+  for (const std::int64_t index : threshold.tied ? *threshold.tied : every) {
     Region& region = tree_.regions[static_cast<std::size_t>(index)];
     if (region.key < cut_.threshold) continue;
     Upper& upper = tree_.uppers[static_cast<std::size_t>(tree_.upper_of(index))];
@@ -170,12 +177,12 @@ void Selection::choose_error(double squared_error) {
 }
 
 void Selection::buy_for(PurchaseGoal goal) {
-  PurchaseGoal::Weight above = 0;
-  cut_.threshold = CutSearch(rule_, rows_, tree_).find_threshold(goal, above);
+  const Threshold threshold = CutSearch(rule_, rows_, tree_).find_threshold(goal);
+  cut_.threshold = threshold.key;
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
   for (Upper& upper : tree_.uppers) upper.open = upper.key > cut_.threshold;
   Team& team = rows_.team();
-  team.lead([&] { resolve_ties(goal, above); });
+  team.lead([&] { resolve_ties(goal, threshold); });
   team.follow(tree_.regions);
   team.follow(tree_.uppers);
   team.follow(cut_);

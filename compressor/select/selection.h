@@ -15,6 +15,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 #include "compressor/select/cut_search.h"
 #include "compressor/select/leaf_choice.h"
@@ -60,6 +62,11 @@ class Selection {
   LeafChoices choices(std::int64_t region, const RegionRows& rows) const;
 
   const Cut& cut() const { return cut_; }
+  /// The key at which buying ended; nullopt where all was bought, or only what is required.
+  std::optional<double> cut_key() const {
+    const bool between = cut_.threshold > 0 && cut_.threshold < std::numeric_limits<double>::max();
+    return between ? std::optional(cut_.threshold) : std::nullopt;
+  }
   const GainRule& rule() const { return rule_; }
 
  private:
@@ -71,7 +78,7 @@ class Selection {
   };
   TreeLayout layout_of(const Purchases& bought) const;
   void buy_for(PurchaseGoal goal);
-  void resolve_ties(const PurchaseGoal& goal, PurchaseGoal::Weight bought);
+  void resolve_ties(const PurchaseGoal& goal, const Threshold& threshold);
 
   GainRule rule_;
   const RowStore& rows_;

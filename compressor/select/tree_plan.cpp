@@ -17,9 +17,10 @@ namespace {
 struct PlanTally {
   double max_abs = 0;
   double seen_max_abs = 0;
-  bool exact = true;         // the tiles
-  bool seen_exact = true;    // those that can be seen
-  bool leaves_exact = true;  // at their widths, where they can be seen
+  bool exact = true;             // the tiles
+  bool seen_exact = true;        // those that can be seen
+  std::uint64_t zeros_lost = 0;  // to tiles
+  bool leaves_exact = true;      // at their widths, where they can be seen
   std::array<std::uint64_t, 6> leaves_by_width{};
   std::array<std::uint64_t, kPackedKinds> blocks{};
 
@@ -27,6 +28,7 @@ struct PlanTally {
     max_abs = std::max(max_abs, other.max_abs);
     seen_max_abs = std::max(seen_max_abs, other.seen_max_abs);
     exact = exact && other.exact;
+    zeros_lost += other.zeros_lost;
     seen_exact = seen_exact && other.seen_exact;
     leaves_exact = leaves_exact && other.leaves_exact;
     for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
@@ -84,6 +86,7 @@ class RegionPlanner {
       squares.add(row.sse_about(value));
       tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
       tally.exact = tally.exact && exact;
+      tally.zeros_lost += row.zeros_lost_to(value);
       if (rule_.visibility == nullptr) return;
       add_seen_tile(rows, leaf, value, exact, seen_squares, expected, tally);
     });
@@ -96,6 +99,7 @@ class RegionPlanner {
     region.squared_error = region.sums.sse_about(value);
     tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
     tally.exact = tally.exact && exact;
+    tally.zeros_lost += region.sums.zeros_lost_to(value);
     if (rule_.visibility == nullptr) return {};
     CompensatedSum seen_squares;
     CompensatedSum expected;
@@ -253,9 +257,10 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   }
   plan.preview.squared = preview.value();
   plan.preview.exact = plan.preview.squared == 0 && plan.preview.max_abs == 0 && rule.packed.has_value();
-  plan.tiles = {squares.value(), total.max_abs, total.exact};
+  plan.tiles = {squares.value(), total.max_abs, total.exact, total.zeros_lost};
+  for (const Region& region : tree.regions) plan.zeros += region.sums.zeros;
   const bool weighed = rule.visibility != nullptr;
-  plan.seen_tiles = weighed ? TileErrors{seen.value(), total.seen_max_abs, total.seen_exact} : plan.tiles;
+  plan.seen_tiles = weighed ? TileErrors{seen.value(), total.seen_max_abs, total.seen_exact, 0} : plan.tiles;
   plan.expected_error = weighed ? expected.value() : plan.tiles.squared + expected.value();
   plan.loses_nothing = plan.seen_tiles.exact && total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;

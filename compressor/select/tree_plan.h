@@ -17,7 +17,8 @@ namespace weir {
 struct TileErrors {
   double squared = 0;
   double max_abs = 0;
-  bool exact = true;  ///< every voxel reads the bits it should
+  bool exact = true;             ///< every voxel reads the bits it should
+  std::uint64_t zeros_lost = 0;  ///< zeros that read another value
 };
 
 struct TreePlan {
@@ -30,8 +31,9 @@ struct TreePlan {
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
   std::array<std::uint64_t, kPackedKinds> blocks{};  ///< with a stream, by PackedKind
-  std::uint64_t kept = 0;  ///< kept leaves, or blocks with a stream: as many records does the encode pass write
-  TileErrors preview;      ///< of a packed file: of what other readers see in the tree
+  std::uint64_t kept = 0;   ///< kept leaves, or blocks with a stream: as many records does the encode pass write
+  std::uint64_t zeros = 0;  ///< in the source
+  TileErrors preview;       ///< of a packed file: of what other readers see in the tree
 };
 
 /// One pass over the rows after Selection::choose: writes the choices, fills `leaves`, `leaf_bytes`, `node`,

@@ -21,9 +21,12 @@ struct TileSums {
   float max = 0;
   bool exact = false;  ///< one tile of the fill value reads every voxel bit for bit
   std::uint64_t finite = 0;
+  std::uint64_t zeros = 0;
   double residual = 0;  ///< sum of (value - mean)
   double sse = 0;       ///< sum of (value - mean)^2
 
+  /// Zeros that a reader of `fill` in place of the values does not see.
+  std::uint64_t zeros_lost_to(float fill) const { return fill == 0 ? 0 : zeros; }
   /// Sum of (value - fill)^2.
   double sse_about(float fill) const;
   double max_abs_about(float fill) const;

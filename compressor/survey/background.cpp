@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "compressor/survey/row_pieces.h"
 #include "compressor/team/region_share.h"
 
 namespace weir {
@@ -89,23 +90,28 @@ std::vector<Sample> sampled_leaves(const Survey& survey, std::size_t bin, const 
   const std::int64_t stride = (leaves + kModeSamples - 1) / kModeSamples;
   Team& team = rows.team();
   const Share own = team.share(leaves);
-  constexpr std::int64_t kPiece = 4096;
-  std::vector<LeafRow> piece;
-  std::vector<Sample> samples;
-  std::uint64_t weight = 0;
+  struct Part {
+    std::vector<Sample> samples;
+    std::uint64_t weight = 0;
+  };
+  tbb::enumerable_thread_specific<Part> parts;
   team.run([&] {
-    for (std::int64_t first = own.begin; first < own.end; first += kPiece) {
-      piece.resize(static_cast<std::size_t>(std::min(kPiece, own.end - first)));
-      rows.read(first, piece);
-      for (std::int64_t i = (stride - first % stride) % stride; i < static_cast<std::int64_t>(piece.size());
-           i += stride) {
+    for_each_row_piece(rows, own.begin, own.end, [&](std::int64_t first, std::span<const LeafRow> piece) {
+      Part& part = parts.local();
+      for (std::int64_t i = (stride - first % stride) % stride; i < std::ssize(piece); i += stride) {
         const LeafRow& row = piece[static_cast<std::size_t>(i)];
         if (!std::isfinite(row.sample)) continue;
-        weight += row.finite;
-        if (survey.histogram.bin_of(row.sample) == bin) samples.push_back({row.sample, row.finite});
+        part.weight += row.finite;
+        if (survey.histogram.bin_of(row.sample) == bin) part.samples.push_back({row.sample, row.finite});
       }
-    }
+    });
   });
+  std::vector<Sample> samples;
+  std::uint64_t weight = 0;
+  for (const Part& part : parts) {
+    samples.insert(samples.end(), part.samples.begin(), part.samples.end());
+    weight += part.weight;
+  }
   team.concatenate(samples);
   team.sum<std::uint64_t>({&weight, 1});
   total = static_cast<double>(weight);

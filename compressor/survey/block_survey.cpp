@@ -5,18 +5,28 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <span>
 #include <vector>
 
 #include "compressor/packed/block_values.h"
-#include "compressor/packed/near_sample.h"
 
 namespace weir {
 
+namespace {
+
+// Empty space is not worth a way to a device.
+bool holds_one_value(std::span<const float> values) {
+  const auto first = std::bit_cast<std::uint32_t>(values.front());
+  return std::all_of(values.begin(), values.end(), [&](float v) { return std::bit_cast<std::uint32_t>(v) == first; });
+}
+
+}  // namespace
+
 BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
-  if (info.mapping.scales()) return {};
+  if (!info.values_as_stored()) return {};
   switch (info.type) {
     case ScalarType::uint8:
       return {0, 256};
@@ -41,6 +51,7 @@ class BlockSurvey::Leaves {
         table_(survey.table_),
         widths_(survey.widths_),
         aim_(survey.ladders_),
+        sample_(survey.sample_),
         has_missing_(survey.has_missing_),
         block_(block),
         leaf_box_(leaf_box),
@@ -48,23 +59,53 @@ class BlockSurvey::Leaves {
         faces_(faces),
         ladders_(ladders) {}
 
-  // All leaves of one row along x; `row` is relative to the block.
-  void leaf_row(std::int64_t y, std::int64_t z, Tally& tally) const {
-    const Index3 extent = leaf_box_.extent();
-    for (std::int64_t x = 0; x < extent.x; ++x) {
-      const Index3 leaf = leaf_box_.lo + Index3{x, y, z};
-      const auto at = static_cast<std::size_t>(linear_index({x, y, z}, extent));
+  // Leaves [first, end) of the block, x fastest.
+  void run(std::int64_t first, std::int64_t end, Tally& tally) const {
+    for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
       rows_[at] =
           survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], ladders_.empty() ? nullptr : &ladders_[at], tally);
-    }
+    });
+  }
+
+  // Their ladders, once their rows are there, by what a coder has found of them where it has.
+  void run_ladders(std::int64_t first, std::int64_t end, const std::optional<SurveyedBlocks>& found,
+                   std::span<PackedLadder> ladders, Tally& tally) const {
+    const std::size_t costs = found ? found->costs.size() / found->figures.size() : 0;
+    for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
+      const LeafRow& row = rows_[at];
+      const auto count = static_cast<std::size_t>(leaves_.voxels(leaf).voxels());
+      if (found && row.finite == count && !row.uniform() && aim_->near_for(sample_.has(leaf)) == NearRungs::no) {
+        const auto ladder = builder(tally).build_from(found->figures[at], found->costs.subspan(costs * at, costs), row);
+        if (ladder) {
+          ladders[at] = *ladder;
+          return;
+        }
+      }
+      std::array<float, kLeafVoxels> values;
+      ladders[at] = ladder_of(leaf, gather(leaf, values), row, tally);
+    });
   }
 
  private:
-  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, PackedLadder* ladder, Tally& tally) const {
+  // Calls visit(at, leaf) for leaves [first, end) of the block, x fastest.
+  template <typename Visit>
+  void for_each_leaf(std::int64_t first, std::int64_t end, const Visit& visit) const {
+    Index3 leaf = leaf_box_.lo + index_at(first, leaf_box_.extent());
+    for (auto at = static_cast<std::size_t>(first); at < static_cast<std::size_t>(end); ++at) {
+      visit(at, leaf);
+      if (++leaf.x < leaf_box_.hi.x) continue;
+      leaf.x = leaf_box_.lo.x;
+      if (++leaf.y < leaf_box_.hi.y) continue;
+      leaf.y = leaf_box_.lo.y;
+      ++leaf.z;
+    }
+  }
+
+  // The in-domain values of a leaf, x fastest.
+  std::span<const float> gather(const Index3& leaf, std::array<float, kLeafVoxels>& values) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
     const Index3 block_extent = block_.voxels.extent();
-    std::array<float, kLeafVoxels> values;
     float* out = values.data();
     const float* corner = block_.values.data() + linear_index(inside.lo - block_.voxels.lo, block_extent);
     for (std::int64_t z = 0; z < extent.z; ++z) {
@@ -78,8 +119,15 @@ class BlockSurvey::Leaves {
         out += extent.x;
       }
     }
-    const auto count = static_cast<std::size_t>(volume(extent));
-    const std::span<const float> seen(values.data(), count);
+    return {values.data(), static_cast<std::size_t>(volume(extent))};
+  }
+
+  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, PackedLadder* ladder, Tally& tally) const {
+    const Box inside = leaves_.voxels(leaf);
+    const Index3 extent = inside.extent();
+    std::array<float, kLeafVoxels> values;
+    const std::span<const float> seen = gather(leaf, values);
+    const std::size_t count = seen.size();
     LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
     if (faces != nullptr) *faces = faces_of(seen, extent);
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
@@ -96,12 +144,15 @@ class BlockSurvey::Leaves {
   PackedLadder ladder_of(const Index3& leaf, std::span<const float> values, const LeafRow& row, Tally& tally) const {
     const bool all = row.finite == values.size();
     if (all && row.uniform()) return LadderBuilder::uniform();
-    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
     LeafValues block;
     block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
-    const bool near = aim_->near_rungs && is_near_sample(leaves_.linear(leaf), leaves_.size());
-    const NearRungs rungs = near ? NearRungs::yes : NearRungs::no;
-    return all ? tally.ladders->build(block, row, rungs) : tally.ladders->build_non_finite(block, row, rungs);
+    const NearRungs rungs = aim_->near_for(sample_.has(leaf));
+    return all ? builder(tally).build(block, row, rungs) : builder(tally).build_non_finite(block, row, rungs);
+  }
+
+  LadderBuilder& builder(Tally& tally) const {
+    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
+    return *tally.ladders;
   }
 
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
@@ -131,13 +182,12 @@ class BlockSurvey::Leaves {
         finite[kept++] = values[i];
         continue;
       }
-      if (has_missing_ && is_missing(values[i])) {
-        ++missing;
-        continue;
-      }
       const Index3 voxel = inside.lo + index_at(static_cast<std::int64_t>(i), extent);
       const std::int64_t at = linear_index(voxel - leaves_.domain.lo, leaves_.domain.extent());
-      if (at < tally.first_non_finite) {
+      if (has_missing_ && is_missing(values[i])) {
+        ++missing;
+        tally.first_missing = std::min(tally.first_missing, at);
+      } else if (at < tally.first_non_finite) {
         tally.first_non_finite = at;
         tally.first_non_finite_value = values[i];
       }
@@ -153,6 +203,7 @@ class BlockSurvey::Leaves {
   const ValueTable& table_;
   bool widths_;
   const std::optional<LadderAim>& aim_;
+  const BlockSample& sample_;
   bool has_missing_;
   const Block& block_;
   const Box& leaf_box_;
@@ -167,7 +218,8 @@ BlockSurvey::BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafF
       faces_(faces),
       widths_(widths),
       ladders_(ladders),
-      has_missing_(!info.mapping.missing.empty()),
+      sample_(rows.leaves()),
+      has_missing_(info.mapping.marks_missing()),
       trace_(trace),
       table_(value_table(info)),
       fresh_([this] {
@@ -182,18 +234,33 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
   std::vector<LeafFaces> block_faces(faces_ == nullptr ? 0 : block_rows.size());
   std::vector<PackedLadder> block_ladders(ladders_ ? block_rows.size() : 0);
-  const Leaves leaves(*this, block, leaf_box, block_rows, block_faces, block_ladders);
-  const auto survey = [&](std::int64_t first, std::int64_t end) {
-    const TraceSpan span(trace_, "survey");
-    Tally& tally = tallies_.local();
-    for (std::int64_t row = first; row < end; ++row) leaves.leaf_row(row % extent.y, row / extent.y, tally);
-  };
-  const std::int64_t leaf_rows = extent.y * extent.z;
-  if (sharing == Sharing::alone) {
-    survey(0, leaf_rows);
-  } else {
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, leaf_rows),
+  // A coder looks at the blocks while their rows are made here.
+  std::unique_ptr<LoadedBlocks> loaded;
+  BlockCoder* const coder = ladders_ ? ladders_->surveying_coder() : nullptr;
+  if (coder != nullptr && !holds_one_value(block.values)) {
+    const NodeLattice& lattice = rows_.leaves();
+    loaded = coder->load(block.values, block.voxels,
+                         {lattice.node_box(leaf_box.lo).lo, lattice.node_box(leaf_box.hi - Index3{1, 1, 1}).hi});
+    if (loaded) loaded->begin_survey(ladders_->rung_ask());
+  }
+  const Leaves leaves(*this, block, leaf_box, block_rows, block_faces,
+                      loaded ? std::span<PackedLadder>() : std::span(block_ladders));
+  const auto run = [&](const auto& part) {
+    const auto survey = [&](std::int64_t first, std::int64_t end) {
+      const TraceSpan span(trace_, "survey");
+      part(first, end, tallies_.local());
+    };
+    if (sharing == Sharing::alone) return survey(0, volume(extent));
+    constexpr std::int64_t kLeastRun = 16;
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), kLeastRun),
                       [&](const auto& range) { survey(range.begin(), range.end()); });
+  };
+  run([&](std::int64_t first, std::int64_t end, Tally& tally) { leaves.run(first, end, tally); });
+  if (loaded) {
+    const std::optional<SurveyedBlocks> found = loaded->end_survey();
+    run([&](std::int64_t first, std::int64_t end, Tally& tally) {
+      leaves.run_ladders(first, end, found, block_ladders, tally);
+    });
   }
   const TraceSpan span(trace_, "write", std::span(block_rows).size_bytes());
   rows_.write_box(leaf_box, block_rows);
@@ -222,6 +289,9 @@ Survey BlockSurvey::result(const SurveyTally& tally) const {
   if (tally.non_finite > 0) {
     survey.first_non_finite = leaves.domain.lo + index_at(tally.first_non_finite, leaves.domain.extent());
     survey.first_non_finite_value = tally.first_non_finite_value;
+  }
+  if (tally.missing > 0) {
+    survey.first_missing = leaves.domain.lo + index_at(tally.first_missing, leaves.domain.extent());
   }
   survey.histogram = tally.histogram;
   survey.value_counts = tally.value_counts;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compressor/leaf/leaf_summary.h"
+#include "compressor/packed/block_sample.h"
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/leaf_store.h"
@@ -62,6 +63,7 @@ class BlockSurvey {
   LeafStore<LeafFaces>* faces_;
   bool widths_;
   std::optional<LadderAim> ladders_;
+  BlockSample sample_;
   bool has_missing_;  // some values of the source stand for "no data"
   Trace* trace_;
   ValueTable table_;

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 3 ";
+constexpr std::string_view kFormat = "weir checkpoint 4 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -46,11 +46,15 @@ Json to_json(const SurveyTally& t) {
       {"non_finite", t.non_finite},
       {"first_non_finite", t.first_non_finite},
       {"first_non_finite_value", bits(t.first_non_finite_value)},
+      {"first_missing", t.first_missing},
       {"histogram",
        {{"exponent", t.histogram.exponent()}, {"base", bits(t.histogram.base())}, {"counts", t.histogram.counts()}}},
       {"value_counts", t.value_counts},
       {"loss",
-       {{"inexact", t.loss.inexact}, {"overflow", t.loss.overflow}, {"max_abs_error", bits(t.loss.max_abs_error)}}}};
+       {{"inexact", t.loss.inexact},
+        {"overflow", t.loss.overflow},
+        {"max_abs_error", bits(t.loss.max_abs_error)},
+        {"unmarked", t.loss.unmarked}}}};
 }
 
 SurveyTally tally_of(const Json& json) {
@@ -62,6 +66,7 @@ SurveyTally tally_of(const Json& json) {
   json.at("non_finite").get_to(t.non_finite);
   json.at("first_non_finite").get_to(t.first_non_finite);
   t.first_non_finite_value = float_of(json.at("first_non_finite_value"));
+  json.at("first_missing").get_to(t.first_missing);
   const Json& histogram = json.at("histogram");
   const auto counts = histogram.at("counts").get<std::vector<std::uint64_t>>();
   if (counts.size() > RangeHistogram::kMaxBins) throw std::out_of_range("histogram");
@@ -71,6 +76,7 @@ SurveyTally tally_of(const Json& json) {
   loss.at("inexact").get_to(t.loss.inexact);
   loss.at("overflow").get_to(t.loss.overflow);
   t.loss.max_abs_error = double_of(loss.at("max_abs_error"));
+  loss.at("unmarked").get_to(t.loss.unmarked);
   return t;
 }
 
@@ -88,6 +94,13 @@ Checkpoint checkpoint_of(const Json& json) {
     const Json& found = json["background"];
     c.background = {float_of(found.at("value")), found.at("method").get<std::string>(), double_of(found.at("share"))};
   }
+  const Json& ladders = json.at("ladders");
+  ladders.at("decided").get_to(c.ladders.decided);
+  ladders.at("near_rungs").get_to(c.ladders.near_rungs);
+  if (ladders.contains("centre")) c.ladders.centre = double_of(ladders["centre"]);
+  ladders.at("built").get_to(c.ladders.built);
+  ladders.at("rebuilt").get_to(c.ladders.rebuilt);
+  ladders.at("moves").get_to(c.ladders.moves);
   if (json.contains("attempt")) {
     const Json& attempt = json["attempt"];
     c.attempt = {attempt.at("number").get<int>(), double_of(attempt.at("planned_error")),
@@ -107,12 +120,19 @@ std::string to_text(const Checkpoint& c) {
             {"files", c.files},
             {"surveyed", to_json(c.survey.done)},
             {"tally", to_json(c.survey.tally)},
+            {"ladders",
+             {{"decided", c.ladders.decided},
+              {"near_rungs", c.ladders.near_rungs},
+              {"built", c.ladders.built},
+              {"rebuilt", c.ladders.rebuilt},
+              {"moves", c.ladders.moves}}},
             {"plan", c.plan.bytes},
             {"encoded", to_json(c.encoded)}};
   if (c.background) {
     json["background"] = {
         {"value", bits(c.background->value)}, {"method", c.background->method}, {"share", bits(c.background->share)}};
   }
+  if (c.ladders.centre) json["ladders"]["centre"] = bits(*c.ladders.centre);
   if (c.attempt) {
     json["attempt"] = {{"number", c.attempt->number},
                        {"planned_error", bits(c.attempt->planned_error)},

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "compressor/leaf/encoding.h"
+#include "compressor/packed/ladder_state.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/survey_tally.h"
 #include "format/base/box_set.h"
@@ -32,6 +33,7 @@ struct Checkpoint {
   std::string spill_directory;                 ///< absolute; empty: beside the journal
   std::map<std::string, std::uint64_t> files;  ///< name to bytes, of those that all below stands on
   SurveyState survey;
+  LadderState ladders;                   ///< of a packed file
   std::optional<Background> background;  ///< once it is found
   std::optional<Attempt> attempt;
   Digest plan;     ///< of the file that is being encoded (encode_attempts.h)

@@ -7,19 +7,18 @@
 #include <span>
 #include <vector>
 
+#include "compressor/packed/block_sample.h"
 #include "compressor/packed/block_values.h"
-#include "compressor/packed/near_sample.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
 
 namespace weir {
 namespace {
 
-// Whether the ladder of a leaf is built anew. What is decided by ladders (select/near_use.h) is decided by those that
-// are not.
+// Whether the ladder of a leaf is built anew.
 bool is_incomplete(const MissingLadders& missing, const NodeLattice& leaves, const Index3& leaf, const LeafRow& row) {
-  if (row.finite < leaves.voxels(leaf).voxels()) return missing.filled && row.finite > 0;
-  return missing.near == NearRungs::yes && !row.uniform() && !is_near_sample(leaves.linear(leaf), leaves.size());
+  if (row.finite < leaves.voxels(leaf).voxels()) return (missing.filled || missing.all) && row.finite > 0;
+  return missing.all && !row.uniform();
 }
 
 // The leaves of a box to read: whole in x, because rows are what a file is read by.
@@ -44,6 +43,7 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
                       const MissingLadders& missing, const StreamOptions& options) {
   const NodeLattice& leaves = rows.leaves();
   const OwnLeaves own(plan.lattice, rows.team());
+  const BlockSample sample(leaves);
   std::vector<LeafRow> buffer;
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
@@ -61,9 +61,10 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
     LeafValues values;
     gather_leaf(block.values, block.voxels, leaves.node_box(leaf), inside, 0, values);
     extend_outside(leaves.node_box(leaf), inside, values);
-    if (row.finite == inside.voxels()) return builders.local().add_near(values, ladder);
-    const bool sampled = aim.near_rungs && is_near_sample(leaves.linear(leaf), leaves.size());
-    ladder = builders.local().build_non_finite(values, row, sampled ? NearRungs::yes : missing.near);
+    LadderBuilder& builder = builders.local();
+    const NearRungs near = aim.near_for(sample.has(leaf));
+    const bool finite = row.finite == inside.voxels();
+    ladder = finite ? builder.build(values, row, near) : builder.build_non_finite(values, row, near);
   };
   rows.team().run([&] {
     stream_blocks(source, voxel_boxes, options, [&](const Block& block) {

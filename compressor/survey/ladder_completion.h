@@ -14,8 +14,8 @@ namespace weir {
 
 /// Which ladders are built anew.
 struct MissingLadders {
-  bool filled = false;             ///< of blocks with some values that are not finite: `aim.background` is set
-  NearRungs near = NearRungs::no;  ///< yes: of all that the survey has built without near rungs, with them
+  bool filled = false;  ///< of blocks with some values that are not finite: `aim.background` is set
+  bool all = false;     ///< those and all others
 };
 
 /// Reads those blocks once more and sets their ladders in `rows`, of a finished survey.

@@ -1,7 +1,11 @@
 #include "compressor/survey/survey.h"
 
-#include "compressor/survey/block_survey.h"
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "compressor/survey/checkpoint.h"
+#include "compressor/survey/row_pieces.h"
 #include "compressor/team/region_share.h"
 #include "format/io/digest.h"
 
@@ -46,10 +50,6 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
       for (const Box& own_part : own.of(part)) leaf_boxes.push_back(own_part);
     }
   }
-  std::vector<Box> boxes;
-  boxes.reserve(leaf_boxes.size());
-  for (const Box& box : leaf_boxes) boxes.push_back(plan.voxel_box(box));
-
   StreamOptions stream = options;
   std::size_t told = 0;
   const auto tell = [&](std::size_t boxes_done) {
@@ -64,13 +64,8 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
       pauses.save();
     };
   }
-  const bool in_place = reading == Reading::in_place;
-  const auto sharing = in_place ? BlockSurvey::Sharing::alone : BlockSurvey::Sharing::shared;
-  team.run([&] {
-    (in_place ? work_in_place : stream_blocks)(
-        source, boxes, stream, [&](const Block& block) { survey.add(block, leaf_boxes[block.index], sharing); });
-  });
-  tell(boxes.size());
+  team.run([&] { survey_boxes(source, plan, leaf_boxes, stream, reading, survey); });
+  tell(leaf_boxes.size());
   merge_tallies(known.tally, team);
   team.publish(rows.file());
   if (faces != nullptr) team.publish(faces->file());
@@ -78,15 +73,30 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
   return survey.result(known.tally);
 }
 
+void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const Box> leaf_boxes,
+                  const StreamOptions& options, Reading reading, BlockSurvey& survey) {
+  std::vector<Box> boxes;
+  boxes.reserve(leaf_boxes.size());
+  for (const Box& box : leaf_boxes) boxes.push_back(plan.voxel_box(box));
+  const bool in_place = reading == Reading::in_place;
+  const auto sharing = in_place ? BlockSurvey::Sharing::alone : BlockSurvey::Sharing::shared;
+  (in_place ? work_in_place : stream_blocks)(
+      source, boxes, options, [&](const Block& block) { survey.add(block, leaf_boxes[block.index], sharing); });
+}
+
 std::string source_digest(const RowStore& rows) {
-  constexpr std::int64_t kPiece = 4096;
+  constexpr std::int64_t kBatch = 1 << 18;  // digests of so many leaves are in memory
   DigestStream digest;
-  std::vector<LeafRow> piece;
+  std::vector<Digest> digests;
   const std::int64_t total = rows.leaves().size();
-  for (std::int64_t first = 0; first < total; first += kPiece) {
-    piece.resize(static_cast<std::size_t>(std::min(kPiece, total - first)));
-    rows.read(first, piece);
-    for (const LeafRow& row : piece) digest.update(row.digest);
+  for (std::int64_t begin = 0; begin < total; begin += kBatch) {
+    const std::int64_t end = std::min(begin + kBatch, total);
+    digests.resize(static_cast<std::size_t>(end - begin));
+    for_each_row_piece(rows, begin, end, [&](std::int64_t first, std::span<const LeafRow> piece) {
+      std::transform(piece.begin(), piece.end(), digests.begin() + (first - begin),
+                     [](const LeafRow& row) { return row.digest; });
+    });
+    digest.update(digests);
   }
   return digest.digest().hex();
 }

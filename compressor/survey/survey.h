@@ -2,9 +2,11 @@
 // in the spill file, the finite range, the histogram and the source's digest.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "compressor/packed/ladder_builder.h"
+#include "compressor/survey/block_survey.h"
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/survey/pauses.h"
@@ -27,6 +29,10 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
                      Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr,
                      SurveyState* state = nullptr, const Pauses& pauses = {},
                      const std::optional<LadderAim>& ladders = std::nullopt);
+
+/// Streams the leaves of `leaf_boxes`, none larger than a block of `plan`, into `survey`.
+void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const Box> leaf_boxes,
+                  const StreamOptions& options, Reading reading, BlockSurvey& survey);
 
 /// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);

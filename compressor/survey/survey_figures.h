@@ -18,6 +18,7 @@ struct Survey {
   std::uint64_t non_finite = 0;  ///< voxels, the missing ones aside
   Index3 first_non_finite;       ///< first in x-fastest order, index space; valid where non_finite > 0
   float first_non_finite_value = 0;
+  Index3 first_missing;      ///< the same, valid where missing > 0
   RangeHistogram histogram;  ///< of the finite values
   /// Counts of every value of an 8- or 16-bit source, from `value_offset` on; empty for other types.
   std::vector<std::uint64_t> value_counts;

@@ -15,6 +15,7 @@ void SurveyTally::merge(const SurveyTally& other) {
     first_non_finite = other.first_non_finite;
     first_non_finite_value = other.first_non_finite_value;
   }
+  first_missing = std::min(first_missing, other.first_missing);
   histogram.merge(other.histogram);
   value_counts.resize(std::max(value_counts.size(), other.value_counts.size()));
   for (std::size_t i = 0; i < other.value_counts.size(); ++i) value_counts[i] += other.value_counts[i];

@@ -22,6 +22,7 @@ struct SurveyTally {
   std::uint64_t non_finite = 0;              ///< voxels, the missing ones aside
   std::int64_t first_non_finite = kNowhere;  ///< linear voxel index in the domain
   float first_non_finite_value = 0;
+  std::int64_t first_missing = kNowhere;    ///< linear voxel index in the domain
   RangeHistogram histogram;                 ///< of the finite values that `value_counts` does not count
   std::vector<std::uint64_t> value_counts;  ///< of every value of an 8- or 16-bit type
   ConversionLoss loss;

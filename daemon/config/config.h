@@ -17,7 +17,7 @@ enum class IoClass { none, best_effort, idle };  ///< none: as the daemon itself
 
 /// [service]. Paths are absolute.
 struct ServiceConfig {
-  std::string state;                              ///< SQLite file; default: weir.db beside the configuration
+  std::string state;                              ///< SQLite file; default: weir.db, see load_config
   ListenAddress listen{"127.0.0.1", 8470};        ///< port 0: any free one, see port_file
   std::string control_socket;                     ///< Unix socket; empty: none. With it, `listen` only shows
   std::string port_file;                          ///< the port that was bound is written there; empty: nowhere

@@ -11,8 +11,7 @@ namespace {
 constexpr std::string_view kUnix = "unix:";
 
 [[noreturn]] void refuse(std::string_view text) {
-  throw Error(ErrorKind::usage,
-              cat('"', text, "\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470"));
+  throw Error(ErrorKind::usage, cat('"', text, "\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470"));
 }
 
 }  // namespace

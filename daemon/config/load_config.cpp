@@ -1,9 +1,8 @@
 #include "daemon/config/load_config.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -11,12 +10,13 @@
 
 #include "compressor/options/conversion_request.h"
 #include "daemon/config/config_names.h"
+#include "daemon/config/token_file.h"
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/config/watch_options.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/base/toml_reader.h"
-#include "ingest/series.h"
+#include "ingest/series_names.h"
 
 namespace weir {
 namespace {
@@ -86,17 +86,12 @@ std::string read_whole(const std::string& path) {
   return text;
 }
 
-/// The text of the file without white space at its end. What everybody may read is no secret.
-std::string read_token_file(ConfigReader& reader, const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    reader.refuse("token_file", io_error(path, "read the token", errno).what());
+std::string token_of_file(ConfigReader& reader, const std::string& path) {
+  try {
+    return read_token_file(path);
+  } catch (const Error& error) {
+    reader.refuse("token_file", error.what());
   }
-  if ((status.st_mode & S_IROTH) != 0) {
-    reader.refuse("token_file", cat(path, ": can be read by everybody; chmod o-r it"));
-  }
-  const std::string text = read_whole(path);
-  return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
 }
 
 void read_token(ConfigReader& reader, ServiceConfig& service) {
@@ -106,13 +101,9 @@ void read_token(ConfigReader& reader, ServiceConfig& service) {
   if (reader.toml.read("token", service.token) && from_file) {
     reader.refuse("token_file", "token and token_file exclude each other; give one");
   }
-  if (from_file) service.token = read_token_file(reader, path);
+  if (from_file) service.token = token_of_file(reader, path);
   if (!from_file && reader.toml.find("token") == nullptr) return;
-  if (service.token.empty()) reader.refuse(key, "the token is empty; openssl rand -hex 32 makes one");
-  for (const char c : service.token) {  // it has to fit into a header line
-    if (c <= ' ' || c > '~')
-      reader.refuse(key, "the token must be ASCII without spaces; openssl rand -hex 32 makes one");
-  }
+  if (const std::string fault = token_fault(service.token); !fault.empty()) reader.refuse(key, fault);
 }
 
 void read_control_socket(ConfigReader& reader, ServiceConfig& service) {
@@ -141,9 +132,16 @@ void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& 
   }
 }
 
+// systemd gives a service a directory to write to; that of its configuration, /etc/weir, is none.
+std::string standard_state(const std::string& path) {
+  const char* const given = std::getenv("STATE_DIRECTORY");  // several have a colon between them
+  const std::string own = given == nullptr ? "" : split(given, ':').front();
+  return ((own.starts_with('/') ? fs::path(own) : fs::path(path).parent_path()) / "weir.db").string();
+}
+
 ServiceConfig read_service(const toml::table& table, const std::string& path) {
   ServiceConfig service;
-  service.state = (fs::path(path).parent_path() / "weir.db").string();
+  service.state = standard_state(path);
   ConfigReader reader(table, "[service]", path);
   reader.read_path("state", service.state);
   read_listen(reader, table, service);

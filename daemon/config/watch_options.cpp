@@ -22,7 +22,7 @@ std::string number_text(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string value_text(const toml::node& node, const std::string& key, const TomlReader& reader) {
+std::string value_text(const toml::node& node, const std::string& key, const char* between, const TomlReader& reader) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer()) return std::to_string(number->get());
   if (const auto* number = node.as_floating_point()) return number_text(number->get());
@@ -33,7 +33,7 @@ std::string value_text(const toml::node& node, const std::string& key, const Tom
   std::string joined;
   for (const toml::node& element : *array) {
     if (element.is_array()) reader.fail(element, cat(key, " must not be an array of arrays"));
-    joined += cat(joined.empty() ? "" : ",", value_text(element, key, reader));
+    joined += cat(joined.empty() ? "" : between, value_text(element, key, between, reader));
   }
   return joined;
 }
@@ -81,13 +81,15 @@ std::vector<std::string> read_watch_options(TomlReader& reader, const toml::tabl
       given[option] = "true";
       arguments.push_back(cat("--", option));
     } else {
-      std::string value = value_text(*node, key, reader);
+      std::string value = value_text(*node, key, row.several ? "\n" : ",", reader);
       if (option == "scene" && !value.empty())
         value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
       if (value.empty()) continue;
       given[option] = value;
       // One word, so that a negative number is never taken for an option.
-      arguments.push_back(cat("--", option, "=", value));
+      for (const std::string& part : row.several ? split(value, '\n') : std::vector{value}) {
+        arguments.push_back(cat("--", option, "=", part));
+      }
     }
     nodes[option] = node;
   }

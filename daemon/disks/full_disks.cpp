@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "format/base/text.h"
+
 namespace weir {
 
 void FullDisks::add(std::uint64_t device, const std::string& directory, std::uint64_t free, std::int64_t job,
@@ -26,6 +28,12 @@ bool FullDisks::admits(std::uint64_t device, std::int64_t job, std::uint64_t sou
 std::string FullDisks::directory_on(std::uint64_t device) const {
   const auto at = full_.find(device);
   return at == full_.end() ? "" : at->second.directory;
+}
+
+std::string FullDisks::hold_of(const DiskRoom& disk) const {
+  const std::string directory = directory_on(disk.device);
+  if (directory.empty()) return "";
+  return cat("no room in ", directory, ", where ", format_bytes(disk.free), " are free; what needs more waits for it");
 }
 
 std::vector<std::string> FullDisks::directories() const {

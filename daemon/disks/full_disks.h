@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/disks/disk_room.h"
+
 namespace weir {
 
 class FullDisks {
@@ -32,6 +34,8 @@ class FullDisks {
   bool empty() const { return full_.empty(); }
   /// Where output found no room on `device`; empty: there is room.
   std::string directory_on(std::uint64_t device) const;
+  /// Why jobs with outputs on `disk` wait, in words; empty: they do not.
+  std::string hold_of(const DiskRoom& disk) const;
   /// A directory of each.
   std::vector<std::string> directories() const;
   /// Forgets those that are to be tried again; `free_of` tells the room there now. Returns their directories.

@@ -23,10 +23,20 @@ bool is_json(std::string_view content_type) {
   return lower_case(trimmed(content_type.substr(0, content_type.find(';')))) == "application/json";
 }
 
-bool has_token(const AccessRules& rules, std::string_view authorization) {
+// The token of an Authorization header; none where it is of another scheme.
+std::optional<std::string_view> bearer_token(std::string_view authorization) {
   constexpr std::string_view kScheme = "bearer ";
-  return lower_case(authorization.substr(0, kScheme.size())) == kScheme &&
-         same_secret(rules.token, authorization.substr(kScheme.size()));
+  if (lower_case(authorization.substr(0, kScheme.size())) != kScheme) return std::nullopt;
+  return authorization.substr(kScheme.size());
+}
+
+HttpResponse refuse_token(bool given) {
+  HttpResponse response = given ? error_response(401,
+                                                 "the token is not the service's; take the one that its "
+                                                 "configuration names (token, token_file)")
+                                : error_response(401, "this needs the service's token: Authorization: Bearer TOKEN");
+  response.headers.emplace_back("WWW-Authenticate", given ? "Bearer error=\"invalid_token\"" : "Bearer");
+  return response;
 }
 
 }  // namespace
@@ -45,10 +55,9 @@ std::optional<HttpResponse> refuse(const AccessRules& rules, const HttpRequest& 
   if (rules.loopback && !request.host.empty() && !names_loopback(request.host)) {
     return error_response(421, cat("Host ", request.host, " is not this machine; ask for localhost or 127.0.0.1"));
   }
-  if (!open && !rules.token.empty() && !has_token(rules, request.authorization)) {
-    HttpResponse response = error_response(401, "this needs the service's token: Authorization: Bearer TOKEN");
-    response.headers.emplace_back("WWW-Authenticate", "Bearer");
-    return response;
+  if (!open && !rules.token.empty()) {
+    const auto token = bearer_token(request.authorization);
+    if (!token || !same_secret(rules.token, *token)) return refuse_token(token.has_value());
   }
   if (request.method == "POST" && !rules.control_at.empty()) {
     return error_response(403, cat("this address only shows; ask at ", rules.control_at, " (--address, --config)"));
@@ -57,6 +66,16 @@ std::optional<HttpResponse> refuse(const AccessRules& rules, const HttpRequest& 
     return error_response(403, "a POST needs Content-Type: application/json or an X-Weir header");
   }
   return std::nullopt;
+}
+
+std::optional<HttpResponse> refuse_socket(const AccessRules& rules, const HttpRequest& request) {
+  const std::string origin = lower_case(request.origin);
+  const std::string host = lower_case(request.host);
+  if (!origin.empty() && origin != cat("http://", host) && origin != cat("https://", host)) {
+    return error_response(403,
+                          cat("Origin ", request.origin, " is not ", request.host, "; open this server's own page"));
+  }
+  return refuse(rules, request, false);
 }
 
 }  // namespace weir

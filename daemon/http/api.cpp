@@ -9,17 +9,13 @@
 #include "daemon/http/api_json.h"
 #include "daemon/http/metrics.h"
 #include "daemon/http/page_files.h"
+#include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"
 #include "daemon/jobs/thumbnail_file.h"
 #include "format/base/text.h"
 
 namespace weir {
 namespace {
-
-// No script, style or picture from anywhere else, none inside the page's text, in no other page's frame.
-constexpr std::string_view kContentPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 // A request and where it goes, as a route's function sees it.
 struct Call {
@@ -50,20 +46,8 @@ HttpResponse no_such_job(const std::string& id) { return error_response(404, cat
 
 std::optional<std::int64_t> job_id(const Call& call) { return parse_int(call.target.path[2]); }
 
-std::string_view page_type(std::string_view name) {
-  if (name.ends_with(".html")) return "text/html; charset=utf-8";
-  if (name.ends_with(".css")) return "text/css; charset=utf-8";
-  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
-  if (name.ends_with(".svg")) return "image/svg+xml";
-  return "application/octet-stream";
-}
-
 HttpResponse page_file(const Call& call) {
-  const std::string name = call.target.path.empty() ? "index.html" : call.target.path[1];
-  for (const PageFile& file : page_files()) {
-    if (file.name == name) return text(200, std::string(file.content), std::string(page_type(name)));
-  }
-  return error_response(404, cat("the page has no file ", name));
+  return page_response({page_files()}, call.target.path.empty() ? "index.html" : call.target.path[1]);
 }
 
 HttpResponse health(const Call& /*call*/) { return text(200, "ok\n"); }
@@ -267,18 +251,15 @@ HttpResponse answer_routed(Control& control, const AccessRules& rules, const Htt
 
 }  // namespace
 
+std::vector<std::string> api_routes() {
+  std::vector<std::string> routes;
+  for (const Route& route : kRoutes) routes.push_back(cat(route.method, ' ', route.path));
+  return routes;
+}
+
 HttpResponse Api::answer(const HttpRequest& request) const {
   HttpResponse response = answer_routed(control_, rules_, request);
-  const bool cached = std::any_of(response.headers.begin(), response.headers.end(),
-                                  [](const auto& header) { return header.first == "Cache-Control"; });
-  if (!cached) response.headers.emplace_back("Cache-Control", "no-store");
-  for (const auto& [name, value] : {std::pair("Content-Security-Policy", kContentPolicy),
-                                    std::pair("X-Content-Type-Options", std::string_view("nosniff")),
-                                    std::pair("X-Frame-Options", std::string_view("DENY")),
-                                    std::pair("Referrer-Policy", std::string_view("no-referrer")),
-                                    std::pair("Cross-Origin-Resource-Policy", std::string_view("same-origin"))}) {
-    response.headers.emplace_back(name, value);
-  }
+  add_page_headers(response);
   return response;
 }
 

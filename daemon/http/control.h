@@ -26,7 +26,7 @@ struct OutputView {
   std::string path;
   std::uint64_t bytes = 0;
   double rate = 0;                ///< float32 bytes of the volume / bytes of the file
-  std::optional<double> psnr_db;  ///< none where lossless
+  std::optional<double> psnr_db;  ///< none where lossless, or lossless over valid voxels (max_error 0)
   bool lossless = false;
   bool thumbnail = false;             ///< Control::thumbnail_path has one
   std::optional<double> max_error{};  ///< the largest absolute one; none, as for the next, where an older weir wrote it
@@ -42,7 +42,7 @@ struct JobView {
   std::uint64_t source_bytes = 0;
   int attempts = 0;
   double discovered_at = 0;
-  double changed_at = 0;                  ///< when it came into `state`
+  double changed_at = 0;                  ///< when it came into `state`, or got its thumbnails
   std::optional<double> next_attempt_at;  ///< waiting after a failed attempt
   std::string reason;                     ///< why it is where it is, or is not taken yet, one line; else empty
   std::optional<int> exit_code;           ///< of the last attempt, where it ended with one

@@ -16,6 +16,8 @@ struct HttpRequest {
   std::string authorization;  ///< header Authorization
   std::string content_type;   ///< header Content-Type
   bool marked = false;        ///< a header X-Weir is there, which no foreign web page can send
+  std::string origin{};       ///< header Origin: the web page that asks; empty where none says so
+  std::string protocols{};    ///< header Sec-WebSocket-Protocol
   std::string body;
 };
 

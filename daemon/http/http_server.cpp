@@ -20,8 +20,13 @@ constexpr std::chrono::milliseconds kAcceptAgain{100};  // after a failure, as o
 
 class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
  public:
-  Listener(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler)
-      : listening_(io, address), retry_(io), limits_(limits), handler_(std::move(handler)) {}
+  Listener(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler,
+           SocketHandler sockets)
+      : listening_(io, address),
+        retry_(io),
+        limits_(limits),
+        handler_(std::move(handler)),
+        sockets_(std::move(sockets)) {}
 
   void accept() {
     listening_.acceptor().async_accept([self = shared_from_this()](const error_code& error, StreamSocket socket) {
@@ -48,7 +53,7 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
   void add(StreamSocket socket) {
     const bool local = prepare(socket);
     while (sessions_.size() >= std::max<std::size_t>(limits_.connections, 1)) make_room(local);
-    sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), local, limits_, handler_,
+    sessions_.push_back(std::make_shared<HttpSession>(std::move(socket), local, limits_, handler_, sockets_,
                                                       [this](HttpSession& ended) { remove(ended); }));
     sessions_.back()->start();
   }
@@ -86,13 +91,14 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
   boost::asio::steady_timer retry_;
   const HttpLimits limits_;
   HttpHandler handler_;
+  SocketHandler sockets_;
   std::vector<std::shared_ptr<HttpSession>> sessions_;
   bool closed_ = false;
 };
 
 HttpServer::HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits,
-                       HttpHandler handler)
-    : listener_(std::make_shared<Listener>(io, address, limits, std::move(handler))) {
+                       HttpHandler handler, SocketHandler sockets)
+    : listener_(std::make_shared<Listener>(io, address, limits, std::move(handler), std::move(sockets))) {
   listener_->accept();
 }
 

@@ -11,13 +11,15 @@
 #include "daemon/config/listen_address.h"
 #include "daemon/http/http_limits.h"
 #include "daemon/http/http_message.h"
+#include "daemon/http/socket_handler.h"
 
 namespace weir {
 
 class HttpServer {
  public:
-  /// Listens from here on, as ListeningSocket says.
-  HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler);
+  /// Listens from here on, as ListeningSocket says. A request for a WebSocket goes to `sockets`, where that is given.
+  HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler,
+             SocketHandler sockets = {});
   /// Closes everything; no call of `handler` comes afterwards.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

@@ -5,6 +5,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <exception>
 #include <utility>
 
@@ -23,12 +24,13 @@ std::string text_of(boost::beast::string_view view) { return {view.data(), view.
 }  // namespace
 
 HttpSession::HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
-                         HttpHandler handler, std::function<void(HttpSession&)> ended)
+                         HttpHandler handler, SocketHandler sockets, std::function<void(HttpSession&)> ended)
     : local_(local),
       socket_(std::move(socket)),
       timer_(socket_.get_executor()),
       limits_(limits),
       handler_(std::move(handler)),
+      sockets_(std::move(sockets)),
       ended_(std::move(ended)),
       buffer_(limits.header_bytes + kSpareBytes) {}
 
@@ -144,16 +146,42 @@ void HttpSession::answer() {
   request.authorization = text_of(message[http::field::authorization]);
   request.content_type = text_of(message[http::field::content_type]);
   request.marked = message.count("X-Weir") > 0;
+  request.origin = text_of(message[http::field::origin]);
+  request.protocols = text_of(message[http::field::sec_websocket_protocol]);
   request.body = message.body();
   const bool keep_alive = message.keep_alive();
-  HttpResponse response;
+  if (sockets_.take && boost::beast::websocket::is_upgrade(message)) {
+    try {
+      if (auto refused = sockets_.refuse(request)) return respond(*std::move(refused), keep_alive);
+    } catch (const std::exception& error) {
+      spdlog::error("http: {} {}: {}", request.method, request.target, error.what());
+      return respond(error_response(500, error.what()), keep_alive);
+    }
+    return hand_over();
+  }
+  respond(answer_to(request), keep_alive);
+}
+
+HttpResponse HttpSession::answer_to(const HttpRequest& request) const {
   try {
-    response = handler_(request);
+    return handler_(request);
   } catch (const std::exception& error) {
     spdlog::error("http: {} {}: {}", request.method, request.target, error.what());
-    response = error_response(500, error.what());
+    return error_response(500, error.what());
   }
-  respond(std::move(response), keep_alive);
+}
+
+// The connection lives on, this object does not.
+void HttpSession::hand_over() {
+  UpgradeRequest request = parser_->release();
+  boost::asio::generic::stream_protocol::socket socket = std::move(socket_);
+  const auto self = shared_from_this();
+  end();
+  try {
+    sockets_.take(std::move(socket), std::move(request));
+  } catch (const std::exception& error) {  // the connection is gone with what took it
+    spdlog::error("http: WebSocket: {}", error.what());
+  }
 }
 
 void HttpSession::respond(HttpResponse response, bool keep_alive) {

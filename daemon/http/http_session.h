@@ -1,5 +1,5 @@
 // One connection: reads a request, has it answered, writes the answer, and so on
-// until the client leaves, breaks the rules or takes too long. Requests of one
+// until the client leaves, breaks the rules, takes too long or is handed over as a WebSocket. Requests of one
 // connection are answered one after the other, in order, pipelined or not.
 // Keeps itself alive while it waits; one thread, the io_context's.
 #pragma once
@@ -16,6 +16,7 @@
 
 #include "daemon/http/http_limits.h"
 #include "daemon/http/http_message.h"
+#include "daemon/http/socket_handler.h"
 
 namespace weir {
 
@@ -27,7 +28,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   /// `ended` is called once, when the connection is closed for whatever reason but close().
   HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
-              HttpHandler handler, std::function<void(HttpSession&)> ended);
+              HttpHandler handler, SocketHandler sockets, std::function<void(HttpSession&)> ended);
 
   void start();
   /// At once; neither the handler nor `ended` is called from here on.
@@ -48,6 +49,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void refuse(const boost::system::error_code& error);
   void refuse(unsigned status, const char* message);
   void answer();
+  HttpResponse answer_to(const HttpRequest& request) const;
+  void hand_over();
   void respond(HttpResponse response, bool keep_alive);
   void drain();
   void discard_more();
@@ -59,6 +62,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   boost::asio::steady_timer timer_;
   const HttpLimits limits_;
   HttpHandler handler_;
+  SocketHandler sockets_;
   std::function<void(HttpSession&)> ended_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;

@@ -1,8 +1,10 @@
 #include "daemon/jobs/conversion_job.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/post.hpp>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -44,7 +46,9 @@ std::string reason_of(std::string_view step, const WorkerEnd& end) {
 // Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
 bool says_disk_full(const std::string& reason) {
   const auto says = [&](int error) {
-    return reason.ends_with(cat(": ", std::strerror(error), disk_full_remedy().text()));
+    return std::ranges::any_of(std::array{command_line_wording, key_wording}, [&](OptionWording wording) {
+      return reason.ends_with(cat(": ", std::strerror(error), disk_full_remedy().worded(wording)));
+    });
   };
   return says(ENOSPC) || says(EDQUOT);
 }
@@ -76,7 +80,13 @@ std::string thumbnail_path_of(const std::string& output) { return output + ".png
 
 ConversionJob::ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended)
     : io_(io), task_(std::move(task)), ended_(std::move(ended)) {
-  convert();
+  if (task_.outputs.empty()) {
+    convert();
+    return;
+  }
+  reported_ = true;
+  for (const JobOutput& output : task_.outputs) outputs_.push_back({output, true});
+  render_next();
 }
 
 double ConversionJob::seconds() const {
@@ -139,8 +149,8 @@ void ConversionJob::convert() {
     fail(kIo, cat(directory.string(), ": make the directory: ", error.message()));
     return;
   }
-  std::vector<std::string> arguments{task_.source, cat("--output=", task_.output), "--skip-done",
-                                     cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
+  std::vector<std::string> arguments{task_.source,    cat("--output=", task_.output), "--skip-done",
+                                     "--brief-names", cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
   if (task_.again) arguments.emplace_back("--again");
   if (task_.bandwidth != 0) arguments.push_back(cat("--bandwidth=", task_.bandwidth));
   if (!task_.within.empty()) arguments.push_back(cat("--within=", task_.within));
@@ -160,6 +170,8 @@ void ConversionJob::heard(std::string_view line) {
     output.job.rate = told.value("rate", 0.0);
     output.job.psnr_db = number_of(told, "/psnr_db");
     output.job.max_error = number_of(told, "/max_error");
+    const bool everywhere = told.value("lossless", true);
+    if (!everywhere && !output.job.psnr_db && output.job.max_error == 0.0) output.job.psnr_db = HUGE_VAL;
     output.job.min = number_of(told, "/value_range/0");
     output.job.max = number_of(told, "/value_range/1");
     output.skipped = told.value("skipped", false);
@@ -169,6 +181,10 @@ void ConversionJob::heard(std::string_view line) {
     if (!output.skipped) result.bytes_written += output.job.bytes;
     report_.converted = report_.converted || !output.skipped;
     outputs_.push_back(std::move(output));
+    return;
+  }
+  if (told.contains("failed")) {
+    failed_ = told.value("failed", "");
     return;
   }
   if (told.contains("planned")) {
@@ -186,7 +202,7 @@ void ConversionJob::converted(const WorkerEnd& end) {
   if (end.exit_code == 0 && outputs_.empty()) {
     fail(static_cast<int>(ErrorKind::internal), "convert ended well and announced no output");
   } else if (end.exit_code != 0) {
-    fail(end.exit_code, reason_of(step_, end));
+    fail(end.exit_code, failed_.empty() ? reason_of(step_, end) : failed_);
   } else if (const auto now = identify(task_.source); now && *now != task_.identity) {
     this->end(TaskEnd::source_changed);
   } else {
@@ -197,8 +213,7 @@ void ConversionJob::converted(const WorkerEnd& end) {
 
 void ConversionJob::verify_next() {
   if (next_ == outputs_.size()) {
-    next_ = 0;
-    render_next();
+    all_verified();
     return;
   }
   run("verify", {outputs_[next_].job.path}, &ConversionJob::verified);
@@ -224,22 +239,52 @@ void ConversionJob::verified(const WorkerEnd& end) {
   fail(kIo, cat("verify: ", reason, "; removed"));
 }
 
-void ConversionJob::render_next() {
-  for (; next_ < outputs_.size(); ++next_) {
-    Output& output = outputs_[next_];
-    const std::string thumbnail = thumbnail_path_of(output.job.path);
-    if (!task_.thumbnails) continue;
-    if (output.skipped && newer(thumbnail, output.job.path)) {
-      output.job.thumbnail = thumbnail;
-      continue;
-    }
-    run("render",
-        {output.job.path, "--output=" + thumbnail, "--size=320x240", "--mode=dvr", "--spp=1", "--backend=cpu",
-         cat("--threads=", task_.threads)},
-        &ConversionJob::rendered);
+// The result is there: a picture of it, which takes longer than a small conversion, keeps nobody waiting for it.
+void ConversionJob::all_verified() {
+  const auto now = identify(task_.source);
+  if (now && *now != task_.identity) {
+    end(TaskEnd::source_changed);
     return;
   }
-  finish();
+  bool all_rendered = true;
+  for (Output& output : outputs_) {
+    const std::string thumbnail = thumbnail_path_of(output.job.path);
+    if (task_.thumbnails && output.skipped && newer(thumbnail, output.job.path)) output.job.thumbnail = thumbnail;
+    all_rendered = all_rendered && (!task_.thumbnails || !output.job.thumbnail.empty());
+  }
+  if (all_rendered) {
+    end(TaskEnd::done);
+    return;
+  }
+  boost::asio::post(io_, [this, alive = std::weak_ptr<bool>(alive_)] {
+    if (!alive.lock()) return;
+    if (stopping_) {
+      end(TaskEnd::stopped);
+      return;
+    }
+    reported_ = true;
+    TaskReport report = report_;
+    report.rendering = true;
+    report.result.seconds = seconds();
+    for (const Output& output : outputs_) report.result.outputs.push_back(output.job);
+    ended_(report);
+    next_ = 0;
+    render_next();
+  });
+}
+
+void ConversionJob::render_next() {
+  while (next_ < outputs_.size() && !outputs_[next_].job.thumbnail.empty()) ++next_;
+  if (next_ == outputs_.size()) {
+    end(TaskEnd::done);
+    return;
+  }
+  // As many voxels as a pixel is wide are looked up, so that their values need no interpolation.
+  const std::string& output = outputs_[next_].job.path;
+  run("render",
+      {output, "--output=" + thumbnail_path_of(output), "--size=320x240", "--mode=dvr", "--filter=nearest", "--spp=1",
+       "--backend=cpu", "--overwrite", cat("--threads=", task_.threads)},
+      &ConversionJob::rendered);
 }
 
 void ConversionJob::rendered(const WorkerEnd& end) {
@@ -263,16 +308,12 @@ void ConversionJob::rendered(const WorkerEnd& end) {
   render_next();
 }
 
-void ConversionJob::finish() {
-  const auto now = identify(task_.source);
-  if (now && *now != task_.identity) {
-    end(TaskEnd::source_changed);
+void ConversionJob::fail(int exit_code, const std::string& reason) {
+  if (reported_) {  // what is done stays so
+    if (!stopping_) report_.notices.push_back(cat("no thumbnail: ", reason));
+    end(stopping_ ? TaskEnd::stopped : TaskEnd::done);
     return;
   }
-  end(TaskEnd::done);
-}
-
-void ConversionJob::fail(int exit_code, const std::string& reason) {
   report_.result.exit_code = exit_code;
   report_.result.reason = reason;
   const auto now = identify(task_.source);

@@ -1,4 +1,5 @@
-// One job while it runs: convert, verify each output, a thumbnail of each. Every step is a process of its own
+// One job while it runs: convert, verify each output, report that it is done, then a thumbnail of each. Every step is a
+// process of its own
 // (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken
 // file, a fault of a library or a lack of memory ends that process and not the
 // daemon; which bytes come out is decided there, as on the command line.
@@ -34,14 +35,17 @@ struct TaskReport {
   JobResult result;
   std::uint64_t planned_bytes = 0;   ///< of the output that was to be written last; 0: not known
   bool converted = false;            ///< false where all outputs had been made before
+  bool rendering = false;            ///< done, and thumbnails follow: another report comes when they are there
   std::vector<std::string> notices;  ///< what went wrong and does not matter to the result; one line each
 };
 
 class ConversionJob {
  public:
-  using Ended = std::function<void(const TaskReport& report)>;  ///< once; may destroy the job
+  /// The result, and where that says that thumbnails follow, once more with them; the last call may destroy the job.
+  using Ended = std::function<void(const TaskReport& report)>;
 
-  /// Runs `task` on `io`. `ended` is never called from within the constructor.
+  /// Runs `task` on `io`; of one with outputs the thumbnails alone. `ended` is never called from within the
+  /// constructor.
   ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended);
   ConversionJob(const ConversionJob&) = delete;
   ConversionJob& operator=(const ConversionJob&) = delete;
@@ -72,9 +76,9 @@ class ConversionJob {
   void converted(const WorkerEnd& end);
   void verify_next();
   void verified(const WorkerEnd& end);
+  void all_verified();
   void render_next();
   void rendered(const WorkerEnd& end);
-  void finish();
   void fail(int exit_code, const std::string& reason);
   void end(TaskEnd how);
   void heard(std::string_view line);
@@ -88,7 +92,9 @@ class ConversionJob {
   std::unique_ptr<WorkerProcess> worker_;
   std::string_view step_ = "convert";
   std::optional<double> fraction_;
+  std::string failed_;  ///< why the conversion failed, as it announced; empty: it did not
   bool stopping_ = false;
+  bool reported_ = false;       ///< that it is done
   bool render_killed_ = false;  ///< the one before of the present output
   std::vector<Output> outputs_;
   std::size_t next_ = 0;  ///< of outputs_, in the present step

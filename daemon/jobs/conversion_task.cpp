@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "format/base/text.h"
+#include "ingest/files/input_directory.h"
 
 namespace weir {
 
@@ -14,7 +15,7 @@ bool lies_in(const WatchConfig& watch, const std::string& source) {
 }
 
 std::string output_directory(const WatchConfig& watch, const std::string& source) {
-  const fs::path place = fs::path(source).parent_path().lexically_relative(watch.directory);
+  const fs::path place = fs::path(named_by_head(source)).parent_path().lexically_relative(watch.directory);
   if (place.empty() || place == ".") return watch.output;
   return (fs::path(watch.output) / place).string();
 }
@@ -44,6 +45,18 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.work_dir = service.work_dir;
   task.thumbnails = watch.thumbnails;
   task.again = job.forced;
+  return task;
+}
+
+std::optional<ConversionTask> make_rendering_task(const std::string& program, const ServiceConfig& service,
+                                                  const WatchConfig& watch, const Job& job) {
+  if (!watch.thumbnails) return std::nullopt;
+  ConversionTask task = make_task(program, service, watch, job);
+  for (const JobOutput& output : job.result.outputs) {
+    std::error_code ignored;
+    if (output.thumbnail.empty() && std::filesystem::exists(output.path, ignored)) task.outputs.push_back(output);
+  }
+  if (task.outputs.empty()) return std::nullopt;
   return task;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,18 @@ struct ConversionTask {
   std::string work_dir;  ///< spill files; empty: beside the output
   bool thumbnails = true;
   bool again = false;  ///< also what is done
+  /// Not empty: these were made and verified before, and their thumbnails are all there is to do.
+  std::vector<JobOutput> outputs;
 };
 
 /// The task of `job`, which is of `watch`.
 ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
                          const Job& job);
+
+/// The task of the thumbnails that are missing of `job`, which is done: of outputs that are still there. None where
+/// there is nothing to render, or the watch wants none.
+std::optional<ConversionTask> make_rendering_task(const std::string& program, const ServiceConfig& service,
+                                                  const WatchConfig& watch, const Job& job);
 
 /// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
 bool lies_in(const WatchConfig& watch, const std::string& source);

@@ -25,10 +25,6 @@ constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
 
-std::string no_room_text(const std::string& directory, const DiskRoom& room) {
-  return cat("no room in ", directory, ", where ", format_bytes(room.free), " are free; what needs more waits for it");
-}
-
 std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
 
 }  // namespace
@@ -40,6 +36,7 @@ JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLo
       log_(log),
       program_(std::move(program)),
       look_again_(std::move(look_again)),
+      writes_(log),
       scheduler_(SchedulerLimits{}),
       deletion_(io, store, log),
       timer_(io),
@@ -53,13 +50,38 @@ void JobRunner::configure(const DaemonConfig& config) {
   std::vector<std::string> outputs;
   for (const WatchConfig& watch : config.watches) outputs.push_back(watch.output);
   disks_.watch(outputs);
-  record([this] { deletion_.configure(config_); });
+  writes_.add([this] { deletion_.configure(config_); });
+}
+
+void JobRunner::resume_thumbnails() {
+  writes_.add([this] {
+    for (const Job& job : store_.unrendered()) unrendered_.insert(unrendered_.begin(), job.id);
+  });
+}
+
+bool JobRunner::render_left() {
+  while (!unrendered_.empty()) {
+    const std::int64_t id = unrendered_.back();
+    unrendered_.pop_back();
+    const std::optional<Job> job = store_.job(id);
+    if (!job || job->state != JobState::done) continue;
+    const WatchConfig* watch = watch_of(job->watch);
+    std::optional<ConversionTask> task;
+    if (watch != nullptr) task = make_rendering_task(program_, config_.service, *watch, *job);
+    if (task) {
+      run(*job, *std::move(task));
+      running_.at(id).done = true;
+      return true;
+    }
+    writes_.add([this, id] { store_.finish_rendering(id, {}); });
+  }
+  return false;
 }
 
 void JobRunner::forget_other_watches() {
   std::vector<JobStore::Watched> watches;
   for (const WatchConfig& watch : config_.watches) watches.push_back({watch.label, watch.directory});
-  record([this, watches] { store_.forget_other_watches(watches); });
+  writes_.add([this, watches] { store_.forget_other_watches(watches); });
 }
 
 const WatchConfig* JobRunner::watch_of(const std::string& label) const {
@@ -72,17 +94,18 @@ void JobRunner::wake() {
   try {
     while (start_next()) {
     }
-    if (pending_.empty()) store_fault_.clear();
+    writes_.say_written();
   } catch (const CorruptDatabase&) {
     throw;
   } catch (const Error& error) {  // the state file: nothing was changed
-    say_fault(error);
+    writes_.say_fault(error);
   }
   arm_timer();
 }
 
 bool JobRunner::start_next() {
-  if (stopping_ || !pending_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
+  if (stopping_ || !writes_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
+  if (!paused() && render_left()) return true;
   std::vector<WatchLoad> loads;
   std::map<std::string, Job> first;
   for (const WatchConfig& watch : config_.watches) {
@@ -127,18 +150,49 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
   }
   if (!store_.start(job.id)) return;
   log_.info("start", {{"job", job.id}, {"source", job.source}, {"bytes", job.identity.bytes}});
-  const std::int64_t id = job.id;
-  RunningJob& run = running_[id];
+  run(job, make_task(program_, config_.service, watch, job));
+}
+
+void JobRunner::run(const Job& job, ConversionTask task) {
+  RunningJob& run = running_[job.id];
   run.job = job;
   run.begin = Clock::now();
-  run.work = std::make_unique<ConversionJob>(io_, make_task(program_, config_.service, watch, job),
-                                             [this, id](const TaskReport& report) { ended(id, report); });
+  run.work = std::make_unique<ConversionJob>(io_, std::move(task),
+                                             [this, id = job.id](const TaskReport& report) { ended(id, report); });
 }
 
 void JobRunner::ended(std::int64_t id, const TaskReport& report) {
+  if (report.rendering) {
+    RunningJob& run = running_.at(id);
+    run.done = true;
+    done(run, report);
+    return;
+  }
   const RunningJob run = std::move(running_.extract(id).mapped());
   for (const std::string& notice : report.notices) log_.warn("notice", {{"job", id}, {"reason", notice}});
   scheduler_.finished(report.result.bytes_read, run.begin);
+  if (run.done) {
+    if (report.end == TaskEnd::done || !stopping_)
+      writes_.add([this, id, outputs = report.result.outputs] { store_.finish_rendering(id, outputs); });
+  } else {
+    attempt_ended(run, report);
+  }
+  writes_.add([this, job = run.job, directory = fs::path(run.work->task().output).parent_path().string()] {
+    const std::optional<Job> now = store_.job(job.id);
+    if (now && now->state == JobState::cancelled) discard_work(job, directory);
+  });
+  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !lies_in(*watch, run.job.source)) {
+    forget_other_watches();
+  }
+  if (stopping_ && running_.empty() && stopped_) {
+    grace_timer_.cancel();
+    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+  }
+  wake();
+}
+
+void JobRunner::attempt_ended(const RunningJob& run, const TaskReport& report) {
+  const std::int64_t id = run.job.id;
   switch (report.end) {
     case TaskEnd::done:
       done(run, report);
@@ -155,28 +209,16 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
     case TaskEnd::source_gone:
       log_.info(report.end == TaskEnd::source_gone ? "source-gone" : "source-changed",
                 {{"job", id}, {"source", run.job.source}});
-      record([this, job = run.job, delay_ms = settle_ms(run.job)] {
+      writes_.add([this, job = run.job, delay_ms = settle_ms(run.job)] {
         store_.postpone(job.id, "the source changed", delay_ms);
         source_changed(job);
       });
       break;
     case TaskEnd::stopped:
       log_.info("stopped", {{"job", id}, {"source", run.job.source}});
-      record([this, id] { store_.postpone(id, "stopped with the service"); });
+      writes_.add([this, id] { store_.postpone(id, "stopped with the service"); });
       break;
   }
-  record([this, job = run.job, directory = fs::path(run.work->task().output).parent_path().string()] {
-    const std::optional<Job> now = store_.job(job.id);
-    if (now && now->state == JobState::cancelled) discard_work(job, directory);
-  });
-  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !lies_in(*watch, run.job.source)) {
-    forget_other_watches();
-  }
-  if (stopping_ && running_.empty() && stopped_) {
-    grace_timer_.cancel();
-    boost::asio::post(io_, std::exchange(stopped_, nullptr));
-  }
-  wake();
 }
 
 // A plane of a stack or a header's data may still be written to while the file that is watched stays as it is: then
@@ -199,8 +241,8 @@ void JobRunner::source_changed(const Job& job) {
 
 void JobRunner::done(const RunningJob& run, const TaskReport& report) {
   const JobResult& result = report.result;
-  record([this, id = run.job.id, result] {
-    store_.finish(id, result);
+  writes_.add([this, id = run.job.id, result, rendering = report.rendering] {
+    store_.finish(id, result, rendering);
     deletion_.done(id);
   });
   figures_.left_queue(run.job.identity.bytes);
@@ -219,65 +261,17 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
 
 void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
   figures_.attempt_failed(report.result.exit_code);
-  log_.error("failed", {{"job", run.job.id},
-                        {"source", run.job.source},
-                        {"exit_code", report.result.exit_code},
-                        {"reason", report.result.reason}});
-  record([this, id = run.job.id, bytes = run.job.identity.bytes, result = report.result] {
+  const JobState state = JobStore::state_after(report.result.exit_code, run.job.attempts + 1);
+  log_.error(state == JobState::waiting ? "attempt-failed" : job_state_name(state),
+             {{"job", run.job.id},
+              {"source", run.job.source},
+              {"exit_code", report.result.exit_code},
+              {"reason", report.result.reason}});
+  writes_.add([this, id = run.job.id, bytes = run.job.identity.bytes, result = report.result] {
     store_.fail(id, result);
     const std::optional<Job> now = store_.job(id);
     if (now && now->state != JobState::waiting) figures_.left_queue(bytes);
   });
-}
-
-void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
-  const std::string directory = fs::path(run.work->task().output).parent_path().string();
-  const DiskRoom room = room_in(directory);
-  if (report.planned_bytes > room.total) {  // waiting makes no disk larger
-    TaskReport never = report;
-    never.result.reason =
-        cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",
-            format_bytes(room.total), "; choose another output or a smaller size");
-    failed(run, never);
-    return;
-  }
-  figures_.attempt_failed("disk-full");
-  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
-                  Clock::now());
-  log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
-  record([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
-}
-
-// A state file on a full disk takes no report: it is kept until there is room, and nothing starts meanwhile.
-void JobRunner::record(std::function<void()> step) {
-  pending_.push_back(std::move(step));
-  write_pending();
-}
-
-void JobRunner::write_pending() {
-  try {
-    while (!pending_.empty()) {
-      pending_.front()();
-      pending_.pop_front();
-    }
-    store_fault_.clear();
-  } catch (const CorruptDatabase&) {
-    throw;
-  } catch (const Error& error) {
-    say_fault(error);
-  }
-}
-
-void JobRunner::say_fault(const Error& error) {
-  if (store_fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
-  store_fault_ = error.what();
-}
-
-void JobRunner::look_at_disks() {
-  const auto free_of = [](const std::string& directory) { return room_in(directory).free; };
-  for (const std::string& directory : full_disks_.look(free_of, Clock::now())) {
-    log_.info("disk-has-room", {{"directory", directory}, {"free", format_bytes(free_of(directory))}});
-  }
 }
 
 void JobRunner::look_for_stalls() {
@@ -292,13 +286,13 @@ void JobRunner::look_for_stalls() {
 }
 
 void JobRunner::arm_timer() {
-  if (stopping_ && pending_.empty()) {
+  if (stopping_ && writes_.empty()) {
     timer_.cancel();
     return;
   }
   auto delay = milliseconds::max();
   const Clock::time_point now = Clock::now();
-  if (!pending_.empty() || !store_fault_.empty() || !full_disks_.empty() || !running_.empty()) delay = kLook;
+  if (!writes_.fault().empty() || !full_disks_.empty() || !running_.empty()) delay = kLook;
   if (const auto until = scheduler_.bandwidth_until(now)) {
     delay = std::min(delay, std::chrono::ceil<milliseconds>(*until - now));
   }
@@ -318,7 +312,7 @@ void JobRunner::arm_timer() {
     if (error) return;
     look_at_disks();
     look_for_stalls();
-    write_pending();
+    writes_.write();
     wake();
   });
 }
@@ -334,29 +328,21 @@ void JobRunner::resume() {
   wake();
 }
 
-std::string JobRunner::hold() const {
-  if (!store_fault_.empty()) return store_fault_;
-  std::string full;
-  for (const OutputDisk& disk : disks()) {
-    const std::string held = hold_of(disk.room);
-    if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
-  }
-  if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
-  if (!full.empty()) return full;
-  return scheduler_.paused() ? "paused by request" : "";
-}
-
-std::string JobRunner::hold_of(const DiskRoom& disk) const {
-  const std::string directory = full_disks_.directory_on(disk.device);
-  return directory.empty() ? "" : no_room_text(directory, disk);
-}
-
 void JobRunner::abandon(std::int64_t id) {
   const auto at = running_.find(id);
   if (at != running_.end()) at->second.work->stop(kAbandon);
 }
 
+bool JobRunner::end_rendering(const Job& job) {
+  const auto at = running_.find(job.id);
+  if (at == running_.end() || !at->second.done) return false;
+  log_.info("no-thumbnail", {{"job", job.id}, {"source", job.source}, {"reason", "cancelled"}});
+  abandon(job.id);
+  return true;
+}
+
 void JobRunner::cancelled(const Job& job) {
+  log_.info("cancelled", {{"job", job.id}, {"source", job.source}});
   if (running_.contains(job.id)) {
     abandon(job.id);
   } else if (const WatchConfig* watch = watch_of(job.watch)) {
@@ -389,7 +375,5 @@ void JobRunner::kill() {
   grace_timer_.cancel();
   for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
 }
-
-std::vector<OutputDisk> JobRunner::disks() const { return disks_.disks(Clock::now()); }
 
 }  // namespace weir

@@ -7,7 +7,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,11 +19,11 @@
 #include "daemon/disks/output_disks.h"
 #include "daemon/jobs/conversion_job.h"
 #include "daemon/jobs/job_figures.h"
+#include "daemon/jobs/pending_writes.h"
 #include "daemon/jobs/scheduler.h"
 #include "daemon/jobs/source_deletion.h"
 #include "daemon/log/event_log.h"
 #include "daemon/store/job_store.h"
-#include "format/base/error.h"
 
 namespace weir {
 
@@ -36,6 +35,7 @@ struct RunningJob {
   std::chrono::steady_clock::time_point begin;
   std::unique_ptr<ConversionJob> work;
   bool stall_said = false;
+  bool done = false;  ///< as its thumbnails are rendered
 };
 
 class JobRunner {
@@ -50,6 +50,8 @@ class JobRunner {
   /// Takes `config` from now on; running jobs finish as they began. Jobs that are not over are forgotten where their
   /// watch is gone, and found again where it comes back.
   void configure(const DaemonConfig& config);
+  /// Renders, before all else, the thumbnails that the service ended before; call it after configure().
+  void resume_thumbnails();
   /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
   void wake();
 
@@ -59,10 +61,12 @@ class JobRunner {
   std::string hold() const;
   bool paused() const { return scheduler_.paused(); }
   /// Why the state file cannot be written; empty: it can.
-  const std::string& store_fault() const { return store_fault_; }
+  const std::string& store_fault() const { return writes_.fault(); }
 
   /// Ends the job's work, if it runs: its source was rewritten.
   void abandon(std::int64_t id);
+  /// Gives up the thumbnails of a done job, if they are being rendered; whether they are.
+  bool end_rendering(const Job& job);
   /// `job` was cancelled: ends its work, if it runs, and removes what it could be continued from.
   void cancelled(const Job& job);
   /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
@@ -80,8 +84,11 @@ class JobRunner {
 
  private:
   bool start_next();
+  bool render_left();
   void start(const WatchConfig& watch, const Job& job);
+  void run(const Job& job, ConversionTask task);
   void ended(std::int64_t id, const TaskReport& report);
+  void attempt_ended(const RunningJob& run, const TaskReport& report);
   std::int64_t settle_ms(const Job& job) const;
   void source_changed(const Job& job);
   void discard_work(const Job& job, const std::string& directory) const;
@@ -89,9 +96,6 @@ class JobRunner {
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);
   void forget_other_watches();
-  void record(std::function<void()> step);
-  void write_pending();
-  void say_fault(const Error& error);
   void arm_timer();
   void look_at_disks();
   void look_for_stalls();
@@ -104,12 +108,12 @@ class JobRunner {
   std::string program_;
   LookAgain look_again_;
   DaemonConfig config_;
+  PendingWrites writes_;
   Scheduler scheduler_;
   FullDisks full_disks_;
   SourceDeletion deletion_;
   std::map<std::int64_t, RunningJob> running_;
-  std::deque<std::function<void()>> pending_;  ///< what could not be written to the state file yet, in order
-  std::string store_fault_;
+  std::vector<std::int64_t> unrendered_;  ///< jobs done before this start, the next one last
   JobFigures figures_;
   OutputDisks disks_;
   boost::asio::steady_timer timer_;

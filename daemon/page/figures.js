@@ -51,6 +51,8 @@ export function show_figures(status) {
            `done; since start ${format.bytes(status.bytes_in_total)} in, ${format.bytes(status.bytes_out_total)} out`);
   const broken = status.jobs.failed + status.jobs.quarantined;
   set_text(by_id("broken"), format.count(broken));
+  set_text(by_id("broken-states"),
+           `${format.count(status.jobs.failed)} failed, ${format.count(status.jobs.quarantined)} quarantined`);
   by_id("broken").classList.toggle("bad", broken > 0);
   const most = Math.max(status.arrived_per_min, status.done_per_min, 0.1);
   show_flow("arrived", status.arrived_per_min, status.arrived_bytes_per_s, most);

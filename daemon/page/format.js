@@ -73,9 +73,10 @@ export function state(job) {
   return job.state === "discovered" ? "not taken yet" : job.state;
 }
 
-/** "51.2 dB" of an output, or "lossless". */
+/** "51.2 dB" of an output, or "lossless"; the background may stand where the source holds no value. */
 export function quality(output) {
   if (output.lossless) return "lossless";
+  if (output.psnr_db === null && output.max_error === 0) return "lossless over valid voxels";
   return output.psnr_db === null ? "no PSNR" : `${output.psnr_db.toFixed(1)} dB`;
 }
 

@@ -38,7 +38,7 @@ function make_card(result, open) {
 }
 
 function update_card(child, {job, output}) {
-  set_text(part(child, "quality"), output.lossless ? "lossless" : `PSNR ${format.quality(output)}`);
+  set_text(part(child, "quality"), output.psnr_db === null ? format.quality(output) : `PSNR ${format.quality(output)}`);
   set_text(part(child, "when"), format.ago(job.changed_at));
 }
 

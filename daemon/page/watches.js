@@ -4,7 +4,8 @@ import {by_id, element, part, set_text, show_items} from "./dom.js";
 import * as format from "./format.js";
 
 const kEmptyWatches = "No directory is watched.";
-const kFigures = [["waiting", "Waiting"], ["broken", "Failed"], ["rate", "Done a minute"], ["last", "Last result"]];
+const kFigures = [["waiting", "Waiting"], ["failed", "Failed"], ["quarantined", "Quarantined"], ["rate", "Done a minute"],
+                  ["last", "Last result"]];
 
 function make_watch() {
   const figures = element("dl", "columns");
@@ -27,9 +28,10 @@ function update_watch(child, watch) {
   set_text(part(child, "fact"), facts_of(watch));
   const size = watch.jobs.waiting > 0 ? ` (${format.bytes(watch.waiting_bytes)})` : "";
   set_text(part(child, "waiting"), `${format.count(watch.jobs.waiting)}${size}`);
-  const broken = watch.jobs.failed + watch.jobs.quarantined;
-  set_text(part(child, "broken"), format.count(broken));
-  part(child, "broken").classList.toggle("bad", broken > 0);
+  for (const state of ["failed", "quarantined"]) {
+    set_text(part(child, state), format.count(watch.jobs[state]));
+    part(child, state).classList.toggle("bad", watch.jobs[state] > 0);
+  }
   set_text(part(child, "rate"), format.per_minute(watch.done_per_min));
   set_text(part(child, "last"), watch.last_done ? format.ago(watch.last_done.changed_at) : "none yet");
   part(child, "reason").hidden = watch.up;

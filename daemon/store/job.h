@@ -22,7 +22,7 @@ struct JobOutput {
   std::string path;  ///< absolute, of the .nvdb
   std::uint64_t bytes = 0;
   double rate = 0;                ///< dense float32 bytes / bytes
-  std::optional<double> psnr_db;  ///< absent where lossless
+  std::optional<double> psnr_db;  ///< absent where lossless, infinite where that is over valid voxels alone
   std::optional<double>
       max_error;              ///< the largest absolute one; this and the next are absent where an older weir wrote
   std::optional<double> min;  ///< of the source's finite values
@@ -56,7 +56,7 @@ struct Job {
   bool forced = false;             ///< to be converted again even where its outputs are done
   int attempts = 0;                ///< failed ones since source, options or a user gave it a new start
   std::int64_t discovered_ms = 0;  ///< this identity first seen
-  std::int64_t changed_ms = 0;     ///< state last changed
+  std::int64_t changed_ms = 0;     ///< state last changed, or thumbnails came
   std::int64_t queued_ms = 0;      ///< became complete
   std::int64_t due_ms = 0;         ///< waiting: not before
   std::int64_t started_ms = 0;     ///< of the last attempt

@@ -131,6 +131,11 @@ std::vector<Job> JobListing::over_since(std::int64_t age_ms, std::int64_t after,
   return read_jobs(database_, std::move(rows));
 }
 
+std::vector<Job> JobListing::unrendered() const {
+  return read_jobs(database_, database_.prepare(cat(kColumns, "WHERE rendering = 1 AND ", in_state({JobState::done}),
+                                                    " ORDER BY id")));
+}
+
 std::uint64_t JobListing::count(const JobFilter& filter) const {
   Statement row = database_.prepare(cat("SELECT count(*) FROM jobs ", where(filter)));
   bind(row, filter);

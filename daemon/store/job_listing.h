@@ -71,6 +71,8 @@ class JobListing {
   /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
   /// milliseconds or longer.
   std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
+  /// Those that are done and whose thumbnails have not come.
+  std::vector<Job> unrendered() const;
   /// By watch; watches without jobs are absent.
   std::map<std::string, JobCounts> counts() const;
   /// Source bytes of the jobs that wait, by watch; watches without such jobs are absent.

@@ -19,12 +19,13 @@ constexpr std::size_t kLogTailBytes = 4096;
 /// What a job starts anew with, besides its state.
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
-    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0";
+    "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0, "
+    "rendering = 0";
 
 /// Has the jobs that follow it their turn at once; binds the time.
 constexpr const char* kAtOnce =
     "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, due_ms = 0, problem = '', "
-    "changed_ms = ? ";
+    "rendering = 0, changed_ms = ? ";
 /// The same, and what went before counts no more.
 const std::string kRetried = cat(kAtOnce, ", attempts = 0, reason = '' ");
 
@@ -167,21 +168,48 @@ bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to
   return true;
 }
 
-bool JobStore::finish(std::int64_t id, const JobResult& result) {
+bool JobStore::finish(std::int64_t id, const JobResult& result, bool rendering) {
+  Transaction transaction(database_);
   const std::optional<Job> known = job(id);
-  return known && end_attempt(id, result, JobState::done, known->attempts, 0);
+  if (!known || !end_attempt(id, result, JobState::done, known->attempts, 0)) return false;
+  database_.prepare("UPDATE jobs SET rendering = ? WHERE id = ?").bind(rendering).bind(id).step();
+  transaction.commit();
+  return true;
+}
+
+bool JobStore::finish_rendering(std::int64_t id, const std::vector<JobOutput>& outputs) {
+  Transaction transaction(database_);
+  database_
+      .prepare(cat("UPDATE jobs SET rendering = 0, changed_ms = ? WHERE id = ? AND rendering = 1 AND ",
+                   in_state({JobState::done})))
+      .bind(now())
+      .bind(id)
+      .step();
+  if (database_.changes() == 0) return false;
+  for (const JobOutput& output : outputs) {
+    database_.prepare("UPDATE outputs SET thumbnail = ? WHERE job = ? AND path = ?")
+        .bind(output.thumbnail)
+        .bind(id)
+        .bind(output.path)
+        .step();
+  }
+  transaction.commit();
+  return true;
+}
+
+JobState JobStore::state_after(int exit_code, int attempts) {
+  const auto is = [&](ErrorKind kind) { return exit_code == static_cast<int>(kind); };
+  if (is(ErrorKind::input)) return JobState::quarantined;
+  const bool over = is(ErrorKind::usage) || is(ErrorKind::budget) || attempts >= kMaxAttempts;
+  return over ? JobState::failed : JobState::waiting;
 }
 
 bool JobStore::fail(std::int64_t id, const JobResult& result) {
   const std::optional<Job> known = job(id);
   if (!known) return false;
   const int attempts = known->attempts + 1;
-  const auto is = [&](ErrorKind kind) { return result.exit_code == static_cast<int>(kind); };
-  if (is(ErrorKind::input)) return end_attempt(id, result, JobState::quarantined, attempts, 0);
-  if (is(ErrorKind::usage) || is(ErrorKind::budget) || attempts >= kMaxAttempts) {
-    return end_attempt(id, result, JobState::failed, attempts, 0);
-  }
-  return end_attempt(id, result, JobState::waiting, attempts, backoff_ms(attempts));
+  const JobState state = state_after(result.exit_code, attempts);
+  return end_attempt(id, result, state, attempts, state == JobState::waiting ? backoff_ms(attempts) : 0);
 }
 
 bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobState to, const std::string& reason) {

@@ -69,11 +69,16 @@ class JobStore : public JobListing {
   Observation observe(const std::string& watch, const std::string& source, const FileIdentity& identity,
                       const std::string& options);
 
-  bool enqueue(std::int64_t id);                          ///< discovered -> waiting
-  bool start(std::int64_t id);                            ///< waiting -> running
-  bool finish(std::int64_t id, const JobResult& result);  ///< running -> done
-  /// running -> quarantined for exit code 3; failed for 2 and 4, which another attempt cannot change; else
-  /// waiting for backoff_ms, and failed at the kMaxAttempts-th time.
+  bool enqueue(std::int64_t id);  ///< discovered -> waiting
+  bool start(std::int64_t id);    ///< waiting -> running
+  /// running -> done. `rendering`: thumbnails of its outputs are still to come.
+  bool finish(std::int64_t id, const JobResult& result, bool rendering = false);
+  /// Of a done job whose thumbnails were to come: they are those of `outputs`, or none came.
+  bool finish_rendering(std::int64_t id, const std::vector<JobOutput>& outputs);
+  /// What becomes of a job whose attempt ended with that exit code, the `attempts`-th one: quarantined for exit code 3;
+  /// failed for 2 and 4, which another attempt cannot change; else waiting, and failed at the kMaxAttempts-th time.
+  static JobState state_after(int exit_code, int attempts);
+  /// running -> state_after; waiting for backoff_ms.
   bool fail(std::int64_t id, const JobResult& result);
   /// running -> waiting with `reason`, for `delay_ms` at least, and nothing counted: the disk is full, the source is
   /// being written to, or the service goes down.

@@ -36,6 +36,7 @@ constexpr const char* kTables[] = {
          log_tail TEXT NOT NULL DEFAULT '',
          forced INTEGER NOT NULL DEFAULT 0,
          problem TEXT NOT NULL DEFAULT '',
+         rendering INTEGER NOT NULL DEFAULT 0,
          UNIQUE (watch, source)) STRICT)",
     // What the scheduler and /metrics ask for.
     "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
@@ -68,6 +69,8 @@ constexpr const char* kFromVersion1[] = {
     "ALTER TABLE outputs ADD COLUMN max_error REAL",
     "ALTER TABLE outputs ADD COLUMN min REAL",
     "ALTER TABLE outputs ADD COLUMN max REAL"};
+
+constexpr const char* kFromVersion2[] = {"ALTER TABLE jobs ADD COLUMN rendering INTEGER NOT NULL DEFAULT 0"};
 
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);
@@ -114,8 +117,13 @@ Database open_whole(const std::string& path) {
   if (version == 0) {
     for (const char* table : kTables) database.run(table);
     database.run(cat("PRAGMA application_id=", kStateApplication));
-  } else if (version == 1) {
-    for (const char* change : kFromVersion1) database.run(change);
+  } else {
+    if (version == 1) {
+      for (const char* change : kFromVersion1) database.run(change);
+    }
+    if (version <= 2) {
+      for (const char* change : kFromVersion2) database.run(change);
+    }
   }
   if (version != kStateVersion) database.run(cat("PRAGMA user_version=", kStateVersion));
   made.commit();

@@ -2,15 +2,22 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <fstream>
+#include <span>
 #include <string_view>
 
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
+#include "ingest/amrex/amrex_source.h"
+#include "ingest/files/input_directory.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
+#include "ingest/source_registry.h"
 
 namespace weir {
 namespace {
@@ -18,7 +25,7 @@ namespace {
 using State = CompletionAnswer::State;
 
 std::optional<Index3> extent_of(std::string_view dims) {
-  const std::vector<std::string> parts = split(dims, ',');
+  const std::vector<std::string> parts = split(dims, dims.find('x') == std::string_view::npos ? ',' : 'x');
   if (parts.size() != 3) return std::nullopt;
   const auto x = parse_int(parts[0]);
   const auto y = parse_int(parts[1]);
@@ -33,7 +40,7 @@ std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std:
   const auto dims = watch.convert_option("dims");
   const auto type_name = watch.convert_option("type");
   const auto extent = dims ? extent_of(*dims) : name ? std::optional(name->extent) : std::nullopt;
-  const auto type = type_name ? parse_scalar(*type_name) : name ? name->type : std::nullopt;
+  const auto type = type_name ? parse_scalar(split_byte_order(*type_name).name) : name ? name->type : std::nullopt;
   if (!extent || !type) return std::nullopt;
   try {
     const std::int64_t offset = parse_int(watch.convert_option("offset").value_or("0")).value_or(0);
@@ -41,6 +48,15 @@ std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std:
   } catch (const Error&) {
     return std::nullopt;
   }
+}
+
+// Other programs, and AMReX in its checkpoints, have files called Header, too.
+bool is_plotfile_header(const std::string& path) {
+  std::array<char, kMagicBytes> head{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  const auto bytes = std::as_bytes(std::span(head)).first(static_cast<std::size_t>(file.gcount()));
+  return recognises_amrex(path, bytes);
 }
 
 // False where nothing is there.
@@ -58,6 +74,7 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
   rules.expected_bytes = expected_bytes(watch, path);
   rules.marker = watch.marker;
+  if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
   return rules;
 }
 
@@ -65,6 +82,7 @@ FileSample sample_file(const std::string& path, const std::string& marker) {
   FileSample sample;
   struct stat status {};
   if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
+  if (is_plotfile_head(path) && !is_plotfile_header(path)) return sample;
   sample.exists = true;
   sample.identity = identity_of(status);
   sample.marked = !marker.empty() && look_at(path + marker, status);
@@ -99,6 +117,16 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
 }
 
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
+  CompletionAnswer answer = by_policy(sample, now);
+  if (answer.state != State::complete || !rules_.unwritten) return answer;
+  std::string rest = rules_.unwritten();
+  if (rest.empty()) return answer;
+  constexpr std::chrono::nanoseconds kLeast = std::chrono::milliseconds(100);  // settle may be 0
+  return {State::waiting, now + std::chrono::duration_cast<Time::duration>(std::max(rules_.settle, kLeast)),
+          std::move(rest)};
+}
+
+CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
   if (!sample.exists) return {State::gone, {}, {}};
   if (seen_ != sample.identity) {
     seen_ = sample.identity;

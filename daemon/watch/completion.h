@@ -13,11 +13,13 @@
 //           being written and its close will be seen: that is waited for, however long
 //           found without its writer, or linked: unchanged for settle
 // An empty file is waited for unless its writer closed or renamed it. A file that is complete by its policy and empty,
-// or of another size than expected, is broken.
+// or of another size than expected, is broken. A plotfile of AMReX is judged by its Header, which may be written before
+// its values: what else it needs is looked for every `settle`.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,6 +38,8 @@ struct CompletionRules {
   std::chrono::nanoseconds settle{std::chrono::seconds{2}};
   std::optional<std::uint64_t> expected_bytes;  ///< of the file, where its name or the options say it
   std::string marker;                           ///< of the policy marker, for messages
+  /// Of a source in several files, asked once its own is whole: what is not written yet, in words; empty where all is.
+  std::function<std::string()> unwritten;
 };
 
 /// The rules for `path`, a source of `watch`. The expected size is that of a raw file: NAME_XxYxZ_TYPE.raw or
@@ -44,7 +48,7 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
 
 /// What a path looks like now.
 struct FileSample {
-  bool exists = false;  ///< as a regular file, behind links too
+  bool exists = false;  ///< as a regular file, behind links too; a Header as that of a plotfile
   FileIdentity identity;
   bool marked = false;  ///< path + marker exists
 };
@@ -81,6 +85,7 @@ class FileCompletion {
  private:
   enum class Writer { unknown, open, closed, renamed };
 
+  CompletionAnswer by_policy(const FileSample& sample, Time now);
   CompletionAnswer when_unchanged(std::chrono::nanoseconds settle, Time now) const;
   CompletionAnswer whole() const;
 

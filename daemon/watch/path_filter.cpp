@@ -8,6 +8,7 @@
 #include "format/base/ascii.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
+#include "ingest/files/input_directory.h"
 #include "ingest/raw/raw_name.h"
 
 namespace weir {
@@ -16,14 +17,23 @@ namespace {
 namespace fs = std::filesystem;
 
 // The names of ingest/source_registry.cpp, but for those of weir's own results, images and text.
-constexpr std::array<std::string_view, 15> kExtensions{".nrrd",   ".nhdr", ".mhd",  ".mha", ".nii",
-                                                       ".nii.gz", ".h5",   ".hdf5", ".he5", ".nc",
-                                                       ".nc4",    ".cdf",  ".vti",  ".vtk", ".vdb"};
+constexpr std::array<std::string_view, 17> kExtensions{".nrrd", ".nhdr", ".mhd", ".mha",      ".nii", ".nii.gz",
+                                                       ".h5",   ".hdf5", ".he5", ".nc",       ".nc4", ".cdf",
+                                                       ".vti",  ".vtk",  ".vdb", ".zarr.zip", ".ozx"};
 constexpr std::array<std::string_view, 3> kNeverSources{".partial", ".nvdb.json", ".nvdb.json.previous"};
 
 std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
 
+// What AMReX calls a directory that it still writes, and one that had the name of a new one.
+bool is_no_plotfile_yet(std::string_view path) {
+  if (!is_plotfile_head(path)) return false;
+  const std::string_view name = name_of(named_by_head(path));
+  return name.ends_with(".temp") || name.find(".old.") != std::string_view::npos;
+}
+
+// A plotfile goes by its directory's name.
 bool matches(const std::vector<std::string>& patterns, std::string_view path) {
+  if (is_plotfile_head(path)) path = named_by_head(path);
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
     return matches_glob(pattern, pattern.find('/') == std::string::npos ? name_of(path) : path);
   });
@@ -32,6 +42,7 @@ bool matches(const std::vector<std::string>& patterns, std::string_view path) {
 bool is_known_format(std::string_view path, bool any_raw) {
   const std::string_view name = name_of(path);
   if (name.starts_with('.')) return false;
+  if (is_plotfile_head(path)) return true;
   const std::string lower = lower_case(name);
   if (lower.ends_with(".raw")) return any_raw || parse_raw_name(name).has_value();
   return std::any_of(kExtensions.begin(), kExtensions.end(),
@@ -70,6 +81,7 @@ bool PathFilter::accepts_file(std::string_view path) const {
     return false;
   }
   if (!marker_.empty() && path.ends_with(marker_)) return false;
+  if (is_no_plotfile_yet(path)) return false;
   if (!(include_.empty() ? is_known_format(path, any_raw_) : matches(include_, path))) return false;
   return !matches(exclude_, path) && !is_excluded(path);
 }

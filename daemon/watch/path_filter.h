@@ -16,7 +16,10 @@ namespace weir {
 /// whole path ("run*/out/*.h5"): see glob.h. Hidden directories are never entered; hidden files are for
 /// patterns whose last component begins with a dot. Without include, sources are the names of formats weir
 /// reads: NAME_XxYxZ_TYPE.raw (any .raw where the watch's options say dims and type), .nrrd .nhdr .mhd .mha
-/// .nii .nii.gz .h5 .hdf5 .he5 .nc .nc4 .cdf .vti .vtk .vdb.
+/// .nii .nii.gz .h5 .hdf5 .he5 .nc .nc4 .cdf .vti .vtk .vdb .zarr.zip .ozx, and the Header of a plotfile of AMReX.
+///
+/// A plotfile is the directory that its Header lies in, and patterns are for that: "plt*" for plt00042/Header. What
+/// AMReX has not finished (plt00042.temp) or set aside (plt00042.old.1234) is no source.
 ///
 /// Never sources: WatchConfig::excluded_paths and what lies below them, X.nvdb.json and what a conversion is in the
 /// middle of writing (*.partial, *.nvdb.json.previous), markers of the policy `marker`.

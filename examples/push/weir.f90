@@ -8,6 +8,8 @@ module weir
   integer(c_int32_t), parameter :: weir_ok = 0, weir_float32 = 10, weir_float64 = 11
   integer(c_int32_t), parameter :: weir_budget_auto = 0, weir_budget_rate = 1, weir_budget_size = 2, &
                                    weir_budget_psnr = 3, weir_budget_max_error = 4, weir_budget_lossless = 5
+  integer(c_int32_t), parameter :: weir_missing_policy_auto = 0, weir_missing_policy_error = 1, &
+                                   weir_missing_policy_background = 2, weir_missing_policy_keep = 3
   integer(c_int32_t), parameter :: weir_filter_nearest = 0, weir_filter_trilinear = 1
 
   type, bind(c) :: weir_error
@@ -33,7 +35,7 @@ module weir
     integer(c_int32_t) :: budget_kind, encoding, metric, brick, fill, nonfinite, has_background
     real(c_float) :: background
     integer(c_int32_t) :: overwrite, threads
-    integer(c_int32_t) :: preview, reserved
+    integer(c_int32_t) :: preview, missing_policy, at_most, backend
   end type
 
   interface

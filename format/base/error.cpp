@@ -6,9 +6,9 @@
 
 namespace weir {
 
-Error::Error(ErrorKind kind, Message message) : kind_(kind) {
+Error::Error(ErrorKind kind, Message message, std::optional<SystemFailure> failure) : kind_(kind) {
   std::string text = message.text();
-  content_ = std::make_shared<const Content>(Content{std::move(message), std::move(text)});
+  content_ = std::make_shared<const Content>(Content{std::move(message), std::move(text), std::move(failure)});
 }
 
 Message disk_full_remedy() {
@@ -31,8 +31,18 @@ Error io_error(const std::string& path, const Message& action, int errno_value) 
   } else if (errno_value == EFBIG) {
     remedy = "; raise the limit of file size (ulimit -f) or choose another file system";
   }
-  return {ErrorKind::io,
-          compose(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy)};
+  return {ErrorKind::io, compose(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy),
+          SystemFailure{errno_value, path}};
+}
+
+Error error_in_flight() {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::exception& other) {
+    return {ErrorKind::internal, other.what()};
+  }
 }
 
 }  // namespace weir

@@ -6,6 +6,7 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "format/base/message.h"
@@ -22,14 +23,22 @@ enum class ErrorKind {
   interrupted = 130  ///< SIGINT or SIGTERM
 };
 
+/// What the system said of a call that failed.
+struct SystemFailure {
+  int errno_value = 0;
+  std::string path;
+};
+
 class Error : public std::exception {
  public:
-  Error(ErrorKind kind, Message message);
+  Error(ErrorKind kind, Message message, std::optional<SystemFailure> failure = std::nullopt);
 
   ErrorKind kind() const noexcept { return kind_; }
   int exit_code() const noexcept { return static_cast<int>(kind_); }
   /// For a front end with words of its own for options.
   const Message& message() const noexcept { return content_->message; }
+  /// For a front end whose errors have a number and a file's name; nullopt where no call of the system failed.
+  const std::optional<SystemFailure>& system_failure() const noexcept { return content_->failure; }
   /// The message in the command line's words.
   const char* what() const noexcept override { return content_->text.c_str(); }
 
@@ -37,6 +46,7 @@ class Error : public std::exception {
   struct Content {
     Message message;
     std::string text;
+    std::optional<SystemFailure> failure;
   };
   ErrorKind kind_;
   std::shared_ptr<const Content> content_;  // shared: copying an exception must not throw
@@ -53,5 +63,8 @@ Error input_error(const std::string& path, const Message& message);
 
 /// "PATH: ACTION: strerror(ERRNO)", kind io; ENOENT and ENOTDIR say the path is missing.
 Error io_error(const std::string& path, const Message& action, int errno_value);
+
+/// The exception that is being handled; one of another type is of kind internal.
+Error error_in_flight();
 
 }  // namespace weir

@@ -28,11 +28,18 @@ Message::Message(std::string text) {
 
 Message::Message(OptionName option) { parts_.emplace_back(std::move(option)); }
 
+Message::Message(CommandLineText text) { parts_.emplace_back(std::move(text)); }
+
 std::string Message::worded(OptionWording wording) const {
   std::string line;
   for (const auto& part : parts_) {
-    const auto* const option = std::get_if<OptionName>(&part);
-    line += option != nullptr ? wording(*option) : std::get<std::string>(part);
+    if (const auto* const option = std::get_if<OptionName>(&part)) {
+      line += wording(*option);
+    } else if (const auto* const text = std::get_if<CommandLineText>(&part)) {
+      line += wording == command_line_wording ? text->command_line : text->elsewhere;
+    } else {
+      line += std::get<std::string>(part);
+    }
   }
   return line;
 }
@@ -43,6 +50,12 @@ std::vector<std::string> Message::option_keys() const {
     if (const auto* const option = std::get_if<OptionName>(&part)) keys.push_back(option->key);
   }
   return keys;
+}
+
+Message Message::as_remark() const {
+  Message remark = *this;
+  remark.remark_ = true;
+  return remark;
 }
 
 Message& Message::operator+=(const Message& tail) {

@@ -36,12 +36,20 @@ std::string command_line_wording(const OptionName& option);
 /// "max_error 2": a key of a configuration, a keyword of Python.
 std::string key_wording(const OptionName& option);
 
+/// A part of a message that a command line shows, a command to type for instance, and what every other front end shows
+/// in its place.
+struct CommandLineText {
+  std::string command_line;
+  std::string elsewhere;
+};
+
 class Message {
  public:
   Message() = default;
   Message(const char* text) : Message(std::string(text)) {}
   Message(std::string text);
   Message(OptionName option);
+  Message(CommandLineText text);
 
   /// One line in the words of a front end.
   std::string worded(OptionWording wording) const;
@@ -50,11 +58,15 @@ class Message {
   /// Keys of the options named, in their order.
   std::vector<std::string> option_keys() const;
   bool empty() const { return parts_.empty(); }
+  /// The same line as one that tells how what was asked for came out, and warns of nothing.
+  Message as_remark() const;
+  bool is_remark() const { return remark_; }
 
   Message& operator+=(const Message& tail);
 
  private:
-  std::vector<std::variant<std::string, OptionName>> parts_;
+  std::vector<std::variant<std::string, OptionName, CommandLineText>> parts_;
+  bool remark_ = false;
 };
 
 /// One argument of compose().
@@ -62,6 +74,7 @@ class MessagePiece {
  public:
   MessagePiece(const Message& message) : message_(message) {}
   MessagePiece(const OptionName& option) : message_(option) {}
+  MessagePiece(const CommandLineText& text) : message_(text) {}
   template <typename Text>
   MessagePiece(const Text& text) : message_(cat(text)) {}
 

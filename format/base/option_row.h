@@ -24,6 +24,7 @@ struct OptionRow {
   std::string_view help;           ///< half a sentence
   std::string_view group = {};     ///< of the options of one group at most one may be given; empty: no group
   std::string_view excludes = {};  ///< keys that must not be given with it, commas between
+  bool several = false;            ///< may be given more than once; its text has a line for each
   bool flag() const { return argument.empty(); }
   /// help and standard.
   std::string text() const;

@@ -21,6 +21,7 @@ using Floats16 = float __attribute__((vector_size(64)));
 using Floats8 = float __attribute__((vector_size(32)));
 using Ints16 = std::int32_t __attribute__((vector_size(64)));
 using Ints8 = std::int32_t __attribute__((vector_size(32)));
+using Words8 = std::uint32_t __attribute__((vector_size(32)));
 using Doubles8 = double __attribute__((vector_size(64)));
 
 }  // namespace weir

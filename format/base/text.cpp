@@ -105,6 +105,12 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
 std::string fixed(double value, int digits) {
   std::array<char, 400> text{};  // the largest double has 309 digits
   std::snprintf(text.data(), text.size(), "%.*f", digits, value);

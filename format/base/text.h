@@ -58,6 +58,9 @@ std::optional<double> parse_double(std::string_view text);
 /// Parts between `separator`, none dropped.
 std::vector<std::string> split(std::string_view text, char separator);
 
+/// With four significant digits: for people.
+std::string short_number(double value);
+
 /// With that many digits behind the point.
 std::string fixed(double value, int digits);
 

@@ -22,7 +22,8 @@ constexpr int MADV_POPULATE_READ = 22;  // Linux 5.14; unknown to older C librar
 constexpr std::uint64_t kSampledPages = 16;
 
 [[noreturn]] void fail_input(const std::string& path, const std::string& action, int errno_value) {
-  throw Error(ErrorKind::input, io_error(path, action, errno_value).message());
+  const Error error = io_error(path, action, errno_value);
+  throw Error(ErrorKind::input, error.message(), error.system_failure());
 }
 
 struct stat status_of(const Descriptor& file, const std::string& path) {

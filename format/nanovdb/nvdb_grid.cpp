@@ -60,17 +60,21 @@ NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path
 }
 
 NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record) {
-  NvdbHeader header = read_nvdb_header(file, path, record);
+  const NvdbHeader header = read_nvdb_header(file, path, record);
   const NvdbBytes bytes(file.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
   const NvdbTree tree = read_nvdb_tree(bytes, header.type);
-  const NvdbBlindData blind = read_nvdb_blind_data(bytes, tree.end, tree.bbox);
+  return of_heads(file, path, header, tree, read_nvdb_blind_data(bytes, tree.end, tree.bbox));
+}
 
+NvdbGrid NvdbGrid::of_heads(std::span<const std::byte> file, const std::string& path, const NvdbHeader& header,
+                            const NvdbTree& tree, const NvdbBlindData& blind) {
+  const NvdbBytes bytes(file.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
   NvdbGrid grid;
   grid.file_ = file;
   grid.path_ = path;
   grid.version_ = header.version;
   grid.type_ = header.type;
-  grid.name_ = std::move(header.name);
+  grid.name_ = header.name;
   grid.bbox_ = tree.bbox;
   grid.background_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kBackground);
   grid.value_min_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMin);

@@ -17,7 +17,9 @@
 #include "format/layout/nvdb_type.h"
 #include "format/nanovdb/grid_block.h"
 #include "format/nanovdb/macrocells.h"
+#include "format/nanovdb/nvdb_blind.h"
 #include "format/nanovdb/nvdb_header.h"
+#include "format/nanovdb/nvdb_tree.h"
 #include "format/nanovdb/packed_data.h"
 
 namespace weir {
@@ -38,6 +40,10 @@ class NvdbGrid {
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path);
   /// The same for a grid that all_nvdb_segments found, where the above opens the first.
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record);
+  /// The grid of heads that were read and checked. Where no more than they and its packed data's are in `file`, as of
+  /// a remote one, its tree must not be looked at. Throws Error(input) where the head of the packed data is damaged.
+  static NvdbGrid of_heads(std::span<const std::byte> file, const std::string& path, const NvdbHeader& header,
+                           const NvdbTree& tree, const NvdbBlindData& blind);
 
   GridType type() const { return type_; }
   const std::string& name() const { return name_; }

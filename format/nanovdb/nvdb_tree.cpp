@@ -33,7 +33,10 @@ class TreeReader {
 
   NvdbTree read() {
     read_head();
+    upper_seen_.resize(upper_.count);
+    lower_seen_.resize(lower_.count);
     read_root_table();
+    check_reached(upper_, upper_seen_);
     for (std::uint64_t i = 0; i < upper_.count; ++i) {
       for_each_child(nvdb::kUpper, upper_.begin + i * upper_.stride, [this](std::uint64_t entry, std::uint64_t child) {
         visit_once(lower_, lower_seen_, entry, child);
@@ -41,6 +44,13 @@ class TreeReader {
     }
     check_reached(lower_, lower_seen_);
     read_leaves();
+    read_bbox();
+    return tree_;
+  }
+
+  NvdbTree read_head_alone() {
+    read_head();
+    read_root_table();
     read_bbox();
     return tree_;
   }
@@ -64,8 +74,6 @@ class TreeReader {
     upper_ = read_level("upper", nvdb::tree::kUpperOffset, tree_.node_counts[2], nvdb::kUpperBytes);
     lower_ = read_level("lower", nvdb::tree::kLowerOffset, tree_.node_counts[1], nvdb::kLowerBytes);
     leaf_ = read_level("leaf", nvdb::tree::kLeafOffset, tree_.node_counts[0], fixed_leaf_bytes(type_));
-    upper_seen_.resize(upper_.count);
-    lower_seen_.resize(lower_.count);
   }
 
   // The offset of a level without nodes means nothing.
@@ -97,12 +105,12 @@ class TreeReader {
       const Index3 origin = root_tile_origin(key);
       const Box box{origin, origin + Index3{kUpperDim, kUpperDim, kUpperDim}};
       root_box_ = i == 0 ? box : Box{min(root_box_.lo, box.lo), max(root_box_.hi, box.hi)};
-      if (const auto child = grid_.get<std::int64_t>(tile + nvdb::root::kTileChild); child != 0) {
+      const auto child = grid_.get<std::int64_t>(tile + nvdb::root::kTileChild);
+      if (child != 0 && !upper_seen_.empty()) {
         const std::uint64_t entry = tile + nvdb::root::kTileChild;
         visit_once(upper_, upper_seen_, entry, child_offset(entry, nvdb::kRootOffset, child));
       }
     }
-    check_reached(upper_, upper_seen_);
     std::sort(keys.begin(), keys.end());
     if (const auto twice = std::adjacent_find(keys.begin(), keys.end()); twice != keys.end()) {
       grid_.fail(nvdb::kRootTilesOffset, "root tile key 0x", hex(*twice), " stands in the table twice");
@@ -264,5 +272,7 @@ Index3 root_tile_origin(std::uint64_t key) {
 }
 
 NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type) { return TreeReader(grid, type).read(); }
+
+NvdbTree read_nvdb_tree_head(const NvdbBytes& grid, GridType type) { return TreeReader(grid, type).read_head_alone(); }
 
 }  // namespace weir

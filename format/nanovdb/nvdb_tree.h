@@ -41,4 +41,8 @@ Index3 root_tile_origin(std::uint64_t key);
 /// Throws Error(input) naming offset and value.
 NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type);
 
+/// The same of the head and the root table alone: nothing is known of the nodes, and `end` is past what the head says
+/// of those of one size.
+NvdbTree read_nvdb_tree_head(const NvdbBytes& grid, GridType type);
+
 }  // namespace weir

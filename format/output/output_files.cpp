@@ -1,6 +1,10 @@
 #include "format/output/output_files.h"
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +18,18 @@ namespace weir {
 namespace {
 
 constexpr std::string_view kPrevious = ".previous";
+
+// Of formats that weir reads or writes, and of others that a volume or a picture may be meant to be.
+constexpr std::array<std::string_view, 34> kOthersExtensions{
+    ".csv", ".exr", ".gz",   ".h5",   ".hdf", ".hdf5", ".he5", ".jpeg",   ".jpg", ".json", ".mha", ".mhd",
+    ".mp4", ".nc",  ".nc4",  ".nhdr", ".nii", ".npy",  ".npz", ".nrrd",   ".pdf", ".png",  ".ppm", ".raw",
+    ".svg", ".tif", ".tiff", ".toml", ".txt", ".vti",  ".vtk", ".vtkhdf", ".vtu", ".zarr"};
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
 
 std::string previous_of(const std::string& sidecar) { return cat(sidecar, kPrevious); }
 
@@ -30,7 +46,8 @@ void require_place(FileSystem& files, const std::string& path, std::size_t besid
   const std::string directory = directory_of(path);
   if (!files.exists(directory)) {
     throw Error(ErrorKind::io,
-                cat(path, ": the directory ", directory, " does not exist; make it or choose another output"));
+                cat(path, ": the directory ", directory, " does not exist; make it or choose another output"),
+                SystemFailure{ENOENT, directory});
   }
   const std::size_t name = path.size() - (path.rfind('/') + 1);
   if (name + beside > kLongestName) {
@@ -42,6 +59,23 @@ void require_place(FileSystem& files, const std::string& path, std::size_t besid
   }
 }
 
+void require_volume_name(const std::string& path) {
+  if (path == "-") {
+    throw usage_error(
+        "-: cannot write to standard output: the header is written last; name a file, and stream that when it is done");
+  }
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return;
+  const std::string extension = lower_case(path.substr(dot));
+  const std::string volume = path.substr(0, dot) + ".nvdb";
+  if (extension == ".vdb") {
+    throw usage_error(cat(path, ": is to be a NanoVDB file, and .vdb is OpenVDB's; name it ", volume,
+                          ", and make the OpenVDB file of that with weir export ", volume, " -o ", path));
+  }
+  if (std::ranges::find(kOthersExtensions, extension) == kOthersExtensions.end()) return;
+  throw usage_error(cat(path, ": is to be a NanoVDB file, and ", extension, " is another format's; name it ", volume));
+}
+
 void require_alone(const File& partial) {
   if (partial.exclusive()) return;
   throw Error(ErrorKind::io, cat(partial.path(),
@@ -51,6 +85,7 @@ void require_alone(const File& partial) {
 
 OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files), path_(path), sidecar_(sidecar_path(path)), directory_(directory_of(path)), overwrite_(overwrite) {
+  require_volume_name(path_);
   require_place(files_, path_, previous_of(sidecar_).size() - path_.size());
   require_place(files_, sidecar_, kPrevious.size());
   const std::string partial = path_ + ".partial";

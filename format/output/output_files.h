@@ -61,6 +61,10 @@ class OutputFiles {
 /// longer by `beside` bytes.
 void require_place(FileSystem& files, const std::string& path, std::size_t beside);
 
+/// Throws Error(usage) for names that say that no NanoVDB file is wanted: "-", a stream, and those that end as files of
+/// another known format do, NAME.vdb or NAME.PNG. Any other ending will do.
+void require_volume_name(const std::string& path);
+
 /// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
 void require_alone(const File& partial);
 

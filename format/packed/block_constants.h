@@ -13,7 +13,8 @@ inline constexpr unsigned kPackedTables = kPackedLevels * (kPackedBands + 1);
 inline constexpr unsigned kPackedSymbols = 16;
 
 struct BlockConstants {
-  float minimum = 0;  ///< decoded values are clamped to [minimum, maximum], but for exact kinds
+  float minimum =
+      0;  ///< decoded values are clamped to [minimum, maximum], but for raw floats and those in the order of floats
   float maximum = 0;
   std::int32_t coarsest = 0;  ///< step number of a step field of 0
   float lattice_minimum = 0;

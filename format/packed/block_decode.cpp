@@ -179,7 +179,7 @@ bool decode_lattice(const BlockConstants& constants, const std::byte* stream, st
   } else {
     undo<false>(head.predictor, codes);
   }
-  return packed_detail::values_of_codes(head, codes, values);
+  return packed_detail::values_of_codes(constants, head, codes, values);
 }
 
 }  // namespace

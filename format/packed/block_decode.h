@@ -189,8 +189,16 @@ WEIR_HOST_DEVICE inline bool read_lattice_head(const BlockConstants& constants, 
   return true;
 }
 
+/// Of a lattice's code.
+WEIR_HOST_DEVICE inline float lattice_value(const BlockConstants& constants, float minimum, float quantum,
+                                            std::uint32_t code) {
+  const float product = static_cast<float>(code) * quantum;
+  return clamp_to(constants, product + minimum);
+}
+
 /// False where a code is too large.
-WEIR_HOST_DEVICE inline bool values_of_codes(const LatticeHead& head, const std::uint32_t* codes, float* values) {
+WEIR_HOST_DEVICE inline bool values_of_codes(const BlockConstants& constants, const LatticeHead& head,
+                                             const std::uint32_t* codes, float* values) {
   std::uint32_t all = 0;
   for (unsigned i = 0; i < 512; ++i) {
     if (head.kind == LatticeKind::ordered) {
@@ -198,8 +206,7 @@ WEIR_HOST_DEVICE inline bool values_of_codes(const LatticeHead& head, const std:
       continue;
     }
     all |= codes[i];
-    const float product = static_cast<float>(codes[i]) * head.quantum;
-    values[i] = product + head.minimum;
+    values[i] = lattice_value(constants, head.minimum, head.quantum, codes[i]);
   }
   return all >> 24U == 0;
 }
@@ -223,7 +230,7 @@ WEIR_HOST_DEVICE inline bool decode_lattice(const BlockConstants& constants, con
   }
   codes[0] = base;
   undo_prediction(head.predictor, head.kind == LatticeKind::ordered, codes);
-  return values_of_codes(head, codes, values);
+  return values_of_codes(constants, head, codes, values);
 }
 
 /// The one value of a block that is coded by its mean. False where the stream is invalid.

@@ -7,48 +7,26 @@
 
 #include "format/base/simd.h"
 #include "format/packed/block_decode.h"
+#include "format/packed/forward_transform.h"
 #include "format/packed/transpose_lanes.h"
 
 namespace weir {
 namespace {
 
-constexpr float kLargestValue = 1e30F;
-constexpr float kLeastRange = 1e-30F;
-constexpr float kDeadZone = 0.6F;
-constexpr float kRounding = 0.42F;
-
-// The forward transform of eight numbers each in its lane; the transpose of inverse_transform_8.
-template <typename T>
-[[gnu::always_inline]] inline void transform_8(T (&x)[8]) {
-  constexpr float c1 = kCosine[1], c2 = kCosine[2], c3 = kCosine[3], c4 = kCosine[4], c5 = kCosine[5], c6 = kCosine[6],
-                  c7 = kCosine[7];
-  const T s0 = x[0] + x[7], s1 = x[1] + x[6], s2 = x[2] + x[5], s3 = x[3] + x[4];
-  const T d0 = x[0] - x[7], d1 = x[1] - x[6], d2 = x[2] - x[5], d3 = x[3] - x[4];
-  const T e0 = s0 + s3, e1 = s1 + s2, f0 = s0 - s3, f1 = s1 - s2;
-  x[0] = c4 * (e0 + e1);
-  x[4] = c4 * (e0 - e1);
-  x[2] = c2 * f0 + c6 * f1;
-  x[6] = c6 * f0 - c2 * f1;
-  x[1] = c1 * d0 + c3 * d1 + c5 * d2 + c7 * d3;
-  x[3] = c3 * d0 - c7 * d1 - c1 * d2 - c5 * d3;
-  x[5] = c5 * d0 - c1 * d1 + c7 * d2 + c3 * d3;
-  x[7] = c7 * d0 - c5 * d1 + c3 * d2 - c1 * d3;
-}
-
 WEIR_SIMD void forward_transform(float* values) {
   for (unsigned x = 0; x < 8; ++x) {
     Floats8 rows[8];
     std::memcpy(rows, values + 64 * x, sizeof rows);
-    transform_8(rows);  // along y
+    forward_transform_8(rows);  // along y
     transpose_8(rows);
-    transform_8(rows);  // along z
+    forward_transform_8(rows);  // along z
     transpose_8(rows);
     std::memcpy(values + 64 * x, rows, sizeof rows);
   }
   for (unsigned y = 0; y < 8; ++y) {
     Floats8 rows[8];
     for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], values + 64 * x + 8 * y, sizeof rows[x]);
-    transform_8(rows);  // along x
+    forward_transform_8(rows);  // along x
     for (unsigned x = 0; x < 8; ++x) std::memcpy(values + 64 * x + 8 * y, &rows[x], sizeof rows[x]);
   }
 }
@@ -114,7 +92,7 @@ struct Quantised {
 WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* largest, const double* energy, float step,
                                   const std::int32_t* places, MagnitudeRows& magnitudes) {
   const float scale = 1.0F / step;
-  const float least = kDeadZone * step * 0.999F;
+  const float least = least_of_row(step);
   Floats8 sum{};  // in squared steps, each at most a little above a third
   double dropped = 0;
   magnitudes.live = 0;
@@ -157,23 +135,12 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
   return {dropped + total * static_cast<double>(step) * static_cast<double>(step), last_place};
 }
 
-constexpr std::array<std::int32_t, 512> make_places() {
-  std::array<std::int32_t, 512> places{};
-  for (unsigned index = 0; index < 512; ++index) places[index] = kBlockScan.place[index];
-  return places;
-}
-
-alignas(64) constexpr std::array<std::int32_t, 512> kPlaces = make_places();
-
-// Coefficients of more steps than that are not coded.
-constexpr double kMostMagnitude = 1e6;
-
 // The last of the places with the least magnitude that is not zero: what to leave out where a stream is too long.
-unsigned cheapest_place(const ScanValues& values) {
+unsigned cheapest_place(const MagnitudeRows& magnitudes) {
   unsigned cheapest = 0;
   std::uint32_t least = ~0U;
   for (unsigned place = 1; place < 512; ++place) {
-    const std::uint32_t m = values.magnitudes[place];
+    const std::uint32_t m = magnitudes.at(kBlockScan.index[place]);
     if (m == 0 || m > least) continue;
     least = m;
     cheapest = place;
@@ -183,14 +150,15 @@ unsigned cheapest_place(const ScanValues& values) {
 
 }  // namespace
 
-TransformBlock::TransformBlock(const std::uint16_t* tables) : rows_(symbol_costs(tables)) {}
+TransformBlock::TransformBlock(const std::uint16_t* tables)
+    : coder_(tables, ValueEncoder::Kind::transform), rows_(symbol_costs(tables)) {}
 
 bool TransformBlock::set(std::span<const float, 512> values) {
   const auto [low, high, sum] = range_of(values.data());
   mean_ = static_cast<float>(sum / 512);
   const float range = high - low;
-  if (!(std::fabs(low) < kLargestValue && std::fabs(high) < kLargestValue)) return false;
-  if (range < kLeastRange) return false;
+  if (!(std::fabs(low) < kLargestTransformed && std::fabs(high) < kLargestTransformed)) return false;
+  if (range < kLeastTransformed) return false;
   std::array<float, 512> block;
   for (std::size_t i = 0; i < 512; ++i) block[i] = values[i] - mean_;
   forward_transform(block.data());
@@ -204,9 +172,9 @@ bool TransformBlock::set(std::span<const float, 512> values) {
 
 TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
   const float size = step_size(step);
-  if (largest_ / static_cast<double>(size) > kMostMagnitude) return {1U << 20U, 0};
-  const Quantised quantised =
-      quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), size, kPlaces.data(), magnitudes_);
+  if (largest_ / static_cast<double>(size) > kMostMagnitude) return {kNotCodedBits, 0};
+  const Quantised quantised = quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), size,
+                                            kPlacesByIndex.place, magnitudes_);
   Cost cost{8, quantised.squared_error};
   if (quantised.last_place == 0) return cost;
   const unsigned end = static_cast<unsigned>(quantised.last_place) / kEndUnit + 1;
@@ -216,19 +184,12 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
   return cost;
 }
 
-void TransformBlock::quantise(std::int32_t step) {
-  quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), step_size(step), kPlaces.data(),
-                magnitudes_);
-  for (unsigned place = 0; place < 512; ++place) {
-    const unsigned index = kBlockScan.index[place];
-    values_.magnitudes[place] = magnitudes_.at(index);
-    values_.negative[place] = coefficients_[index] < 0;
-  }
-}
-
 void TransformBlock::encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
                             std::span<std::byte> out) {
-  quantise(step);
+  quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), step_size(step), kPlacesByIndex.place,
+                magnitudes_);
+  std::array<std::uint32_t, 512> signs;
+  std::memcpy(signs.data(), coefficients_.data(), sizeof signs);
   StreamFront front;
   front.number_bits = mean_bits(range, step);
   const float width = range.high - range.low;
@@ -240,11 +201,12 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
     return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
   };
   for (;;) {
-    front.end = end_of(values_);
+    front.end = end_of(magnitudes_);
     if (front.end == 0) break;
     out[0] = head(StreamKind::transform);
-    if (encode_values({constants.tables, true}, front, values_, out.subspan(1))) return;
-    values_.magnitudes[cheapest_place(values_)] = 0;
+    if (coder_.encode(front, {magnitudes_, signs}, out.subspan(1))) return;
+    const unsigned dropped = kBlockScan.index[cheapest_place(magnitudes_)];
+    magnitudes_.row(dropped / 8)[dropped % 8] = 0;
   }
   std::fill(out.begin(), out.end(), std::byte{0});
   out[0] = head(StreamKind::mean);

@@ -8,18 +8,15 @@
 #include <span>
 
 #include "format/packed/block_constants.h"
-#include "format/packed/coefficient_encoder.h"
+#include "format/packed/quantiser.h"
 #include "format/packed/row_costs.h"
+#include "format/packed/value_encoder.h"
 
 namespace weir {
 
 /// The tables that weir writes: kPackedTables x kPackedSymbols cumulative frequencies, of the volumes and steps that
 /// docs/internals.md names.
 const std::uint16_t* built_in_tables();
-
-/// Where decoded coefficients lie in their steps: below_one and below_more of the constants.
-inline constexpr float kBelowOne = -0.005F;
-inline constexpr float kBelowMore = -0.045F;
 
 /// Bytes of a stream of so many bits besides the code of its mean.
 inline std::uint32_t stream_bytes(std::uint32_t bits, unsigned mean_bits) { return (bits + mean_bits + 7) / 8; }
@@ -50,8 +47,7 @@ class TransformBlock {
   void encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step, std::span<std::byte> out);
 
  private:
-  void quantise(std::int32_t step);
-
+  ValueEncoder coder_;
   RowCosts rows_;
   float mean_ = 0;
   double largest_ = 0;
@@ -60,7 +56,6 @@ class TransformBlock {
   std::array<float, 64> row_largest_{};
   std::array<double, 64> row_energy_{};
   MagnitudeRows magnitudes_;
-  ScanValues values_;
 };
 
 }  // namespace weir

@@ -22,6 +22,42 @@ WEIR_HOST_DEVICE inline float step_size(std::int32_t step) {
   return (step & 1) != 0 ? 0.7071067811865476F * power : power;
 }
 
+/// The coarsest step whose size is at most `size` > 0, or the finest.
+WEIR_HOST_DEVICE inline std::int32_t coarsest_step_within(double size) {
+  std::uint64_t bits;
+  __builtin_memcpy(&bits, &size, sizeof bits);
+  const auto exponent = static_cast<std::int32_t>(bits >> 52U & 0x7FFU) - 1023;
+  std::int32_t step = -2 * (exponent + 1);
+  step = step < kLeastStep ? kLeastStep : step > kMostStep ? kMostStep : step;
+  while (step<kMostStep&& static_cast<double>(step_size(step))> size) ++step;
+  return step;
+}
+
+/// Rungs of a block's ladder, from coarse to fine; the first ones have no coefficient.
+inline constexpr std::int32_t kLadderRungs = 22;
+inline constexpr std::int32_t kLadderMeanRungs = 2;
+
+/// Step number of a rung, of a ladder whose first one has `first`: by whole octaves to where the first coefficient
+/// counts, then by half ones, by whole ones again, and at last, for what is nearly lossless, by two.
+WEIR_HOST_DEVICE inline std::int32_t rung_step(std::int32_t first, std::int32_t rung) {
+  const std::int32_t r = rung;
+  return first + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
+}
+
+/// Step number of the first rung where the largest coefficient is so large: four steps before it counts.
+WEIR_HOST_DEVICE inline std::int32_t first_rung_step(double largest) {
+  constexpr std::int32_t kMeanSteps = 4;
+  constexpr double kCounts = 0.6;  // steps
+  return coarsest_step_within(largest / kCounts) - kMeanSteps;
+}
+
+/// The rung that a search about the step `wanted` begins at.
+WEIR_HOST_DEVICE inline std::int32_t rung_about(std::int32_t first, std::int32_t wanted) {
+  std::int32_t rung = kLadderMeanRungs;
+  while (rung + 1 < kLadderRungs && rung_step(first, rung) < wanted) ++rung;
+  return rung;
+}
+
 /// Distance of two means whose codes follow each other.
 WEIR_HOST_DEVICE inline float mean_quantum(std::int32_t step) { return step_size(step) * 0.04419417382415922F; }
 

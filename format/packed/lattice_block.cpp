@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "format/packed/block_decode.h"
-#include "format/packed/coefficient_encoder.h"
 #include "format/packed/residuals.h"
 
 namespace weir {
@@ -30,22 +29,21 @@ std::optional<BlockCodes> codes_on(const Lattice& lattice, std::span<const float
 }
 
 // Writes the stream of kind 2 over those codes where it is shorter than raw values. Returns its bytes, else 0.
-std::uint32_t write_codes(const BlockConstants& constants, LatticeKind kind, const Lattice& lattice,
-                          const BlockCodes& codes, std::span<std::byte> out) {
+std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lattice& lattice, const BlockCodes& codes,
+                          std::span<std::byte> out) {
   const bool ordered = kind == LatticeKind::ordered;
   const std::size_t front_at = kind == LatticeKind::own ? 9 : 1;
-  const CoderContexts contexts{lattice_tables(constants.tables), false};
   StreamFront front;
   front.end_bits = 6;
   front.number = codes[0];
   front.number_bits = kind == LatticeKind::own ? 24 : ordered ? 32 : lattice.bits;
   BlockCodes residuals;
   const unsigned predictor = best_predictor(codes, ordered, residuals);
-  const ScanValues values = scan_residuals(residuals);
-  front.end = end_of(values);
+  MagnitudeRows magnitudes;
+  front.end = end_at(fill_magnitudes(residuals, magnitudes).last_place);
   std::array<std::byte, 2 * kRawStreamBytes> scratch;
   StreamSize size;
-  encode_values(contexts, front, values, scratch, &size);
+  coder.encode(front, {magnitudes, residuals}, scratch, &size);
   const auto bytes = static_cast<std::uint32_t>(front_at + size.front + size.back);
   if (bytes >= kRawStreamBytes) return 0;
   std::copy_n(scratch.begin(), size.front, out.begin() + static_cast<std::ptrdiff_t>(front_at));
@@ -73,8 +71,9 @@ std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte
   return kRawStreamBytes;
 }
 
-std::uint32_t encode_exact(const BlockConstants& constants, const std::optional<Lattice>& own,
-                           std::span<const float, 512> values, std::span<std::byte> out, FloatOrder order) {
+std::uint32_t encode_exact(const ValueEncoder& coder, const BlockConstants& constants,
+                           const std::optional<Lattice>& own, std::span<const float, 512> values,
+                           std::span<std::byte> out, FloatOrder order) {
   const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
   if (std::all_of(values.begin(), values.end(), [&](float v) { return bits(v) == bits(values[0]); })) {
     out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::raw) | 4U);
@@ -84,13 +83,13 @@ std::uint32_t encode_exact(const BlockConstants& constants, const std::optional<
   const Lattice file{constants.lattice_minimum, constants.lattice_quantum, constants.lattice_bits};
   std::uint32_t bytes = 0;
   if (const auto codes = codes_on(file, values)) {
-    bytes = write_codes(constants, LatticeKind::file, file, *codes, out);
+    bytes = write_codes(coder, LatticeKind::file, file, *codes, out);
   } else if (const auto own_codes = own ? codes_on(*own, values) : std::nullopt) {
-    bytes = write_codes(constants, LatticeKind::own, *own, *own_codes, out);
+    bytes = write_codes(coder, LatticeKind::own, *own, *own_codes, out);
   } else if (order == FloatOrder::used) {
     BlockCodes in_order;
     std::transform(values.begin(), values.end(), in_order.begin(), ordered_of_float);
-    bytes = write_codes(constants, LatticeKind::ordered, {}, in_order, out);
+    bytes = write_codes(coder, LatticeKind::ordered, {}, in_order, out);
   }
   return bytes == 0 ? encode_raw(values, out) : bytes;
 }

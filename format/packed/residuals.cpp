@@ -1,6 +1,6 @@
 #include "format/packed/residuals.h"
 
-#include <bit>
+#include <algorithm>
 
 #include "format/base/simd.h"
 #include "format/packed/block_scan.h"
@@ -125,13 +125,50 @@ void predict_ordered(const BlockCodes& codes, BlockCodes& residuals) {
   }
 }
 
-std::uint32_t magnitude_of(std::uint32_t residual) { return residual >> 31U != 0 ? 0U - residual : residual; }
-
-// What residuals take about.
-std::uint32_t rough_bits(const BlockCodes& residuals) {
+// What residuals take about: the bits of three times each magnitude.
+WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
+  const Ints8 none{};
+  Ints8 sum{};
+  for (unsigned i = 0; i < 512; i += 8) {
+    Words8 r;
+    __builtin_memcpy(&r, residuals + i, sizeof r);
+    const Words8 size = r >> 31 != 0 ? 0U - r : r;
+    const Words8 m = 3U * size;
+    Words8 half = m >> 1;
+    half &= ~(half >> 1);  // so that it is not rounded up to the next power of two
+    const auto f = __builtin_convertvector(reinterpret_cast<Ints8&>(half), Floats8);
+    Ints8 exponent;
+    __builtin_memcpy(&exponent, &f, sizeof exponent);
+    exponent = (exponent >> 23) - 126;
+    sum += half == 0 ? none : exponent;
+    sum -= m != 0;
+  }
   std::uint32_t bits = 0;
-  for (const std::uint32_t r : residuals) bits += static_cast<std::uint32_t>(std::bit_width(3 * magnitude_of(r)));
+  for (int l = 0; l < 8; ++l) bits += static_cast<std::uint32_t>(sum[l]);
   return bits;
+}
+
+WEIR_SIMD ResidualSizes fill_rows(const std::uint32_t* residuals, MagnitudeRows& magnitudes) {
+  const Ints8 none{};
+  Ints8 last{};
+  Words8 bits{};
+  for (unsigned row = 0; row < 64; ++row) {
+    Words8 r;
+    __builtin_memcpy(&r, residuals + 8 * row, sizeof r);
+    const Words8 m = r >> 31 != 0 ? 0U - r : r;
+    __builtin_memcpy(magnitudes.row(row), &m, sizeof m);
+    bits |= m;
+    Ints8 place;
+    __builtin_memcpy(&place, kPlacesByIndex.place + 8 * row, sizeof place);
+    place = m == 0 ? none : place;
+    last = place > last ? place : last;
+  }
+  ResidualSizes sizes;
+  for (int l = 0; l < 8; ++l) {
+    sizes.last_place = std::max(sizes.last_place, static_cast<unsigned>(last[l]));
+    sizes.bits |= bits[l];
+  }
+  return sizes;
 }
 
 }  // namespace
@@ -155,7 +192,7 @@ unsigned best_predictor(const BlockCodes& codes, bool ordered, BlockCodes& resid
   BlockCodes tried;
   for (unsigned predictor = 0; predictor < kPredictors; ++predictor) {
     residuals_of(codes, predictor, ordered, tried);
-    const std::uint32_t bits = rough_bits(tried);
+    const std::uint32_t bits = rough_bits(tried.data());
     if (bits >= least) continue;
     least = bits;
     best = predictor;
@@ -164,14 +201,8 @@ unsigned best_predictor(const BlockCodes& codes, bool ordered, BlockCodes& resid
   return best;
 }
 
-ScanValues scan_residuals(const BlockCodes& residuals) {
-  ScanValues values;
-  for (unsigned place = 1; place < 512; ++place) {
-    const std::uint32_t residual = residuals[kBlockScan.index[place]];
-    values.negative[place] = residual >> 31U != 0;
-    values.magnitudes[place] = magnitude_of(residual);
-  }
-  return values;
+ResidualSizes fill_magnitudes(const BlockCodes& residuals, MagnitudeRows& magnitudes) {
+  return fill_rows(residuals.data(), magnitudes);
 }
 
 }  // namespace weir

@@ -4,7 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "format/packed/coefficient_encoder.h"
+#include "format/packed/coefficient_decoder.h"
+#include "format/packed/row_lanes.h"
 
 namespace weir {
 
@@ -17,7 +18,16 @@ void residuals_of(const BlockCodes& codes, unsigned predictor, bool ordered, Blo
 /// The predictor whose residuals take about the least, and these.
 unsigned best_predictor(const BlockCodes& codes, bool ordered, BlockCodes& residuals);
 
-/// Residuals as the coder takes them.
-ScanValues scan_residuals(const BlockCodes& residuals);
+/// What fill_magnitudes() has found.
+struct ResidualSizes {
+  unsigned last_place = 0;  ///< of the scan that is not zero; 0 where all are
+  std::uint32_t bits = 0;   ///< all that are set in any magnitude
+};
+
+/// Magnitudes of residuals, by index.
+ResidualSizes fill_magnitudes(const BlockCodes& residuals, MagnitudeRows& magnitudes);
+
+/// What StreamFront::end is for that last place.
+constexpr unsigned end_at(unsigned last_place) { return last_place == 0 ? 0 : last_place / kEndUnit + 1; }
 
 }  // namespace weir

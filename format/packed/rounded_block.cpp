@@ -53,34 +53,10 @@ WEIR_SIMD Rounded round_all(const float* values, double scale, std::int32_t* mul
   return rounded;
 }
 
-// Magnitudes of residuals; returns the last place that is not zero, -1 where one is too large to be counted.
-WEIR_SIMD std::int32_t fill_rows(const std::uint32_t* residuals, MagnitudeRows& magnitudes) {
-  const Ints8 none{};
-  Ints8 last{};
-  Ints8 large{};
-  for (unsigned row = 0; row < 64; ++row) {
-    Ints8 r;
-    std::memcpy(&r, residuals + 8 * row, sizeof r);
-    const Ints8 m = r < 0 ? -r : r;
-    std::memcpy(magnitudes.row(row), &m, sizeof m);
-    large |= m >= RowCosts::kMostMagnitude;
-    Ints8 place;
-    for (int l = 0; l < 8; ++l) place[l] = kBlockScan.place[8 * row + static_cast<unsigned>(l)];
-    place = m == 0 ? none : place;
-    last = place > last ? place : last;
-  }
-  std::int32_t last_place = 0;
-  for (int l = 0; l < 8; ++l) {
-    if (large[l] != 0) return -1;
-    last_place = std::max(last_place, last[l]);
-  }
-  return last_place;
-}
-
 }  // namespace
 
 RoundedBlock::RoundedBlock(const std::uint16_t* tables)
-    : tables_(tables), rows_(symbol_costs(tables), RowCosts::Contexts::lattice) {}
+    : coder_(tables, ValueEncoder::Kind::lattice), rows_(symbol_costs(tables), RowCosts::Contexts::lattice) {}
 
 void RoundedBlock::set(std::span<const float, 512> values) {
   std::copy(values.begin(), values.end(), values_.begin());
@@ -108,9 +84,9 @@ bool RoundedBlock::find_codes(int quantum_exponent) {
 std::optional<RoundedBlock::Cost> RoundedBlock::cost(int quantum_exponent) {
   if (!find_codes(quantum_exponent)) return std::nullopt;
   residuals_of(codes_, predictor_, false, residuals_);
-  const std::int32_t last_place = fill_rows(residuals_.data(), magnitudes_);
-  if (last_place <= 0) return std::nullopt;
-  const unsigned end = static_cast<unsigned>(last_place) / kEndUnit + 1;
+  const ResidualSizes sizes = fill_magnitudes(residuals_, magnitudes_);
+  if (sizes.last_place == 0 || sizes.bits >= RowCosts::kMostMagnitude) return std::nullopt;
+  const unsigned end = end_at(sizes.last_place);
   const std::uint32_t bits = rows_.of(magnitudes_, end).stream_bits(end, kEndBits, kNumberBits) + kNumberBits;
   const std::uint32_t bytes = static_cast<std::uint32_t>(kFrontAt) + (bits + 7) / 8;
   if (bytes >= kRawStreamBytes) return std::nullopt;
@@ -126,15 +102,14 @@ bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
   return false;
 }
 
-bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) const {
+bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
   if (out.size() <= kFrontAt) return false;
-  const ScanValues values = scan_residuals(residuals_);
   StreamFront front;
-  front.end = end_of(values);
+  front.end = end_at(fill_magnitudes(residuals_, magnitudes_).last_place);
   front.end_bits = kEndBits;
   front.number = codes_[0];
   front.number_bits = kNumberBits;
-  if (!encode_values({lattice_tables(tables_), false}, front, values, out.subspan(kFrontAt))) return false;
+  if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kFrontAt))) return false;
   out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor_ << 2U |
                                   static_cast<unsigned>(LatticeKind::own) << 4U);
   const auto quantum = static_cast<float>(std::ldexp(1.0, quantum_exponent));

@@ -39,9 +39,9 @@ class RoundedBlock {
 
  private:
   bool find_codes(int quantum_exponent);
-  bool write(int quantum_exponent, std::span<std::byte> out) const;
+  bool write(int quantum_exponent, std::span<std::byte> out);
 
-  const std::uint16_t* tables_;
+  ValueEncoder coder_;
   RowCosts rows_;
   std::array<float, 512> values_{};
   int exponent_ = 0;

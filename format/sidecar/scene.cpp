@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "format/base/toml_reader.h"
 
@@ -221,7 +222,9 @@ Scene load_scene(const std::string& path) {
   std::string text;
   if (file) text.assign(std::istreambuf_iterator<char>(file), {});
   if (!file || file.bad()) {
-    throw Error(ErrorKind::input, cat(path, ": cannot read the scene; it must be an existing TOML file"));
+    const int reason = errno;
+    throw Error(ErrorKind::input, cat(path, ": cannot read the scene; it must be an existing TOML file"),
+                reason != 0 ? std::optional(SystemFailure{reason, path}) : std::nullopt);
   }
   return parse_scene(text, path);
 }

@@ -45,6 +45,20 @@ void describe(Archive& archive, S& s) {
     archive.field("scale", s.source.scale);
     archive.field("offset", s.source.offset);
     archive.optional_field("files_digest", s.source.files_digest);
+    archive.optional_field("long_name", s.source.long_name);
+    archive.optional_field("component", s.source.component);
+    archive.optional_object("time", s.source.time, [&](auto& time) {
+      archive.field("value", time.value);
+      archive.field("units", time.units);
+      archive.optional_field("calendar", time.calendar);
+    });
+    archive.optional_field("axis_units", s.source.axis_units);
+    archive.optional_object("irregular_axes", s.source.irregular_axes, [&](auto& axes) {
+      archive.optional_field("x", axes.x);
+      archive.optional_field("y", axes.y);
+      archive.optional_field("z", axes.z);
+    });
+    archive.optional_field("reversed_axes", s.source.reversed_axes);
   });
   archive.object("grid", [&] {
     archive.field("name", s.grid.name);
@@ -62,11 +76,16 @@ void describe(Archive& archive, S& s) {
   archive.object("missing", [&] {
     archive.field("count", s.missing.count);
     archive.field("values", s.missing.values);
+    archive.optional_field("policy", s.missing.policy);
   });
   archive.object("conversion_loss", [&] {
     archive.field("inexact", s.conversion_loss.inexact);
     archive.field("overflow", s.conversion_loss.overflow);
     archive.field("max_abs_error", s.conversion_loss.max_abs_error);
+  });
+  archive.optional_object("zeros", s.zeros, [&](auto& zeros) {
+    archive.field("count", zeros.count);
+    archive.field("lost", zeros.lost);
   });
   archive.object("background", [&] {
     archive.field("value", s.background.value);
@@ -162,8 +181,9 @@ class JsonWriter {
   void field(const char* key, const std::optional<double>& value) { (*at_)[key] = value ? Json(*value) : Json(); }
   void field(const char* key, const Index3& i) { (*at_)[key] = array(i); }
   void field(const char* key, const Box& box) { (*at_)[key] = {array(box.lo), array(box.hi)}; }
-  void optional_field(const char* key, const std::string& value) {
-    if (!value.empty()) field(key, value);
+  template <typename T>
+  void optional_field(const char* key, const T& value) {
+    if (value != T()) field(key, value);
   }
   void hex_field(const char* key, std::uint32_t value) {
     std::array<char, 9> text{};
@@ -211,8 +231,9 @@ class JsonReader {
     read(key, find(key), value);
   }
 
-  void optional_field(const char* key, std::string& value) {
-    value.clear();
+  template <typename T>
+  void optional_field(const char* key, T& value) {
+    value = T();
     if (at_->contains(key)) field(key, value);
   }
 

@@ -20,6 +20,18 @@ inline constexpr int kSidecarVersion = 1;
 
 /// Non-finite doubles are written as null and read back as NaN.
 struct Sidecar {
+  struct Time {
+    double value = 0;
+    std::string units;     ///< "seconds since 2000-01-01", "s"; else empty
+    std::string calendar;  ///< of CF; empty, and no key, where the file names none
+  };
+  /// Coordinates of index 0, 1, ... of the source along an axis; empty, and no key, where they are equally spaced.
+  struct IrregularAxes {
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<double> z;
+  };
+
   struct Source {
     std::string path;    ///< as the user gave it
     std::string format;  ///< "raw", "hdf5", ...
@@ -36,6 +48,13 @@ struct Sidecar {
     double scale = 1;                 ///< value = stored * scale + offset
     double offset = 0;
     std::string files_digest;  ///< FileStates of the files that the volume lies in; empty, and no key, where it is one
+    // Each with a key where the file says it.
+    std::string long_name;                        ///< "cloud water mixing ratio"
+    std::string component;                        ///< of an array of vectors: "0", "1" ... or "magnitude"
+    std::optional<Time> time;                     ///< at which the volume is
+    std::array<std::string, 3> axis_units;        ///< of the coordinates of x, y, z
+    std::optional<IrregularAxes> irregular_axes;  ///< those without a spacing
+    std::vector<std::string> reversed_axes;       ///< "x", "y", "z": the file has their elements in the other order
   } source;
 
   struct Grid {
@@ -54,11 +73,12 @@ struct Sidecar {
     std::string policy = "error";  ///< error, background or keep
   } nonfinite;
 
-  /// Voxels the source declares to hold no data. They read as the background, or as NaN under the policy
-  /// keep, and are in no error figure.
+  /// Voxels the source declares to hold no data. They read as the background, as NaN, or, under the policy keep alone,
+  /// as the values that say so; then they are data, else in no error figure.
   struct Missing {
     std::uint64_t count = 0;
     std::vector<std::string> values;  ///< the stored values that say so
+    std::string policy;               ///< error, background, nan or keep; empty, and no key, where weir was older
   } missing;
 
   /// What the conversion to float32 lost.
@@ -73,6 +93,13 @@ struct Sidecar {
     std::string method;  ///< how it was found: "modal", "fullest-bin", "user", ...
     double share = 0;    ///< part of the voxels with that value, 0..1
   } background;
+
+  /// Finite source voxels equal to zero; none where weir was older.
+  struct Zeros {
+    std::uint64_t count = 0;
+    std::uint64_t lost = 0;  ///< those that decode to another value
+  };
+  std::optional<Zeros> zeros;
 
   /// Equal bins over [min, max]; the last one includes max.
   struct Histogram {
@@ -98,7 +125,7 @@ struct Sidecar {
     std::array<std::uint64_t, 6> bits{};  ///< kept leaves of 1, 2, 4, 8, 16 bits a voxel and float32
   } selection;
 
-  /// Decoded values against the float32 source, all voxels, in double.
+  /// Decoded values against the float32 source, all valid voxels (valid_voxels.h), in double.
   struct CertifiedError {
     double mse = 0;
     double rmse = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/output/output_files.h"
 #include "gpu/image/colormap.h"
 
 namespace weir {
@@ -113,8 +115,8 @@ std::vector<std::byte> encode_exr(const Image& image) {
   return {first, first + bytes};
 }
 
-ImageFile::ImageFile(FileSystem& files, const std::string& path)
-    : files_(files), path_(path), exr_(extension_of(path) == ".exr") {
+ImageFile::ImageFile(FileSystem& files, const std::string& path, bool overwrite)
+    : files_(files), path_(path), overwrite_(overwrite), exr_(extension_of(path) == ".exr") {
   if (!exr_ && extension_of(path) != ".png") {
     throw Error(ErrorKind::usage, cat(path, ": an image's name must end in .png or .exr"));
   }
@@ -125,6 +127,14 @@ ImageFile::ImageFile(FileSystem& files, const std::string& path)
   }
   if (!files_.is_replaceable(path)) {
     throw Error(ErrorKind::usage, cat(path, ": is no regular file, and nothing else is replaced; choose another name"));
+  }
+  if (!overwrite && files_.exists(path)) {
+    throw usage_error(cat(path, ": exists; choose another name or pass --overwrite"));
+  }
+  if (const std::string directory = directory_of(path); !files_.exists(directory)) {
+    throw Error(ErrorKind::io,
+                cat(path, ": the directory ", directory, " does not exist; make it or choose another name"),
+                SystemFailure{ENOENT, directory});
   }
   constexpr std::size_t kNameBytes = 200;  // a longer one leaves no room for what comes after it
   const std::string name = target.filename().string().substr(0, kNameBytes);
@@ -144,7 +154,11 @@ std::uint64_t ImageFile::commit(const Image& image, const ToneMapping& tone) {
   const std::vector<std::byte> bytes = exr_ ? encode_exr(image) : encode_png(image, tone);
   file_->write_at(0, bytes);
   file_->sync();
-  files_.rename(temporary_, path_);
+  if (overwrite_) {
+    files_.rename(temporary_, path_);
+  } else {
+    files_.rename_new(temporary_, path_);
+  }
   file_.reset();
   return bytes.size();
 }

@@ -35,20 +35,24 @@ std::vector<std::byte> encode_exr(const Image& image);
 /// `commit` there is only a hidden temporary file beside it, which the destructor removes.
 class ImageFile {
  public:
-  /// Throws Error(usage) where `path` does not end in .png or .exr or is a directory, Error(io) where its
-  /// directory is missing or read-only. `files` must outlive the object.
-  ImageFile(FileSystem& files, const std::string& path);
+  /// Throws Error(usage) where `path` does not end in .png or .exr, is a directory, or exists and `overwrite` is false,
+  /// Error(io) where its directory is missing or read-only. `files` must outlive the object.
+  ImageFile(FileSystem& files, const std::string& path, bool overwrite);
   ~ImageFile();
   ImageFile(const ImageFile&) = delete;
   ImageFile& operator=(const ImageFile&) = delete;
 
-  /// Encodes by the extension, writes, renames over `path`; returns the bytes written.
+  /// Whether it will hold radiance, as OpenEXR does, and not what a screen shows.
+  bool linear() const { return exr_; }
+  /// Encodes by the extension, writes, renames to `path`; returns the bytes written. Throws Error(io) where a file came
+  /// to lie there meanwhile that is not to be overwritten.
   std::uint64_t commit(const Image& image, const ToneMapping& tone);
 
  private:
   FileSystem& files_;
   std::string path_;
   std::string temporary_;
+  bool overwrite_;
   bool exr_;
   std::unique_ptr<File> file_;
 };

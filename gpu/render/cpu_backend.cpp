@@ -90,6 +90,7 @@ class CpuVolumeOf : public CpuVolume {
     Picture picture;
     const auto start = std::chrono::steady_clock::now();
     if (const MeanPyramid* levels = pyramid(setup, sampling.threads, picture.levels_note)) {
+      setup.bound_cells(levels->bounds(cells_, setup.levels()->choice, sampling.threads));
       const LevelsView<DenseSampler> view = levels->view();
       const auto seen = [&]<class Fine>(const Fine& fine) {
         return LevelledVolume<Fine, DenseSampler>{fine, view, setup.levels()->choice};
@@ -107,12 +108,11 @@ class CpuVolumeOf : public CpuVolume {
 
  private:
   // Null where the picture has no use for levels. Kept for the next picture that wants the same ones.
-  const MeanPyramid* pyramid(RenderSetup& setup, int threads, std::string& note) {
+  const MeanPyramid* pyramid(const RenderSetup& setup, int threads, std::string& note) {
     if (!setup.levels()) return nullptr;
     const int first = finest_level_within(level_lattice(info_.frame.domain), setup.levels()->finest, level_bytes_);
     note = levels_note(first, setup.levels()->finest, setup.levels()->coarsest);
     if (!levels_are_of_use(first, setup.levels()->coarsest)) return nullptr;
-    setup.widen_cells();
     if (!pyramid_ || pyramid_->first() != first) {
       pyramid_.reset();
       pyramid_.emplace(voxels_.pyramid(first, threads));

@@ -5,6 +5,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "gpu/image/colormap.h"
+#include "gpu/math/box_points.h"
 #include "gpu/math/narrow.h"
 #include "gpu/scene/scene_transfer.h"
 #include "gpu/volume/level_lattice.h"
@@ -21,14 +22,16 @@ struct ModeDefaults {
   double exposure;
 };
 
+constexpr Double3 kDarkGray{0.035, 0.035, 0.035};
+
 ModeDefaults defaults_of(RenderMode mode) {
   switch (mode) {
     case RenderMode::path:
-      return {"ct", 250, {0.03, 0.035, 0.045}, 1.4};
+      return {"white", 250, kDarkGray, 1.4};
     case RenderMode::dvr:
-      return {"dusk", 200, {0.03, 0.035, 0.045}, 1};
+      return {"viridis", 200, kDarkGray, 1.8};
     case RenderMode::iso:
-      return {"ct", 1, {0.03, 0.035, 0.045}, 1};
+      return {"white", 1, kDarkGray, 0.8};
     case RenderMode::mip:
       break;
   }
@@ -97,12 +100,16 @@ std::string levels_note(int first, int wanted, float coarsest) {
   return levels_are_of_use(first, coarsest) ? there : there + ", of which none was of use; voxels were read";
 }
 
+TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, const RenderOptions& options) {
+  return make_transfer_function(scene.volume, volume.range, options.background.value_or(volume.background),
+                                defaults_of(scene.mode).colormap);
+}
+
 RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
                          const RenderOptions& options)
     : domain_(volume.frame.domain),
       cells_(cells),
-      transfer_(make_transfer_function(scene.volume, volume.range, options.background.value_or(volume.background),
-                                       defaults_of(scene.mode).colormap)),
+      transfer_(picture_transfer(volume, scene, options)),
       environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
   const Double3 size = volume.frame.size();
@@ -143,11 +150,9 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
            .soft_clip = scene.mode == RenderMode::path};
 }
 
-// A texel of level l reaches one and a half times 2^l voxels, and a look-up between two levels reads the coarser one.
-void RenderSetup::widen_cells() {
-  const int coarsest = static_cast<int>(std::min(std::ceil(levels_->coarsest), static_cast<float>(kMostLevels)));
-  wide_cells_.emplace(cells_.widened(std::int64_t{3} << coarsest >> 1));
-  medium_.cell_values = wide_cells_->bounds().data();
+void RenderSetup::bound_cells(std::vector<MinMax> bounds) {
+  levelled_cells_.emplace(cells_.nodes(), std::move(bounds));
+  medium_.cell_values = levelled_cells_->bounds().data();
   majorants_.clear();
 }
 
@@ -164,19 +169,12 @@ std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) c
   LevelsUsed used;
   // Cubes have as many voxels along each axis: where voxels are longest, they must not be wider than the pixel.
   used.choice = {camera.position, medium_.stretch, std::log2(pixel / max_component(medium_.stretch)) + detail.bias, 0};
-  used.choice.scattered = used.choice.camera + detail.scattered;
-  const RayBox& box = medium_.shown;
-  const Float3& eye = camera.position;
-  const Float3 nearest{clamped(eye.x, box.low.x, box.high.x), clamped(eye.y, box.low.y, box.high.y),
-                       clamped(eye.z, box.low.z, box.high.z)};
-  const auto farther = [](float at, float low, float high) { return at - low > high - at ? low : high; };
-  const Float3 farthest{farther(eye.x, box.low.x, box.high.x), farther(eye.y, box.low.y, box.high.y),
-                        farther(eye.z, box.low.z, box.high.z)};
-  const bool scatters = frame_.mode == RenderMode::path;
-  used.coarsest = used.choice.level(farthest, scatters ? RayKind::scattered : RayKind::camera);
+  // Nothing scatters but light on a path.
+  used.choice.scattered = used.choice.camera + (frame_.mode == RenderMode::path ? detail.scattered : 0);
+  used.coarsest = used.choice.level(farthest_point(medium_.shown, camera.position), RayKind::scattered);
   if (!(used.coarsest > 0)) return std::nullopt;
-  used.finest =
-      static_cast<int>(clamped(used.choice.level(nearest, RayKind::camera), 1.0F, static_cast<float>(kMostLevels - 1)));
+  const float finest = used.choice.level(nearest_point(medium_.shown, camera.position), RayKind::camera);
+  used.finest = static_cast<int>(clamped(finest, 1.0F, static_cast<float>(kMostLevels - 1)));
   return used;
 }
 

@@ -65,6 +65,9 @@ std::string levels_note(int first, int wanted, float coarsest);
 /// Whether levels from `first` on change a picture: look-ups mix the voxels with them from one level below on.
 bool levels_are_of_use(int first, float coarsest);
 
+/// The colours and opacities that a picture of the scene is made with. Throws Error(usage) for an unknown colormap.
+TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, const RenderOptions& options);
+
 class RenderSetup {
  public:
   /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a
@@ -98,11 +101,11 @@ class RenderSetup {
   RenderMode mode() const { return frame_.mode; }
   /// None where the options ask for voxels, or all look-ups come near enough to see them.
   const std::optional<LevelsUsed>& levels() const { return levels_; }
-  /// For a picture with levels up to the coarsest it can use: from now on cells bound what look-ups of them reach.
-  void widen_cells();
-  const MacrocellGrid& cells() const { return wide_cells_ ? *wide_cells_ : cells_; }
+  /// For a picture with levels: what rays may see in each of the cells (level_bounds.h).
+  void bound_cells(std::vector<MinMax> bounds);
 
  private:
+  const MacrocellGrid& cells() const { return levelled_cells_ ? *levelled_cells_ : cells_; }
   const std::vector<float>& majorants() const;
   std::optional<LevelsUsed> levels_for(const LevelOfDetail& detail) const;
   Box shown(const Scene& scene) const;
@@ -110,7 +113,7 @@ class RenderSetup {
 
   Box domain_;
   const MacrocellGrid& cells_;
-  std::optional<MacrocellGrid> wide_cells_;
+  std::optional<MacrocellGrid> levelled_cells_;
   TransferFunction transfer_;
   mutable std::vector<float> majorants_;  ///< empty until asked for
   std::shared_ptr<const Environment> environment_;

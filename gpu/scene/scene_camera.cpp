@@ -87,7 +87,7 @@ AzimuthFrame azimuth_frame(const Double3& up, double degrees) {
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect) {
   const auto from_world = [&](const Double3& world) {
     Double3 index{};
-    for (std::size_t a = 0; a < 3; ++a) index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a];
+    for (std::size_t a = 0; a < 3; ++a) index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a] + 0.5;
     return frame.physical(index);
   };
   const double tan_y = std::tan(scene.fov * std::numbers::pi / 360);

@@ -10,15 +10,16 @@
 
 namespace weir {
 
-/// Where a grid lies: world = origin + voxel_size * index.
+/// Where a grid lies: the centre of voxel `index` is at origin + voxel_size * index.
 struct GridFrame {
   Box domain;          ///< voxels
   Double3 voxel_size;  ///< world units, > 0
-  Double3 origin;      ///< world position of index (0, 0, 0)
+  Double3 origin;      ///< world position of the centre of voxel (0, 0, 0)
 
   /// Edges of a voxel in units of the shortest.
   Double3 stretch() const;
-  /// A point of index space in physical space, whose origin is the domain's lowest corner.
+  /// A point of index space, in which voxel i covers [i, i + 1), in physical space, whose origin is the domain's lowest
+  /// corner.
   Double3 physical(const Double3& index) const;
   /// Edges of the domain in physical space.
   Double3 size() const;

@@ -47,28 +47,6 @@ MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
 MacrocellGrid::MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells)
     : lattice_(lattice), cells_(std::move(cells)) {}
 
-// One axis after the other.
-MacrocellGrid MacrocellGrid::widened(std::int64_t voxels) const {
-  const std::int64_t reach = (voxels + lattice_.dim - 1) / lattice_.dim;
-  MacrocellGrid wide(lattice_, cells_);
-  const Index3 count = lattice_.count;
-  const std::array<std::int64_t, 3> counts{count.x, count.y, count.z};
-  const std::array<std::int64_t, 3> steps{1, count.x, count.x * count.y};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<MinMax> from = wide.cells_;
-    for (std::int64_t i = 0; i < lattice_.size(); ++i) {
-      const std::int64_t at = i / steps[axis] % counts[axis];
-      MinMax& bounds = wide.cells_[static_cast<std::size_t>(i)];
-      for (std::int64_t k = std::max<std::int64_t>(0, at - reach); k <= std::min(counts[axis] - 1, at + reach); ++k) {
-        const MinMax& other = from[static_cast<std::size_t>(i + (k - at) * steps[axis])];
-        // A NaN, which bounds nothing, stays.
-        bounds = {other.min >= bounds.min ? bounds.min : other.min, other.max <= bounds.max ? bounds.max : other.max};
-      }
-    }
-  }
-  return wide;
-}
-
 std::vector<float> MacrocellGrid::majorants(const TransferFunction& transfer) const {
   std::vector<float> result(cells_.size());
   for (std::size_t i = 0; i < cells_.size(); ++i) result[i] = transfer.max_opacity(cells_[i].min, cells_[i].max);

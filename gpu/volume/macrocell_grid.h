@@ -28,6 +28,7 @@ class MacrocellGrid {
   MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells);
 
   CellLattice lattice() const { return cell_lattice(lattice_); }
+  const NodeLattice& nodes() const { return lattice_; }
   const std::vector<MinMax>& bounds() const { return cells_; }
   /// Of bounds and, while a picture is made, majorants.
   std::uint64_t bytes() const { return cells_.size() * kCellBytes; }
@@ -35,8 +36,6 @@ class MacrocellGrid {
   /// Boxes (voxels, inside the domain) that hold all cells `shows` is true for, called with a position in
   /// `bounds`: one from the first to the last of each row in x. The domain where there is no such cell.
   std::vector<Box> content(const std::function<bool(std::size_t)>& shows) const;
-  /// The same cells, each with the bounds of all that have voxels within `voxels` of it.
-  MacrocellGrid widened(std::int64_t voxels) const;
   /// Largest opacity of each cell, in [0, 1].
   std::vector<float> majorants(const TransferFunction& transfer) const;
 

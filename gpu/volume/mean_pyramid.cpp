@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "format/leaf/leaf_decode.h"
+#include "gpu/volume/level_bounds.h"
 #include "gpu/volume/voxel_mean.h"
 
 namespace weir {
@@ -49,6 +50,13 @@ struct PackedBlocks {
   const CachedBlocks& blocks;
 
   bool read(const Int3& at, BlockValues& values) const { return blocks.read(at, values); }
+};
+
+// A group of one thread.
+struct LoneThread {
+  unsigned index() const { return 0; }
+  unsigned count() const { return 1; }
+  MinMax widest(const MinMax& own, MinMax* /*of_warps*/) const { return own; }
 };
 
 Int3 blocks_of(const Int3& voxels) { return {voxels.x >> 3, voxels.y >> 3, voxels.z >> 3}; }
@@ -167,6 +175,31 @@ LevelsView<DenseSampler> MeanPyramid::view() const {
     view.texels[l] = {{levels_[l].data(), lattice_.texels(first_ + static_cast<int>(l))}, Filter::trilinear};
   }
   return view;
+}
+
+std::vector<MinMax> MeanPyramid::bounds(const MacrocellGrid& cells, const LevelChoice& choice, int threads,
+                                        bool drafts) const {
+  std::vector<MinMax> result(cells.bounds().size());
+  LevelBounds<DenseView> step;
+  step.lattice = lattice_;
+  step.first = first_;
+  step.count = static_cast<int>(levels_.size());
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    step.texels[l] = {levels_[l].data(), lattice_.texels(first_ + static_cast<int>(l))};
+  }
+  step.choice = choice;
+  step.drafts = drafts;
+  step.cells = cells.lattice();
+  step.voxels = cells.bounds().data();
+  step.bounds = result.data();
+  oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+  arena.execute([&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t i) {
+      LevelBounds<DenseView>::Shared unused;
+      step(LoneThread{}, unused, static_cast<std::uint32_t>(i));
+    });
+  });
+  return result;
 }
 
 }  // namespace weir

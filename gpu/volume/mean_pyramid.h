@@ -8,6 +8,7 @@
 #include "gpu/volume/cached_blocks.h"
 #include "gpu/volume/dense_volume.h"
 #include "gpu/volume/levelled_volume.h"
+#include "gpu/volume/macrocell_grid.h"
 
 namespace weir {
 
@@ -23,6 +24,9 @@ class MeanPyramid {
   MeanPyramid(const Box& domain, const DenseView& voxels, int first, int threads);
 
   LevelsView<DenseSampler> view() const;
+  /// Of each of `cells`, what look-ups of this choice of levels may see in it (level_bounds.h); `drafts` as there.
+  std::vector<MinMax> bounds(const MacrocellGrid& cells, const LevelChoice& choice, int threads,
+                             bool drafts = false) const;
   int first() const { return first_; }
 
  private:

@@ -33,7 +33,8 @@ Error refused_open(const std::string& path, int errno_value) {
                            ? "; give this user the right to read it and to enter its directories"
                            : "";
   return Error(name ? ErrorKind::input : ErrorKind::io,
-               cat(path, ": cannot open for reading: ", message_of(errno_value), remedy));
+               cat(path, ": cannot open for reading: ", message_of(errno_value), remedy),
+               SystemFailure{errno_value, path});
 }
 
 std::uint64_t page_bytes() {

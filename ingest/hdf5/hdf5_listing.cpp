@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "format/base/text.h"
@@ -5,8 +8,10 @@
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/file/hdf5_walk.h"
 #include "ingest/hdf5/hdf5_source.h"
+#include "ingest/hdf5/meaning/axis_roles.h"
 #include "ingest/hdf5/meaning/dataset_facts.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
+#include "ingest/hdf5/meaning/field_meaning.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 
 namespace weir {
@@ -28,20 +33,23 @@ std::string packing_text(const ValueMapping& mapping) {
   return mapping.scales() ? cat("stored * ", mapping.scale, " + ", mapping.offset) : "";
 }
 
-void describe_axes(const std::vector<AxisPlace>& axes, Attributes& attributes) {
-  bool named = false;
-  for (const AxisPlace& axis : axes) named = named || !axis.label.empty();
-  if (named) add(attributes, "axes", axes_text(axes));
+// `axes` without that of components.
+void describe_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
   if (axes.size() < kVolumeRank) return;
+  const AxisRoles roles = axis_roles(axes);
   std::string spacing;
   std::string origin;
-  for (std::size_t i = 1; i <= kVolumeRank; ++i) {
-    const AxisPlace& axis = axes[axes.size() - i];
-    const char* const comma = i == 1 ? "" : ",";
+  std::array<const AxisPlace*, kVolumeRank> volume{};
+  for (std::size_t i = 0; i < kVolumeRank; ++i) {
+    const AxisPlace& axis = axes[roles.volume.at(kVolumeRank - 1 - i)];
+    volume.at(i) = &axis;
+    const char* const comma = i == 0 ? "" : ",";
+    if (axis.is_time) return;  // no place
     spacing += cat(comma, axis.spacing.value_or(1.0));
     origin += cat(comma, axis.origin.value_or(0.0));
-    if (!axis.note.empty()) add(attributes, cat("axis ", std::string("xyz").substr(i - 1, 1)), axis.note);
+    add(attributes, cat("axis ", std::string("xyz").substr(i, 1)), axis_note(axis, i));
   }
+  add(attributes, "order", order_note(volume));
   if (spacing != "1,1,1") add(attributes, "spacing x,y,z", spacing);
   if (origin != "0,0,0") add(attributes, "origin x,y,z", origin);
 }
@@ -60,7 +68,26 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
   if (facts.meaning.unit_si) add(info.attributes, "unit_si", cat(*facts.meaning.unit_si));
   add(info.attributes, "missing", missing_text(facts.meaning.mapping));
   add(info.attributes, "values", packing_text(facts.meaning.mapping));
-  describe_axes(facts.axes, info.attributes);
+  add(info.attributes, "note", facts.meaning.note);
+  const auto is_named = [](const AxisPlace& axis) { return !axis.label.empty(); };
+  if (std::any_of(facts.axes.begin(), facts.axes.end(), is_named)) {
+    add(info.attributes, "axes", axes_text(facts.axes));
+    for (const AxisPlace& axis : facts.axes) {
+      if (!axis.label.empty()) info.axis_names.push_back(axis.label);
+    }
+  }
+  if (facts.components.found()) {
+    add(info.attributes, "components",
+        cat(facts.components.count, " along the last axis, ", facts.components.evidence));
+  }
+  const auto axes = std::span(facts.axes).first(facts.axes.size() - (facts.components.found() ? 1 : 0));
+  if (axes.size() > kVolumeRank) {
+    const AxisRoles roles = axis_roles(axes);
+    for (const std::size_t i : roles.others) info.index_axes.push_back({axes[i].label, axes[i].extent});
+    info.index_by_name = roles.interleaved();
+  }
+  describe_axes(axes, info.attributes);
+  info.components = facts.components.count;
   info.obstacle = facts.obstacle;
   info.leading_axes = facts.obstacle.empty() ? leading_axes(facts.axes) : 0;
   return info;

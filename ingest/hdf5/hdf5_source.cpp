@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -11,14 +12,17 @@
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/meaning/dataset_choice.h"
 #include "ingest/hdf5/meaning/dataset_facts.h"
+#include "ingest/hdf5/meaning/field_meaning.h"
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/hdf5/storage/chunk_reader.h"
 #include "ingest/hdf5/storage/constant_source.h"
 #include "ingest/hdf5/storage/external_files.h"
+#include "ingest/hdf5/storage/planar_boxes.h"
 #include "ingest/hdf5/virtual/library_boxes.h"
 #include "ingest/hdf5/virtual/virtual_boxes.h"
 #include "ingest/source/extent.h"
+#include "ingest/source/reversed_source.h"
 #include "ingest/values/raw_values.h"
 
 namespace weir {
@@ -68,25 +72,26 @@ struct Opening {
     info.files_digest = files.digest();
     info.files = files.files();
   }
-  /// Bytes of the array before the slice.
+  /// Bytes of the array before the slice, which is in one piece.
   std::uint64_t first_byte() const {
     std::uint64_t position = 0;
-    for (std::size_t i = 0; i < slice.index.size(); ++i) {
+    for (std::size_t i = 0; i < slice.positions.size(); ++i) {
       position =
-          position * static_cast<std::uint64_t>(facts.axes[i].extent) + static_cast<std::uint64_t>(slice.index[i]);
+          position * static_cast<std::uint64_t>(facts.axes[i].extent) + static_cast<std::uint64_t>(slice.positions[i]);
     }
     return position * slice_bytes();
   }
-  std::uint64_t slice_bytes() const {
-    return static_cast<std::uint64_t>(volume(slice.extent)) * scalar_bytes(facts.type->scalar);
+  std::uint64_t slice_bytes() const { return static_cast<std::uint64_t>(volume(slice.extent)) * voxel_bytes(); }
+  std::size_t voxel_bytes() const {
+    return scalar_bytes(facts.type->scalar) * static_cast<std::size_t>(slice.components.count);
   }
   std::unique_ptr<VolumeSource> from_raw(std::unique_ptr<InputFile> file, std::uint64_t offset) {
-    const RawLayout layout{offset, facts.type->scalar, facts.type->big_endian, info.mapping};
+    const RawLayout layout{offset, facts.type->scalar, facts.type->big_endian, info.mapping, slice.components};
     return make_raw_values(std::move(file), layout, std::move(info));
   }
   std::unique_ptr<VolumeSource> from_boxes(std::unique_ptr<StoredBoxes> boxes) {
     return make_stored_box_source(std::move(boxes), std::move(info), facts.type->big_endian, options.memory,
-                                  object.where());
+                                  object.where(), slice.components);
   }
 };
 
@@ -105,7 +110,7 @@ std::unique_ptr<VolumeSource> open_contiguous(Opening opening) {
 std::unique_ptr<VolumeSource> open_external(Opening opening) {
   const Hdf5Handle creation(H5Dget_create_plist(opening.object.handle.get()));
   std::uint64_t bytes = opening.slice_bytes();
-  for (std::size_t i = 0; i < opening.slice.index.size(); ++i) {
+  for (std::size_t i = 0; i < opening.slice.positions.size(); ++i) {
     bytes *= static_cast<std::uint64_t>(opening.facts.axes[i].extent);
   }
   std::vector<ExternalPart> parts =
@@ -118,29 +123,76 @@ std::unique_ptr<VolumeSource> open_external(Opening opening) {
     auto file = std::make_unique<InputFile>(parts[0].path, opening.options.direct_io);
     return opening.from_raw(std::move(file), parts[0].offset + first);
   }
-  auto boxes = make_external_boxes(std::move(parts), opening.slice.extent, scalar_bytes(opening.facts.type->scalar),
-                                   first, opening.options.direct_io);
+  auto boxes = make_external_boxes(std::move(parts), opening.slice.extent, opening.voxel_bytes(), first,
+                                   opening.options.direct_io);
   return opening.from_boxes(std::move(boxes));
+}
+
+std::unique_ptr<VolumeSource> open_by_library(Opening opening) {
+  ArrayPlace place{opening.slice.roles.volume, opening.slice.positions};
+  return opening.from_boxes(make_library_boxes(std::move(opening.object.handle), *opening.facts.storage,
+                                               std::move(place), opening.object.where()));
 }
 
 std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
   const hid_t dataset = opening.object.handle.get();
-  if (!ChunkReader::decodes(dataset)) {
-    return opening.from_boxes(make_library_boxes(std::move(opening.object.handle), *opening.facts.storage,
-                                                 opening.slice.index, opening.object.where()));
+  // Chunks with some of the components only are put together by the library.
+  const bool whole = opening.slice.components.count == 1 ||
+                     std::cmp_equal(opening.facts.storage->chunk.back(), opening.slice.components.count);
+  if (!whole || !ChunkReader::decodes(dataset)) {
+    return open_by_library(std::move(opening));
   }
   ChunkedSlice slice{dataset,
                      opening.object.where(),
-                     opening.slice.index,
+                     opening.slice.positions,
                      opening.facts.type->scalar,
                      opening.facts.type->big_endian,
                      opening.info.mapping,
-                     opening.facts.storage->fill};
+                     opening.facts.storage->fill,
+                     opening.slice.components};
   return std::make_unique<ChunkedSource>(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
                                          opening.options.memory);
 }
 
+// Volumes one behind the other, the components of the vectors whose magnitude is asked for.
+std::unique_ptr<VolumeSource> open_planar(Opening opening) {
+  const StorageKind kind = opening.facts.storage->kind;
+  const std::string parent = file_of(opening.object.handle.get());
+  const std::string where = opening.object.where();
+  std::vector<std::unique_ptr<StoredBoxes>> parts;
+  if (kind == StorageKind::external) {
+    throw Error(ErrorKind::input, compose(where, ": its components lie behind each other in files of their own; ",
+                                          "convert them one by one, with ", option("component", 0)));
+  }
+  for (std::int64_t c = 0; c < opening.slice.components.count; ++c) {
+    std::vector<std::int64_t> index = opening.slice.positions;
+    index.push_back(c);
+    H5Iinc_ref(opening.object.handle.get());
+    Hdf5Handle dataset(opening.object.handle.get());
+    parts.push_back(
+        kind == StorageKind::mapped
+            ? make_virtual_boxes(std::move(dataset), index, opening.slice.extent, 1, parent, where)
+            : make_library_boxes(std::move(dataset), *opening.facts.storage, ArrayPlace::behind(index), where));
+  }
+  auto boxes = make_planar_boxes(std::move(parts), scalar_bytes(opening.facts.type->scalar));
+  std::vector<std::string> files = boxes->files();
+  files.push_back(parent);
+  opening.note_files(files);
+  return opening.from_boxes(std::move(boxes));
+}
+
+// A time between the axes of space, or behind them: the library picks one value here and one there.
+std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
+  const StorageKind kind = opening.facts.storage->kind;
+  if (kind != StorageKind::external && kind != StorageKind::mapped) return open_by_library(std::move(opening));
+  throw Error(ErrorKind::input, cat(opening.object.where(), ": its axes are ", axes_text(opening.facts.axes),
+                                    ", the time not before those of space, and its values lie in other files; write "
+                                    "it with the time first, or into one file"));
+}
+
 std::unique_ptr<VolumeSource> open_stored(Opening opening) {
+  if (opening.slice.roles.interleaved()) return open_interleaved(std::move(opening));
+  if (opening.slice.planar) return open_planar(std::move(opening));
   switch (opening.facts.storage->kind) {
     case StorageKind::contiguous:
       return open_contiguous(std::move(opening));
@@ -149,26 +201,44 @@ std::unique_ptr<VolumeSource> open_stored(Opening opening) {
     case StorageKind::chunked:
       return open_chunked(std::move(opening));
     case StorageKind::compact:
-      return opening.from_boxes(make_library_boxes(std::move(opening.object.handle), *opening.facts.storage,
-                                                   opening.slice.index, opening.object.where()));
+      return open_by_library(std::move(opening));
     case StorageKind::mapped:
       break;
   }
   const std::string parent = file_of(opening.object.handle.get());
-  auto boxes = make_virtual_boxes(std::move(opening.object.handle), opening.slice.index, opening.slice.extent, parent,
-                                  opening.object.where());
+  auto boxes = make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.slice.extent,
+                                  opening.slice.components.count, parent, opening.object.where());
   std::vector<std::string> files = boxes->files();
   files.push_back(parent);
   opening.note_files(files);
   return opening.from_boxes(std::move(boxes));
 }
 
+// All components of a voxel have the one value.
+std::unique_ptr<VolumeSource> open_constant(Opening opening) {
+  const VoxelComponents& components = opening.slice.components;
+  const double value = *opening.facts.constant;
+  const bool length = components.count > 1 && components.choice.magnitude;
+  return make_constant_source(length ? std::fabs(value) * std::sqrt(static_cast<double>(components.count)) : value,
+                              std::move(opening.info));
+}
+
+// A volume over time is made for who names the dataset and says how far apart its planes are to be.
+void check_obstacle(const Opening& opening) {
+  const DatasetFacts& facts = opening.facts;
+  const std::string where = opening.object.where();
+  if (facts.obstacle.empty() || (facts.over_time && opening.options.spacing)) return;
+  const bool planes_over_time = facts.over_time && facts.axes.size() == kVolumeRank;
+  if (!planes_over_time) throw Error(ErrorKind::input, cat(where, ": ", facts.obstacle));
+  throw Error(ErrorKind::input,
+              compose(where, ": ", facts.obstacle, "; to take the time for a length, give ", option("spacing")));
+}
+
 // The array's bytes, leading axes included, fit 63 bits.
 void check_bytes(const Opening& opening) {
-  std::uint64_t bytes =
-      checked_volume_bytes(opening.slice.extent, scalar_bytes(opening.facts.type->scalar), opening.object.where());
-  for (std::size_t i = 0; i < opening.slice.index.size(); ++i) {
-    const auto extent = static_cast<std::uint64_t>(opening.facts.axes[i].extent);
+  std::uint64_t bytes = checked_volume_bytes(opening.slice.extent, opening.voxel_bytes(), opening.object.where());
+  for (const std::size_t axis : opening.slice.roles.others) {
+    const auto extent = static_cast<std::uint64_t>(opening.facts.axes[axis].extent);
     if (extent > (~std::uint64_t{0} >> 1U) / bytes) {
       throw Error(ErrorKind::input, cat(opening.object.where(), ": ", axes_text(opening.facts.axes),
                                         " values are more than 63 bits count; the file is damaged"));
@@ -190,7 +260,8 @@ SourceInfo source_info(const std::string& path, const Opening& opening) {
   info.extent = opening.slice.extent;
   info.type = opening.facts.type->scalar;
   info.mapping = opening.facts.meaning.mapping;
-  if (opening.options.missing) info.mapping.missing.push_back(*opening.options.missing);
+  opening.options.complete(info.mapping);
+  info.lengths = opening.slice.components.count > 1 && opening.slice.components.choice.magnitude;
   info.spacing = opening.slice.spacing;
   info.origin = opening.slice.origin;
   info.file_bytes = file.size();
@@ -203,7 +274,7 @@ SourceInfo source_info(const std::string& path, const Opening& opening) {
 std::unique_ptr<VolumeSource> open_hdf5(const std::string& path, const SourceOptions& options) {
   const Hdf5Lock lock;
   const Hdf5Handle file = open_hdf5_file(path);
-  Opening opening{options.dataset.empty() ? only_volume(file.get(), path, options.index.size())
+  Opening opening{options.dataset.empty() ? only_volume(file.get(), path, options)
                                           : find_dataset(file.get(), path, options.dataset),
                   {},
                   {},
@@ -211,13 +282,17 @@ std::unique_ptr<VolumeSource> open_hdf5(const std::string& path, const SourceOpt
                   options};
   const std::string where = opening.object.where();
   opening.facts = dataset_facts(file.get(), opening.object);
-  if (!opening.facts.obstacle.empty()) throw Error(ErrorKind::input, cat(where, ": ", opening.facts.obstacle));
-  opening.slice = volume_slice(opening.facts.axes, options.index, where);
+  check_obstacle(opening);
+  opening.slice = volume_slice(opening.facts.axes, options.index, where, options.component);
   check_bytes(opening);
   opening.info = source_info(path, opening);
+  opening.info.details = field_details(file.get(), opening.object, opening.facts.axes, opening.slice);
+  opening.info.details.values_note = opening.facts.meaning.note;
   opening.note_files({file_of(opening.object.handle.get())});
-  if (opening.facts.constant) return make_constant_source(*opening.facts.constant, std::move(opening.info));
-  return open_stored(std::move(opening));
+  if (options.component) opening.info.details.component = component_text(*options.component);
+  const std::array<bool, 3> falls = opening.slice.falls;
+  if (opening.facts.constant) return open_constant(std::move(opening));
+  return reverse_axes(open_stored(std::move(opening)), falls);
 }
 
 }  // namespace weir

@@ -130,7 +130,7 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
   try {
     return std::make_unique<InputFile>(name, mode);
   } catch (const Error& error) {
-    throw Error(error.kind(), compose(volume.info.path, ": its data file ", error.message()));
+    throw Error(error.kind(), compose(volume.info.path, ": its data file ", error.message()), error.system_failure());
   }
 }
 
@@ -153,7 +153,7 @@ std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, con
   info.mtime_ns = std::max(info.mtime_ns, file->mtime_ns());
 
   RawLayout layout{0, volume.type, volume.big_endian, volume.info.mapping};
-  if (options.missing) layout.mapping.missing.push_back(*options.missing);
+  options.complete(layout.mapping);
   if (volume.packed) {
     file = spool_inflated(*file, packed_range(volume, file->size()), unpacked_range(volume, shape, position), options);
   } else {
@@ -176,6 +176,7 @@ std::vector<DatasetInfo> list_header_volume(const HeaderVolume& volume) {
   only.type = cat(volume.big_endian && scalar_bytes(volume.type) > 1 ? "big-endian " : "", scalar_name(volume.type));
   only.layout = volume.packed ? "one compressed stream" : "contiguous";
   only.leading_axes = must_choose(shape.leading) ? shape.leading.size() : 0;
+  for (const std::int64_t extent : shape.leading) only.index_axes.push_back({{}, extent});
   only.attributes = {{"spacing", vector_text(volume.info.spacing)}, {"origin", vector_text(volume.info.origin)}};
   if (!volume.info.units.empty()) only.attributes.emplace_back("units", volume.info.units);
   if (volume.info.mapping.scales()) {

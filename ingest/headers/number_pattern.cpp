@@ -7,6 +7,7 @@
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/files/input_directory.h"
 
 namespace weir {
 std::optional<NumberPattern> NumberPattern::parse(std::string_view text) {
@@ -64,13 +65,23 @@ std::vector<NumberedFile> numbered_files(const std::string& pattern) {
        entry.increment(error)) {
     const auto number = last->match(entry->path().filename().string());
     std::error_code ignored;
-    if (!number || !entry->is_regular_file(ignored)) continue;
+    if (!number || !(entry->is_regular_file(ignored) || is_input_directory(entry->path().string()))) continue;
     files.push_back({*number, (path.parent_path() / entry->path().filename()).string()});
   }
   if (error) throw Error(ErrorKind::input, cat(directory.string(), ": cannot list: ", error.message()));
   if (files.empty()) throw Error(ErrorKind::input, cat(pattern, ": no file's name matches; check the pattern"));
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return files;
+}
+
+std::string padded_number(std::int64_t number, std::int64_t largest) {
+  const std::size_t width = std::to_string(largest).size();
+  std::string digits = std::to_string(number);
+  return std::string(width - std::min(width, digits.size()), '0') + digits;
+}
+
+std::string joined_name(const std::string& a, const std::string& b) {
+  return a.empty() || b.empty() ? a + b : a + '_' + b;
 }
 
 }  // namespace weir

@@ -40,4 +40,9 @@ struct NumberedFile {
 /// no such pattern.
 std::vector<NumberedFile> numbered_files(const std::string& pattern);
 
+/// With as many zeros before it as `largest` has digits more: names sort by number.
+std::string padded_number(std::int64_t number, std::int64_t largest);
+/// Both with "_" between; one of them where the other is empty.
+std::string joined_name(const std::string& a, const std::string& b);
+
 }  // namespace weir

@@ -46,11 +46,14 @@ std::optional<RawName> parse_raw_name(std::string_view path) {
   RawName result;
   result.name = file.substr(0, before_extent);
   result.extent = *extent;
-  std::string_view type = file.substr(before_type + 1);
-  result.type_text = type;
-  result.big_endian = type.ends_with(kBigEndian);
-  if (result.big_endian) type.remove_suffix(kBigEndian.size());
+  result.type_text = file.substr(before_type + 1);
+  auto [type, big_endian] = split_byte_order(result.type_text);
+  if (type.ends_with(kBigEndian)) {
+    big_endian = true;
+    type.remove_suffix(kBigEndian.size());
+  }
   result.type = parse_scalar(type);
+  result.big_endian = big_endian.value_or(false);
   return result;
 }
 

@@ -1,6 +1,6 @@
 // The naming pattern of raw volumes, NAME_XxYxZ_TYPE.raw, as the Open SciVis
-// data sets use it: "aneurism_256x256x256_uint8.raw". A "be" after the type says
-// that values are big-endian: "carotid_76x49x45_float32be.raw".
+// data sets use it: "aneurism_256x256x256_uint8.raw". TYPE is any that --type takes: "float", "f4", ">u2". A "be" after
+// the type says that values are big-endian: "carotid_76x49x45_float32be.raw".
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct RawName {
   Index3 extent;                   ///< voxels as written, not checked; numbers too long for 64 bits are clamped
   std::string type_text;           ///< the type as written, "be" included
   std::optional<ScalarType> type;  ///< empty where type_text names no type of weir
-  bool big_endian = false;         ///< "be" is there; without it the name says nothing about the byte order
+  bool big_endian = false;         ///< "be" or ">" is there; without them the name says nothing about the byte order
 };
 
 /// Reads the last component of `path`; nullopt where it does not follow the pattern.

@@ -79,7 +79,7 @@ std::unique_ptr<VolumeSource> open_raw(const std::string& path, const SourceOpti
   const RawShape shape = resolve_shape(path, options);
   RawLayout layout{options.offset.value_or(0), shape.type, shape.big_endian, {}};
   check_size(*file, shape, layout.offset);
-  if (options.missing) layout.mapping.missing = {*options.missing};
+  options.complete(layout.mapping);
   SourceInfo info;
   info.path = path;
   info.format = "raw";

@@ -1,8 +1,70 @@
 #include "ingest/source/dataset_info.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "format/base/error.h"
+#include "format/base/text.h"
+
 namespace weir {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += cat(text.empty() ? "" : ", ", name);
+  return text;
+}
+
+// Of `choices`, that do not fit `dataset`, what is wrong.
+Error unfit(const std::string& path, const DatasetInfo& dataset, const std::vector<AxisChoice>& choices) {
+  const std::string name = dataset.name.empty() ? "the array" : dataset.name;
+  for (const AxisChoice& choice : choices) {
+    const auto is_it = [&](const std::string& axis) { return axis == choice.axis; };
+    if (choice.axis.empty() || std::ranges::any_of(dataset.index_axes, is_it, &LeadingAxis::name)) continue;
+    if (std::ranges::any_of(dataset.axis_names, is_it)) {
+      return usage_error(compose(path, ": ", option("index"), " names ", choice.axis, ", an axis of the volume ", name,
+                                 "; ", option("roi"), " cuts along that"));
+    }
+    const std::string names = listed(dataset.axis_names);
+    return usage_error(compose(path, ": ", option("index"), ": no axis ", choice.axis, "; ", name, " has ",
+                               names.empty() ? "axes without names" : names));
+  }
+  std::string axes;
+  for (std::size_t i = 0; i < dataset.index_axes.size(); ++i) {
+    const LeadingAxis& axis = dataset.index_axes[i];
+    axes += cat(i == 0 ? "" : ", ", axis.name.empty() ? cat("axis ", i) : axis.name, " of ", axis.extent);
+  }
+  return usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
+                             choices.size() == 1 ? " position" : " positions", ", and ", name, " has ",
+                             axes.empty() ? "no leading axis" : axes, "; weir inspect lists what there is"));
+}
+
+}  // namespace
+
+const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
+                                      const SourceOptions& options) {
+  const std::vector<AxisChoice>& choices = options.index_choices;
+  const std::string& name = options.dataset;
+  std::vector<const DatasetInfo*> volumes;
+  std::vector<const DatasetInfo*> fitting;
+  for (const DatasetInfo& dataset : datasets) {
+    const bool meant = name.empty() ? dataset.obstacle.empty() && !dataset.by_name_only
+                                    : dataset.name == name || dataset.name == '/' + name;
+    if (!meant) continue;
+    volumes.push_back(&dataset);
+    if (choices_fit(choices, dataset.index_axes)) fitting.push_back(&dataset);
+  }
+  if (fitting.size() == 1) return *fitting.front();
+  if (fitting.size() > 1) {
+    throw usage_error(compose(path, ": ", option("index"), " fits the axes of several datasets; choose one with ",
+                              option("dataset")));
+  }
+  if (volumes.size() == 1) throw unfit(path, *volumes.front(), choices);
+  throw usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
+                            choices.size() == 1 ? " position" : " positions",
+                            ", and no dataset has such axes; weir inspect lists what there is"));
+}
 
 std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout) {
   DatasetInfo only;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/source/source_options.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -19,8 +20,18 @@ struct DatasetInfo {
   std::string layout;                 ///< "contiguous", "chunked 64 x 64 x 64, gzip, shuffle", ...
   std::vector<std::pair<std::string, std::string>> attributes;  ///< those that matter: units, missing value, spacing
   std::size_t leading_axes = 0;                                 ///< how many positions --index must give
-  std::string obstacle;                                         ///< why it cannot be converted; empty where it can
+  std::vector<LeadingAxis> index_axes;                          ///< all axes that it may give one for
+  bool index_by_name = false;                                   ///< not all of these come before those of the volume
+  std::vector<std::string> axis_names;                          ///< of all axes that the file gives a name
+  std::int64_t components = 1;                                  ///< more: --component must choose among them
+  bool by_name_only = false;  ///< read only where --dataset names it: a coarser one of several scales
+  std::string obstacle;       ///< why it cannot be converted; empty where it can
 };
+
+/// Of `datasets` of the file `path`, the one that options.index_choices choose positions in: options.dataset, or the
+/// only one that can be converted and whose axes they fit. Throws Error(usage) where it is unclear or they do not fit.
+const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
+                                      const SourceOptions& options);
 
 /// The list of a format whose files hold one volume: opens it and says what it is.
 std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout);

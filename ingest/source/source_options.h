@@ -11,7 +11,12 @@
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
 #include "ingest/files/input_file.h"
+#include "ingest/source/component_choice.h"
+#include "ingest/source/index_choice.h"
+#include "ingest/source/missing_chunks.h"
 #include "ingest/source/stored_value.h"
+#include "ingest/source/upsampling.h"
+#include "ingest/source/volume_region.h"
 
 namespace weir {
 
@@ -23,18 +28,34 @@ struct SourceOptions {
   std::optional<std::uint64_t> offset;  ///< --offset: bytes before the first value; default 0
 
   // Of containers.
-  std::string dataset;  ///< --dataset: path or name inside the container; empty: the only one
-  /// --index: position on each leading axis of an array of more than three; kEveryIndex (ingest/series.h) is
-  /// for who makes several volumes of them.
+  /// --dataset: path or name inside the container; empty: the only one. Several, one on each line, and patterns are for
+  /// who makes several volumes of them (ingest/series.h).
+  std::string dataset;
   std::vector<std::int64_t> index;  ///< --index: position on each leading axis of an array of more than three
+  /// --index where it says more than positions from 0 on; counts where `index` is empty. Who opens one volume takes no
+  /// choice of several.
+  std::vector<AxisChoice> index_choices;
+
+  std::optional<ComponentChoice> component;  ///< --component: of an array of vectors or tensors
+
+  /// --magnitude: the datasets whose values are the components of the vectors whose length is the volume; in place of
+  /// `dataset`.
+  std::vector<std::string> magnitude;
+
+  // Of levels of refinement.
+  std::optional<std::int64_t> level;     ///< --level: the finest one that is read, 0 the coarsest; the finest there is
+  std::optional<Upsampling> upsampling;  ///< --upsample: of what only coarser levels have; constant
+
+  MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: of Zarr arrays
 
   bool stack = false;  ///< --stack: the path is a pattern, the volume many files on top of each other along z
 
   // Of every format.
   std::optional<std::array<double, 3>> spacing;  ///< --spacing: world units per voxel, > 0; the file's, else 1
-  std::optional<std::array<double, 3>> origin;   ///< --origin: world position of index (0, 0, 0); the file's, else 0
+  std::optional<std::array<double, 3>> origin;   ///< --origin: of the centre of voxel (0, 0, 0)
   std::optional<StoredValue> missing;            ///< --missing: stands for "no data", besides what the file says
-  std::optional<Box> roi;                        ///< --roi: index space, half open; the whole volume where absent
+  bool keeps_missing = false;                    ///< --missing-policy keep: what stands for "no data" is data
+  std::optional<VolumeRegion> roi;               ///< --roi, --ghost; the whole volume where absent
   DirectIo direct_io = DirectIo::automatic;      ///< --direct-io
 
   // What opening and reading may use.
@@ -42,6 +63,12 @@ struct SourceOptions {
                                                      ///< says so when it is opened
   const std::atomic<bool>* cancel = nullptr;         ///< ends unpacking with Error(interrupted)
   std::string spool_directory;  ///< on a disk: where compressed streams are unpacked; empty: the input's directory
+
+  /// Adds to what the file says of its values what the user says.
+  void complete(ValueMapping& mapping) const {
+    if (missing) mapping.missing.push_back(*missing);
+    mapping.keeps_missing = keeps_missing;
+  }
 };
 
 }  // namespace weir

@@ -51,6 +51,18 @@ Error unusable(const std::string& path, bool given, std::string_view key, double
 
 }  // namespace
 
+std::unique_ptr<VolumeSource> crop_to(std::unique_ptr<VolumeSource> source, const VolumeRegion& region) {
+  const SourceInfo& info = source->info();
+  const Box box = region.in(info.domain());
+  if (box.empty() && region.ghost != std::array<std::int64_t, 3>{}) {
+    throw Error(
+        ErrorKind::usage,
+        compose(info.path, ": ", option("ghost", cat(region.ghost[0], ',', region.ghost[1], ',', region.ghost[2])),
+                " leaves no voxel of ", info.extent.x, " x ", info.extent.y, " x ", info.extent.z));
+  }
+  return crop_source(std::move(source), box);
+}
+
 std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, const Box& region) {
   const SourceInfo& info = source->info();
   if (region.empty()) {
@@ -84,6 +96,12 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
     if (!std::isfinite(o)) throw unusable(placed.path, options.origin.has_value(), "origin", o, "finite");
   }
   if (!options.spacing && !options.origin) return source;
+  if (options.spacing) {  // what is said of the file's own is of no use
+    for (AxisDetails& axis : placed.details.axes) {
+      if (!axis.reversed) axis.note.clear();
+    }
+    placed.details.units_note.clear();
+  }
   return std::make_unique<SourceView>(std::move(source), std::move(placed));
 }
 

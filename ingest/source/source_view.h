@@ -18,6 +18,9 @@ inline constexpr double kMostSpacing = 1e+37;
 /// Throws Error(usage), naming region and domain, where region is empty or reaches outside.
 std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, const Box& region);
 
+/// The same of the box that `region` means there. Throws Error(usage), too, where its ghost cells are all there is.
+std::unique_ptr<VolumeSource> crop_to(std::unique_ptr<VolumeSource> source, const VolumeRegion& region);
+
 /// `source` with options.spacing and options.origin in place of its own, where they are given. Throws
 /// Error(usage) naming the option where a spacing is not finite and above 0 or an origin not finite, and
 /// Error(input) where the file's own is such and no option replaces it.

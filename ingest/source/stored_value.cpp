@@ -77,6 +77,8 @@ bool holds(ScalarType type, const StoredValue& value) {
       return holds_integer<std::int64_t>(value);
     case ScalarType::float16:
       return holds_real(value, 65504);
+    case ScalarType::bfloat16:
+      return holds_real(value, 0x1.FEp127);
     case ScalarType::float32:
       return holds_real(value, static_cast<double>(std::numeric_limits<float>::max()));
     case ScalarType::float64:

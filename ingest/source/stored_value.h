@@ -28,14 +28,18 @@ double as_double(const StoredValue& value);
 bool holds(ScalarType type, const StoredValue& value);
 
 /// How stored values become the volume's: value = stored * scale + offset, computed in double, except
-/// where the stored value is one of `missing`.
+/// where the stored value is one of `missing`: such a voxel reads as missing_value(), or, with keeps_missing, as any
+/// other.
 struct ValueMapping {
   double scale = 1;
   double offset = 0;
   std::vector<StoredValue> missing;
+  bool keeps_missing = false;  ///< stored values that stand for "no data" are taken as data
 
   bool scales() const { return scale != 1 || offset != 0; }
   bool identity() const { return !scales() && missing.empty(); }
+  /// Whether voxels may read as missing_value().
+  bool marks_missing() const { return !missing.empty() && !keeps_missing; }
 };
 
 /// What a missing voxel reads as: a quiet NaN that no arithmetic makes, told from the NaN a simulation

@@ -13,6 +13,7 @@
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
 #include "ingest/files/file_state.h"
+#include "ingest/source/field_details.h"
 #include "ingest/source/stored_value.h"
 
 namespace weir {
@@ -29,13 +30,18 @@ struct SourceInfo {
   Index3 extent;                           ///< voxels, each >= 1 and < 2^31
   Index3 index_origin;  ///< index of the first voxel; not zero for OpenVDB input or a region of interest
   ScalarType type = ScalarType::float32;         ///< as stored
+  bool lengths = false;                          ///< of vectors, whose components are of `type`
   ValueMapping mapping;                          ///< from stored values to the volume's
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< world units per voxel, > 0
-  std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of index (0, 0, 0)
+  std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of the centre of voxel (0, 0, 0)
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
   std::int64_t mtime_ns = 0;                     ///< modification time, nanoseconds since 1970
   std::string files_digest;                      ///< FileStates of all files it lies in; empty where that is one
   std::vector<FileState> files;                  ///< all it lies in, as they were opened; none: not in files
+  FieldDetails details;                          ///< for the sidecar
+
+  /// Whether each value is one that is stored, and so one that `type` has; else it is computed from stored ones.
+  bool values_as_stored() const { return !lengths && !mapping.scales(); }
 
   /// The voxels as a box in index space.
   Box domain() const { return {index_origin, index_origin + extent}; }
@@ -47,11 +53,13 @@ struct ConversionLoss {
   std::uint64_t inexact = 0;   ///< values that are not representable in float32 and were rounded
   std::uint64_t overflow = 0;  ///< finite values that became infinite
   double max_abs_error = 0;    ///< largest |float32 - original| among the inexact ones
+  std::uint64_t unmarked = 0;  ///< values that stand for "no data" and were taken as data (ValueMapping::keeps_missing)
 
   void add(const ConversionLoss& other) {
     inexact += other.inexact;
     overflow += other.overflow;
     max_abs_error = max_abs_error > other.max_abs_error ? max_abs_error : other.max_abs_error;
+    unmarked += other.unmarked;
   }
 };
 

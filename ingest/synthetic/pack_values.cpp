@@ -45,6 +45,7 @@ Limits integer_limits(ScalarType type) {
 }
 
 bool is_integer(ScalarType type) { return type != ScalarType::float32 && type != ScalarType::float64; }
+bool has_arithmetic(ScalarType type) { return type != ScalarType::float16 && type != ScalarType::bfloat16; }
 
 template <typename T>
 void pack_as(std::span<const float> values, double scale, double shift, bool swap, std::byte* out) {
@@ -72,7 +73,7 @@ ValuePacker::ValuePacker(const SyntheticKind& kind, ScalarType type, bool big_en
     : type_(type),
       big_endian_(big_endian),
       identity_(type == ScalarType::float32 && big_endian == (std::endian::native == std::endian::big)) {
-  if (type == ScalarType::uint64 || type == ScalarType::int64 || type == ScalarType::float16) {
+  if (!has_arithmetic(type) || type == ScalarType::uint64 || type == ScalarType::int64) {
     throw Error(ErrorKind::usage, cat("synthetic volumes have no type ", scalar_name(type),
                                       "; use float32, float64 or an integer of up to 32 bits"));
   }
@@ -127,6 +128,7 @@ void ValuePacker::pack(std::span<const float> values, std::span<std::byte> bytes
       case ScalarType::uint64:
       case ScalarType::int64:
       case ScalarType::float16:
+      case ScalarType::bfloat16:
         return;  // refused by the constructor
     }
   });

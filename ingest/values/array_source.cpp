@@ -201,8 +201,12 @@ SourceInfo array_info(const DenseArray& array) {
   info.extent = array.extent;
   info.type = array.type;
   info.mapping.missing = array.missing;
+  info.mapping.keeps_missing = array.keeps_missing;
   info.spacing = array.spacing;
   info.origin = array.origin;
+  info.units = array.units;
+  info.axis_labels = array.axis_labels;
+  info.details = array.details;
   return info;
 }
 

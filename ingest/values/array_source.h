@@ -9,6 +9,7 @@
 
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
+#include "ingest/source/field_details.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/volume_source.h"
 
@@ -17,14 +18,18 @@ namespace weir {
 /// Where the voxels of an array are, in this machine's byte order and at any alignment. `data` must stay
 /// readable and unchanged for as long as a source of it exists.
 struct DenseArray {
-  const void* data = nullptr;              ///< voxel (0, 0, 0)
-  ScalarType type = ScalarType::float32;   ///< of each voxel
-  Index3 extent;                           ///< voxels, each >= 1 and < 2^31
-  std::array<std::int64_t, 3> stride{};    ///< bytes from one voxel to the next along x, y, z; any, also <= 0
-  std::array<double, 3> spacing{1, 1, 1};  ///< world units per voxel, > 0
-  std::array<double, 3> origin{0, 0, 0};   ///< world position of voxel (0, 0, 0)
-  std::string name{};                      ///< of the quantity, becomes the grid's; may be empty
-  std::vector<StoredValue> missing{};      ///< values that stand for "no data"
+  const void* data = nullptr;                ///< voxel (0, 0, 0)
+  ScalarType type = ScalarType::float32;     ///< of each voxel
+  Index3 extent;                             ///< voxels, each >= 1 and < 2^31
+  std::array<std::int64_t, 3> stride{};      ///< bytes from one voxel to the next along x, y, z; any, also <= 0
+  std::array<double, 3> spacing{1, 1, 1};    ///< world units per voxel, > 0
+  std::array<double, 3> origin{0, 0, 0};     ///< world position of the centre of voxel (0, 0, 0)
+  std::string name{};                        ///< of the quantity, becomes the grid's; may be empty
+  std::vector<StoredValue> missing{};        ///< values that stand for "no data"
+  bool keeps_missing = false;                ///< they are taken as data
+  std::string units{};                       ///< of the values; may be empty
+  std::array<std::string, 3> axis_labels{};  ///< of x, y, z; empty where they have none
+  FieldDetails details{};                    ///< for the sidecar
 };
 
 /// The strides of an array without gaps, x fastest: Fortran's a(x, y, z), C's a[z][y][x].

@@ -47,6 +47,18 @@ float half_to_float(std::uint16_t half) {
   return std::bit_cast<float>(sign | (widened << 23U) | (fraction << 13U));
 }
 
+/// The upper half of a binary32.
+template <bool Swap>
+ConversionLoss convert_bfloat16(const std::byte* bytes, std::span<float> values) {
+  // Through integers, as in copy_float32.
+  auto* out = reinterpret_cast<std::byte*>(values.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::uint32_t word = std::uint32_t{load<std::uint16_t, Swap>(bytes, i)} << 16U;
+    std::memcpy(out + i * sizeof word, &word, sizeof word);
+  }
+  return {};
+}
+
 template <bool Swap>
 ConversionLoss convert_half(const std::byte* bytes, std::span<float> values) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = half_to_float(load<std::uint16_t, Swap>(bytes, i));
@@ -167,6 +179,8 @@ ConversionLoss convert(const std::byte* bytes, ScalarType type, std::span<float>
       return convert_rounding<std::int64_t, Swap>(bytes, values);
     case ScalarType::float16:
       return convert_half<Swap>(bytes, values);
+    case ScalarType::bfloat16:
+      return convert_bfloat16<Swap>(bytes, values);
     case ScalarType::float32:
       return copy_float32<Swap>(bytes, values);
     case ScalarType::float64:

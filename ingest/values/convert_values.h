@@ -13,8 +13,8 @@ namespace weir {
 bool is_native_float32(ScalarType type, bool big_endian);
 
 /// Converts `values.size()` values of `type` from `bytes`, which holds exactly that many and needs no
-/// alignment, and says what was lost: 8- and 16-bit integers, float16 and float32 (NaN payloads
-/// included) lose nothing; wider integers above 2^24 and float64 are rounded to nearest even; a finite
+/// alignment, and says what was lost: 8- and 16-bit integers, float16, bfloat16 and float32 (NaN
+/// payloads included) lose nothing; wider integers above 2^24 and float64 are rounded to nearest even; a finite
 /// float64 beyond the range of float32 becomes infinite. Non-finite values pass uncounted.
 ConversionLoss convert_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                               std::span<float> values);

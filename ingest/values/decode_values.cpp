@@ -33,10 +33,10 @@ class Decoder {
   ConversionLoss decode(std::span<T> stored, std::span<float> values) const {
     MissingMask missing{};
     for (const T m : missing_) mark(stored, m, missing);
+    if (mapping_.keeps_missing) return decode_as_data(stored, missing, values);
     // A missing value, 1e36 in a double say, must not count as rounded.
     for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
-    const ConversionLoss loss = mapping_.scales() ? scale(stored, missing, values)
-                                                  : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
+    const ConversionLoss loss = convert(stored, missing, values);
     const float mark = missing_value();
     const float other = std::bit_cast<float>(kMissingBits ^ 1U);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -50,6 +50,18 @@ class Decoder {
   }
 
  private:
+  ConversionLoss decode_as_data(std::span<T> stored, const MissingMask& missing, std::span<float> values) const {
+    ConversionLoss loss = convert(stored, MissingMask{}, values);
+    loss.unmarked = static_cast<std::uint64_t>(
+        std::count(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(stored.size()), true));
+    return loss;
+  }
+
+  ConversionLoss convert(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
+    return mapping_.scales() ? scale(stored, missing, values)
+                             : convert_values(std::as_bytes(stored), type_, kNativeIsBig, values);
+  }
+
   static void mark(std::span<const T> stored, T value, MissingMask& missing) {
     if (value != value) {
       for (std::size_t i = 0; i < stored.size(); ++i) missing[i] |= stored[i] != stored[i];
@@ -97,16 +109,16 @@ ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool
   return loss;
 }
 
-// float16 has no arithmetic of its own everywhere: every value is exact in float32.
-ConversionLoss decode_half(std::span<const std::byte> bytes, bool big_endian, const ValueMapping& mapping,
-                           std::span<float> values) {
+// float16 and bfloat16 have no arithmetic of their own everywhere: every value is exact in float32.
+ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
+                           const ValueMapping& mapping, std::span<float> values) {
   const Decoder<float> decoder(ScalarType::float32, mapping);
   std::array<float, kAtOnce> widened;
   ConversionLoss loss;
   for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
     const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
     const auto used = std::span(widened).first(part.size());
-    convert_values(bytes.subspan(2 * start, 2 * part.size()), ScalarType::float16, big_endian, used);
+    convert_values(bytes.subspan(2 * start, 2 * part.size()), type, big_endian, used);
     loss.add(decoder.decode(used, part));
   }
   return loss;
@@ -136,7 +148,8 @@ ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, 
     case ScalarType::int64:
       return decode_as<std::int64_t>(bytes, type, swap, mapping, values);
     case ScalarType::float16:
-      return decode_half(bytes, big_endian, mapping, values);
+    case ScalarType::bfloat16:
+      return decode_half(bytes, type, big_endian, mapping, values);
     case ScalarType::float32:
       return decode_as<float>(bytes, type, swap, mapping, values);
     case ScalarType::float64:

@@ -12,7 +12,7 @@
 #include "ingest/plan/staging.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/convert_values.h"
-#include "ingest/values/decode_values.h"
+#include "ingest/values/decode_component.h"
 
 namespace weir {
 namespace {
@@ -24,7 +24,7 @@ class RawValues final : public VolumeSource {
  public:
   RawValues(std::unique_ptr<InputFile> file, const RawLayout& layout, SourceInfo info)
       : file_(std::move(file)), layout_(layout), info_(std::move(info)) {
-    const std::uint64_t bytes = checked_volume_bytes(info_.extent, scalar_bytes(layout.type), info_.path);
+    const std::uint64_t bytes = checked_volume_bytes(info_.extent, layout.voxel_bytes(), info_.path);
     if (layout.offset > file_->size() || bytes > file_->size() - layout.offset) {
       throw Error(ErrorKind::internal, cat(info_.path, ": ", bytes, " bytes of values at ", layout.offset,
                                            " do not fit a file of ", file_->size()));
@@ -37,13 +37,13 @@ class RawValues final : public VolumeSource {
   }
 
   const SourceInfo& info() const override { return info_; }
-  AccessShape access() const override { return {scalar_bytes(layout_.type), {}, {}}; }
+  AccessShape access() const override { return {layout_.voxel_bytes(), {}, {}}; }
   std::uint64_t bytes_read() const override { return file_->bytes_read(); }
 
   bool in_memory() const override { return file_->looks_cached(); }
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
-    const std::int64_t bytes = box.voxels() * static_cast<std::int64_t>(scalar_bytes(layout_.type));
+    const std::int64_t bytes = box.voxels() * static_cast<std::int64_t>(layout_.voxel_bytes());
     const auto threads = std::clamp<std::int64_t>(bytes / kBytesPerThread, 1, static_cast<std::int64_t>(kIoThreads));
     return read_by(threads, box, values,
                    [this](const BoxPiece& piece) { return file_->path_for(piece.offset, piece.bytes); });
@@ -59,7 +59,7 @@ class RawValues final : public VolumeSource {
                                            " values does not fit ", box_text(info_.domain())));
     }
     const Box in_file{box.lo - info_.index_origin, box.hi - info_.index_origin};
-    const BoxPieces pieces(info_.extent, in_file, scalar_bytes(layout_.type), layout_.offset, kPieceBytes);
+    const BoxPieces pieces(info_.extent, in_file, layout_.voxel_bytes(), layout_.offset, kPieceBytes);
     ConversionLoss total;
     std::mutex mutex;
     for_pieces(pieces.size(), static_cast<std::size_t>(threads), [&](std::int64_t i) {
@@ -74,8 +74,8 @@ class RawValues final : public VolumeSource {
   ConversionLoss read_piece(const BoxPiece& piece, ReadPath path, std::span<float> values) {
     const auto run = static_cast<std::size_t>(piece.run_voxels);
     values = values.subspan(static_cast<std::size_t>(piece.first_value), run * static_cast<std::size_t>(piece.runs));
-    if (path != ReadPath::direct && piece.runs == 1 && is_native_float32(layout_.type, layout_.big_endian) &&
-        layout_.mapping.identity()) {
+    if (path != ReadPath::direct && piece.runs == 1 && layout_.components.count == 1 &&
+        is_native_float32(layout_.type, layout_.big_endian) && layout_.mapping.identity()) {
       file_->read_buffered(piece.offset, std::as_writable_bytes(values), path);
       return {};
     }
@@ -90,9 +90,9 @@ class RawValues final : public VolumeSource {
     }
     ConversionLoss loss;
     for (std::size_t r = 0; r < static_cast<std::size_t>(piece.runs); ++r) {
-      const auto run_bytes = bytes.subspan(r * piece.stride_bytes, run * scalar_bytes(layout_.type));
-      loss.add(
-          decode_values(run_bytes, layout_.type, layout_.big_endian, layout_.mapping, values.subspan(r * run, run)));
+      const auto run_bytes = bytes.subspan(r * piece.stride_bytes, run * layout_.voxel_bytes());
+      loss.add(decode_component(run_bytes, layout_.type, layout_.big_endian, layout_.mapping, layout_.components,
+                                values.subspan(r * run, run)));
     }
     return loss;
   }

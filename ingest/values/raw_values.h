@@ -2,11 +2,13 @@
 // compression. What raw files are, and what most headers describe.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
 #include "format/base/scalar_type.h"
 #include "ingest/files/input_file.h"
+#include "ingest/source/component_choice.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/volume_source.h"
 
@@ -18,6 +20,9 @@ struct RawLayout {
   ScalarType type = ScalarType::float32;
   bool big_endian = false;
   ValueMapping mapping;
+  VoxelComponents components = {};  ///< of each voxel, side by side
+
+  std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
 /// A source of `info`, whose values lie in `file` by `layout`; fills info.type, mapping, file_bytes,

@@ -10,7 +10,7 @@
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source/extent.h"
-#include "ingest/values/decode_values.h"
+#include "ingest/values/decode_component.h"
 
 namespace weir {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kVoxelsPerThread = 64 * 1024;
 
 constexpr std::size_t kLeafValues = kLeafVoxels;
-constexpr std::size_t kMaxValueBytes = 8;
+constexpr std::size_t kMaxValueBytes = 24;  // vectors of three doubles
 using LeafBytes = std::array<std::byte, kLeafValues * kMaxValueBytes>;
 
 /// The values of `part` (in voxels from the leaf's corner) out of a leaf, x fastest, `Bytes` each.
@@ -42,6 +42,10 @@ void pack(const LeafBytes& leaf, std::size_t value_bytes, const Box& part, std::
       return pack<2>(leaf, part, packed);
     case 4:
       return pack<4>(leaf, part, packed);
+    case 12:
+      return pack<12>(leaf, part, packed);
+    case 24:
+      return pack<24>(leaf, part, packed);
     default:
       return pack<8>(leaf, part, packed);
   }
@@ -49,8 +53,11 @@ void pack(const LeafBytes& leaf, std::size_t value_bytes, const Box& part, std::
 
 class LeafSource final : public VolumeSource {
  public:
-  LeafSource(std::unique_ptr<LeafTree> tree, SourceInfo info)
-      : tree_(std::move(tree)), info_(std::move(info)), value_bytes_(scalar_bytes(info_.type)) {}
+  LeafSource(std::unique_ptr<LeafTree> tree, SourceInfo info, const VoxelComponents& components)
+      : tree_(std::move(tree)),
+        info_(std::move(info)),
+        components_(components),
+        value_bytes_(scalar_bytes(info_.type) * static_cast<std::size_t>(components.count)) {}
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {value_bytes_, {}, {}}; }
@@ -108,8 +115,8 @@ class LeafSource final : public VolumeSource {
       const auto count = static_cast<std::size_t>(part.voxels());
       reader.read(corner, std::span(leaf).first(kLeafValues * value_bytes_));
       pack(leaf, value_bytes_, {part.lo - corner, part.hi - corner}, packed.data());
-      loss.add(decode_values(std::span(packed).first(count * value_bytes_), info_.type, false, info_.mapping,
-                             std::span(decoded).first(count)));
+      loss.add(decode_component(std::span(packed).first(count * value_bytes_), info_.type, false, info_.mapping,
+                                components_, std::span(decoded).first(count)));
       const auto run = static_cast<std::size_t>(part.extent().x);
       const float* from = decoded.data();
       for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
@@ -124,13 +131,15 @@ class LeafSource final : public VolumeSource {
 
   std::unique_ptr<LeafTree> tree_;
   SourceInfo info_;
+  VoxelComponents components_;
   std::size_t value_bytes_;
 };
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> make_leaf_source(std::unique_ptr<LeafTree> tree, SourceInfo info) {
-  return std::make_unique<LeafSource>(std::move(tree), std::move(info));
+std::unique_ptr<VolumeSource> make_leaf_source(std::unique_ptr<LeafTree> tree, SourceInfo info,
+                                               const VoxelComponents& components) {
+  return std::make_unique<LeafSource>(std::move(tree), std::move(info), components);
 }
 
 }  // namespace weir

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "format/base/index.h"
+#include "ingest/source/component_choice.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -31,7 +32,9 @@ class LeafTree {
   virtual std::uint64_t bytes_read() const = 0;     ///< as VolumeSource::bytes_read
 };
 
-/// A source of `info`, all of whose fields the caller has filled in; `tree` holds values of info.type.
-std::unique_ptr<VolumeSource> make_leaf_source(std::unique_ptr<LeafTree> tree, SourceInfo info);
+/// A source of `info`, all of whose fields the caller has filled in; `tree` holds values of info.type, of vectors
+/// `components` beside each other.
+std::unique_ptr<VolumeSource> make_leaf_source(std::unique_ptr<LeafTree> tree, SourceInfo info,
+                                               const VoxelComponents& components = {});
 
 }  // namespace weir

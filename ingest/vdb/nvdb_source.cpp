@@ -106,7 +106,7 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   info.dataset = chosen.volume.name;
   info.extent = domain.extent();
   info.index_origin = domain.lo;
-  if (options.missing) info.mapping.missing.push_back(*options.missing);
+  options.complete(info.mapping);
   const AxisPlacement placement = place_axes(steps_of(grid), grid.world_origin());
   info.spacing = placement.spacing;
   info.origin = placement.origin;

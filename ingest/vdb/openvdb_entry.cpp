@@ -42,7 +42,7 @@ class Leaves final : public LeafReader {
 };
 
 // Made and filled through OpenVDB's own registry and virtual functions: a tree made here would compile all of its
-// class again, a minute for six of them.
+// class again, ten seconds for each.
 template <typename Tree>
 class LoadedTree final : public LeafTree {
  public:
@@ -69,6 +69,11 @@ class LoadedTree final : public LeafTree {
 /// Calls `use` with a null pointer to the tree class of `type`.
 template <typename Use>
 auto with_tree(const VdbType& type, const Use& use) {
+  if (type.components > 1) {
+    if (type.scalar == ScalarType::float32) return use(static_cast<openvdb::Vec3STree*>(nullptr));
+    if (type.scalar == ScalarType::float64) return use(static_cast<openvdb::Vec3DTree*>(nullptr));
+    return use(static_cast<openvdb::Vec3ITree*>(nullptr));
+  }
   switch (type.scalar) {
     case ScalarType::float32:
       return use(static_cast<openvdb::FloatTree*>(nullptr));

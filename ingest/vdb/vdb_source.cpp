@@ -17,6 +17,7 @@
 #include "ingest/vdb/vdb_header.h"
 #include "ingest/vdb/vdb_topology.h"
 #include "ingest/vdb/vdb_type.h"
+#include "ingest/vectors/voxel_components.h"
 
 namespace weir {
 namespace {
@@ -35,8 +36,8 @@ const VdbGrid* tree_owner(const VdbHeader& header, const VdbGrid& grid) {
 
 std::string obstacle_of(const VdbHeader& header, const VdbGrid& grid) {
   if (vdb_type(grid.tree) == nullptr) {
-    return cat("its type is ", in_quotes(grid.tree), ", and float, double, int32, int64, bool and mask trees of ",
-               "5_4_3 can be read");
+    return cat("its type is ", in_quotes(grid.tree), ", and float, double, int32, int64, bool, mask, vec3s, ",
+               "vec3d and vec3i trees of 5_4_3 can be read");
   }
   if (!grid.linear) {
     return cat("its transform is a ", in_quotes(grid.map), ", which has no voxel size; resample it to a linear one");
@@ -48,10 +49,20 @@ std::string obstacle_of(const VdbHeader& header, const VdbGrid& grid) {
   return {};
 }
 
-std::vector<NamedVolume> named(const VdbHeader& header) {
-  std::vector<NamedVolume> volumes;
-  for (const VdbGrid& grid : header.grids) volumes.push_back({grid.name, obstacle_of(header, grid)});
-  return volumes;
+std::int64_t components_of(const VdbGrid& grid) {
+  const VdbType* const type = vdb_type(grid.tree);
+  return type == nullptr ? 1 : type->components;
+}
+
+std::vector<NamedVolume> named(const VdbHeader& header, const SourceOptions& options) {
+  struct Grid {
+    std::string name;
+    std::string obstacle;
+    std::int64_t components;
+  };
+  std::vector<Grid> grids;
+  for (const VdbGrid& grid : header.grids) grids.push_back({grid.name, obstacle_of(header, grid), components_of(grid)});
+  return volumes_of_kind(grids, options.dataset, options.component);
 }
 
 std::string type_text(const VdbGrid& grid) {
@@ -59,7 +70,8 @@ std::string type_text(const VdbGrid& grid) {
   if (type == nullptr) return grid.tree;
   if (type->leaf == VdbLeaf::boolean) return "bool";
   if (type->leaf == VdbLeaf::mask) return "mask";
-  return cat(scalar_name(type->scalar), grid.half && type->real ? " saved as float16" : "");
+  return cat(scalar_name(type->scalar), type->components > 1 ? cat(" x ", type->components) : "",
+             grid.half && type->real ? " saved as float16" : "");
 }
 
 std::string compression_text(std::uint32_t flags) {
@@ -97,14 +109,15 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   FileStream stream(file);
   VdbReader reader(stream, file.size(), path);
   const VdbHeader header = read_vdb_header(reader);
-  const VdbGrid& grid = header.grids[choose_volume(path, "grid", named(header), options.dataset)];
+  const VdbGrid& grid = header.grids[choose_volume(path, "grid", named(header, options), options.dataset)];
   const VdbGrid& owner = *tree_owner(header, grid);
   const VdbType& type = *vdb_type(owner.tree);
   const VdbTopology topology = walk_vdb_tree(reader, owner, type);
 
   const std::string where = cat(path, ": grid ", in_quotes(grid.name));
   if (topology.active.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
-  checked_volume_bytes(topology.active.extent(), scalar_bytes(type.scalar), where);
+  const VoxelComponents components = choose_components(type.components, options.component, where);
+  checked_volume_bytes(topology.active.extent(), type.bytes, where);
   const OpenVdbLibrary& library = library_for(path);
   require_memory(where, library.tree_bytes(type, topology), options);
 
@@ -115,14 +128,16 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   info.extent = topology.active.extent();
   info.index_origin = topology.active.lo;
   info.type = type.scalar;
-  if (options.missing) info.mapping.missing.push_back(*options.missing);
+  info.lengths = components.count > 1 && components.choice.magnitude;
+  if (components.count > 1) info.details.component = component_text(components.choice);
+  options.complete(info.mapping);
   const AxisPlacement placement = place_axes(grid.steps, grid.first);
   info.spacing = placement.spacing;
   info.origin = placement.origin;
   info.file_bytes = file.size();
   info.mtime_ns = file.mtime_ns();
   info.files = {file.state()};
-  return make_leaf_source(library.load_tree(stream, header, owner, type, where), std::move(info));
+  return make_leaf_source(library.load_tree(stream, header, owner, type, where), std::move(info), components);
 }
 
 std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&) {
@@ -137,6 +152,7 @@ std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&)
     info.type = type_text(grid);
     info.layout = cat("OpenVDB tree", compression_text(grid.compression));
     info.obstacle = obstacle_of(header, grid);
+    info.components = components_of(grid);
     if (!grid.grid_class.empty()) info.attributes.emplace_back("class", grid.grid_class);
     if (info.obstacle.empty()) {
       const VdbGrid& owner = *tree_owner(header, grid);

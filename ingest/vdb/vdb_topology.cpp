@@ -49,7 +49,10 @@ static_assert(sizeof(LeafMask) == kLeafMaskBytes);
 class TreeWalk {
  public:
   TreeWalk(VdbReader& reader, const VdbGrid& grid, const VdbType& type)
-      : reader_(reader), grid_(grid), type_(type), stored_bytes_(grid.half && type.real ? 2 : type.bytes) {}
+      : reader_(reader),
+        grid_(grid),
+        type_(type),
+        stored_bytes_(grid.half && type.real ? 2 * static_cast<std::uint64_t>(type.components) : type.bytes) {}
 
   VdbTopology run() {
     reader_.seek(grid_.tree_offset);

@@ -6,12 +6,15 @@
 namespace weir {
 namespace {
 
-constexpr std::array<VdbType, 6> kVdbTypes{{{"Tree_float_5_4_3", ScalarType::float32, 4, VdbLeaf::values, true},
+constexpr std::array<VdbType, 9> kVdbTypes{{{"Tree_float_5_4_3", ScalarType::float32, 4, VdbLeaf::values, true},
                                             {"Tree_double_5_4_3", ScalarType::float64, 8, VdbLeaf::values, true},
                                             {"Tree_int32_5_4_3", ScalarType::int32, 4, VdbLeaf::values, false},
                                             {"Tree_int64_5_4_3", ScalarType::int64, 8, VdbLeaf::values, false},
                                             {"Tree_bool_5_4_3", ScalarType::uint8, 1, VdbLeaf::boolean, false},
-                                            {"Tree_mask_5_4_3", ScalarType::uint8, 1, VdbLeaf::mask, false}}};
+                                            {"Tree_mask_5_4_3", ScalarType::uint8, 1, VdbLeaf::mask, false},
+                                            {"Tree_vec3s_5_4_3", ScalarType::float32, 12, VdbLeaf::values, true, 3},
+                                            {"Tree_vec3d_5_4_3", ScalarType::float64, 24, VdbLeaf::values, true, 3},
+                                            {"Tree_vec3i_5_4_3", ScalarType::int32, 12, VdbLeaf::values, false, 3}}};
 
 }  // namespace
 

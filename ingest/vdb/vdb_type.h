@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 #include "format/base/scalar_type.h"
@@ -18,9 +19,10 @@ enum class VdbLeaf {
 struct VdbType {
   std::string_view tree;  ///< as the file names it
   ScalarType scalar;      ///< how weir calls its values; uint8 0 and 1 for bool and mask
-  std::size_t bytes;      ///< of a value in tiles and unpacked leaves
+  std::size_t bytes;      ///< of a value in tiles and unpacked leaves, all its components together
   VdbLeaf leaf;
-  bool real;  ///< may be saved as 16-bit floats
+  bool real;                    ///< may be saved as 16-bit floats
+  std::int64_t components = 1;  ///< 3 of vectors
 };
 
 /// The type of trees called `name`; null where weir does not read them.

@@ -99,6 +99,7 @@ void spool_values(Words& words, std::uint64_t count, ScalarType type, SpoolFile&
     case ScalarType::float64:
       return spool_values<double>(words, count, spool, where);
     case ScalarType::float16:
+    case ScalarType::bfloat16:
       break;
   }
   throw Error(ErrorKind::internal, "no text has values of this type");

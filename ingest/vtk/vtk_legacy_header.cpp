@@ -11,6 +11,7 @@
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/extent.h"
+#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/vtk_legacy_text.h"
 
 namespace weir {
@@ -223,12 +224,12 @@ class LegacyParser {
     array.offset = text_.position();
     if (!type.scalar) {
       array.obstacle = cat("its type is ", in_quotes(array.type_name), ", and char to double can be read");
-    } else if (components != 1) {
-      array.obstacle = cat("it has ", components, " components, and one value a voxel can be read");
     } else {
       array.type = *type.scalar;
     }
     skip(type, components, tuples);
+    array.components = static_cast<std::int64_t>(components);
+    if (array.obstacle.empty()) array.obstacle = components_obstacle(array.components);
     header_.arrays.push_back(std::move(array));
   }
 

@@ -11,6 +11,7 @@
 #include "ingest/streams/file_stream.h"
 #include "ingest/streams/spool_file.h"
 #include "ingest/values/raw_values.h"
+#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/text_values.h"
 #include "ingest/vtk/vtk_legacy_header.h"
 
@@ -22,13 +23,13 @@ VtkLegacyHeader read_legacy_header(InputFile& file) {
   return parse_vtk_legacy_header(stream, file.size(), file.path());
 }
 
-std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& array, const Index3& extent,
+// `bytes`: of all values.
+std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& array, std::uint64_t bytes,
                                       const SourceOptions& options, const std::string& where) {
-  const auto count = static_cast<std::uint64_t>(volume(extent));
   const auto files = make_posix_file_system();
-  SpoolFile spool(*files, options, file.path(), count * scalar_bytes(array.type));
+  SpoolFile spool(*files, options, file.path(), bytes);
   FileText text(file, array.offset, file.size());
-  spool_text_values(text, count, array.type, false, spool, where);
+  spool_text_values(text, bytes / scalar_bytes(array.type), array.type, false, spool, where);
   return spool.finish();
 }
 
@@ -46,8 +47,7 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
   }
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkLegacyHeader header = read_legacy_header(*file);
-  std::vector<NamedVolume> volumes;
-  for (const VtkLegacyArray& array : header.arrays) volumes.push_back({array.name, array.obstacle});
+  const std::vector<NamedVolume> volumes = volumes_of_kind(header.arrays, options.dataset, options.component);
   const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
   const std::string where = cat(path, ": array ", in_quotes(array.name));
   SourceInfo info;
@@ -58,10 +58,14 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
   info.mtime_ns = file->mtime_ns();
   info.files = {file->state()};
   place_vtk_image(header.image, array.cells, info);
-  checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
-  RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}};
-  if (options.missing) layout.mapping.missing.push_back(*options.missing);
-  if (!header.binary) file = spool_text(*file, array, info.extent, options, where);
+  const VoxelComponents components = choose_components(array.components, options.component, where);
+  if (options.component) info.details.component = component_text(*options.component);
+  info.lengths = components.count > 1 && components.choice.magnitude;
+  const std::uint64_t bytes =
+      checked_volume_bytes(info.extent, scalar_bytes(array.type) * static_cast<std::size_t>(components.count), where);
+  RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}, components};
+  options.complete(layout.mapping);
+  if (!header.binary) file = spool_text(*file, array, bytes, options, where);
   return make_raw_values(std::move(file), layout, std::move(info));
 }
 
@@ -74,6 +78,7 @@ std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOp
     info.name = array.name;
     info.type = array.type_name;
     info.layout = header.binary ? "contiguous" : "text";
+    info.components = array.components;
     info.obstacle = array.obstacle;
     if (info.obstacle.empty()) {
       info.type = cat(header.binary && scalar_bytes(array.type) > 1 ? "big-endian " : "", scalar_name(array.type));

@@ -10,6 +10,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/vectors/voxel_components.h"
 
 namespace weir {
 namespace {
@@ -152,9 +153,8 @@ class XmlParser {
     }
     const auto components = parse_int(node.attribute("NumberOfComponents").as_string("1"));
     array.components = components.value_or(0);
-    if (array.components != 1 && array.obstacle.empty()) {
-      array.obstacle = components ? cat("it has ", *components, " components, and one value a voxel can be read")
-                                  : std::string("its NumberOfComponents is no whole number");
+    if (array.obstacle.empty()) {
+      array.obstacle = components ? components_obstacle(*components) : "its NumberOfComponents is no whole number";
     }
     read_place(node, array);
     return array;

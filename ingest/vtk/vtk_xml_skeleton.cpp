@@ -7,7 +7,6 @@
 #include "ingest/headers/header_text.h"
 
 namespace weir {
-namespace {}  // namespace
 
 bool VtkXmlSkeleton::push(std::string_view bytes) {
   while (!bytes.empty() && state_ != State::ended) {

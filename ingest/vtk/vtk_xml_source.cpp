@@ -9,6 +9,7 @@
 #include "ingest/headers/named_choice.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/raw_values.h"
+#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/file_text.h"
 #include "ingest/vtk/vtk_xml_data.h"
 #include "ingest/vtk/vtk_xml_header.h"
@@ -24,14 +25,14 @@ VtkXmlHeader read_xml_header(InputFile& file) {
   return parse_vtk_xml_header(skeleton, file.path());
 }
 
-const VtkXmlArray& choose_array(const VtkXmlHeader& header, const std::string& path, const std::string& wanted) {
-  std::vector<NamedVolume> volumes;
-  for (const VtkXmlArray& array : header.arrays) volumes.push_back({array.name, array.obstacle});
-  const auto usable = [](const VtkXmlArray& array) { return array.obstacle.empty(); };
-  const bool marked = std::any_of(header.arrays.begin(), header.arrays.end(), [&](const VtkXmlArray& array) {
+const VtkXmlArray& choose_array(const VtkXmlHeader& header, const std::string& path, const SourceOptions& options) {
+  const std::string& wanted = options.dataset;
+  const std::vector<NamedVolume> volumes = volumes_of_kind(header.arrays, wanted, options.component);
+  const auto usable = [](const NamedVolume& array) { return array.obstacle.empty(); };
+  const bool marked = std::any_of(volumes.begin(), volumes.end(), [&](const NamedVolume& array) {
     return usable(array) && array.name == header.scalars;
   });
-  const bool several = std::count_if(header.arrays.begin(), header.arrays.end(), usable) > 1;
+  const bool several = std::count_if(volumes.begin(), volumes.end(), usable) > 1;
   const std::string& name = wanted.empty() && several && marked ? header.scalars : wanted;
   return header.arrays[choose_volume(path, "array", volumes, name)];
 }
@@ -62,7 +63,7 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
   }
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkXmlHeader header = read_xml_header(*file);
-  const VtkXmlArray& array = choose_array(header, path, options.dataset);
+  const VtkXmlArray& array = choose_array(header, path, options);
   const std::string where = cat(path, ": array ", in_quotes(array.name));
   SourceInfo info;
   info.path = path;
@@ -72,10 +73,14 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
   info.mtime_ns = file->mtime_ns();
   info.files = {file->state()};
   place_vtk_image(header.image, array.cells, info);
-  const std::uint64_t bytes = checked_volume_bytes(info.extent, scalar_bytes(array.type), where);
+  const VoxelComponents components = choose_components(array.components, options.component, where);
+  if (options.component) info.details.component = component_text(*options.component);
+  info.lengths = components.count > 1 && components.choice.magnitude;
+  const std::uint64_t bytes =
+      checked_volume_bytes(info.extent, scalar_bytes(array.type) * static_cast<std::size_t>(components.count), where);
   PlainValues plain = plain_vtk_values(std::move(file), header, array, bytes, options, where);
-  RawLayout layout{plain.offset, array.type, plain.big_endian, {}};
-  if (options.missing) layout.mapping.missing.push_back(*options.missing);
+  RawLayout layout{plain.offset, array.type, plain.big_endian, {}, components};
+  options.complete(layout.mapping);
   return make_raw_values(std::move(plain.file), layout, std::move(info));
 }
 
@@ -88,6 +93,7 @@ std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptio
     info.name = array.name;
     info.type = array.type_name;
     info.layout = layout_text(header, array);
+    info.components = array.components;
     info.obstacle = array.obstacle;
     if (info.obstacle.empty()) {
       const bool swapped =

@@ -29,11 +29,14 @@ TEST(ConversionIdentity, ChangesWithEveryInputThatAffectsTheBytes) {
       [](SourceInfo& s) {
         s.index = {1, 2};
       },
+      [](SourceInfo& s) { s.details.component = "magnitude"; },
+      [](SourceInfo& s) { s.details.levels = "up to 2, linear"; },
       [](SourceInfo& s) { s.extent.z = 6; },
       [](SourceInfo& s) { s.index_origin.x = -1; },
       [](SourceInfo& s) { s.type = ScalarType::uint8; },
       [](SourceInfo& s) { s.mapping.scale = 1 + 1e-15; },
       [](SourceInfo& s) { s.mapping.missing = {StoredValue{1.5}}; },
+      [](SourceInfo& s) { s.mapping.keeps_missing = true; },
       [](SourceInfo& s) { s.format = "hdf5"; }};
   for (std::size_t i = 0; i < of_source.size(); ++i) {
     SourceInfo changed = source();
@@ -55,6 +58,7 @@ TEST(ConversionIdentity, ChangesWithEveryInputThatAffectsTheBytes) {
       [](ConversionOptions& o) { o.background = 0.0F; },
       [](ConversionOptions& o) { o.paper_background = true; },
       [](ConversionOptions& o) { o.non_finite = NonFinitePolicy::keep; },
+      [](ConversionOptions& o) { o.missing = MissingPolicy::background; },
       [](ConversionOptions& o) { o.provenance.commit = "c"; },
       [](ConversionOptions& o) { o.provenance.version = "v"; },
       [](ConversionOptions& o) {
@@ -101,8 +105,9 @@ TEST(ConversionIdentity, IgnoresOptionsThatDoNotAffectTheBytes) {
   other.work_dir = "/scratch";
   other.resume = Resume::on;
   other.save_interval_s = 0;
-  other.provenance.options = {{"memory", "1"},    {"threads", "7"},    {"output", "o"},      {"bandwidth", "1"},
-                              {"work-dir", "/s"}, {"direct-io", "on"}, {"overwrite", "true"}};
+  other.backend = CoderChoice::cuda;
+  other.provenance.options = {{"memory", "1"},    {"threads", "7"},    {"output", "o"},       {"bandwidth", "1"},
+                              {"work-dir", "/s"}, {"direct-io", "on"}, {"overwrite", "true"}, {"backend", "cuda"}};
   EXPECT_EQ(identify_conversion(source(), other), identify_conversion(source(), {}));
 }
 

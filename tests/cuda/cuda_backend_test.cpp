@@ -194,8 +194,8 @@ TEST_F(CudaBackendTest, OddVolumesAndCameras) {
   Scene extreme;
   extreme.volume.density = 1e30;
   Scene inside;
-  inside.camera.position = Double3{16, 16, 16};  // the corner of eight cells
-  inside.camera.look_at = Double3{32, 16, 16};   // along their edges
+  inside.camera.position = Double3{15.5, 15.5, 15.5};  // the corner of eight cells
+  inside.camera.look_at = Double3{31.5, 15.5, 15.5};   // along their edges
   Scene axis;
   axis.camera.azimuth = 0;
   axis.camera.elevation = 0;

@@ -11,6 +11,7 @@ using weir::test::FakeRuntime;
 namespace {
 
 constexpr std::size_t kDeviceBytes = std::size_t{1} << 32U;
+constexpr int kLeastPriority = 0;
 
 FakeRuntime& runtime() { return FakeRuntime::instance(); }
 std::uintptr_t number(const void* address) { return reinterpret_cast<std::uintptr_t>(address); }
@@ -139,6 +140,21 @@ cudaError_t cudaEventSynchronize(cudaEvent_t) {
 }
 cudaError_t cudaStreamCreate(cudaStream_t* stream) {
   *stream = nullptr;
+  return cudaSuccess;
+}
+cudaError_t cudaStreamCreateWithPriority(cudaStream_t* stream, unsigned, int priority) {
+  WEIR_ENTER("cudaStreamCreateWithPriority");
+  return priority == kLeastPriority ? cudaStreamCreate(stream) : cudaErrorInvalidValue;
+}
+cudaError_t cudaDeviceGetStreamPriorityRange(int* least, int* greatest) {
+  *least = kLeastPriority;
+  *greatest = -5;
+  return cudaSuccess;
+}
+cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const void* address) {
+  WEIR_ENTER("cudaPointerGetAttributes");
+  *attributes = {};
+  attributes->type = runtime().holds(number(address)) ? cudaMemoryTypeDevice : cudaMemoryTypeUnregistered;
   return cudaSuccess;
 }
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) { return cudaStreamCreate(stream); }

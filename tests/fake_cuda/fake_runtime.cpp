@@ -108,6 +108,12 @@ bool FakeRuntime::freed(std::uintptr_t address) {
   return allocated_.erase(address) == 1;
 }
 
+bool FakeRuntime::holds(std::uintptr_t address) {
+  const std::lock_guard lock(mutex_);
+  const auto next = allocated_.upper_bound(address);
+  return next != allocated_.begin() && address - std::prev(next)->first < std::prev(next)->second;
+}
+
 bool FakeRuntime::broken() {
   const std::lock_guard lock(mutex_);
   return sticky_ != cudaSuccess;

@@ -34,6 +34,7 @@ class FakeRuntime {
   bool registered(std::uintptr_t address, std::uint64_t bytes);
   void allocated(std::uintptr_t address, std::uint64_t bytes);
   bool freed(std::uintptr_t address);
+  bool holds(std::uintptr_t address);  ///< in memory that is allocated
 
   bool broken();  ///< by a failure that sticks
   std::uint64_t registered_bytes();

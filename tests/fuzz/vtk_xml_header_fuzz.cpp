@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "format/base/error.h"
+#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/vtk_xml_header.h"
 
 namespace {
@@ -15,7 +16,7 @@ void check(const weir::VtkXmlHeader& header, std::size_t size) {
   if (header.appended && *header.appended > size) std::abort();
   for (const weir::VtkXmlArray& array : header.arrays) {
     if (!array.obstacle.empty()) continue;
-    if (array.components != 1) std::abort();
+    if (!weir::components_obstacle(array.components).empty()) std::abort();
     if (array.format == weir::VtkXmlArray::Format::appended && !header.appended) std::abort();
   }
 }

@@ -1,5 +1,7 @@
 #include "ingest/series.h"
 
+#include "ingest/series_names.h"
+#include "ingest/source_registry.h"
 #include "tests/ingest/support/scratch.h"
 
 namespace weir::series_test {
@@ -27,6 +29,19 @@ TEST(Series, AFileIsOneStep) {
 TEST(Series, CompressedNamesLoseBothSuffixes) {
   EXPECT_EQ(expand({"head.nii.gz"})[0].stem, "head");
   EXPECT_EQ(expand({"a.b.raw"})[0].stem, "a.b");
+  EXPECT_EQ(expand({"run.zarr.zip"})[0].stem, "run");
+}
+
+TEST(Series, DirectoriesOfZarrLoseTheirSuffix) {
+  const Scratch scratch;
+  for (const char* const name : {"run.zarr", "cell.ome.zarr"}) {
+    std::filesystem::create_directory(scratch.path(name));
+    scratch.write(std::string(name) + "/.zgroup", {});
+  }
+  EXPECT_EQ(expand({scratch.path("run.zarr/")})[0].stem, "run");
+  EXPECT_EQ(expand({scratch.path("cell.ome.zarr")})[0].stem, "cell");
+  EXPECT_EQ(series_outputs(expand({scratch.path("run.zarr")}), ""),
+            (std::vector<std::string>{scratch.path("run.nvdb")}));
 }
 
 TEST(Series, PatternExpandsToItsFilesInOrder) {
@@ -60,26 +75,49 @@ TEST(Series, AFileThatIsNamedLikeAPatternIsAFile) {
   EXPECT_EQ(expand({path})[0].path, path);
 }
 
-TEST(Series, StepsMayNotShareAName) {
-  const auto steps = expand({"a/v.raw", "b/v.raw"});
-  const auto refusal = [&](const std::string& output) {
-    return message_of_error(ErrorKind::usage, [&] { series_outputs(steps, output); });
-  };
-  const std::string rest =
-      ": 2 volumes, and two of them (a/v.raw and b/v.raw) would have this name; give -o a directory, or a name with "
-      "{stem}, {dataset} or {step}";
-  EXPECT_EQ(refusal("out.nvdb"), "out.nvdb" + rest);
-  EXPECT_EQ(refusal("out/"), "out/v.nvdb" + rest);
-  EXPECT_EQ(series_outputs(steps, "").size(), 2U);
+TEST(Series, ShellPattern_ExpandsToItsFilesInNaturalOrder) {
+  const Scratch scratch;
+  for (const char* name : {"run_9.raw", "run_10.raw", "other.raw"}) scratch.write(name, {});
+  const auto steps = expand({scratch.path("run_*.raw"), scratch.path("other.raw")});
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps[0].path, scratch.path("run_9.raw"));
+  EXPECT_EQ(steps[1].path, scratch.path("run_10.raw"));
+  EXPECT_EQ(steps[1].step, "");
+  EXPECT_EQ(series_outputs(steps, "out/"),
+            (std::vector<std::string>{"out/run_9.nvdb", "out/run_10.nvdb", "out/other.nvdb"}));
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { expand({scratch.path("x*.raw")}); }),
+            scratch.path("x*.raw") + ": no file has such a name; give files, or a pattern in quotes");
 }
 
-TEST(Series, OutputNamesTakeStemDatasetAndStep) {
-  const SeriesStep step{"f.h5", "/fields/a b", {3}, "f", "03"};
-  EXPECT_EQ(step_name("{stem}-{dataset}-{step}{step}.nvdb", step), "f-fields.a b-0303.nvdb");
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { step_name("{time}.nvdb", step); }),
-            "{time} in an output's name is not known; there are {stem}, {dataset} and {step}");
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { step_name("a{stem", step); }),
-            "{stem in an output's name is not known; there are {stem}, {dataset} and {step}");
+TEST(Series, Datasets_OneALine_AreAStepEach) {
+  SourceOptions options;
+  options.dataset = "/rho\n/fields/T";
+  const auto steps = expand({"a.h5"}, options);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[1].dataset, "/fields/T");
+  EXPECT_EQ(series_outputs(steps, ""), (std::vector<std::string>{"a_rho.nvdb", "a_fields.T.nvdb"}));
+}
+
+// A header format's axes come in the file's order, x first, and --index takes the slowest first.
+TEST(Series, IndexChoices_AreOfTheAxesAfterTheThird) {
+  const Scratch scratch;
+  scratch.write("a.raw", std::vector<std::byte>(7 * 6 * 5 * 2 * 3));
+  const std::string header = "NRRD0004\ntype: uchar\ndimension: 5\nsizes: 7 6 5 2 3\nencoding: raw\ndata file: a.raw\n";
+  const std::string path = scratch.write("a.nrrd", std::as_bytes(std::span(header)));
+  SourceOptions options;
+  options.index_choices = {{{}, true, 1, {}}, {{}, false, -1, {}}};
+  const auto steps = expand({path}, options);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].index, (std::vector<std::int64_t>{1, 1}));
+  EXPECT_EQ(steps[1].index, (std::vector<std::int64_t>{2, 1}));
+  EXPECT_EQ(series_outputs(steps, "out/"), (std::vector<std::string>{"out/a_1_1.nvdb", "out/a_2_1.nvdb"}));
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
+            path + ": --index stands for 2 volumes, and one is read here; give one position on each axis");
+  options.index_choices = {{{}, false, -1, {}}, {{}, false, 0, {}}};
+  EXPECT_EQ(open_source(path, options)->info().index, (std::vector<std::int64_t>{2, 0}));
+  options.index_choices = {{"time", false, 0, {}}};
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
+            path + ": --index: no axis time; the array has axes without names");
 }
 
 TEST(Series, DatasetAndIndexPatternsAreRefusedForRawFiles) {
@@ -90,7 +128,7 @@ TEST(Series, DatasetAndIndexPatternsAreRefusedForRawFiles) {
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { expand({path}, options); }),
             path + ": --dataset with a pattern is for files that hold several volumes, and this is raw; leave it out");
   options.dataset = "";
-  options.index = {kEveryIndex};
+  options.index_choices = {{{}, true, {}, {}}};
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { expand({path}, options); }),
             path + ": --index is for files that hold several volumes, and this is raw; leave it out");
 }

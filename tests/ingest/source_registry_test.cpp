@@ -8,6 +8,7 @@
 #include "tests/ingest/hdf5/support/chunked_file.h"
 #include "tests/ingest/support/scratch.h"
 #include "tests/stock/openvdb_file.h"
+#include "tests/support/plotfile_writer.h"
 
 namespace weir::source_registry_test {
 namespace {
@@ -83,6 +84,28 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
        ChunkedFile(path, {{2, 3, 4}, {2, 3, 4}, {}, false, H5T_STD_U8LE}).write(H5T_NATIVE_UINT8, values);
        return path;
      }},
+    {"amrex",
+     [](const Scratch& scratch) {
+       test::PlotfilePlan plan;
+       plan.domain = {{0, 0, 0}, kExtent};
+       plan.boxes = {{{{0, 0, 0}, {4, 3, 1}}, {{0, 0, 1}, {4, 3, 2}}}};
+       plan.value = [](std::size_t, std::size_t, const Index3& i) {
+         return static_cast<double>(linear_index(i, kExtent));
+       };
+       test::write_plotfile(scratch.path("plt00001"), plan);
+       return scratch.path("plt00001");
+     }},
+    {"zarr",
+     [](const Scratch& scratch) {
+       std::vector<std::uint8_t> values(24);
+       std::iota(values.begin(), values.end(), std::uint8_t{0});
+       std::filesystem::create_directory(scratch.path("run.zarr"));
+       const std::string_view metadata =
+           R"({"zarr_format":2,"shape":[2,3,4],"chunks":[2,3,4],"dtype":"|u1","order":"C","fill_value":0})";
+       scratch.write("run.zarr/.zarray", std::as_bytes(std::span(metadata)));
+       scratch.write_values("run.zarr/0.0.0", values);
+       return scratch.path("run.zarr");
+     }},
     {"raw", [](const Scratch& scratch) {
        std::vector<std::uint8_t> values(24);
        std::iota(values.begin(), values.end(), std::uint8_t{0});
@@ -101,7 +124,9 @@ TEST(SourceRegistry, OpensEveryFormat) {
     EXPECT_EQ(source->info().format, format.name);
     EXPECT_EQ(source->info().path, path);
     EXPECT_EQ(source->info().extent, kExtent);
-    EXPECT_EQ(source->info().file_bytes, std::filesystem::file_size(path));
+    if (!format.directory) {
+      EXPECT_EQ(source->info().file_bytes, std::filesystem::file_size(path));
+    }
     std::vector<float> values(24);
     source->read(source->info().domain(), values);
     EXPECT_EQ(values, expected);
@@ -116,6 +141,39 @@ TEST(SourceRegistry, OpensEveryFormat) {
     EXPECT_EQ(values[0], 17.0F);
     EXPECT_EQ(values[1], 18.0F);
   }
+}
+
+TEST(SourceRegistry, Directories_WithoutAKnownHeader_AreRefused) {
+  const Scratch scratch;
+  std::filesystem::create_directory(scratch.path("run"));
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(scratch.path("run"), {}); }),
+            scratch.path("run") + ": is a directory; name a file in it");
+  scratch.write("run/Header", std::as_bytes(std::span(std::string_view("CheckPointVersion_1.0\n"))));
+  EXPECT_EQ(
+      message_of_error(ErrorKind::input, [&] { open_source(scratch.path("run"), {}); }),
+      scratch.path("run") + ": is a directory, and its Header is not that of an AMReX plotfile; name a file in it");
+}
+
+TEST(SourceRegistry, LevelAndUpsample_AreForFormatsThatHaveLevels) {
+  const Scratch scratch;
+  const std::string path = kSamples.at("nrrd")(scratch);
+  SourceOptions level;
+  level.level = 0;
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, level); }),
+            path + ": --level is for AMReX plotfiles, and this is nrrd; leave it out");
+  SourceOptions upsample;
+  upsample.upsampling = Upsampling::constant;
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, upsample); }),
+            path + ": --upsample is for AMReX plotfiles, and this is nrrd; leave it out");
+}
+
+TEST(SourceRegistry, MissingChunks_IsForFormatsWhoseChunksMayBeMissing) {
+  const Scratch scratch;
+  const std::string path = kSamples.at("nrrd")(scratch);
+  SourceOptions options;
+  options.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
+            path + ": --missing-chunks error is for Zarr arrays, and this is nrrd; leave it out");
 }
 
 TEST(SourceRegistry, MissingFilesAreAnErrorOfTheInput) {

@@ -20,8 +20,20 @@ template <typename Value>
 Value convert(double value) {
   if constexpr (std::is_same_v<Value, bool>) {
     return std::fmod(std::floor(value), 2.0) == 0;
+  } else if constexpr (openvdb::VecTraits<Value>::IsVec) {
+    using Number = typename Value::value_type;
+    return Value(static_cast<Number>(value), static_cast<Number>(value + 1), static_cast<Number>(-2 * value));
   } else {
     return static_cast<Value>(value);
+  }
+}
+
+template <typename Value>
+std::array<double, 3> numbers(const Value& value) {
+  if constexpr (openvdb::VecTraits<Value>::IsVec) {
+    return {static_cast<double>(value[0]), static_cast<double>(value[1]), static_cast<double>(value[2])};
+  } else {
+    return {static_cast<double>(value), 0, 0};
   }
 }
 
@@ -32,7 +44,7 @@ struct OpenVdbGrid::Implementation {
   std::function<void(const openvdb::Coord&, double)> set_on;
   std::function<void(const openvdb::Coord&, double)> set_off;
   std::function<void(openvdb::Index, const openvdb::Coord&, double, bool)> tile;
-  std::function<double(const openvdb::Coord&)> value;
+  std::function<std::array<double, 3>(const openvdb::Coord&)> vector;
 
   template <typename Grid>
   void use() {
@@ -52,7 +64,7 @@ struct OpenVdbGrid::Implementation {
     tile = [&tree](openvdb::Index level, const openvdb::Coord& at, double v, bool active) {
       tree.addTile(level, at, convert<Value>(v), active);
     };
-    value = [&tree](const openvdb::Coord& at) { return static_cast<double>(tree.getValue(at)); };
+    vector = [&tree](const openvdb::Coord& at) { return numbers(tree.getValue(at)); };
   }
 };
 
@@ -77,8 +89,17 @@ OpenVdbGrid::OpenVdbGrid(GridKind kind, const std::string& name) : implementatio
     case GridKind::mask:
       implementation_->use<openvdb::MaskGrid>();
       break;
-    case GridKind::vec3:
-      implementation_->grid = openvdb::GridBase::createGrid(openvdb::Vec3fGrid::gridType());
+    case GridKind::vec3s:
+      implementation_->use<openvdb::Vec3SGrid>();
+      break;
+    case GridKind::vec3d:
+      implementation_->use<openvdb::Vec3DGrid>();
+      break;
+    case GridKind::vec3i:
+      implementation_->use<openvdb::Vec3IGrid>();
+      break;
+    case GridKind::points:
+      implementation_->grid = openvdb::GridBase::createGrid("Tree_ptdataidx32_5_4_3");
       break;
   }
   implementation_->grid->setName(name);
@@ -143,7 +164,11 @@ OpenVdbGrid OpenVdbGrid::instance(const std::string& name) const {
   return copy;
 }
 
-double OpenVdbGrid::value(const Index3& i) const { return implementation_->value(coord<openvdb::Coord>(i)); }
+double OpenVdbGrid::value(const Index3& i) const { return vector(i)[0]; }
+
+std::array<double, 3> OpenVdbGrid::vector(const Index3& i) const {
+  return implementation_->vector(coord<openvdb::Coord>(i));
+}
 
 Box OpenVdbGrid::active() const {
   const openvdb::CoordBBox b = implementation_->grid->evalActiveVoxelBoundingBox();

@@ -12,7 +12,7 @@
 
 namespace weir::test {
 
-enum class GridKind { float32, float64, int32, int64, boolean, mask, vec3 };
+enum class GridKind { float32, float64, int32, int64, boolean, mask, vec3s, vec3d, vec3i, points };
 
 enum class Compression { none, active_mask, zip, zip_active_mask, blosc, blosc_active_mask };
 
@@ -23,7 +23,7 @@ class OpenVdbGrid {
   OpenVdbGrid(GridKind kind, const std::string& name);
 
   /// Sets every voxel of `box` to `scale` * (x + 3 y - 7 z + 0.125), active; for bool and mask to whether that
-  /// rounds to an even number.
+  /// rounds to an even number. A vector of value v is (v, v + 1, -2 v), here and below.
   OpenVdbGrid& fill(const Box& box, double scale = 1);
   OpenVdbGrid& set_on(const Index3& i, double value);
   OpenVdbGrid& set_off(const Index3& i, double value);
@@ -38,6 +38,7 @@ class OpenVdbGrid {
   OpenVdbGrid instance(const std::string& name) const;
 
   double value(const Index3& i) const;
+  std::array<double, 3> vector(const Index3& i) const;
   Box active() const;
   std::uint64_t memory_bytes() const;  ///< OpenVDB's own figure
 

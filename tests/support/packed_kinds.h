@@ -52,7 +52,7 @@ inline PackedBytes exact_stream(std::minstd_rand& engine) {
   std::optional<Lattice> own;
   if (on_lattice) own = Lattice{-20.0F, 0.25F, 24};
   PackedBytes stream(kRawStreamBytes);
-  stream.resize(encode_exact(constants, own, values, stream));
+  stream.resize(encode_exact({constants.tables, ValueEncoder::Kind::lattice}, constants, own, values, stream));
   return stream;
 }
 

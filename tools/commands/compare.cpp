@@ -7,22 +7,30 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "compressor/compare.h"
+#include "compressor/derived/derived_error.h"
 #include "compressor/options/conversion_request.h"
+#include "compressor/plan/memory_plan.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
+#include "format/base/share_text.h"
 #include "format/base/text.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
+#include "format/sidecar/valid_voxels.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
+#include "tools/report/derived_report.h"
+#include "tools/report/error_text.h"
+#include "tools/report/recorded_input.h"
 
 namespace weir {
 namespace {
@@ -40,18 +48,26 @@ struct CompareArguments {
   ProgressOptions progress;
   std::string trace;
   bool json = false;
+  bool derived = false;
 };
 
-std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes) {
+/// Of the source two blocks are held at a time. For derived errors also one of decoded values, and each with what is
+/// around it may be twice as large; each thread counts errors in a histogram.
+constexpr std::uint64_t kHistogramBytes = std::uint64_t{600} << 10U;
+constexpr std::uint64_t kBlocks = 2;
+constexpr std::uint64_t kBlocksOfDerived = 6;
+
+std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std::uint64_t blocks) {
   const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kCompareBytes;
-  if (memory < fixed + 2 * kLeastBlockBytes) {
+  if (memory < fixed + blocks * kLeastBlockBytes) {
     throw Error(ErrorKind::usage, cat("--memory ", format_bytes(memory), " is too small; give at least ",
-                                      ((fixed + 2 * kLeastBlockBytes) >> 20U) + 1, "MiB"));
+                                      ((fixed + blocks * kLeastBlockBytes) >> 20U) + 1, "MiB"));
   }
-  return std::min((memory - fixed) / 2, kMostBlockBytes);
+  return std::min((memory - fixed) / blocks, kMostBlockBytes);
 }
 
-nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c, double total_s) {
+nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c,
+                               const std::optional<DerivedErrors>& derived, double total_s) {
   using Json = nlohmann::ordered_json;
   const Certificate& e = c.error;
   Json report;
@@ -68,7 +84,11 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["nonfinite_decoded"] = c.nonfinite_decoded;
   report["different"] = c.different;
   report["nonfinite_different"] = c.nonfinite_different;
+  report["missing"] = c.missing;
+  report["zeros"] = c.zeros;
+  report["zeros_lost"] = c.zeros_lost;
   report["value_range"] = c.range ? Json{c.range->min, c.range->max} : Json();
+  if (derived) report["derived"] = derived_json(*derived);
   report["source"] = arguments.input;
   report["volume"] = arguments.volume;
   report["total_s"] = total_s;
@@ -76,20 +96,32 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   return report;
 }
 
-void print_text(const Comparison& c) {
+double extent_of(const std::optional<MinMax>& range) {
+  return range ? static_cast<double>(range->max) - static_cast<double>(range->min) : 0;
+}
+
+void print_text(const Comparison& c, const std::string& units) {
   const Certificate& e = c.error;
+  const char* const counted = c.missing > 0 ? " valid" : " finite";
   if (e.lossless) {
-    std::cout << cat("lossless: all ", c.finite, " finite voxels read bit for bit\n");
+    std::cout << cat(c.nonfinite_different == 0 ? "lossless: all " : "lossless over valid voxels: all ", c.finite,
+                     counted, " voxels read bit for bit\n");
   } else {
-    std::cout << cat("mse        ", e.mse, "\nrmse       ", e.rmse, "\nnmse       ", e.nmse, '\n');
-    if (e.psnr_db) std::cout << cat("psnr       ", *e.psnr_db, " dB\n");
-    std::cout << cat("max abs    ", e.max_abs);
+    std::cout << cat("mse        ", short_number(e.mse), "\nrmse       ", short_number(e.rmse), "\nnmse       ",
+                     short_number(e.nmse), '\n');
+    if (e.psnr_db) std::cout << cat("psnr       ", short_number(*e.psnr_db), " dB\n");
+    std::cout << cat("max abs    ", largest_error_text(e.max_abs, extent_of(c.range), units));
     if (c.max_abs_at) std::cout << cat(" at ", c.max_abs_at->x, ',', c.max_abs_at->y, ',', c.max_abs_at->z);
-    std::cout << cat("\ndifferent  ", c.different, " of ", c.finite, " finite voxels\n");
+    std::cout << cat("\ndifferent  ", c.different, " of ", c.finite, counted, " voxels\n");
   }
-  if (c.nonfinite > 0) {
-    std::cout << cat("not finite ", c.nonfinite, " voxels of the source, left out of the error; ",
-                     c.nonfinite_different, " of them read differently\n");
+  if (c.zeros_lost > 0) std::cout << cat("zeros      ", lost_zeros_text(c.zeros_lost, c.zeros), '\n');
+  if (c.missing > 0) {
+    std::cout << cat("missing    ", c.missing, " of ", c.voxels, " voxels (", share_text(c.missing, c.voxels),
+                     c.missing == 1 ? ") holds" : ") hold", " no data, left out of the error\n");
+  }
+  if (c.nonfinite > c.missing) {
+    std::cout << cat("not finite ", c.nonfinite - c.missing, " voxels of the source, left out of the error; ",
+                     c.nonfinite_different - c.missing_different, " of them read differently\n");
   }
   if (c.nonfinite_decoded > 0) {
     std::cout << cat("not finite ", c.nonfinite_decoded, " voxels of the file where the source is finite\n");
@@ -100,12 +132,20 @@ void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   auto [source_options, run] = read_conversion_request(arguments.options);
   const auto threads = limit_threads(run.threads);
-  const auto source = open_source(arguments.input, source_options);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
+  if (const std::string taken = take_recorded_input(arguments.input, file, arguments.options, source_options);
+      !taken.empty()) {
+    spdlog::info("{}: read with {}, as {} records", arguments.input, taken, sidecar_path(arguments.volume));
+  }
+  const auto source = open_source(arguments.input, source_options);
 
   CompareOptions options;
-  options.block_bytes = block_bytes(run.memory, source->working_bytes());
+  options.block_bytes =
+      arguments.derived
+          ? block_bytes(run.memory, source->working_bytes() + processors_or_all(run.threads) * kHistogramBytes,
+                        kBlocksOfDerived)
+          : block_bytes(run.memory, source->working_bytes(), kBlocks);
   options.cancel = &interrupt_flag();
   options.release_pages = [&] { file.mapping().release_pages(); };
   const std::unique_ptr<Trace> trace =
@@ -116,18 +156,26 @@ void compare(const CompareArguments& arguments) {
   options.progress = [&](std::uint64_t done) { progress.update(done); };
   const Comparison comparison = compare_volumes(*source, file.grid(), arguments.volume, options);
   progress.finish();
+  std::optional<DerivedErrors> derived;
+  if (arguments.derived) {
+    progress.start("derived", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
+    derived = derive_errors(*source, file.grid(), comparison, options);
+    progress.finish();
+  }
   if (trace) trace->close();
 
   if (comparison.loss.inexact > 0) {
     spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", arguments.input,
-                 comparison.loss.inexact, comparison.loss.max_abs_error);
+                 comparison.loss.inexact, short_number(comparison.loss.max_abs_error));
   }
   const double total_s = seconds_since(start);
   if (arguments.json) {
-    std::cout << to_json(arguments, comparison, total_s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+    std::cout << to_json(arguments, comparison, derived, total_s)
+                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';
   } else {
-    print_text(comparison);
+    print_text(comparison, source->info().units);
+    if (derived) std::cout << derived_text(*derived, extent_of(comparison.range), source->info().units);
   }
 }
 
@@ -141,8 +189,14 @@ void add_compare(CLI::App& app) {
   add_input_options(*command, arguments->options);
   add_run_options(*command, arguments->options, arguments->progress);
   add_trace_option(*command, arguments->trace);
+  command->add_flag("--derived", arguments->derived,
+                    "also quantiles of |error|, the error of the gradient and structural similarity; reads both twice");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
+  command->footer(
+      "Where the sidecar lies beside the volume, the dataset, index, component, region and treatment of missing values "
+      "of\n"
+      "the conversion are taken from it, unless they are given.");
   command->callback([arguments] { compare(*arguments); });
 }
 

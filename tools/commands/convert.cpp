@@ -2,8 +2,10 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,17 +23,24 @@
 #include "format/io/file_id.h"
 #include "format/io/limited_file_system.h"
 #include "format/output/output_files.h"
+#include "format/sidecar/valid_voxels.h"
+#include "gpu/packed/coder_choice.h"
 #include "ingest/plan/limited_source.h"
-#include "ingest/series.h"
+#include "ingest/series_names.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
+#include "tools/options/result_directory.h"
 #include "tools/options/run_options.h"
+#include "tools/options/series_checks.h"
 #include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
+#include "tools/report/error_text.h"
 #include "tools/report/finished_output.h"
+#include "tools/report/printable.h"
 #include "tools/report/progress.h"
+#include "tools/report/volume_title.h"
 
 namespace weir {
 namespace {
@@ -47,19 +56,38 @@ struct ConvertArguments {
   std::string bandwidth;  ///< a size, per second
   bool skip_done = false;
   bool again = false;
+  bool brief_names = false;
   bool json = false;
 };
 
-std::string error_text(const Sidecar::CertifiedError& error) {
-  if (error.lossless) return "lossless";
-  return cat("PSNR ", error.psnr_db.value_or(0), " dB, largest error ", error.max_abs);
+void say(const Message& line) {
+  spdlog::log(line.is_remark() ? spdlog::level::info : spdlog::level::warn, "{}", line.text());
 }
 
-void report(const Sidecar& s, const std::string& output) {
-  std::string error = error_text(s.error);
-  if (s.visible) error += cat(" (what the scene shows: ", error_text(s.visible->error), ')');
-  spdlog::info("{}: {} bytes, rate {:.4g}, {} of {} leaves kept, {}, {:.2f} s, {} peak", output, s.file.bytes,
-               s.budget.rate, s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
+// What a small volume was given instead of the default rate.
+std::string default_text(const Sidecar& s, const Budget& budget) {
+  if (budget.kind != Budget::Kind::automatic) return "";
+  if (s.budget.kind == "psnr") return cat(" (default: ", kDefaultLeastDb, " dB)");
+  return s.budget.kind == "lossless" ? " (default: lossless)" : "";
+}
+
+// Before the extent: "/qc at 2, magnitude, "; empty for a file that is one volume.
+std::string chosen_prefix(const Sidecar::Source& source) {
+  const std::string text = chosen_text(source.dataset, source.index, source.component);
+  return text.empty() ? "" : text + ", ";
+}
+
+void report(const Sidecar& s, const Budget& budget, const std::string& output) {
+  std::string error = error_text(s, s.error);
+  if (s.visible) error += cat(" (what the scene shows: ", error_text(s, s.visible->error), ')');
+  const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
+  for (const std::string& also : {lost_zeros_text(zeros.lost, zeros.count), missing_text(s), nonfinite_text(s),
+                                  rounded_text(s.conversion_loss)}) {
+    if (!also.empty()) error += cat(", ", also);
+  }
+  spdlog::info("{}: {}{} voxels, {} bytes, rate {:.4g}{}, {} of {} leaves kept, {}, {:.2f} s, {} peak", output,
+               chosen_prefix(s.source), extent_text(s.source.extent), s.file.bytes, s.budget.rate,
+               default_text(s, budget), s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
                format_bytes(s.timing.peak_rss_bytes));
 }
 
@@ -71,22 +99,6 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
     throw usage_error(cat("--bandwidth is \"", text, "\", it must be a size above 0, like 200MB (a second)"));
   }
   return bytes;
-}
-
-// What would be refused after minutes of work is refused before it.
-void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool may_exist) {
-  std::error_code ignored;
-  std::vector<FileId> inputs;
-  for (const SeriesStep& step : steps) {
-    if (const auto id = file_id(step.path)) inputs.push_back(*id);
-  }
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    check_output(steps[i].path, outputs[i]);
-    require_not_input(inputs, outputs[i]);
-    if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
-      throw usage_error(cat(outputs[i], ": exists; choose another output or pass --overwrite"));
-    }
-  }
 }
 
 // A header may name any file that this process may read. Whoever lets others choose the inputs keeps them to a
@@ -106,15 +118,6 @@ void check_files(const SourceInfo& info, const std::string& within) {
   if (const auto outside = file_outside(others, directory_of(info.path))) {
     spdlog::warn("{}: lies in {}, outside the directory of this file", info.path, *outside);
   }
-}
-
-// A player has two buffers of one size for all steps.
-void check_alike(const Sidecar& first, const SourceInfo& info, const Budget& budget) {
-  const bool by_extent = budget.kind == Budget::Kind::rate || budget.kind == Budget::Kind::automatic;
-  if (!by_extent || info.extent == first.source.extent) return;
-  throw Error(ErrorKind::input,
-              cat(info.path, ": extent ", extent_text(info.extent), " differs from ", extent_text(first.source.extent),
-                  " of ", first.source.path, ", so that a rate gives files of two sizes; give --size"));
 }
 
 // A kill may come between the end of a conversion and the removal of what it was made from.
@@ -160,7 +163,7 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
                               {"skipped", skipped},
                               {"bytes", s.file.bytes},
                               {"rate", s.budget.rate},
-                              {"lossless", s.error.lossless},
+                              {"lossless", lossless_everywhere(s)},
                               {"psnr_db", nullptr},
                               {"bytes_read", skipped ? 0 : s.timing.bytes_read},
                               {"peak_rss_bytes", skipped ? 0 : s.timing.peak_rss_bytes}};
@@ -170,14 +173,38 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
   announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, ConversionOptions options,
-                     const Sidecar* first, const ConvertArguments& a, Bandwidth* bandwidth, Trace* trace) {
+// As a configuration names options: it is where they are set for a service.
+void announce_failure(const ProgressOptions& progress, const Error& error) {
+  const nlohmann::json line{{"failed", one_line(error.message().worded(key_wording))}};
+  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+// The default gives a small volume more than its rate where it needs it.
+void say_sizes(std::span<const SeriesStep> steps, std::span<const Sidecar> made, const Budget& budget) {
+  if (budget.kind != Budget::Kind::automatic) return;
+  std::map<std::string, const Sidecar*> first;  // of each series
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const Sidecar& one = *first.emplace(steps[i].series, &made[i]).first->second;
+    if (made[i].file.bytes == one.file.bytes) continue;
+    spdlog::warn("{}: {} bytes, and {} has {}; give --size for files of one size", made[i].source.path,
+                 made[i].file.bytes, one.source.path, one.file.bytes);
+    return;
+  }
+}
+
+std::unique_ptr<VolumeSource> open_step(const SeriesStep& step, SourceOptions options) {
+  options.dataset = step.dataset;
+  options.index = step.index;
+  return open_source(step.path, options);
+}
+
+Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options, ConversionOptions options,
+                     SeriesExtents& extents, const ConvertArguments& a, Bandwidth* bandwidth, BlockCoder* coder,
+                     Trace* trace) {
   const ProgressOptions& shown = a.progress;
-  source_options.dataset = step.dataset;
-  source_options.index = step.index;
-  std::unique_ptr<VolumeSource> source = open_source(step.path, source_options);
+  std::unique_ptr<VolumeSource> source = open_step(step, source_options);
   check_files(source->info(), a.within);
-  if (first != nullptr) check_alike(*first, source->info(), options.budget);
+  extents.check(step, source->info());
   if (a.skip_done) {
     if (auto record = skip_or_replace(source->info(), a.again, options)) {
       announce_output(shown, options.output, true, *record);
@@ -188,9 +215,10 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   ConversionControl control;
   control.cancel = &interrupt_flag();
   control.trace = trace;
+  control.coder = coder;
   control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-  control.notice = [](const Message& line) { spdlog::warn("{}", line.text()); };
+  control.notice = say;
   control.planned = [&](std::uint64_t bytes) { announce(shown, nlohmann::json{{"planned", bytes}}.dump()); };
   const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({control.notice});
   std::unique_ptr<FileSystem> limited;
@@ -200,7 +228,7 @@ Sidecar convert_step(const SeriesStep& step, SourceOptions source_options, Conve
   }
   Sidecar sidecar = convert_volume(*source, options, control, limited ? *limited : *unlimited);
   progress.finish();
-  report(sidecar, options.output);
+  report(sidecar, options.budget, options.output);
   announce_output(shown, options.output, false, sidecar);
   return sidecar;
 }
@@ -223,26 +251,35 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   options.provenance = {WEIR_VERSION, build_commit(), given_options(command, a.options)};
   source_options.cancel = &interrupt_flag();
 
-  const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options);
-  const std::vector<std::string> outputs = series_outputs(steps, a.output);
+  const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options, say);
+  const std::vector<std::string> outputs =
+      series_outputs(steps, a.output, source_options, a.brief_names ? DefaultNames::of_call : DefaultNames::of_file);
   check_outputs(steps, outputs, options.overwrite || a.skip_done);
   if (steps.size() > 1 && options.budget.kind == Budget::Kind::lossless) {
     spdlog::warn("--lossless: each of the {} files is as long as it needs; give --size for files of one size",
                  steps.size());
   }
+  SeriesExtents extents(options.budget);
+  extents.check_all(steps, [&of = source_options](const SeriesStep& step) { return open_step(step, of); });
   std::optional<Bandwidth> bandwidth;
   if (const auto bytes_per_s = parse_bandwidth(a.bandwidth)) bandwidth.emplace(*bytes_per_s, &interrupt_flag());
   std::vector<std::string> places;
   for (const SeriesStep& step : steps) places.push_back(step.path);
   for (const std::string& output : outputs) places.insert(places.end(), {output, sidecar_path(output)});
   const std::unique_ptr<Trace> trace = open_trace(a.trace, places);
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  std::optional<ResultDirectory> directory;
+  if (a.output.ends_with('/')) directory.emplace(*files, directory_of(a.output));
   std::vector<Sidecar> sidecars;
+  const std::unique_ptr<BlockCoder> coder =
+      choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, say);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
-    sidecars.push_back(convert_step(steps[i], source_options, options, i == 0 ? nullptr : &sidecars.front(), a,
-                                    bandwidth ? &*bandwidth : nullptr, trace.get()));
+    sidecars.push_back(convert_step(steps[i], source_options, options, extents, a, bandwidth ? &*bandwidth : nullptr,
+                                    coder.get(), trace.get()));
   }
+  say_sizes(steps, sidecars, options.budget);
   if (trace) trace->close();
   if (a.json) print_json(sidecars);
 }
@@ -256,11 +293,13 @@ void add_convert(CLI::App& app) {
   command
       ->add_option("input", a->inputs,
                    "volume file, NAME_XxYxZ_TYPE.raw for instance; several, or a pattern like 'run_%04d.raw', are "
-                   "the steps of a series: one file each, all of one size")
+                   "the steps of a series: one file each, with --size or --rate all of one size")
       ->required();
   command->add_option("-o,--output", a->output,
-                      "OUT.nvdb, or DIRECTORY/; default: the input's stem + .nvdb, beside it. For a series a "
-                      "directory, or a name with {stem}, {dataset} or {step}");
+                      "OUT.nvdb, or DIRECTORY/, which is made where it is missing; default: the input's stem + .nvdb, "
+                      "beside it, and of an input that holds several volumes STEM_DATASET_COMPONENT_INDEX.nvdb, with "
+                      "what was chosen among several. For a series a directory, or a name with {stem}, {dataset} or "
+                      "{step}");
   add_input_options(*command, a->options);
   add_method_options(*command, a->options);
   add_run_options(*command, a->options, a->progress);
@@ -269,6 +308,7 @@ void add_convert(CLI::App& app) {
                    "most bytes per second that are read and written, in the long run; default: no limit")
       ->type_name("SIZE")
       ->group("Run");
+  add_option(*command, conversion_option("backend"), a->options, "Run");
   add_option(*command, conversion_option("work-dir"), a->options);
   add_option(*command, conversion_option("resume"), a->options, "Run");
   add_option(*command, conversion_option("save-interval"), a->options, "Run");
@@ -286,9 +326,19 @@ void add_convert(CLI::App& app) {
                     "source, the scene or an option has changed or the output is not whole");
   command->add_flag("--again", a->again, "with --skip-done: convert again what is done, too; others' files are left")
       ->needs("--skip-done");
+  command
+      ->add_flag("--brief-names", a->brief_names, "for weir watch, whose names say what the volumes of one call need")
+      ->group("");
   command->add_flag("--json", a->json, "print the sidecar on stdout");
   add_log_level(*command);
-  command->callback([command, a] { convert(*command, *a); });
+  command->callback([command, a] {
+    try {
+      convert(*command, *a);
+    } catch (const Error& error) {
+      announce_failure(a->progress, error);
+      throw;
+    }
+  });
 }
 
 }  // namespace weir

@@ -21,6 +21,8 @@
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/output/partial_file.h"
+#include "format/sidecar/is_of.h"
+#include "format/sidecar/valid_voxels.h"
 #include "ingest/vdb/openvdb_library.h"
 #include "ingest/vdb/vdb_header.h"
 #include "tools/command.h"
@@ -65,9 +67,7 @@ std::optional<Sidecar> sidecar_of(const NvdbFile& file) {
   if (!is_there(path)) return std::nullopt;
   try {
     Sidecar sidecar = read_sidecar(path);
-    if (sidecar.file.bytes == file.bytes().size() && sidecar.file.head_checksum == file.grid().head_checksum()) {
-      return sidecar;
-    }
+    if (is_of(sidecar, file.grid())) return sidecar;
     spdlog::warn("{}: is of another volume than {}; its certificate is left out", path, file.path());
   } catch (const Error& error) {
     spdlog::warn("{}; the certificate is left out", error.what());
@@ -81,10 +81,20 @@ VdbMetadata certificate(const Sidecar& sidecar) {
                        {"weir_source_format", sidecar.source.format},
                        {"weir_budget", sidecar.budget.kind},
                        {"weir_rate", sidecar.budget.rate},
-                       {"weir_lossless", sidecar.error.lossless},
+                       {"weir_lossless", lossless_everywhere(sidecar)},
                        {"weir_rmse", sidecar.error.rmse},
                        {"weir_max_abs", sidecar.error.max_abs}};
-  if (!sidecar.source.dataset.empty()) metadata["weir_source_dataset"] = sidecar.source.dataset;
+  const auto add = [&](const char* name, const std::string& text) {
+    if (!text.empty()) metadata[name] = text;
+  };
+  add("weir_source_dataset", sidecar.source.dataset);
+  add("weir_source_component", sidecar.source.component);
+  add("weir_source_long_name", sidecar.source.long_name);
+  add("weir_source_units", sidecar.source.units);
+  if (sidecar.source.time) {
+    metadata["weir_source_time"] = sidecar.source.time->value;
+    add("weir_source_time_units", sidecar.source.time->units);
+  }
   if (sidecar.budget.requested) metadata["weir_requested"] = *sidecar.budget.requested;
   if (sidecar.error.psnr_db) metadata["weir_psnr_db"] = *sidecar.error.psnr_db;
   return metadata;

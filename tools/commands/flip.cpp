@@ -1,20 +1,27 @@
 // weir flip: how different two pictures look.
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "format/io/file_id.h"
 #include "format/io/file_system.h"
+#include "gpu/image/colormap.h"
 #include "gpu/image/flip.h"
 #include "gpu/image/image_output.h"
 #include "gpu/image/png_input.h"
 #include "tools/command.h"
+#include "tools/plot/color_bar.h"
 
 namespace weir {
 namespace {
@@ -24,6 +31,8 @@ struct FlipArguments {
   std::string test;
   std::string output;
   double pixels_per_degree = kFlipPixelsPerDegree;
+  bool colorbar = false;
+  bool overwrite = false;
   bool json = false;
 };
 
@@ -58,10 +67,33 @@ nlohmann::ordered_json to_json(const FlipArguments& arguments, const Image& imag
 }
 
 void print_text(const FlipSummary& summary) {
-  std::cout << cat("mean                     ", summary.mean, "\nmedian                   ", summary.median,
-                   "\nweighted median          ", summary.weighted_median, "\n1st weighted quartile    ",
-                   summary.first_weighted_quartile, "\n3rd weighted quartile    ", summary.third_weighted_quartile,
-                   "\nmin                      ", summary.min, "\nmax                      ", summary.max, '\n');
+  const auto line = [](const char* name, double value) { std::cout << cat(name, short_number(value), '\n'); };
+  line("mean                     ", summary.mean);
+  line("median                   ", summary.median);
+  line("weighted median          ", summary.weighted_median);
+  line("1st weighted quartile    ", summary.first_weighted_quartile);
+  line("3rd weighted quartile    ", summary.third_weighted_quartile);
+  line("min                      ", summary.min);
+  line("max                      ", summary.max);
+}
+
+// The map of `errors`, with the scale that its colours have where it is asked for.
+Picture draw_map(const FlipArguments& arguments, std::span<const float> errors, const Image& reference) {
+  Picture map;
+  map.image = flip_picture(errors, reference.width, reference.height);
+  map.tone = {.exposure = 1, .soft_clip = false};
+  if (!arguments.colorbar) return map;
+  std::vector<Rgba> colors;
+  for (const Float3& color : colormap("magma", 256)) colors.push_back({color.x, color.y, color.z, 1});
+  return with_color_bar(map, draw_color_bar(TransferFunction(std::move(colors), 0, 1), "FLIP error", reference.height));
+}
+
+std::vector<FileId> ids_of(std::initializer_list<std::string> paths) {
+  std::vector<FileId> ids;
+  for (const std::string& path : paths) {
+    if (const auto id = file_id(path)) ids.push_back(*id);
+  }
+  return ids;
 }
 
 void flip(const FlipArguments& arguments) {
@@ -75,13 +107,14 @@ void flip(const FlipArguments& arguments) {
     if (!arguments.output.ends_with(".png")) {
       throw Error(ErrorKind::usage, cat("--output is \"", arguments.output, "\", it must end in .png"));
     }
-    map.emplace(*files, arguments.output);
+    require_not_input(ids_of({arguments.reference, arguments.test}), arguments.output);
+    map.emplace(*files, arguments.output, arguments.overwrite);
   }
 
   const std::vector<float> errors = flip_errors(reference, test, arguments.pixels_per_degree);
   if (map) {
-    map->commit(flip_picture(errors, reference.width, reference.height),
-                ToneMapping{.exposure = 1, .soft_clip = false});
+    const Picture picture = draw_map(arguments, errors, reference);
+    map->commit(picture.image, picture.tone);
   }
   const FlipSummary summary = summarise_flip(errors);
   if (arguments.json) {
@@ -109,6 +142,10 @@ void add_flip(CLI::App& app) {
       ->add_option("--ppd", arguments->pixels_per_degree,
                    "pixels per degree of the viewer's sight; default: 67.02, 3840 pixels over 0.7 m seen from 0.7 m")
       ->type_name("N");
+  command
+      ->add_flag("--colorbar", arguments->colorbar, "with --output: draws which error has which colour beside the map")
+      ->needs("--output");
+  command->add_flag("--overwrite", arguments->overwrite, "replace an existing picture of the errors");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
   command->footer(

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
@@ -21,18 +22,24 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "format/nanovdb/nvdb_header.h"
 #include "format/output/partial_file.h"
+#include "format/sidecar/is_of.h"
+#include "format/sidecar/valid_voxels.h"
 #include "gpu/image/image_output.h"
 #include "ingest/drivers/driver.h"
 #include "tools/command.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
+#include "tools/options/volume_series.h"
+#include "tools/report/error_text.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
 #include "tools/report/packed_census.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
+#include "tools/report/quantity_title.h"
 #include "tools/report/read_sidecar.h"
 #include "tools/report/tree_census.h"
+#include "tools/report/volume_title.h"
 
 namespace weir {
 namespace {
@@ -42,7 +49,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kBins = 256;  // of a histogram counted here
 
 struct InspectArguments {
-  std::string path;
+  std::vector<std::string> paths;
   GivenOptions source;
   std::string plot;
   bool json = false;
@@ -59,6 +66,9 @@ struct Inspection {
 
 std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
 std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
+std::string range_text(const std::array<double, 2>& range) {
+  return cat(short_number(range[0]), " .. ", short_number(range[1]));
+}
 double two_decimals(double bits) { return std::round(100 * bits) / 100; }
 Json json_of(const Index3& i) { return {i.x, i.y, i.z}; }
 
@@ -82,18 +92,25 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
   return histogram;
 }
 
-Inspection look_at(const NvdbFile& file, const InspectArguments& arguments) {
+Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
   Inspection result{file.grid(), std::nullopt, false, {}, std::nullopt};
   if (const PackedData* packed = file.grid().packed()) result.packed = take_packed_census(*packed);
-  const std::string path = sidecar_path(arguments.path);
+  const std::string path = sidecar_path(file.path());
   if (is_there(path)) {
     result.sidecar = read_sidecar(path);
-    result.sidecar_matches = result.sidecar->file.bytes == file.bytes().size() &&
-                             result.sidecar->file.head_checksum == file.grid().head_checksum();
+    result.sidecar_matches = is_of(*result.sidecar, file.grid());
   }
-  result.histogram = result.sidecar && result.sidecar_matches ? result.sidecar->histogram
-                                                              : counted_histogram(file.grid(), arguments.progress);
+  result.histogram =
+      result.sidecar && result.sidecar_matches ? result.sidecar->histogram : counted_histogram(file.grid(), progress);
   return result;
+}
+
+HistogramLabels labels_of(const NvdbFile& file, const Inspection& found) {
+  const bool recorded = found.sidecar && found.sidecar_matches;
+  const std::string title =
+      recorded ? volume_title(found.sidecar->source) : std::filesystem::path(file.path()).filename().string();
+  const std::string values = quantity_title(file);
+  return {printable(title), values.empty() ? "value" : printable(values)};
 }
 
 void print_grid(const NvdbFile& file) {
@@ -109,8 +126,8 @@ void print_grid(const NvdbFile& file) {
        cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), g.packed() != nullptr ? " packed, " : ", ",
            shown_text(box.extent()), " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", shown_text(g.voxel_size()), ", origin ", shown_text(g.world_origin())));
-  const std::string range = g.value_min() <= g.value_max() ? cat(g.value_min(), " .. ", g.value_max()) : "none finite";
-  line("values      ", cat(range, ", background ", g.background()));
+  const std::string range = g.value_min() <= g.value_max() ? range_text({g.value_min(), g.value_max()}) : "none finite";
+  line("values      ", cat(range, ", background ", short_number(static_cast<double>(g.background()))));
   const auto nodes = g.node_counts();
   const auto tiles = g.tile_counts();
   line("tree        ", cat(g.root_tiles(), " root entries, ", nodes[2], " upper, ", nodes[1], " lower, ", nodes[0],
@@ -155,31 +172,43 @@ Json packed_json(const PackedData& packed, const PackedCensus& census) {
           {"bits_a_voxel", bits}};
 }
 
-std::string certificate_text(const Sidecar::CertifiedError& error) {
-  if (error.lossless) return "lossless: every voxel as in the source";
-  return cat("PSNR ", error.psnr_db ? cat(*error.psnr_db) : std::string("none"), " dB, RMSE ", error.rmse, ", NMSE ",
-             error.nmse, ", largest ", error.max_abs);
+std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& error) {
+  if (error.lossless) {
+    return cat(lossless_text(s), lossless_everywhere(s) ? ": every voxel" : ": each of them", " as in the source");
+  }
+  return cat(error_text(s, error), ", RMSE ", short_number(error.rmse), ", NMSE ", short_number(error.nmse));
 }
+
+std::string unit_text(const std::string& units) { return units.empty() ? "" : cat(" (", units, ')'); }
 
 void print_sidecar(const Sidecar& s) {
   const auto line = [](const char* key, const std::string& value) { std::cout << cat(key, value, '\n'); };
   line("source      ",
        cat(s.source.path, s.source.dataset.empty() ? "" : ":", s.source.dataset, ", ", s.source.format, ' ',
-           s.source.type, ", ", shown_text(s.source.extent), ", range ", s.value_range[0], " .. ", s.value_range[1]));
-  line("budget      ", cat(s.budget.kind, s.budget.requested ? cat(' ', *s.budget.requested) : std::string(), ": ",
-                           s.budget.file_bytes, " of ", s.budget.dense_float32_bytes, " bytes, rate ", s.budget.rate));
+           s.source.type, ", ", shown_text(s.source.extent), ", range ", range_text(s.value_range)));
+  if (!s.source.long_name.empty()) line("quantity    ", cat(s.source.long_name, unit_text(s.source.units)));
+  if (!s.source.component.empty()) line("component   ", s.source.component);
+  if (s.source.time) line("time        ", cat(s.source.time->value, ' ', s.source.time->units));
+  line("budget      ",
+       cat(s.budget.kind, s.budget.requested ? cat(' ', *s.budget.requested) : std::string(), ": ", s.budget.file_bytes,
+           " of ", s.budget.dense_float32_bytes, " bytes, rate ", short_number(s.budget.rate)));
   const auto& bits = s.selection.bits;
   line("selection   ", cat(s.selection.leaves_kept, " of ", s.selection.leaves_total, " leaves by ", s.selection.metric,
                            ", brick ", s.selection.brick, ", fill ", s.selection.fill, "; bits 1:", bits[0],
                            " 2:", bits[1], " 4:", bits[2], " 8:", bits[3], " 16:", bits[4], " 32:", bits[5]));
-  line("background  ",
-       cat(s.background.value, ", ", s.background.method, ", ", 100 * s.background.share, " % of the voxels"));
-  line("error       ", certificate_text(s.error));
+  line("background  ", cat(short_number(static_cast<double>(s.background.value)), ", ", s.background.method, ", ",
+                           short_number(100 * s.background.share), " % of the voxels"));
+  if (const std::string text = rounded_text(s.conversion_loss); !text.empty()) line("rounded     ", text);
+  if (const std::string text = missing_text(s); !text.empty()) line("missing     ", text);
+  if (const std::string text = nonfinite_text(s); !text.empty()) line("not finite  ", text);
+  line("error       ", certificate_text(s, s.error));
+  const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
+  if (zeros.lost > 0) line("zeros       ", lost_zeros_text(zeros.lost, zeros.count));
   if (s.visible) {
     line("visible     ", cat(s.visible->voxels, " voxels in ", s.visible->blocks, " blocks, by ", s.visible->scene,
-                             ": ", certificate_text(s.visible->error)));
+                             ": ", certificate_text(s, s.visible->error)));
   }
-  line("cost        ", cat(s.timing.total_s, " s, peak memory ", format_bytes(s.timing.peak_rss_bytes)));
+  line("cost        ", cat(short_number(s.timing.total_s), " s, peak memory ", format_bytes(s.timing.peak_rss_bytes)));
 }
 
 void print_text(const NvdbFile& file, const Inspection& found) {
@@ -195,10 +224,10 @@ void print_text(const NvdbFile& file, const Inspection& found) {
   std::cout << '\n' << histogram_text(found.histogram);
 }
 
-void print_json(const NvdbFile& file, const Inspection& found) {
+Json to_json(const NvdbFile& file, const Inspection& found) {
   const NvdbGrid& g = file.grid();
   const MacrocellView cells = g.macrocells();
-  Json report{
+  return {
       {"path", file.path()},
       {"file",
        {{"bytes", file.bytes().size()},
@@ -230,18 +259,19 @@ void print_json(const NvdbFile& file, const Inspection& found) {
       {"histogram", {{"min", found.histogram.min}, {"max", found.histogram.max}, {"counts", found.histogram.counts}}},
       {"sidecar_matches", found.sidecar ? Json(found.sidecar_matches) : Json()},
       {"sidecar", found.sidecar ? Json::parse(to_json_text(*found.sidecar)) : Json()}};
-  std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-void run(const InspectArguments& arguments) {
+/// Prints what is found, or returns it as JSON.
+Json inspect(const std::string& path, const InspectArguments& arguments) {
   // A damaged .nvdb without its magic is still no raw file.
-  if (!arguments.path.ends_with(".nvdb") && format_of(arguments.path).name != "nvdb") {
+  if (!path.ends_with(".nvdb") && format_of(path).name != "nvdb") {
     if (!arguments.plot.empty()) {
-      throw Error(ErrorKind::usage,
-                  cat("--plot is for .nvdb files, and ", arguments.path, " is none; convert it first"));
+      throw Error(ErrorKind::usage, cat("--plot is for .nvdb files, and ", path, " is none; convert it first"));
     }
-    print_listing(list_input(arguments.path, read_conversion_request(arguments.source).source), arguments.json);
-    return;
+    const InputListing listing = list_input(path, read_conversion_request(arguments.source).source);
+    if (arguments.json) return to_json(listing);
+    print_text(listing);
+    return {};
   }
   const auto files = make_posix_file_system();
   std::optional<PlotFormat> format;
@@ -251,19 +281,33 @@ void run(const InspectArguments& arguments) {
     load_driver("plot", arguments.plot + ": is to be a chart");
     chart.emplace(*files, arguments.plot, true);
   }
-  const NvdbFile file(arguments.path);
+  const NvdbFile file(path);
   const auto threads = limit_threads(0);
-  const Inspection found = look_at(file, arguments);
+  const Inspection found = look_at(file, arguments.progress);
   if (chart) {
-    const std::string bytes = histogram_chart(found.histogram, file.grid().background(), *format);
+    const std::string bytes =
+        histogram_chart(found.histogram, file.grid().background(), labels_of(file, found), *format);
     chart->file().write_at(0, std::as_bytes(std::span(bytes)));
     chart->commit();
   }
-  if (arguments.json) {
-    print_json(file, found);
-  } else {
-    print_text(file, found);
+  if (arguments.json) return to_json(file, found);
+  print_text(file, found);
+  return {};
+}
+
+void run(const InspectArguments& arguments) {
+  const std::vector<std::string> paths = expand_volumes(arguments.paths);
+  if (paths.size() > 1 && !arguments.plot.empty()) {
+    throw usage_error(cat("--plot draws one histogram, and ", paths.size(), " files are given; give one of them"));
   }
+  Json reports = Json::array();
+  for (const std::string& path : paths) {
+    if (!arguments.json && &path != &paths.front()) std::cout << '\n';
+    reports.push_back(inspect(path, arguments));
+  }
+  if (!arguments.json) return;
+  const Json report = reports.size() == 1 ? reports.front() : Json{{"files", reports}};
+  std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace
@@ -273,7 +317,10 @@ void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand("inspect",
                                          "Shows header, tree, budget, certificate and histogram of a .nvdb file, or "
                                          "lists what an input holds and the command to convert it");
-  command->add_option("volume", arguments->path, "a .nvdb file, weir's or another's, or an input")
+  command
+      ->add_option("volume", arguments->paths,
+                   "a .nvdb file, weir's or another's, or an input; or several, or patterns in quotes, 'out/*.nvdb' or "
+                   "'step_%04d.nvdb'")
       ->type_name("FILE")
       ->required();
   command->add_option("--plot", arguments->plot, "also draws the histogram, as FILE.png or FILE.svg")

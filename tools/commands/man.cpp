@@ -8,6 +8,7 @@
 
 #include "format/base/error.h"
 #include "tools/command.h"
+#include "tools/describe/config_page.h"
 #include "tools/describe/man_page.h"
 #include "tools/describe/options_page.h"
 
@@ -19,22 +20,27 @@ struct ManArguments {
   bool options = false;
 };
 
+void write_page(const std::filesystem::path& path, const std::string& page) {
+  std::ofstream file(path);
+  file << page;
+  file.close();
+  if (!file) throw Error(ErrorKind::io, cat(path.string(), ": cannot be written; name a directory that can"));
+}
+
 void write_pages(CLI::App& app, const std::filesystem::path& directory) {
   const std::vector<CommandDescription> commands = describe_commands(app);
   for (const CommandDescription& c : commands) {
-    const std::string path = (directory / (man_page_name(c) + ".1")).string();
-    std::ofstream file(path);
-    file << man_page(c, commands, WEIR_VERSION);
-    file.close();
-    if (!file) throw Error(ErrorKind::io, cat(path, ": cannot be written; name a directory that can"));
+    write_page(directory / (man_page_name(c) + ".1"), man_page(c, commands, WEIR_VERSION));
   }
+  write_page(directory / "weir.toml.5", config_page(WEIR_VERSION));
 }
 
 }  // namespace
 
 void add_man(CLI::App& app) {
   auto a = std::make_shared<ManArguments>();
-  CLI::App* command = app.add_subcommand("man", "Writes a manual page for weir and for each of its commands");
+  CLI::App* command =
+      app.add_subcommand("man", "Writes a manual page for weir, for each of its commands and for weir.toml");
   command->group("");
   CLI::Option* directory = command->add_option("directory", a->directory, "where weir.1, weir-convert.1 and so on go");
   command->add_flag("--options", a->options, "prints docs/options.md instead")->excludes(directory);

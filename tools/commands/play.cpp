@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <string>
@@ -23,8 +24,12 @@
 #include "tools/command.h"
 #include "tools/options/backend_choice.h"
 #include "tools/options/picture_options.h"
+#include "tools/options/result_directory.h"
 #include "tools/options/volume_series.h"
+#include "tools/plot/color_bar.h"
 #include "tools/report/progress.h"
+#include "tools/report/quantity_title.h"
+#include "tools/report/surface_warning.h"
 
 namespace weir {
 
@@ -63,24 +68,28 @@ void write_stdout(std::span<const std::uint8_t> bytes) {
   }
 }
 
-// Where frames go. A directory is made and tried before the work.
+// Where frames go. The directory is tried before the work.
 FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
   if (!arguments.raw.empty()) {
     return [](std::size_t, const Picture& picture) { write_stdout(encode_rgb24(picture.image, picture.tone)); };
   }
-  files.make_directory(arguments.output);
-  { const ImageFile tried(files, frame_path(arguments.output, 0)); }
+  { const ImageFile tried(files, frame_path(arguments.output, 0), true); }
   if (const std::string next = frame_path(arguments.output, frames); files.exists(next)) {
     spdlog::warn("{}: is from a longer series; this one ends before it", next);
   }
   return [&arguments, &files](std::size_t frame, const Picture& picture) {
-    ImageFile(files, frame_path(arguments.output, frame)).commit(picture.image, picture.tone);
+    ImageFile(files, frame_path(arguments.output, frame), true).commit(picture.image, picture.tone);
   };
 }
 
 // One look for all steps: transfer function, background and framing must not follow the single step.
 void fix_look(PictureRequest& request, std::span<const std::string> files) {
   const SeriesSummary series = summarise_series(files);
+  if (series.range) {
+    if (const std::string line = surface_warning(request.scene, *series.range); !line.empty()) {
+      spdlog::warn("{}", line);
+    }
+  }
   if (!series.difference.empty()) spdlog::warn("{}; the camera frames each step's own box", series.difference);
   if (!request.scene.volume.range && series.range) {
     request.scene.volume.range = {series.range->min, series.range->max};
@@ -89,12 +98,24 @@ void fix_look(PictureRequest& request, std::span<const std::string> files) {
   request.scene.camera.framing = Framing::volume;
 }
 
+// The colours are the same in all frames, and so is the bar beside them.
+std::optional<Image> bar_of_series(const PictureRequest& request, const std::string& first) {
+  if (!request.colorbar) return std::nullopt;
+  if (!request.scene.volume.range) {
+    throw Error(ErrorKind::usage, compose(option("colorbar"), " needs ", option("range", "LOW,HIGH"), ": ", first,
+                                          " names no range of its values"));
+  }
+  const VolumeInfo info{{}, {}, request.options.background.value_or(0)};
+  return draw_color_bar(picture_transfer(info, request.scene, request.options), quantity_title(NvdbFile(first)),
+                        request.options.height);
+}
+
 nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& request, const PlaybackReport& report,
-                       std::string_view backend) {
+                       std::string_view backend, std::int32_t bar_width) {
   const auto& range = request.scene.volume.range;
   return {{"output", arguments.output},
           {"frames", report.frames},
-          {"width", request.options.width},
+          {"width", request.options.width + bar_width},
           {"height", request.options.height},
           {"mode", render_mode_name(request.scene.mode)},
           {"filter", filter_name(request.options.filter)},
@@ -123,8 +144,12 @@ void play_series(const PlayArguments& arguments) {
   if (volumes.size() > 1) request.backend.memory.volumes = 2;  // play() holds as many
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  std::optional<ResultDirectory> directory;
+  if (!arguments.output.empty()) directory.emplace(*files, arguments.output);
   const FrameWriter write = open_output(arguments, *files, volumes.size());
   fix_look(request, volumes);
+  const std::optional<Image> bar = bar_of_series(request, volumes.front());
+  const std::int32_t bar_width = bar ? bar->width : 0;
 
   Progress progress(arguments.progress);
   progress.start(cat("play, ", render_mode_name(request.scene.mode)), request.pixel_samples() * volumes.size(),
@@ -141,7 +166,7 @@ void play_series(const PlayArguments& arguments) {
   try {
     report = play(*backend, volumes, request.scene, request.options, request.sampling,
                   [&](std::size_t frame, const Picture& picture) {
-                    write(frame, picture);
+                    write(frame, bar ? with_color_bar(picture, *bar) : picture);
                     ++written;
                   });
   } catch (const Error& error) {
@@ -150,13 +175,13 @@ void play_series(const PlayArguments& arguments) {
   }
   progress.finish();
   if (arguments.json) {
-    std::cout << to_json(arguments, request, report, backend->name()).dump(2) << '\n';
+    std::cout << to_json(arguments, request, report, backend->name(), bar_width).dump(2) << '\n';
   } else {
     if (report.load.way == "cached") spdlog::info("{}: {}", volumes.back(), report.load.note);
     spdlog::info(
         "{} frames of {} x {}, {:.2f} steps/s; load {:.2f} s, render {:.2f} s, write {:.2f} s: {} is the limit",
-        report.frames, request.options.width, request.options.height, report.sustained, report.load_s, report.render_s,
-        report.write_s, report.limit());
+        report.frames, request.options.width + bar_width, request.options.height, report.sustained, report.load_s,
+        report.render_s, report.write_s, report.limit());
   }
 }
 
@@ -166,8 +191,9 @@ void add_play(CLI::App& app) {
   auto arguments = std::make_shared<PlayArguments>();
   CLI::App* command = app.add_subcommand("play", "Renders a series of NanoVDB files, a frame of each.");
   command
-      ->add_option("input", arguments->inputs,
-                   "NanoVDB files, or patterns in quotes, 'out/*.nvdb'; step_9 comes before step_10")
+      ->add_option(
+          "input", arguments->inputs,
+          "NanoVDB files, or patterns in quotes, 'out/*.nvdb' or 'out/step_%d.nvdb'; step_9 comes before step_10")
       ->type_name("OUT.nvdb")
       ->required();
   command->add_option("-o,--output", arguments->output, "for frame_00000.png and so on")->type_name("DIR");

@@ -24,7 +24,10 @@
 #include "tools/options/picture_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
+#include "tools/plot/color_bar.h"
 #include "tools/report/progress.h"
+#include "tools/report/quantity_title.h"
+#include "tools/report/surface_warning.h"
 
 namespace weir {
 
@@ -37,19 +40,27 @@ struct RenderArguments {
   GivenOptions source;
   GivenOptions picture;
   ProgressOptions progress;
+  bool overwrite = false;
   bool json = false;
 };
 
-std::unique_ptr<LoadedVolume> load_file(Backend& backend, const RenderArguments& arguments) {
+/// A volume and what its values are.
+struct TitledVolume {
+  std::unique_ptr<LoadedVolume> volume;
+  std::string title;
+};
+
+TitledVolume load_file(Backend& backend, const RenderArguments& arguments) {
   if (const std::string key = given_input_option(arguments.source); !key.empty()) {
     throw Error(ErrorKind::usage,
                 compose(option(key), " says how to read a source; give ", option("volume", "dense"), " with it"));
   }
-  return backend.load(std::make_shared<const NvdbFile>(arguments.input), 0, nullptr);
+  const auto file = std::make_shared<const NvdbFile>(arguments.input);
+  return {backend.load(file, 0, nullptr), quantity_title(*file)};
 }
 
-std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments& arguments,
-                                         std::optional<std::uint64_t> ceiling, Progress& progress) {
+TitledVolume load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
+                        Progress& progress) {
   const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
@@ -57,7 +68,7 @@ std::unique_ptr<LoadedVolume> load_dense(Backend& backend, const RenderArguments
   options.progress = [&](std::int64_t done, std::int64_t) {
     progress.update(static_cast<std::uint64_t>(done) * sizeof(float));
   };
-  return backend.load_dense(read_dense(*source, options, ceiling), 0);
+  return {backend.load_dense(read_dense(*source, options, ceiling), 0), quantity_title(source->info())};
 }
 
 // Null where nothing was looked up in a cache.
@@ -70,28 +81,42 @@ void render(const RenderArguments& arguments) {
   PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
   const auto threads = limit_threads(0);
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  ImageFile image_file(*files, arguments.output, arguments.overwrite);
+  if (request.colorbar && image_file.linear()) {
+    throw Error(ErrorKind::usage, compose(arguments.output, ": holds radiance, and ", option("colorbar"),
+                                          " colours as a screen shows them; choose a name that ends in .png"));
+  }
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();
-  const std::unique_ptr<LoadedVolume> volume =
-      arguments.volume == "dense" ? load_dense(*backend, arguments, request.backend.memory.ceiling, progress)
-                                  : load_file(*backend, arguments);
-  const std::unique_ptr<FileSystem> files = make_posix_file_system();
-  ImageFile image_file(*files, arguments.output);
+  const auto [volume, title] = arguments.volume == "dense"
+                                   ? load_dense(*backend, arguments, request.backend.memory.ceiling, progress)
+                                   : load_file(*backend, arguments);
   const double load_s = seconds_since(start);
   const LoadSummary& loaded = volume->load_summary();
   if (!arguments.json && loaded.way == "cached") spdlog::info("{}: {}", arguments.input, loaded.note);
 
+  if (const std::string line = surface_warning(request.scene, volume->info().range); !line.empty()) {
+    spdlog::warn("{}", line);
+  }
+
+  std::optional<Image> bar;
+  if (request.colorbar) {
+    bar =
+        draw_color_bar(picture_transfer(volume->info(), request.scene, request.options), title, request.options.height);
+  }
   progress.start(cat("render, ", render_mode_name(request.scene.mode)), request.pixel_samples(), ProgressUnit::samples);
   request.sampling.progress = [&](std::uint64_t done) { progress.update(done); };
-  const Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
+  Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
+  if (bar) picture = with_color_bar(picture, *bar);
   progress.finish();
   const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
   if (arguments.json) {
     const nlohmann::json report{{"image", arguments.output},
                                 {"bytes", bytes},
-                                {"width", request.options.width},
-                                {"height", request.options.height},
+                                {"width", picture.image.width},
+                                {"height", picture.image.height},
                                 {"mode", render_mode_name(request.scene.mode)},
                                 {"filter", filter_name(request.options.filter)},
                                 {"volume", arguments.volume},
@@ -112,8 +137,8 @@ void render(const RenderArguments& arguments) {
     std::cout << report.dump(2) << '\n';
   } else {
     if (!picture.levels_note.empty()) spdlog::info("{}: {}", arguments.input, picture.levels_note);
-    spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, request.options.width,
-                 request.options.height, request.sampling.samples, picture.render_s);
+    spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, picture.image.width,
+                 picture.image.height, request.sampling.samples, picture.render_s);
   }
 }
 
@@ -136,6 +161,7 @@ void add_render(CLI::App& app) {
   add_picture_options(*command, arguments->picture);
   add_input_options(*command, arguments->source);
   add_progress_options(*command, arguments->progress);
+  command->add_flag("--overwrite", arguments->overwrite, "replace an existing picture");
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");
   add_log_level(*command);
   command->callback([arguments] { render(*arguments); });

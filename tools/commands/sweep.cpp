@@ -25,8 +25,11 @@
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
+#include "tools/options/result_directory.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
+#include "tools/report/printable.h"
+#include "tools/report/volume_title.h"
 #include "tools/sweep/sweep_method.h"
 #include "tools/sweep/sweep_plot.h"
 #include "tools/sweep/sweep_report.h"
@@ -49,34 +52,6 @@ struct SweepArguments {
   bool keep = false;
   bool overwrite = false;
   bool json = false;
-};
-
-/// The directory of the results: made where it is missing, and removed again where nothing came to lie in it.
-class ResultDirectory {
- public:
-  ResultDirectory(FileSystem& files, const std::string& path) : files_(files), path_(path), made_(!files.exists(path)) {
-    if (!made_ && !std::filesystem::is_directory(path)) {
-      throw usage_error(cat(path, ": is no directory; choose another one with -o"));
-    }
-    if (made_) files_.make_directory(path);
-  }
-  ~ResultDirectory() {
-    if (!made_) return;
-    try {
-      files_.remove_directory(path_);
-    } catch (const Error&) {  // not empty: the usual end
-    }
-  }
-  ResultDirectory(const ResultDirectory&) = delete;
-  ResultDirectory& operator=(const ResultDirectory&) = delete;
-
-  std::string operator/(const std::string& name) const { return (std::filesystem::path(path_) / name).string(); }
-  const std::string& path() const { return path_; }
-
- private:
-  FileSystem& files_;
-  std::string path_;
-  bool made_;
 };
 
 std::string volume_name(const SweepMethod& method, double rate) { return cat(method.name, "_rate", rate, ".nvdb"); }
@@ -262,7 +237,9 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   Sweep sweep(*source, directory, *files, a, given);
   SweepReport report;
   report.source = a.input;
-  report.extent = source->info().extent;
+  const SourceInfo& info = source->info();
+  report.chosen = printable(chosen_text(info.dataset, info.index, info.details.component));
+  report.extent = info.extent;
   report.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   report.memory = source_options.memory;
   for (const SweepMethod& method : methods) {

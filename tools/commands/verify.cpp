@@ -15,30 +15,32 @@
 #include "tools/command.h"
 #include "tools/options/run_options.h"
 #include "tools/options/trace_option.h"
+#include "tools/options/volume_series.h"
 #include "tools/report/progress.h"
 #include "tools/report/volume_verification.h"
 
 namespace weir {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct VerifyArguments {
-  std::string path;
+  std::vector<std::string> paths;
   bool json = false;
   std::string trace;
   ProgressOptions progress;
 };
 
-std::vector<VolumeCheck> verify(const VerifyArguments& arguments) {
+std::vector<VolumeCheck> verify(const std::string& path, const VerifyArguments& arguments) {
   const auto threads = limit_threads(0);
   Progress progress(arguments.progress);
   VerificationWatch watch;
   watch.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   watch.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   watch.cancel = &interrupt_flag();
-  const std::unique_ptr<Trace> trace =
-      open_trace(arguments.trace, std::array{arguments.path, sidecar_path(arguments.path)});
+  const std::unique_ptr<Trace> trace = open_trace(arguments.trace, std::array{path, sidecar_path(path)});
   watch.trace = trace.get();
-  std::vector<VolumeCheck> checks = verify_volume(arguments.path, watch);
+  std::vector<VolumeCheck> checks = verify_volume(path, watch);
   if (trace) trace->close();
   return checks;
 }
@@ -49,26 +51,44 @@ std::string failure_text(const std::string& path, const VolumeCheck& check) {
   return cat(path, ": ", check.name, ": found ", check.found, ", expected ", check.expected);
 }
 
-void print_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& checks) {
-  nlohmann::ordered_json report{{"path", path}, {"ok", ok}, {"checks", nlohmann::ordered_json::array()}};
+Json to_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& checks) {
+  Json report{{"path", path}, {"ok", ok}, {"checks", Json::array()}};
   for (const VolumeCheck& check : checks) {
     report["checks"].push_back(
         {{"name", check.name}, {"ok", check.ok}, {"found", check.found}, {"expected", check.expected}});
   }
-  std::cout << report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  return report;
+}
+
+// What holds of one volume; what does not goes to stderr.
+Json verify_one(const std::string& path, const VerifyArguments& arguments) {
+  const std::vector<VolumeCheck> checks = verify(path, arguments);
+  bool ok = true;
+  for (const VolumeCheck& check : checks) {
+    if (check.ok) continue;
+    ok = false;
+    std::fprintf(stderr, "weir: %s\n", failure_text(path, check).c_str());
+  }
+  if (ok && !arguments.json) std::cout << path << ": all " << checks.size() << " checks hold\n";
+  return to_json(path, ok, checks);
 }
 
 void run(const VerifyArguments& arguments) {
-  const std::vector<VolumeCheck> checks = verify(arguments);
-  std::size_t failed = 0;
-  for (const VolumeCheck& check : checks) {
-    if (check.ok) continue;
-    ++failed;
-    std::fprintf(stderr, "weir: %s\n", failure_text(arguments.path, check).c_str());
+  const std::vector<std::string> paths = expand_volumes(arguments.paths);
+  if (paths.size() > 1 && !arguments.trace.empty()) {
+    throw usage_error(cat("--trace is of one volume, and ", paths.size(), " are given"));
   }
-  if (arguments.json) print_json(arguments.path, failed == 0, checks);
-  if (failed != 0) throw ExitStatus{static_cast<int>(ErrorKind::input)};
-  if (!arguments.json) std::cout << arguments.path << ": all " << checks.size() << " checks hold\n";
+  Json volumes = Json::array();
+  bool ok = true;
+  for (const std::string& path : paths) {
+    volumes.push_back(verify_one(path, arguments));
+    ok = ok && volumes.back()["ok"].get<bool>();
+  }
+  if (arguments.json) {
+    const Json report = volumes.size() == 1 ? volumes.front() : Json{{"ok", ok}, {"volumes", volumes}};
+    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+  if (!ok) throw ExitStatus{static_cast<int>(ErrorKind::input)};
 }
 
 }  // namespace
@@ -76,7 +96,10 @@ void run(const VerifyArguments& arguments) {
 void add_verify(CLI::App& app) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = app.add_subcommand("verify", "Checks structure, checksum, digest and sidecar of a volume");
-  command->add_option("volume", arguments->path, "the .nvdb file; its sidecar lies beside it")
+  command
+      ->add_option("volume", arguments->paths,
+                   "the .nvdb file, its sidecar beside it; or several, or patterns in quotes, 'out/*.nvdb' or "
+                   "'step_%04d.nvdb'")
       ->type_name("OUT.nvdb")
       ->required();
   command->add_flag("--json", arguments->json, "one JSON object on stdout");

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "daemon/config/check_access.h"
 #include "daemon/config/load_config.h"
 #include "daemon/service.h"
 #include "format/base/error.h"
@@ -26,11 +27,11 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
     if (level->count() > 0) config.service.log_level = level->as<std::string>();
     return config;
   };
-  if (a.check) {
-    std::fputs(describe_config(load()).c_str(), stdout);
-    return;
-  }
-  std::signal(SIGHUP, SIG_IGN);  // until the service takes it for a reload: what it asks for is read below anyway
+  if (!a.check) std::signal(SIGHUP, SIG_IGN);  // until the service takes it for a reload: it reads all anew anyway
+  const DaemonConfig config = load();
+  if (a.check) std::fputs(describe_config(config).c_str(), stdout);
+  check_access(config);
+  if (a.check) return;
   // The very program that runs now converts, also where another has been installed in its place since.
   Service service(load, "/proc/self/exe", WEIR_VERSION);
   if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
@@ -45,7 +46,9 @@ void add_watch(CLI::App& app) {
   command->add_option("config", a->config, "what to watch; docs/operations.md has its keys")
       ->type_name("CONFIG.toml")
       ->required();
-  command->add_flag("--check", a->check, "only validate the configuration and print what it asks for");
+  command->add_flag("--check", a->check,
+                    "only validate the configuration, print what it asks for, and see whether this user may read and "
+                    "write where it says");
   add_log_level(*command);
   command->callback([command, a] { watch_directories(*command, *a); });
 }

@@ -3,29 +3,11 @@
 #include <algorithm>
 
 #include "format/base/text.h"
+#include "tools/describe/man_examples.h"
+#include "tools/describe/man_text.h"
 
 namespace weir {
 namespace {
-
-/// Text as man(7) takes it: no character of it is a request, dashes can be searched for and copied.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool starts_line = i == 0 || text[i - 1] == '\n';
-    if (starts_line && (text[i] == '.' || text[i] == '\'')) result += "\\&";
-    if (text[i] == '\\') {
-      result += "\\e";
-    } else if (text[i] == '-') {
-      result += "\\-";
-    } else {
-      result += text[i];
-    }
-  }
-  return result;
-}
-
-std::string bold(const std::string& text) { return cat("\\fB", escaped(text), "\\fR"); }
-std::string italic(const std::string& text) { return cat("\\fI", escaped(text), "\\fR"); }
 
 /// "weir convert", as it is typed.
 std::string typed_name(const CommandDescription& command) {
@@ -33,25 +15,25 @@ std::string typed_name(const CommandDescription& command) {
 }
 
 std::string argument_of(const OptionDescription& option) {
-  if (option.choices.empty()) return italic(option.argument);
+  if (option.choices.empty()) return man_italic(option.argument);
   std::string result;
-  for (const std::string& choice : option.choices) result += cat(result.empty() ? "" : "|", bold(choice));
+  for (const std::string& choice : option.choices) result += cat(result.empty() ? "" : "|", man_bold(choice));
   return result;
 }
 
 std::string synopsis(const CommandDescription& command, bool has_commands) {
-  std::string line = bold(typed_name(command));
+  std::string line = man_bold(typed_name(command));
   std::string optional;
   for (const OptionDescription& option : command.options) {
     if (option.positional) continue;
-    if (option.required) line += cat(' ', bold(option.names.front()), ' ', argument_of(option));
-    if (!option.required) optional = cat(" [", italic("OPTION"), "]...");
+    if (option.required) line += cat(' ', man_bold(option.names.front()), ' ', argument_of(option));
+    if (!option.required) optional = cat(" [", man_italic("OPTION"), "]...");
   }
   line += optional;
-  if (has_commands) line += cat(' ', italic("COMMAND"), " [", italic("ARGUMENT"), "]...");
+  if (has_commands) line += cat(' ', man_italic("COMMAND"), " [", man_italic("ARGUMENT"), "]...");
   for (const OptionDescription& option : command.options) {
     if (!option.positional) continue;
-    const std::string name = italic(option.names.front()) + (option.repeated ? "..." : "");
+    const std::string name = man_italic(option.names.front()) + (option.repeated ? "..." : "");
     line += option.required ? cat(' ', name) : cat(" [", name, "]");
   }
   return line;
@@ -60,11 +42,11 @@ std::string synopsis(const CommandDescription& command, bool has_commands) {
 std::string entry(const OptionDescription& option) {
   std::string tag;
   for (const std::string& name : option.names) {
-    tag += cat(tag.empty() ? "" : ", ", option.positional ? italic(name) : bold(name));
+    tag += cat(tag.empty() ? "" : ", ", option.positional ? man_italic(name) : man_bold(name));
   }
   if (!option.positional && !option.argument.empty()) tag += ' ' + argument_of(option);
-  std::string text = escaped(option.text);
-  if (!option.default_value.empty()) text += cat("; default: ", escaped(option.default_value));
+  std::string text = man_escaped(option.text);
+  if (!option.default_value.empty()) text += cat("; default: ", man_escaped(option.default_value));
   return cat(".TP\n", tag, '\n', text.empty() ? "\\&" : text, '\n');
 }
 
@@ -93,6 +75,16 @@ std::string options_of(const CommandDescription& command) {
   return page;
 }
 
+std::string examples_of(const CommandDescription& command) {
+  std::string page;
+  for (const ManExample& example : man_examples()) {
+    if (example.command != command.name) continue;
+    page += cat(page.empty() ? ".SH EXAMPLES\n" : ".PP\n", man_escaped(std::string(example.text)), "\n.PP\n.nf\n.RS\n",
+                man_escaped(std::string(example.line)), "\n.RE\n.fi\n");
+  }
+  return page;
+}
+
 constexpr const char* kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\n"
     "bad or unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, permission\n"
@@ -110,23 +102,26 @@ std::string man_page(const CommandDescription& command, const std::vector<Comman
   std::string title = man_page_name(command);
   std::transform(title.begin(), title.end(), title.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  std::string page = cat(".TH \"", escaped(title), "\" 1 \"\" \"weir ", escaped(version), "\" \"User Commands\"\n");
-  page += cat(".SH NAME\n", escaped(man_page_name(command)), " \\- ", escaped(command.text), '\n');
+  std::string page =
+      cat(".TH \"", man_escaped(title), "\" 1 \"\" \"weir ", man_escaped(version), "\" \"User Commands\"\n");
+  page += cat(".SH NAME\n", man_escaped(man_page_name(command)), " \\- ", man_escaped(command.text), '\n');
   page += cat(".SH SYNOPSIS\n", synopsis(command, is_root && all.size() > 1), '\n');
   if (is_root) {
     page += ".SH COMMANDS\n";
     for (const CommandDescription& c : all) {
-      if (c.name != command.name) page += cat(".TP\n", bold(c.name), '\n', escaped(c.text), '\n');
+      if (c.name != command.name) page += cat(".TP\n", man_bold(c.name), '\n', man_escaped(c.text), '\n');
     }
   }
   page += options_of(command);
-  if (!command.footer.empty()) page += cat(".SH NOTES\n.nf\n", escaped(command.footer), "\n.fi\n");
+  if (!command.footer.empty()) page += cat(".SH NOTES\n.nf\n", man_escaped(command.footer), "\n.fi\n");
+  page += examples_of(command);
   page += kExitStatus;
   page += ".SH SEE ALSO\n";
   std::string others;
   for (const CommandDescription& c : all) {
-    if (c.name != command.name) others += cat(others.empty() ? "" : ",\n", bold(man_page_name(c)), "(1)");
+    if (c.name != command.name) others += cat(others.empty() ? "" : ",\n", man_bold(man_page_name(c)), "(1)");
   }
+  if (command.name == "watch") others += cat(",\n", man_bold("weir.toml"), "(5)");
   return page + others + '\n';
 }
 

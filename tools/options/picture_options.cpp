@@ -68,6 +68,33 @@ void read_camera(const OptionRow& row, const std::string& text, Request& request
   if (numbers.size() == 3) camera.zoom = numbers[2];
 }
 
+// --iso without --mode asks for the surface.
+void choose_iso_mode(const GivenOptions& given, Request& request) {
+  const auto is_given = [&](std::string_view key) {
+    const auto found = given.find(key);
+    return found != given.end() && !found->second.empty();
+  };
+  if (!is_given("iso") || request.scene.mode == RenderMode::iso) return;
+  if (is_given("mode")) {
+    throw Error(ErrorKind::usage, compose(option("iso"), " is of the surface that ", option("mode", "iso"),
+                                          " draws; not ", option("mode", render_mode_name(request.scene.mode))));
+  }
+  request.scene.mode = RenderMode::iso;
+}
+
+void check_colorbar(const Request& request) {
+  if (!request.colorbar || request.scene.mode != RenderMode::iso) return;
+  throw Error(ErrorKind::usage, compose(option("colorbar"), " says which colour is which value, and ",
+                                        option("mode", "iso"), " draws the surface of one; leave one of them out"));
+}
+
+void check_scattered_levels(const Request& request) {
+  const bool scatters = request.options.levels && request.options.levels->scattered > 0;
+  if (!scatters || request.scene.mode == RenderMode::path) return;
+  throw Error(ErrorKind::usage, compose(option("lod-scattered"), " is of the light that ", option("mode", "path"),
+                                        " scatters; not ", option("mode", render_mode_name(request.scene.mode))));
+}
+
 bool is_float32(const std::optional<double>& number) { return number && std::abs(*number) <= 3.4e38; }
 
 void read_range(const OptionRow& row, const std::string& text, Request& request) {
@@ -137,7 +164,7 @@ std::uint64_t read_bytes(const OptionRow& row, const std::string& text) {
 }
 
 // Enough that a default picture is clean; the other modes only have edges to smooth.
-std::uint32_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 32 : 4; }
+std::uint32_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 64 : 4; }
 
 // The scene is the first, so that the options after it change it.
 constexpr ReadableOption<Request> kPictureOptions[] = {
@@ -163,7 +190,7 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
     {{.key = "devices", .argument = "N,N,...", .standard = "0", .help = "CUDA devices that share the samples"},
      read_devices},
     {{.key = "size", .argument = "WxH", .unit = "pixels", .standard = "960x720", .help = "in pixels"}, read_size},
-    {{.key = "spp", .argument = "N", .standard = "32 for path, 4 for the others", .help = "samples a pixel"},
+    {{.key = "spp", .argument = "N", .standard = "64 for path, 4 for the others", .help = "samples a pixel"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.sampling.samples = static_cast<std::uint32_t>(read_count(row, text, 1, kMaxSamples));
      }},
@@ -187,6 +214,10 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
        r.scene.volume.colormap = text;
        r.scene.volume.color.clear();
      }},
+    {{.key = "colorbar",
+      .help = "draws a bar of the colours with their values, name and units, right of the picture, "
+              "which grows wider by it; .png alone, not with --mode iso"},
+     [](const OptionRow& row, const std::string& text, Request& r) { r.colorbar = read_flag(row, text); }},
     {{.key = "range",
       .argument = "LOW,HIGH",
       .unit = "the values'",
@@ -197,7 +228,7 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
       .argument = "VALUE",
       .unit = "the values'",
       .standard = "35 % of the way from the background",
-      .help = "of the surface"},
+      .help = "of the surface; draws it where no --mode is given"},
      read_iso},
     {{.key = "camera",
       .argument = "AZIMUTH,ELEVATION[,ZOOM]",
@@ -245,10 +276,27 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
      read_lod_scattered},
 };
 
+bool is_backend_option(std::string_view key) {
+  constexpr std::array kKeys{"backend", "devices", "threads", "memory", "device-memory"};
+  return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+}
+
 }  // namespace
 
 void add_picture_options(CLI::App& command, GivenOptions& given) {
   add_options<Request>(command, kPictureOptions, given);
+}
+
+void add_backend_options(CLI::App& command, GivenOptions& given) {
+  for (const auto& option : kPictureOptions) {
+    if (is_backend_option(option.row.key)) add_option(command, option.row, given);
+  }
+}
+
+BackendChoice read_backend_choice(const GivenOptions& given) {
+  PictureRequest request;
+  read_options<Request>(kPictureOptions, given, request);
+  return request.backend;
 }
 
 std::string filter_name(Filter filter) {
@@ -260,6 +308,9 @@ PictureRequest read_picture_request(const GivenOptions& given) {
   PictureRequest request;
   request.sampling.samples = 0;
   read_options<Request>(kPictureOptions, given, request);
+  choose_iso_mode(given, request);
+  check_colorbar(request);
+  check_scattered_levels(request);
   if (request.sampling.samples == 0) request.sampling.samples = default_samples(request.scene.mode);
   request.options.environment = load_environment(request.scene);
   return request;

@@ -15,16 +15,23 @@ class App;
 
 namespace weir {
 
-/// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --range, --iso,
-/// --camera, --threads and --memory; what is given goes to `given`, which must live as long as the command.
+/// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --colorbar, --range,
+/// --iso, --camera, --threads and --memory; what is given goes to `given`, which must live as long as the command.
 void add_picture_options(CLI::App& command, GivenOptions& given);
 
-/// What they mean.
+/// Of these, --backend, --devices, --threads, --memory and --device-memory alone.
+void add_backend_options(CLI::App& command, GivenOptions& given);
+
+/// What those mean. Throws Error(usage) as read_picture_request.
+BackendChoice read_backend_choice(const GivenOptions& given);
+
+/// What all of them mean.
 struct PictureRequest {
   Scene scene;
   RenderOptions options;  ///< with the scene's environment, loaded
   SampleOptions sampling;
   BackendChoice backend{"auto", {0}, 0};
+  bool colorbar = false;  ///< beside the picture: tools/plot/color_bar.h
 
   std::uint64_t pixel_samples() const {
     return static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * sampling.samples;

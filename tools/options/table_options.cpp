@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compressor/options/conversion_request.h"
+#include "format/base/text.h"
 
 namespace weir {
 
@@ -14,6 +15,17 @@ void add_option(CLI::App& command, const OptionRow& row, GivenOptions& given, co
     command
         .add_flag_callback(
             name, [store] { store("true"); }, row.text())
+        ->group(group);
+  } else if (row.several) {
+    const auto store_all = [store](const std::vector<std::string>& texts) {
+      std::string lines;
+      for (const std::string& text : texts) lines += cat(lines.empty() ? "" : "\n", text);
+      store(lines);
+    };
+    command.add_option_function<std::vector<std::string>>(name, store_all, row.text())
+        ->type_name(std::string(row.argument))
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)  // once or more, one value each time
         ->group(group);
   } else {
     command.add_option_function<std::string>(name, store, row.text())

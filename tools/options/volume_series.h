@@ -1,22 +1,17 @@
-// The files of a series that is played: which, in what order, and what they
-// have in common.
+// The NanoVDB files that a command takes: which, in what order, and what the steps of a series have in common.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 
-/// Text order with runs of digits as numbers: "step_9" before "step_10".
-bool natural_less(std::string_view a, std::string_view b);
-
-/// Files as named, and those that a pattern (*, ?, [...]) which is no file's name matches; in natural order,
-/// each once. Throws Error(input) for a pattern that matches nothing.
+/// Files as named, and those of a pattern that is no file's name: *, ? and [...], or one %d or %05d in the last part;
+/// in natural order (natural_less), each once. Throws Error(input) for a pattern that matches nothing.
 std::vector<std::string> expand_volumes(std::span<const std::string> inputs);
 
 struct SeriesSummary {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace weir {
@@ -9,6 +10,10 @@ namespace {
 
 constexpr int kMostEvenSteps = 8;
 constexpr std::size_t kMostDecadeTicks = 10;
+
+// Numbers of ticks are written with an exponent from here on, and where they would have more decimals.
+constexpr double kLargestPlain = 1e6;
+constexpr int kMostDecimals = 4;
 
 // Shares of a step that rounding may have put a tick off by.
 constexpr double kTickRounding = 1e-9;
@@ -68,6 +73,18 @@ std::vector<double> minor_decade_ticks(double lo, double hi) {
     }
   }
   return ticks;
+}
+
+std::string tick_text(double tick, double step) {
+  if (!(std::abs(tick) > kTickRounding * step)) return "0";
+  const int last = step > 0 ? static_cast<int>(std::floor(std::log10(step) + kTickRounding)) : 0;  // decimal place
+  const int first = static_cast<int>(std::floor(std::log10(std::abs(tick)) + kTickRounding));
+  const bool plain = std::abs(tick) < kLargestPlain && -last <= kMostDecimals;
+  std::array<char, 400> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), tick,
+                                          plain ? std::chars_format::fixed : std::chars_format::scientific,
+                                          plain ? std::max(-last, 0) : std::max(first - last, 0));
+  return {text.data(), end};
 }
 
 }  // namespace weir

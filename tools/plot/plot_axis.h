@@ -1,6 +1,7 @@
 // Round numbers along the axes of a chart.
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace weir {
@@ -18,5 +19,8 @@ std::vector<double> decade_ticks(double lo, double hi);
 
 /// The multiples of powers of ten, 1 to 9 times each, inside [lo, hi]. 0 < lo <= hi, both finite.
 std::vector<double> minor_decade_ticks(double lo, double hi);
+
+/// A tick's number with the digits that tell it from those one `step` (>= 0) away: "0.25", "1.2e-05", "0".
+std::string tick_text(double tick, double step);
 
 }  // namespace weir

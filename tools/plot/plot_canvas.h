@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gpu/math/vector3.h"
 
@@ -41,6 +42,9 @@ class PlotCanvas {
                     bool upwards = false) = 0;
   /// Pixels along x that text() takes.
   virtual double text_width(std::string_view text, double size) = 0;
+  /// Of a PNG's sheet what is drawn so far: sRGB, three bytes a pixel, rows from the top. Throws Error(internal) for
+  /// SVG.
+  virtual std::vector<std::uint8_t> rgb24() = 0;
   /// The file's bytes; nothing is drawn after it. Throws Error(internal) where cairo fails.
   virtual std::string finish() = 0;
 };

@@ -2,6 +2,8 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <cstring>
+
 #include "format/base/error.h"
 #include "ingest/drivers/driver.h"
 #include "tools/plot/plot_canvas.h"
@@ -102,6 +104,26 @@ class CairoCanvas final : public PlotCanvas {
     cairo_text_extents_t extents;
     cairo_text_extents(cairo_.get(), valid_utf8(text).c_str(), &extents);
     return extents.x_advance;
+  }
+
+  std::vector<std::uint8_t> rgb24() override {
+    if (format_ != PlotFormat::png) throw Error(ErrorKind::internal, "a chart as SVG has no pixels");
+    cairo_surface_flush(surface_.get());
+    const int width = cairo_image_surface_get_width(surface_.get());
+    const int height = cairo_image_surface_get_height(surface_.get());
+    const unsigned char* data = cairo_image_surface_get_data(surface_.get());
+    if (data == nullptr) throw Error(ErrorKind::internal, "a chart has no pixels");
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (int y = 0; y < height; ++y) {
+      const unsigned char* row = data + static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get());
+      for (int x = 0; x < width; ++x) {
+        std::uint32_t pixel = 0;  // 0x00RRGGBB
+        std::memcpy(&pixel, row + 4 * static_cast<std::ptrdiff_t>(x), sizeof pixel);
+        for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(pixel >> shift & 0xFFU));
+      }
+    }
+    return bytes;
   }
 
   std::string finish() override {

@@ -1,13 +1,19 @@
 #include "tools/report/finished_output.h"
 
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
 
 #include "compressor/conversion_identity.h"
+#include "compressor/options/canonical_options.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "format/output/output_files.h"
+#include "ingest/raw/raw_name.h"
 #include "tools/report/read_sidecar.h"
 
 namespace weir {
@@ -24,8 +30,33 @@ Sidecar expected_record(const SourceInfo& source, const ConversionOptions& optio
     record.visible = Sidecar::Visible();
     record.visible->scene_digest = scene_digest(options.scene->scene);
   }
-  record.weir.options = deciding_options(options.provenance.options);
+  record.weir.options = options.provenance.options;
   return parse_sidecar(to_json_text(record), source.path);
+}
+
+// Those that say what the source does not say itself. Where it lies, which volume it is and which part of it is taken
+// is compared as it came out: "a" and "/a", -1 and the last position, a spacing that is the file's own are the same.
+std::map<std::string, std::string> compared_options(const std::map<std::string, std::string>& options,
+                                                    const SourceInfo& source) {
+  std::map<std::string, std::string> compared = canonical_options(deciding_options(options));
+  for (const char* key : {"index", "spacing", "origin", "roi", "ghost"}) compared.erase(key);
+  if (!source.dataset.empty()) compared.erase("dataset");
+  const auto name = source.format == "raw" ? parse_raw_name(source.path) : std::nullopt;
+  if (!name) return compared;
+  compared.erase("dims");  // an option that contradicts the name is refused
+  if (name->type) compared.erase("type");
+  if (name->type && name->big_endian) compared.erase("endian");
+  return compared;
+}
+
+bool same_place(const Sidecar::Grid& grid, const SourceInfo& source) {
+  return grid.index_bbox == source.domain() && grid.voxel_size == source.spacing && grid.origin == source.origin;
+}
+
+// "a.raw", "./a.raw" and its absolute path name one file.
+bool same_file(const std::string& found, const std::string& expected) {
+  std::error_code not_there;
+  return found == expected || std::filesystem::equivalent(found, expected, not_there);
 }
 
 std::string difference(const Sidecar& found, const Sidecar& expected, const SourceInfo& source) {
@@ -42,7 +73,10 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
       found.source.format != source.format || found.source.extent != source.extent) {
     return cat("made of another volume of ", source.path);
   }
-  if (deciding_options(found.weir.options) != expected.weir.options) return "made with other options";
+  if (!same_place(found.grid, source)) return "made of another region, or with another spacing or origin";
+  if (compared_options(found.weir.options, source) != compared_options(expected.weir.options, source)) {
+    return "made with other options";
+  }
   const std::string scene = expected.visible ? expected.visible->scene_digest : "";
   if ((found.visible ? found.visible->scene_digest : "") != scene) return "made for a scene that said something else";
   return {};
@@ -92,7 +126,7 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
     return {FinishedOutput::State::foreign, {}, error.what()};
   }
   const Sidecar expected = expected_record(source, options);
-  if (found.source.path != expected.source.path) {
+  if (!same_file(found.source.path, expected.source.path)) {
     return {FinishedOutput::State::foreign, {}, cat("was made of ", found.source.path)};
   }
   std::string reason = difference(found, expected, source);
@@ -107,6 +141,7 @@ void check_output(const std::string& input, const std::string& output) {
   if (std::filesystem::equivalent(input, output, ignored)) {
     throw Error(ErrorKind::usage, cat(output, ": is the input; choose another output"));
   }
+  require_volume_name(output);
   if (std::filesystem::is_directory(output, ignored)) {
     throw Error(ErrorKind::usage, cat(output, ": is a directory; name a file in it"));
   }

@@ -20,12 +20,14 @@ constexpr std::size_t kLabelWidth = 9;
 constexpr std::size_t kDiscreteBins = 16;  // fewer filled ones say nothing about what lies between
 
 constexpr std::int32_t kWidth = 720;  // pixels
-constexpr std::int32_t kHeight = 360;
+constexpr std::int32_t kHeight = 384;
 constexpr std::int32_t kLeft = 64;
 constexpr std::int32_t kRight = 24;
-constexpr std::int32_t kTop = 32;
+constexpr std::int32_t kTop = 56;
+constexpr double kTitleMiddle = 18;
 constexpr std::int32_t kBottom = 48;
 constexpr double kTextSize = 12;
+constexpr double kHistogramTitleSize = 15;
 constexpr int kMostSteps = 6;  // of the ticks along x
 constexpr Float3 kPaper{1, 1, 1};
 constexpr Float3 kInk{0.2F, 0.2F, 0.2F};
@@ -96,7 +98,8 @@ std::string histogram_text(const Sidecar::Histogram& histogram) {
   return plot + std::string(kLabelWidth + 2, ' ') + low + std::string(gap, ' ') + high + '\n';
 }
 
-std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background, PlotFormat format) {
+std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background,
+                            const HistogramLabels& labels, PlotFormat format) {
   const std::unique_ptr<PlotCanvas> canvas = make_plot_canvas(kWidth, kHeight, format, kPaper);
   constexpr std::int32_t kFloor = kHeight - kBottom;
   constexpr std::int32_t kBarsWidth = kWidth - kLeft - kRight;
@@ -104,6 +107,7 @@ std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<d
   const auto write = [&](double x, double y, const std::string& text, TextAnchor anchor, const Float3& ink = kInk) {
     canvas->text({x, y}, text, kTextSize, ink, anchor);
   };
+  canvas->text({kLeft, kTitleMiddle}, labels.title, kHistogramTitleSize, kInk, TextAnchor::left);
   if (nothing_to_show(histogram)) {
     write(kWidth / 2.0, kHeight / 2.0, "no finite values", TextAnchor::middle);
     return canvas->finish();
@@ -149,11 +153,11 @@ std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<d
   } else {
     tick(shown.min, cat(shown.min));
   }
-  write((kLeft + kWidth - kRight) / 2.0, kHeight - 14, "value", TextAnchor::middle);
+  write((kLeft + kWidth - kRight) / 2.0, kHeight - 14, labels.values, TextAnchor::middle);
   if (background && *background >= shown.min && *background <= shown.max) {
     const std::int32_t x = x_of(*background);
     canvas->fill(x, kTop - 6, x + 1, kFloor, kMark);
-    const std::string label = cat("background ", *background);
+    const std::string label = cat("background ", short_number(*background));
     const double widest = kWidth - kRight - canvas->text_width(label, kTextSize);
     write(std::min<double>(x + 5, widest), kTop - 12, label, TextAnchor::left, kMark);
   }

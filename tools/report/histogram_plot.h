@@ -14,8 +14,15 @@ namespace weir {
 /// line saying so where there is nothing to show.
 std::string histogram_text(const Sidecar::Histogram& histogram);
 
-/// The bytes of a file, 720 x 360 pixels with axes, decade lines, and a mark at `background` where it is given and
-/// inside. Throws as make_plot_canvas.
-std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background, PlotFormat format);
+/// What stands on a chart.
+struct HistogramLabels {
+  std::string title;   ///< above it, what the volume is
+  std::string values;  ///< below the axis of values, with their units
+};
+
+/// The bytes of a file, 720 x 384 pixels with labels, axes, decade lines, and a mark at `background` where it is given
+/// and inside. Throws as make_plot_canvas.
+std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background,
+                            const HistogramLabels& labels, PlotFormat format);
 
 }  // namespace weir

@@ -2,6 +2,7 @@
 // command that converts each.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,8 @@ struct InputListing {
 /// Lists `path`; reads no values. Throws what open_source throws of the file itself.
 InputListing list_input(const std::string& path, const SourceOptions& options);
 
-/// "weir convert PATH --dataset NAME --index 0,0", quoted for a shell. The index names the first volume of
-/// the leading axes.
-std::string convert_command(const InputListing& listing, const DatasetInfo& dataset);
-
-/// On stdout: for people, or as one JSON object.
-void print_listing(const InputListing& listing, bool json);
+/// On stdout, for people.
+void print_text(const InputListing& listing);
+nlohmann::ordered_json to_json(const InputListing& listing);
 
 }  // namespace weir

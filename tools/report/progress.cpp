@@ -1,6 +1,7 @@
 #include "tools/report/progress.h"
 
 #include <fcntl.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
@@ -65,7 +66,11 @@ Progress::Progress(ProgressOptions options, std::FILE* out, std::function<double
     : options_(options),
       out_(out),
       clock_s_(clock_s ? std::move(clock_s) : steady_seconds),
-      terminal_(isatty(fileno(out)) == 1) {}
+      terminal_(isatty(fileno(out)) == 1) {
+  if (options_.mode == ProgressMode::automatic && !spdlog::should_log(spdlog::level::info)) {
+    options_.mode = ProgressMode::never;
+  }
+}
 
 Progress::~Progress() { end_bar(); }
 

@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/real_path.h"
+#include "format/sidecar/is_of.h"
 
 namespace weir {
 namespace {
@@ -32,6 +35,13 @@ Sidecar read_sidecar(const std::string& path) {
     throw Error(ErrorKind::input, path + ": cannot read the sidecar; check the permissions");
   }
   return parse_sidecar(text, path);
+}
+
+std::optional<Sidecar> own_sidecar(const NvdbFile& file) {
+  const std::string path = sidecar_path(file.path());
+  if (!is_there(path)) return std::nullopt;
+  Sidecar sidecar = read_sidecar(path);
+  return is_of(sidecar, file.grid()) ? std::optional(std::move(sidecar)) : std::nullopt;
 }
 
 }  // namespace weir

@@ -67,6 +67,18 @@ VolumeCheck source_range(const NvdbGrid& grid, const TreeCensus& census, const S
   return {"sidecar value_range", cat(census.min, " .. ", census.max), cat("within ", least, " .. ", most), ok};
 }
 
+// Where nothing but numbers was to be kept, there are no others.
+std::vector<VolumeCheck> validity_checks(const TreeCensus& census, const Sidecar& s) {
+  const auto all = static_cast<std::uint64_t>(volume(s.source.extent));
+  const std::uint64_t others = s.nonfinite.count + s.missing.count;
+  std::vector<VolumeCheck> checks{{"sidecar missing.count", cat(s.missing.count), cat("at most ", all), others <= all}};
+  const bool refused = s.missing.policy == "error" && s.missing.count > 0;
+  if (refused)
+    checks.push_back({"sidecar missing.policy", s.missing.policy, "another one, with missing voxels", false});
+  if (s.nonfinite.policy != "keep") checks.push_back(equal("non-finite voxels", census.nonfinite, std::uint64_t{0}));
+  return checks;
+}
+
 // Kinds of blocks, counted again.
 std::vector<VolumeCheck> packed_checks(const PackedData& packed, const Sidecar& sidecar) {
   if (!sidecar.packed) return {{"sidecar packed", "no such object", "that of a packed file", false}};
@@ -117,6 +129,7 @@ std::vector<VolumeCheck> check_sidecar(const NvdbGrid& grid, const TreeCensus& c
   checks.push_back({"sidecar background.value", cat(grid.background()), cat(s.background.value),
                     same_value(grid.background(), s.background.value)});
   checks.push_back(source_range(grid, census, s));
+  for (VolumeCheck& check : validity_checks(census, s)) checks.push_back(std::move(check));
   if (grid.packed() == nullptr) {  // where packed, the selection is not of leaves
     checks.push_back(equal("sidecar selection.bits", census.leaves_by_bits, s.selection.bits));
     checks.push_back(equal("sidecar selection.leaves_kept", census.leaves, s.selection.leaves_kept));

@@ -126,9 +126,15 @@ class Exchange {
 };
 
 // Weir's own refusal, as an error of the command.
-[[noreturn]] void refuse(const std::string& where, unsigned status, const nlohmann::ordered_json& body) {
+[[noreturn]] void refuse(const std::string& where, unsigned status, const nlohmann::ordered_json& body,
+                         bool gave_token) {
   const auto message = body.is_object() ? body.value("error", "") : std::string();
   if (message.empty()) throw Error(ErrorKind::io, cat(where, ": the answer is ", status, " and not weir's"));
+  if (status == 401 && gave_token) {
+    throw Error(ErrorKind::usage, cat(where,
+                                      ": the service has another token than the one given; check --token-file, "
+                                      "WEIR_TOKEN or the token of --config"));
+  }
   if (status == 401) {
     throw Error(ErrorKind::usage, cat(where, ": the service wants its token; give it with --token-file or WEIR_TOKEN"));
   }
@@ -160,6 +166,8 @@ ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.
   if (!control_.is_unix()) control_ = address_;
   if (!options.token_file.empty()) {
     token_ = first_word_of(options.token_file);
+    if (token_.empty())
+      throw Error(ErrorKind::usage, cat(options.token_file, ": holds no token; name a file with one"));
   } else if (const char* token = std::getenv("WEIR_TOKEN"); token != nullptr && token_.empty()) {
     token_ = token;
   }
@@ -175,7 +183,7 @@ ServiceClient::Json ServiceClient::ask(const std::string& method, const std::str
   request.prepare_payload();
   const auto response = Exchange(address, request).run();
   Json body = Json::parse(response.body(), nullptr, false);
-  if (response.result_int() >= 400) refuse(address.text(), response.result_int(), body);
+  if (response.result_int() >= 400) refuse(address.text(), response.result_int(), body, !token_.empty());
   if (body.is_discarded()) refuse_foreign();
   return body;
 }

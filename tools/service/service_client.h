@@ -1,5 +1,5 @@
-// The other end of the control server: what `weir jobs`, `weir status` and
-// `weir retry` ask a running `weir watch`. One request, one connection.
+// The other end of the control server: what `weir jobs`, `weir status`,
+// `weir retry`, `weir cancel`, `weir pause` and `weir resume` ask a running `weir watch`. One request, one connection.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -33,21 +33,33 @@ std::string result_text(const Json& outputs) {
   const std::string rate = cat("rate ", std::round(output.at("rate").get<double>() * 100) / 100);
   if (output.at("lossless").get<bool>()) return rate + ", lossless";
   const Json& psnr = output.at("psnr_db");
+  const Json largest = output.value("max_error", Json());
+  if (psnr.is_null() && !largest.is_null() && largest.get<double>() == 0) return rate + ", lossless over valid voxels";
   return psnr.is_null() ? rate : cat(rate, ", ", fixed(psnr.get<double>(), 1), " dB");
 }
 
 std::string running_text(const Json& job) {
   const Json& fraction = job.at("fraction");
   const std::string share = fraction.is_null() ? "" : cat(std::floor(100 * fraction.get<double>()), " % after ");
-  return cat("running     ", job.at("id").get<std::int64_t>(), ' ', text_at(job, "source"), ": ", text_at(job, "step"),
-             ", ", share, duration_text(job.at("seconds").get<double>()), '\n');
+  const bool thumbnail = job.at("step") == "render";  // of a job that is done
+  return cat(thumbnail ? "thumbnail   " : "running     ", job.at("id").get<std::int64_t>(), ' ', text_at(job, "source"),
+             ": ", text_at(job, "step"), ", ", share, duration_text(job.at("seconds").get<double>()), '\n');
+}
+
+// ", 2 failed, 1 quarantined"; nothing where none is.
+std::string problems_text(const Json& counts) {
+  std::string text;
+  for (const char* state : {"failed", "quarantined"}) {
+    if (const auto count = counts.at(state).get<std::uint64_t>(); count > 0) text += cat(", ", count, ' ', state);
+  }
+  return text;
 }
 
 std::string watch_text(const Json& watch) {
   const std::string how = watch.at("up").get<bool>() ? text_at(watch, "method") : "DOWN: " + text_at(watch, "reason");
   const auto overflows = watch.at("overflows").get<std::uint64_t>();
   return cat("watch       ", text_at(watch, "directory"), " -> ", text_at(watch, "output"), ": ", how, ", ",
-             watch.at("jobs").at("done").get<std::uint64_t>(), " done",
+             watch.at("jobs").at("done").get<std::uint64_t>(), " done", problems_text(watch.at("jobs")),
              overflows > 0 ? cat(", ", overflows, " queue overflows") : std::string(), '\n');
 }
 
@@ -83,7 +95,7 @@ std::string jobs_text(const Json& page, double now) {
     text += cat(right(cat(job.at("id").get<std::int64_t>()), 7), "  ", padded(text_at(job, "state"), 11),
                 right(bytes_at(job, "source_bytes"), 11), ' ',
                 right(duration_text(std::max(now - job.at("changed_at").get<double>(), 0.0)), 11), "  ",
-                padded(result_text(job.at("outputs")), 22), text_at(job, "source"), '\n');
+                padded(result_text(job.at("outputs")) + " ", 22), text_at(job, "source"), '\n');
     const std::string reason = text_at(job, "reason");
     if (!reason.empty()) text += cat("         ", reason, '\n');
   }

@@ -200,7 +200,8 @@ void draw_axes(PlotCanvas& canvas, const Frame& frame, const std::string& x_labe
 std::string psnr_chart(const SweepReport& report, SweepAxis axis, PlotFormat format) {
   const std::unique_ptr<PlotCanvas> sheet = make_plot_canvas(kSheetWidth, kSheetHeight, format, kSheetPaper);
   PlotCanvas& canvas = *sheet;
-  const std::string title = std::filesystem::path(report.source).filename().string();
+  const std::string file = std::filesystem::path(report.source).filename().string();
+  const std::string title = report.chosen.empty() ? file : cat(file, ' ', report.chosen);
   canvas.text({kSheetLeft, kTitle}, title, kTitleSize, kSheetInk, TextAnchor::left);
   const std::vector<Series> all = series_of(report, axis);
   if (std::none_of(report.rows.begin(), report.rows.end(), shown)) {

@@ -33,24 +33,18 @@ std::string joined(const std::vector<std::string>& fields) {
   return line;
 }
 
-std::string short_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
-
 std::string decibel_text(const Certificate& error) {
   return error.lossless ? "lossless" : error.psnr_db ? fixed(*error.psnr_db, 2) : "-";
 }
 
 std::vector<std::string> table_fields(const SweepReport& report, const SweepRow& row) {
-  std::vector<std::string> fields{row.method, short_text(row.rate), cat(row.bytes_asked)};
+  std::vector<std::string> fields{row.method, short_number(row.rate), cat(row.bytes_asked)};
   if (row.result) {
     const SweepResult& r = *row.result;
     for (const std::string& field :
-         {cat(r.bytes), short_text(report.bits_per_voxel(r)), r.encoding, decibel_text(r.error),
-          short_text(r.error.mse), short_text(r.error.max_abs), short_text(r.seconds), short_text(report.gb_per_s(r)),
-          r.leaves_kept ? cat(*r.leaves_kept) : "-"}) {
+         {cat(r.bytes), short_number(report.bits_per_voxel(r)), r.encoding, decibel_text(r.error),
+          short_number(r.error.mse), short_number(r.error.max_abs), short_number(r.seconds),
+          short_number(report.gb_per_s(r)), r.leaves_kept ? cat(*r.leaves_kept) : "-"}) {
       fields.push_back(field);
     }
   }

@@ -31,6 +31,7 @@ struct SweepRow {
 
 struct SweepReport {
   std::string source;  ///< as the user gave it
+  std::string chosen;  ///< of the source: chosen_text()
   Index3 extent;       ///< voxels, after --roi
   std::size_t threads = 0;
   std::uint64_t memory = 0;  ///< the ceiling, bytes

@@ -33,7 +33,7 @@ constexpr std::uint64_t kLeastBlockTrialBytes = std::uint64_t{1} << 20U;
 /// Larger blocks are no faster.
 constexpr std::uint64_t kMostBlockTrialBytes = std::uint64_t{64} << 20U;
 
-inline bool is_finite(float v) { return v - v == 0.0F; }
+inline bool is_finite_value(float v) { return v - v == 0.0F; }
 
 // Of a chunked source the cut is moved with the domain: ZFP's blocks begin at its corner.
 AccessShape access_from_corner(const VolumeSource& source) {
@@ -86,7 +86,8 @@ void for_each_row(const ZfpField& field, const Visit& visit) {
 std::uint64_t count_nonfinite(const ZfpField& field) {
   std::uint64_t count = 0;
   for_each_row(field, [&](std::span<const float> row, std::size_t) {
-    count += static_cast<std::uint64_t>(std::count_if(row.begin(), row.end(), [](float v) { return !is_finite(v); }));
+    count +=
+        static_cast<std::uint64_t>(std::count_if(row.begin(), row.end(), [](float v) { return !is_finite_value(v); }));
   });
   return count;
 }
@@ -105,7 +106,7 @@ struct Tally {
     max = std::max(max, source);
     if (std::bit_cast<std::uint32_t>(source) == std::bit_cast<std::uint32_t>(decoded)) return;
     ++different;
-    if (!is_finite(decoded)) {
+    if (!is_finite_value(decoded)) {
       ++nonfinite_decoded;
       return;
     }

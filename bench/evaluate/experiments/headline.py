@@ -62,7 +62,7 @@ class Headline(Experiment):
                           file_bytes=sidecar["budget"]["file_bytes"], psnr_db=sidecar["error"]["psnr_db"],
                           lossless=sidecar["error"]["lossless"])
             for name, more in (("verify", [whole]), ("compare", [path, whole]),
-                               ("render", [whole, "-o", picture, "--spp", 8, "--size", "320x240"])):
+                               ("render", [whole, "-o", picture, "--overwrite", "--spp", 8, "--size", "320x240"])):
                 result[f"{name}_s"] = bench.weir.run(name, *more).seconds
             forget(path)
             result["killed_after_s"] = self._kill(bench, [*arguments, again], run.seconds / 2)

@@ -62,7 +62,7 @@ class Pictures(Experiment):
 
     @staticmethod
     def _render(bench, scene, source, picture, *options):
-        bench.weir.run("render", source, "-o", picture, "--scene", SCENES / f"{scene.name}.toml", "--size",
+        bench.weir.run("render", source, "-o", picture, "--overwrite", "--scene", SCENES / f"{scene.name}.toml", "--size",
                        "64x48" if bench.quick else SIZE, "--spp", scene.samples, "--backend", "cpu", *options)
 
     def _noise(self, bench, scene):
@@ -77,7 +77,7 @@ class Pictures(Experiment):
     def _judged(self, bench, scene, name, result):
         directory = self._directory(bench, scene)
         flip = bench.weir.flip(directory / "source.png", directory / f"{name}.png", "-o",
-                               directory / f"{name}_flip.png")
+                               directory / f"{name}_flip.png", "--overwrite")
         return {"scene": scene.name, "volume": scene.volume.name, "samples": scene.samples, **result,
                 "flip_mean": flip["mean"], "flip_third_quartile": flip["third_weighted_quartile"],
                 "flip_max": flip["max"]}

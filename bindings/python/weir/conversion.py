@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from . import _core
 from .errors import UsageError
-from .options import box_text, given_options
+from .labelled import is_data_array, take_apart
+from .options import box_text, given_options, text_of
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Called with the pass ("survey", "encode", ...), and its float32 bytes done and in all.
 Progress = Callable[[str, int, int], Any]
@@ -26,7 +30,7 @@ _TYPES = {"bool": "uint8"} | {
 
 
 def convert(
-    source: Union[Path, NDArray[Any]],
+    source: Union[Path, NDArray[Any], "xarray.DataArray"],
     output: Optional[Path] = None,
     *,
     rate: Optional[float] = None,
@@ -34,6 +38,7 @@ def convert(
     psnr: Optional[float] = None,
     max_error: Optional[float] = None,
     lossless: bool = False,
+    at_most: bool = False,
     encoding: Optional[str] = None,
     preview: Optional[str] = None,
     metric: Optional[str] = None,
@@ -46,9 +51,16 @@ def convert(
     spacing: Optional[Numbers] = None,
     origin: Optional[Numbers] = None,
     missing: Union[float, str, None] = None,
+    missing_policy: Optional[str] = None,
     roi: Any = None,
-    dataset: Optional[str] = None,
-    index: Optional[Sequence[int]] = None,
+    ghost: Union[int, Sequence[int], None] = None,
+    dataset: Union[str, Sequence[str], None] = None,
+    index: Union[int, str, Sequence[Union[int, str]], None] = None,
+    component: Union[int, str, None] = None,
+    magnitude: Union[str, Sequence[str], None] = None,
+    level: Optional[int] = None,
+    upsample: Optional[str] = None,
+    missing_chunks: Optional[str] = None,
     dims: Optional[Sequence[int]] = None,
     type: Optional[str] = None,
     endian: Optional[str] = None,
@@ -57,22 +69,27 @@ def convert(
     direct_io: Optional[str] = None,
     memory: Optional[Size] = None,
     threads: Optional[int] = None,
+    backend: Optional[str] = None,
     work_dir: Optional[Path] = None,
     resume: Optional[str] = None,
     save_interval: Optional[float] = None,
     overwrite: bool = False,
     progress: Optional[Progress] = None,
-) -> dict[str, Any]:
-    """Converts a volume to a NanoVDB file at `output` and its sidecar beside it; returns the sidecar.
+) -> Any:
+    """Converts a volume to a NanoVDB file at `output` and its sidecar beside it; returns the sidecar, a dictionary.
 
     source
         A path of anything that `weir convert` reads, or a numpy array indexed [z, y, x] as HDF5 does it: of bool,
         integers or floats of up to 64 bits in this machine's byte order, with any strides, read-only or not, a
         numpy.memmap too. An array is read where it is and not copied; it must not change before the call returns.
+        Or an xarray.DataArray of three axes: in the order z, y, x where their names (x, y, lat, lon ...) or attributes
+        "axis" say which they are, else as they are. Its name, units, long_name and time are kept, its coordinates become
+        spacing and origin; an axis whose coordinates fall is turned round.
     output
-        May be left out for a path: its stem + ".nvdb", beside it. An existing file is replaced with overwrite=True only.
+        May be left out for a path: its stem + ".nvdb", beside it; where the file holds several volumes, with what was
+        chosen in the name. An existing file is replaced with overwrite=True only.
 
-    How large, one of these; rate=8 where none is given:
+    How large, one of these; rate=8 where none is given, and of less than 128^3 voxels what keeps at least 40 dB:
 
     rate
         The file has exactly ceil(float32 bytes of the volume / rate) bytes.
@@ -81,21 +98,35 @@ def convert(
     psnr, max_error
         The smallest file of at least so many dB, or in which every voxel is within that of its value.
     lossless
-        The smallest file that preserves every bit of every voxel.
+        The smallest file that preserves every bit of every valid voxel.
+    at_most
+        With rate or size: a shorter file, not padding, where the volume needs less.
 
     What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
     "fp16", "packed"; preview (of a packed file) "auto", "on", "off"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
     brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path.
 
-    The volume: spacing (x, y, z) in world units per voxel; origin, the world position of voxel (0, 0, 0); missing, a
-    stored value that says "no data"; roi ((x0, y0, z0), (x1, y1, z1)) in voxels, half open; dataset, the name in a
-    container, or of what an array holds. Of files also index, dims (x, y, z), type, endian, offset, stack, direct_io.
+    The volume: spacing (x, y, z) in world units per voxel; origin, the world position of the centre of voxel (0, 0,
+    0); missing, a stored value that says "no data"; missing_policy "error", "background", "keep" (as data), what
+    becomes of such voxels, by default what nonfinite says, which is "error"; roi ((x0, y0, z0), (x1, y1, z1)) in
+    voxels, x0 inclusive, x1 exclusive, or a text as `--roi` takes it; ghost, layers of ghost cells left out at both
+    ends of each axis, a number or (x, y, z); dataset, the name in a container, or of what an array holds. A list of
+    datasets, in which "*" and "/step_%d/rho" stand for several, converts each of them and returns a list of sidecars:
+    output is then a directory ("out/"), a name with {stem}, {dataset} or {step}, or left out. Of files also index, a
+    position on each leading axis, (3, 0), or a text as `--index` takes it, "time=3"; one with a range, "0:2" or "*",
+    converts each and returns a list, too; component (0, 1, ..., "x", "y", "z" or "magnitude" of vectors in HDF5,
+    VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets that are the components of the vectors whose
+    length is the volume), level (of an AMReX plotfile, 0 the coarsest) and upsample ("constant", "linear"),
+    missing_chunks (of a Zarr array: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
         Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it
         begins; what is said of a memory that is too small counts both.
     threads
         At most so many work; 0, the default: one for each core. Results do not depend on it.
+    backend
+        "auto", "cpu" or "cuda": what surveys and encodes packed blocks, auto: a CUDA device where one answers, if weir was
+        built for one. Results do not depend on it.
     work_dir
         For spill files; by default a hidden directory beside the output.
     resume
@@ -111,14 +142,32 @@ def convert(
     free while it runs. Warnings, for instance that the least size is larger than the rate's, go to the logger
     "weir".
 
-    Raises UsageError (a ValueError), InputError, BudgetError or IoError; TypeError where source is something else.
+    Raises UsageError (a ValueError), InputError, BudgetError or IoError, of which those of missing and unreadable files
+    are FileNotFoundError or PermissionError too; TypeError where source is something else.
     """
+    meaning: dict[str, Any] = {}
+    if is_data_array(source):
+        labelled = take_apart(source)
+        source, meaning = labelled.values, labelled.meaning
+        if spacing is None:
+            spacing = labelled.spacing
+        else:  # then nothing is to be said of the array's own
+            for axis in meaning["axes"]:
+                axis.pop("note", None)
+        origin = labelled.origin if origin is None else origin
+        dataset = labelled.name if dataset is None else dataset
+    ranges = index is not None and any(letter in text_of(index) for letter in ":*")
+    listed = dataset is not None and not isinstance(dataset, str)
+    several = ranges or listed
+    if listed and not dataset:
+        raise UsageError("dataset is an empty list; name a dataset in it")
     options = given_options(
         rate=rate,
         size=size,
         psnr=psnr,
         max_error=max_error,
         lossless=lossless,
+        at_most=at_most,
         encoding=encoding,
         preview=preview,
         metric=metric,
@@ -131,9 +180,16 @@ def convert(
         spacing=spacing,
         origin=origin,
         missing=missing,
+        missing_policy=missing_policy,
         roi=None if roi is None else box_text(roi),
-        dataset=dataset,
+        ghost=ghost,
+        dataset="\n".join(map(str, dataset)) if listed else dataset,
         index=index,
+        component=component,
+        magnitude=magnitude,
+        level=level,
+        upsample=upsample,
+        missing_chunks=missing_chunks,
         dims=dims,
         type=type,
         endian=endian,
@@ -142,6 +198,7 @@ def convert(
         direct_io=direct_io,
         memory=memory,
         threads=threads,
+        backend=backend,
         work_dir=work_dir,
         resume=resume,
         save_interval=save_interval,
@@ -151,19 +208,21 @@ def convert(
     if isinstance(source, numpy.ndarray):
         if not target:
             raise UsageError("output is missing: an array has no name to make one from")
-        text = _core.convert_array(source, _scalar_type(source), target, options, progress)
+        if listed:
+            raise UsageError("dataset is a list; an array is one volume, whose name is a text")
+        texts = [_core.convert_array(source, _scalar_type(source), target, options, meaning, progress)]
     elif isinstance(source, (str, os.PathLike)):
-        text = _core.convert_file(os.fsencode(source), target, options, progress)
+        texts = _core.convert_files(os.fsencode(source), target, options, several, progress)
     else:
-        raise TypeError(f"source is a {source.__class__.__name__}, it must be a path or a numpy array")
-    record: dict[str, Any] = json.loads(text)
-    return record
+        raise TypeError(f"source is a {source.__class__.__name__}, it must be a path, a numpy array or an xarray.DataArray")
+    records = [json.loads(text) for text in texts]
+    return records if several else records[0]
 
 
 def _scalar_type(array: NDArray[Any]) -> str:
     """weir's name of the array's type. Raises UsageError for what is no volume of scalars."""
     if isinstance(array, numpy.ma.MaskedArray):
-        raise UsageError("source is a masked array; give source.filled(numpy.nan) and nonfinite, or a value and missing")
+        raise UsageError("source is a masked array; give source.filled(VALUE), missing=VALUE and missing_policy")
     if array.ndim != 3:
         raise UsageError(f"source has {array.ndim} axes, it must have three: [z, y, x]")
     if array.dtype.name not in _TYPES:

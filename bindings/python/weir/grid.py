@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from types import TracebackType
-from typing import Any, NamedTuple, Optional, Sequence, Type, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Type, Union
 
 import numpy
 from numpy.typing import NDArray
@@ -13,7 +13,11 @@ from numpy.typing import NDArray
 from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
+from .indexing import select
 from .options import given_options
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Macrocells(NamedTuple):
@@ -37,6 +41,8 @@ class Check(NamedTuple):
 class Grid:
     """A NanoVDB file, mapped and checked; values are decoded where they are asked for. Made by weir.open.
 
+    A grid is indexed like the array of its values: grid[60:70, :, -1], grid[::16, ::16, ::16], grid[5] and so on are
+    float32 arrays, for which only the blocks of 8^3 voxels that hold them are decoded; numpy.asarray(grid) has all.
     Coordinates (x, y, z) are voxels from the grid's lowest corner; arrays are indexed [z, y, x]. All methods may be
     called from several threads. Arrays are the caller's own and outlive the grid. A grid is a context manager; once
     closed, it raises UsageError.
@@ -45,6 +51,7 @@ class Grid:
     def __init__(self, path: Path) -> None:
         self._path = os.fspath(path)
         self._core = _core.Grid(os.fsencode(path))
+        self._absolute = os.path.abspath(self._path)
 
     def __enter__(self) -> Grid:
         return self
@@ -98,6 +105,65 @@ class Grid:
         return z, y, x
 
     @property
+    def dtype(self) -> numpy.dtype[numpy.float32]:
+        """Of to_numpy(): float32, whatever `type` is."""
+        return numpy.dtype(numpy.float32)
+
+    @property
+    def ndim(self) -> int:
+        """3."""
+        return 3
+
+    @property
+    def size(self) -> int:
+        """How many voxels there are."""
+        x, y, z = self.extent
+        return x * y * z
+
+    def __len__(self) -> int:
+        """Planes of constant z."""
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Any:
+        """What to_numpy()[key] is, decoding only the blocks that hold it: a float32 array of the caller's own, or one
+        numpy.float32 where `key` is (z, y, x).
+
+        key
+            Whole numbers, below 0 from the end, slices with any step, `...` and None, for the axes [z, y, x].
+
+        Raises IndexError for a place outside of the grid, and for arrays as indices.
+        """
+        return self._read(key, 0)
+
+    def _read(self, key: Any, level: int) -> Any:
+        """What to_numpy(level=level)[key] is, as grid[key] of level 0."""
+        chosen = select(key, self.level_shape(level))
+        if 0 in chosen.count:
+            return numpy.empty(chosen.shape, self.dtype)
+        first, step, count, low, high = (part[::-1] for part in (*chosen[:3], chosen.low, chosen.high))
+        if all(by == 1 for by in step):
+            values = self._core.read(low, high, level)
+        elif level == 0:
+            values = self._core.read_strided(first, step, count)
+        else:
+            values = self._core.read(low, high, level)
+            values = numpy.ascontiguousarray(values[tuple(slice(None, None, by) for by in chosen.step)])
+        if values.shape == chosen.shape:
+            return values
+        return values.reshape(chosen.shape) if chosen.shape else values[0, 0, 0]
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        """to_numpy(), for numpy.asarray(grid) and functions of numpy. Raises ValueError for copy=False."""
+        if copy is False:
+            raise ValueError("copy is False, but the values of a grid are decoded into an array of their own")
+        values = self.to_numpy()
+        return values if dtype is None else values.astype(dtype, copy=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A copy in another process opens the file there."""
+        return Grid, (self._absolute,)
+
+    @property
     def index_origin(self) -> tuple[int, int, int]:
         """Index (x, y, z) of the lowest voxel in the file; not 0 where a region was converted."""
         return self._core.index_origin
@@ -109,7 +175,7 @@ class Grid:
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """World position (x, y, z) of the voxel with index (0, 0, 0)."""
+        """World position (x, y, z) of the centre of the voxel with index (0, 0, 0)."""
         return self._core.origin
 
     @property
@@ -159,13 +225,24 @@ class Grid:
 
         roi
             Slices as of an array, numpy.s_[z0:z1, y0:y1, x0:x1], without steps, or corners ((x0, y0, z0),
-            (x1, y1, z1)), half open; to_numpy(s, k) is to_numpy(level=k)[s], and decodes only that.
+            (x1, y1, z1)), x1 exclusive; to_numpy(s, k) is to_numpy(level=k)[s], and decodes only that.
         level
             Each value is the mean of the voxels in a cube of 2^level voxels along an edge (of those that are there, at
             the upper ends), NaN where one of them is. No more than some rows of the volume are held meanwhile.
         """
         low, high = _box_of(roi, self.level_shape(level))
         return self._core.read(low, high, level)
+
+    def to_xarray(self, level: int = 0) -> xarray.DataArray:
+        """The values as an xarray.DataArray [z, y, x], which decodes what is asked of it, when it is asked.
+
+        Coordinates are world positions of the voxels' centres, or the source's own where these are not equally spaced;
+        with name, units, long_name, time and names of the axes as the sidecar keeps them. level, as of to_numpy. Wants
+        python3-xarray; the grid must stay open. xarray.open_dataset("a.nvdb", engine="weir") opens a file like this.
+        """
+        from .xarray_backend import data_array
+
+        return data_array(self, level)
 
     def sample(self, points: Any, filter: str = "trilinear") -> NDArray[numpy.float32]:
         """Values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
@@ -203,6 +280,7 @@ class Grid:
         scene: Optional[Path] = None,
         filter: Optional[str] = None,
         colormap: Optional[str] = None,
+        colorbar: bool = False,
         range: Optional[Numbers] = None,
         iso: Optional[float] = None,
         camera: Optional[Numbers] = None,
@@ -214,13 +292,17 @@ class Grid:
     ) -> NDArray[Any]:
         """The picture that `weir render` makes, [y, x, RGB] with rows from the top.
 
-        mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers; camera (azimuth, elevation) or
-        (azimuth, elevation, zoom), in degrees; colormap, a name; range (low, high) of colours and opacity; iso, the
-        surface's value; scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or
-        "nearest"; backend "auto", "cpu" or "cuda"; threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed
-        file that decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance
+        mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers;
+        camera (azimuth, elevation) or (azimuth, elevation, zoom), in degrees; colormap, a name ("viridis" for instance);
+        colorbar, whether the colours with their values, name and units stand at the right of the picture, which is wider
+        by them; range (low, high) of colours and opacity; iso, the surface's value; scene, the path of a scene file,
+        which the others overrule; filter "trilinear", "stochastic" or "nearest"; backend "auto", "cpu" or "cuda";
+        threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed file that decodes to more is rendered from a
+        cache. Returns uint8 sRGB or, where `linear`, float32 radiance
         before tone mapping. progress is called with "render" and samples.
         """
+        if linear and colorbar:
+            raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")
         options = given_options(
             mode=mode,
             size="x".join(map(str, size)),
@@ -229,6 +311,7 @@ class Grid:
             scene=scene,
             filter=filter,
             colormap=colormap,
+            colorbar=colorbar,
             range=range,
             iso=iso,
             camera=camera,
@@ -239,8 +322,26 @@ class Grid:
         return self._core.render(options, linear, progress)
 
 
-def open(path: Path) -> Grid:
-    """Opens a NanoVDB file; of several grids in it the first. Raises InputError where it is missing or no valid one."""
+def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Optional[dict[str, Any]] = None) -> Grid:
+    """Opens a NanoVDB file; of several grids in it the first.
+
+    path
+        Of a file, or a URL: "https://host/run/step_0042.nvdb", and what fsspec opens ("s3://...", "memory://..."). Of a
+        packed file elsewhere, only the head and the blocks that are asked for are read: a RemoteGrid.
+    cache
+        Of a URL: bytes of the file, or "256MiB", above which what was read is forgotten when other blocks are asked for.
+    storage_options
+        Of a URL: what fsspec's file system takes; http and https go through fsspec, too, where there are some.
+
+    Raises InputError where it is no valid one; where it is missing or may not be read, that is a FileNotFoundError or
+    PermissionError too.
+    """
+    from .remote import RemoteGrid, is_url
+
+    if is_url(path):
+        return RemoteGrid(str(path), cache=cache, storage_options=storage_options)
+    if storage_options:
+        raise UsageError(f"storage_options are for URLs, and {os.fspath(path)!r} is a path")
     return Grid(path)
 
 

@@ -26,17 +26,17 @@ def text_of(value: Any) -> str:
 
 
 def box_text(box: Any) -> str:
-    """((x0, y0, z0), (x1, y1, z1)), half open, as "x0:x1,y0:y1,z0:z1"; a text stays."""
+    """((x0, y0, z0), (x1, y1, z1)), x1 exclusive, as "x0:x1,y0:y1,z0:z1"; a text stays."""
     if isinstance(box, str):
         return box
     try:
         low, high = ([text_of(end) for end in corner] for corner in box)
         return ",".join(f"{a}:{b}" for a, b in zip(low, high, strict=True))
     except (TypeError, ValueError):
-        raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), half open") from None
+        raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), x0 inclusive, x1 exclusive") from None
 
 
-_FLAGS = {"lossless", "stack", "overwrite"}
+_FLAGS = {"at_most", "colorbar", "lossless", "stack", "overwrite"}
 
 
 def given_options(**keywords: Any) -> dict[str, str]:

@@ -1,8 +1,22 @@
 #include "gpu/cuda/bricks/device_machine.cuh"
 #include "gpu/cuda/bricks/device_pyramid.h"
 #include "gpu/cuda/bricks/level_builder.h"
+#include "gpu/volume/level_bounds.h"
 
 namespace weir {
+
+namespace {
+
+// A level's texels, unfiltered: a filtered look-up of one next to a NaN is NaN.
+struct SurfaceTexels {
+  cudaSurfaceObject_t surface;
+
+  __device__ float voxel(const Int3& i) const {
+    return surf3Dread<float>(surface, i.x * static_cast<std::int32_t>(sizeof(float)), i.y, i.z);
+  }
+};
+
+}  // namespace
 
 // While a level is copied to its texture, it is there twice.
 int DevicePyramid::finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
@@ -32,6 +46,23 @@ LevelsView<TextureSampler> DevicePyramid::view() const {
   view.count = static_cast<int>(levels_.size());
   for (std::size_t i = 0; i < levels_.size(); ++i) view.texels[i] = {levels_[i].object(), false};
   return view;
+}
+
+DeviceArray<MinMax> DevicePyramid::bounds(const CellLattice& cells, const MinMax* voxels, const LevelChoice& choice,
+                                          bool drafts) const {
+  DeviceArray<MinMax> result(static_cast<std::size_t>(cells.size()));
+  LevelBounds<SurfaceTexels> step;
+  step.lattice = lattice_;
+  step.first = first_;
+  step.count = static_cast<int>(levels_.size());
+  for (std::size_t i = 0; i < levels_.size(); ++i) step.texels[i] = {levels_[i].surface()};
+  step.choice = choice;
+  step.drafts = drafts;
+  step.cells = cells;
+  step.voxels = voxels;
+  step.bounds = result.data();
+  DeviceMachine().groups(static_cast<std::uint32_t>(result.size()), step);
+  return result;
 }
 
 }  // namespace weir

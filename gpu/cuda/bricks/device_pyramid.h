@@ -5,9 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "format/nanovdb/macrocells.h"
 #include "gpu/cuda/bricks/block_source.h"
+#include "gpu/cuda/runtime/device_array.h"
 #include "gpu/cuda/volume/device_samplers.h"
 #include "gpu/cuda/volume/texture.h"
+#include "gpu/math/dda.h"
 #include "gpu/volume/levelled_volume.h"
 
 namespace weir {
@@ -21,6 +24,10 @@ class DevicePyramid {
   DevicePyramid(BlockSource& source, std::span<const RegionEntry> regions, int first, std::uint64_t bytes);
 
   LevelsView<TextureSampler> view() const;
+  /// Of each of `cells`, whose voxels' bounds are `voxels` (device memory), what look-ups of this choice of levels may
+  /// see in it (level_bounds.h); `drafts` as there.
+  DeviceArray<MinMax> bounds(const CellLattice& cells, const MinMax* voxels, const LevelChoice& choice,
+                             bool drafts) const;
   int first() const { return first_; }
 
  private:

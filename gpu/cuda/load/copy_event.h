@@ -1,6 +1,7 @@
 // Marks a copy's point in a stream, to wait for it without spinning.
 #pragma once
 
+#include <string_view>
 #include <utility>
 
 #include "gpu/cuda/runtime/check.h"
@@ -23,8 +24,9 @@ class CopyEvent {
 
   /// Marks the point after all that `stream` was given so far.
   void record(cudaStream_t stream) { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
-  /// Waits until what was recorded is done; returns at once where nothing was. Throws Error(io) where a copy failed.
-  void wait() const { check_cuda(cudaEventSynchronize(event_), "copying to the device"); }
+  /// Waits until what was recorded is done; returns at once where nothing was. Throws Error(io), beginning with `what`,
+  /// where a copy failed.
+  void wait(std::string_view what = "copying to the device") const { check_cuda(cudaEventSynchronize(event_), what); }
 
  private:
   cudaEvent_t event_ = nullptr;

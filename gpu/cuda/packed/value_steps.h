@@ -214,8 +214,7 @@ WEIR_HOST_DEVICE void lattice_block(const Thread& thread, const DecodeCall& call
   for (unsigned k = 0; k < 16; ++k) {
     const std::uint32_t code = stage[stage_of(lane + kWarp * k)];
     all |= code;
-    const float product = static_cast<float>(code) * quantum;
-    values[k] = ordered ? float_of_ordered(code) : product + minimum;
+    values[k] = ordered ? float_of_ordered(code) : lattice_value(call.view.constants, minimum, quantum, code);
   }
   const bool damaged = thread.any_of_warp(!valid || (!ordered && all >> 24U != 0));
   WEIR_UNROLL

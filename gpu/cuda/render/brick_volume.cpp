@@ -44,4 +44,9 @@ const DevicePyramid& BrickVolume::levels(int finest) {
   return *levels_;
 }
 
+DeviceMacrocells BrickVolume::levelled_cells(int finest, const CellLattice& cells, const LevelChoice& choice,
+                                             bool draft) {
+  return DeviceMacrocells(levels(finest).bounds(cells, cells_.bounds(), choice, draft && cache_->paged()));
+}
+
 }  // namespace weir

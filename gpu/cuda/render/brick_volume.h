@@ -30,6 +30,9 @@ class BrickVolume {
   int finest_level(int wanted) const;
   /// The levels from that one on; kept for the next call with the same.
   const DevicePyramid& levels(int finest);
+  /// Macrocells for a picture with levels from `finest` on, or a draft of one; `cells` are those whose bounds the
+  /// volume was made with.
+  DeviceMacrocells levelled_cells(int finest, const CellLattice& cells, const LevelChoice& choice, bool draft);
 
  private:
   GridBytes bytes_;

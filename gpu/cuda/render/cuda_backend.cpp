@@ -202,11 +202,10 @@ class CudaBackend : public Backend {
   Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
                  const SampleOptions& sampling) override {
     auto& loaded = static_cast<CudaVolume&>(volume);
-    RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
+    const RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
     const auto start = Clock::now();
     std::string note;
     const int finest_level = levels_for(loaded, setup, note);
-    if (finest_level > 0) setup.widen_cells();
     std::mutex reporting;
     std::uint64_t samples_done = 0;
     const auto done = [&](std::uint64_t samples) {
@@ -260,9 +259,11 @@ class CudaBackend : public Backend {
                          const RenderOptions& options, const Share& share, const SampleOptions& sampling,
                          const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
-    std::optional<DeviceMacrocells> wide;
-    if (finest_level > 0) wide.emplace(setup.cells().bounds());
-    DeviceMacrocells& cells = wide                 ? *wide
+    std::optional<DeviceMacrocells> levelled;
+    if (finest_level > 0)
+      levelled.emplace(volume.bricks(i).levelled_cells(finest_level, volume.cells().lattice(), setup.levels()->choice,
+                                                       sampling.draft));
+    DeviceMacrocells& cells = levelled             ? *levelled
                               : volume.dense()     ? volume.texture(i).cells
                               : volume.in_bricks() ? volume.bricks(i).cells()
                                                    : volume.grid(i).cells();

@@ -4,6 +4,8 @@
 
 #include <cuda_runtime_api.h>
 
+#include <utility>
+
 #include "gpu/cuda/runtime/device_array.h"
 #include "gpu/cuda/volume/block_table.h"
 #include "gpu/volume/macrocell_grid.h"
@@ -34,6 +36,7 @@ class DeviceTransfer {
 class DeviceMacrocells {
  public:
   explicit DeviceMacrocells(const std::vector<MinMax>& bounds) : bounds_(bounds), majorants_(bounds.size()) {}
+  explicit DeviceMacrocells(DeviceArray<MinMax> bounds) : bounds_(std::move(bounds)), majorants_(bounds_.size()) {}
 
   const MinMax* bounds() const { return bounds_.data(); }
   /// Largest opacity of each cell, as of the last update.

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ingest/hdf5/filters/undo_filters.h"
+#include "ingest/chunks/chunk_inflater.h"
 
 namespace weir {
 

@@ -13,32 +13,6 @@
 
 namespace weir {
 
-ChunkInflater::ChunkInflater() {
-  if (inflateInit(&stream_) != Z_OK) throw Error(ErrorKind::io, "memory: get a zlib decoder: out of memory");
-}
-
-ChunkInflater::~ChunkInflater() { inflateEnd(&stream_); }
-
-void ChunkInflater::inflate(std::span<const std::byte> stream, std::span<std::byte> bytes) {
-  inflateReset(&stream_);
-  stream_.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(stream.data()));  // zlib does not write there
-  stream_.avail_in = static_cast<uInt>(stream.size());
-  stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
-  stream_.avail_out = static_cast<uInt>(bytes.size());
-  const int status = ::inflate(&stream_, Z_FINISH);
-  const std::size_t filled = bytes.size() - stream_.avail_out;
-  if (status == Z_STREAM_END && filled == bytes.size()) return;
-  if (status == Z_STREAM_END || (status == Z_BUF_ERROR && stream_.avail_in == 0)) {
-    throw Error(ErrorKind::input, cat("its deflate stream ends after ", filled, " of ", bytes.size(), " bytes"));
-  }
-  if (status == Z_BUF_ERROR) {
-    throw Error(ErrorKind::input, cat("its deflate stream holds more than ", bytes.size(), " bytes"));
-  }
-  if (status == Z_MEM_ERROR) throw Error(ErrorKind::io, "memory: get a zlib decoder: out of memory");
-  throw Error(ErrorKind::input, cat("its deflate stream is damaged after ", filled, " of ", bytes.size(), " bytes (",
-                                    stream_.msg != nullptr ? stream_.msg : zError(status), ")"));
-}
-
 namespace {
 
 constexpr std::size_t kFirstRepeat = 32;  // smaller ones count literals

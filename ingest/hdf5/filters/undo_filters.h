@@ -1,30 +1,12 @@
-// The filters that weir undoes itself: deflate, lzf, shuffle and Fletcher's checksum, each in memory of known size.
+// The filters that weir undoes itself besides deflate: lzf, shuffle and Fletcher's checksum, each in memory of known
+// size.
 #pragma once
-
-#include <zlib.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace weir {
-
-/// A zlib decoder for streams that lie in memory whole, kept between them. One thread at a time.
-class ChunkInflater {
- public:
-  ChunkInflater();
-  ~ChunkInflater();
-  ChunkInflater(const ChunkInflater&) = delete;
-  ChunkInflater& operator=(const ChunkInflater&) = delete;
-
-  /// Decodes the zlib stream `stream` into all of `bytes`; both are below 4 GiB. Never writes beyond them.
-  /// Throws Error(input), without a place, where the stream is damaged, ends early or holds more. Bytes
-  /// after the stream's end are ignored, as HDF5 does.
-  void inflate(std::span<const std::byte> stream, std::span<std::byte> bytes);
-
- private:
-  z_stream stream_{};
-};
 
 /// Decodes `stream` into all of `bytes`, and never writes beyond them. A byte below 32 is followed by one literal
 /// more than it says; any other one, with the next, tells how many bytes to repeat from how far back (M. Lehmann,

@@ -5,16 +5,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace weir {
 
 /// One axis: element i lies at origin + i * spacing.
 struct AxisPlace {
-  std::int64_t extent = 0;        ///< elements
-  std::string label;              ///< empty where the file has no name for it
-  std::optional<double> spacing;  ///< world units per element
-  std::optional<double> origin;   ///< world position of element 0
-  std::string note;               ///< why there is no spacing although there are coordinates; else empty
+  std::int64_t extent = 0;               ///< elements
+  std::string label;                     ///< empty where the file has no name for it
+  std::optional<double> spacing;         ///< world units per element
+  std::optional<double> origin;          ///< world position of element 0; of the last one where it `falls`
+  std::string note;                      ///< what spacing and origin do not say of the coordinates; else empty
+  std::string units = {};                ///< of the coordinates; else empty
+  std::vector<double> coordinates = {};  ///< of all elements, of a time and where they are not equally spaced
+  bool is_time = false;
+  std::string calendar = {};     ///< of a time
+  bool has_coordinates = false;  ///< the file has a dataset of them
+  bool falls = false;            ///< they are equally spaced, and the last one is the lowest
 };
 
 /// "Time=4 x bottom_top=14 x 48 x 48".

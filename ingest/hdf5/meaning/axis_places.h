@@ -12,8 +12,8 @@
 namespace weir {
 
 /// The axes of `object`, an array of `extents`, in the file's order, slowest first: by openPMD, then by
-/// NetCDF's coordinate variables, then by plain attributes; what one leaves open the next may say. The caller
-/// holds Hdf5Lock.
+/// NetCDF's coordinate variables, then by plain attributes, which count from the last axis that holds no components;
+/// what one leaves open the next may say. The caller holds Hdf5Lock.
 std::vector<AxisPlace> axis_places(hid_t file, const Hdf5Object& object, std::span<const std::int64_t> extents);
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 #include "ingest/hdf5/meaning/dataset_choice.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -8,8 +9,10 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_walk.h"
 #include "ingest/hdf5/meaning/dataset_facts.h"
+#include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/source/convert_command.h"
 
 namespace weir {
 namespace {
@@ -17,49 +20,75 @@ namespace {
 constexpr std::size_t kMostCandidates = 8;  // in a message
 
 struct DatasetCandidate {
-  std::string name;
+  DatasetInfo info;
   std::string axes;
-  std::size_t positions = 0;
 };
 
 Error several(const std::string& path, const std::vector<DatasetCandidate>& candidates) {
-  std::string names;
+  Message commands;
   for (std::size_t i = 0; i < std::min(candidates.size(), kMostCandidates); ++i) {
-    names += cat(i == 0 ? "" : ", ", candidates[i].name, " (", candidates[i].axes, ")");
+    const DatasetInfo& info = candidates[i].info;
+    commands += compose(i == 0 ? "" : "; ", CommandLineText{convert_command(path, true, info), volume_keys(info)}, " (",
+                        candidates[i].axes, ")");
   }
   if (candidates.size() > kMostCandidates) {
-    names += cat(" and ", candidates.size() - kMostCandidates, " more (weir inspect lists them)");
+    commands += cat("; and ", candidates.size() - kMostCandidates, " more (weir inspect lists them)");
   }
-  return {ErrorKind::usage,
-          compose(path, ": holds ", candidates.size(), " volumes; choose one with ", option("dataset"), ": ", names)};
+  return {ErrorKind::usage, compose(path, ": holds ", candidates.size(), " volumes; choose one with ",
+                                    option("dataset"), ": ", commands)};
+}
+
+// Whether the positions of --index, where there are any, and --component are for it.
+bool takes(const DatasetCandidate& candidate, const SourceOptions& options) {
+  if (options.component && candidate.info.components == 1) return false;
+  const std::size_t positions = options.index.size();
+  const bool components_as_x = !options.component && candidate.info.components > 1;
+  return positions == 0 || positions == candidate.info.leading_axes ||
+         (components_as_x && positions == candidate.info.extents.size() - kVolumeRank);
+}
+
+// Axes, three at most, and values.
+std::pair<std::size_t, double> size_of(std::span<const AxisPlace> axes) {
+  double values = 1;
+  for (const AxisPlace& axis : axes) values *= static_cast<double>(axis.extent);
+  return {std::min(axes.size(), kVolumeRank), values};
 }
 
 }  // namespace
 
-Hdf5Object only_volume(hid_t file, const std::string& path, std::size_t positions) {
+Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions& options) {
   std::vector<DatasetCandidate> candidates;
   std::size_t datasets = 0;
-  std::string obstacle;
+  std::string obstacle;  // of the one that comes nearest to a volume: the most axes, then the most values
+  std::pair<std::size_t, double> nearest;
   walk_datasets(file, "/", [&](std::string name, Hdf5Handle handle) {
+    if (is_bare_dimension(handle.get())) return;
     ++datasets;
     const DatasetFacts facts = dataset_facts(file, {std::move(handle), path, name});
     if (facts.obstacle.empty()) {
-      candidates.push_back({name, axes_text(facts.axes), leading_axes(facts.axes)});
-    } else if (obstacle.empty()) {
+      DatasetCandidate& candidate = candidates.emplace_back();
+      candidate.info.name = name;
+      for (const AxisPlace& axis : facts.axes) candidate.info.extents.push_back(axis.extent);
+      candidate.info.leading_axes = leading_axes(facts.axes);
+      candidate.info.components = facts.components.count;
+      candidate.axes = axes_text(facts.axes);
+    } else if (const auto size = size_of(facts.axes); obstacle.empty() || size > nearest) {
+      nearest = size;
       obstacle = cat(name, ": ", facts.obstacle);
     }
   });
   if (datasets == 0) throw Error(ErrorKind::input, cat(path, ": holds no dataset"));
   if (candidates.empty()) {
-    throw Error(ErrorKind::input, datasets == 1 ? cat(path, ": ", obstacle)
-                                                : cat(path, ": none of its ", datasets, " datasets is a volume (",
-                                                      obstacle, "); weir inspect lists them"));
+    throw Error(ErrorKind::input, datasets == 1
+                                      ? cat(path, ": ", obstacle)
+                                      : cat(path, ": none of its ", datasets, " datasets is a volume; the nearest is ",
+                                            obstacle, "; weir inspect lists them"));
   }
   std::vector<DatasetCandidate> fitting = candidates;
-  std::erase_if(fitting, [&](const DatasetCandidate& c) { return c.positions != positions; });
+  std::erase_if(fitting, [&](const DatasetCandidate& c) { return !takes(c, options); });
   const std::vector<DatasetCandidate>& left = fitting.empty() ? candidates : fitting;
   if (left.size() > 1) throw several(path, left);
-  return find_dataset(file, path, left.front().name);
+  return find_dataset(file, path, left.front().info.name);
 }
 
 }  // namespace weir

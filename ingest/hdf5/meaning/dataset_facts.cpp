@@ -1,6 +1,7 @@
 #include "ingest/hdf5/meaning/dataset_facts.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -44,6 +45,16 @@ std::string shape_obstacle(const DatasetFacts& facts) {
   return std::any_of(facts.axes.begin(), facts.axes.end(), is_empty) ? cat("empty: ", axes_text(facts.axes)) : "";
 }
 
+// A series of planes looks like a volume, and its steps of time like a spacing.
+std::string time_obstacle(const DatasetFacts& facts) {
+  const auto axes = std::span(facts.axes).first(facts.axes.size() - (facts.components.found() ? 1 : 0));
+  if (axes.size() < kVolumeRank) return {};
+  const auto of_space = std::count_if(axes.begin(), axes.end(), [](const AxisPlace& axis) { return !axis.is_time; });
+  if (of_space >= static_cast<std::ptrdiff_t>(kVolumeRank)) return {};
+  return cat(of_space, of_space == 1 ? " axis" : " axes", " and time (", axes_text(facts.axes),
+             "); a volume has three axes of space");
+}
+
 void look_at_constant(hid_t object, DatasetFacts& facts) {
   const std::vector<double> value = number_attribute(object, "value");
   facts.type_text = "constant";
@@ -69,10 +80,16 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
     const Hdf5Handle type(H5Dget_type(handle));
     facts.type = stored_type(type.get());
     facts.type_text = type_text(type.get());
+    const auto stored_as = facts.type;
+    if (stored_as) facts.type = type_as_meant(handle, *stored_as);
+    if (stored_as && facts.type->scalar != stored_as->scalar) {
+      facts.type_text = cat(scalar_name(facts.type->scalar), " (stored as ", facts.type_text, ", _Unsigned)");
+    }
     facts.storage = storage_of(handle);
   } else {
     look_at_constant(handle, facts);
   }
+  facts.components = component_axis(facts.axes);
   if (facts.type) {
     const bool set = facts.storage && facts.storage->fill_is_set;
     facts.meaning = value_meaning(handle, *facts.type,
@@ -82,6 +99,10 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
        {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),
         facts.meaning.obstacle}) {
     if (facts.obstacle.empty()) facts.obstacle = obstacle;
+  }
+  if (facts.obstacle.empty()) {
+    facts.obstacle = time_obstacle(facts);
+    facts.over_time = !facts.obstacle.empty();
   }
   return facts;
 }

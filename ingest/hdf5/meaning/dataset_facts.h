@@ -9,6 +9,7 @@
 #include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/hdf5/file/hdf5_type.h"
 #include "ingest/hdf5/meaning/axis_places.h"
+#include "ingest/hdf5/meaning/component_axis.h"
 #include "ingest/hdf5/meaning/value_meaning.h"
 #include "ingest/hdf5/storage/storage.h"
 
@@ -16,12 +17,14 @@ namespace weir {
 
 struct DatasetFacts {
   std::vector<AxisPlace> axes;  ///< slowest first
+  ComponentAxis components;     ///< the last of them, where it holds components
   std::string type_text;
   std::optional<StoredType> type;  ///< of those that can be converted
   std::optional<Storage> storage;  ///< of a dataset
   std::optional<double> constant;  ///< of an openPMD constant component: its value
   ValueMeaning meaning;            ///< where there is a type
   std::string obstacle;            ///< why it cannot be converted; empty where it can
+  bool over_time = false;          ///< that is all: one of the three axes is a time, and no length
 
   /// "contiguous", "chunked 64 x 64 x 64, gzip", "constant 0".
   std::string layout_text() const;

@@ -1,15 +1,19 @@
 #include "ingest/hdf5/meaning/dimension_scales.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/meaning/time_axis.h"
 
 namespace weir {
 namespace {
@@ -43,25 +47,72 @@ std::string last_part(hid_t object) {
   return std::string(path.substr(path.rfind('/') + 1));
 }
 
-void read_coordinates(hid_t scale, AxisPlace& axis) {
-  const Hdf5Handle type(H5Dget_type(scale));
-  const Hdf5Handle space(H5Dget_space(scale));
-  const H5T_class_t kind = H5Tget_class(type.get());
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_ndims(space.get()) != 1 ||
-      H5Sget_simple_extent_npoints(space.get()) != axis.extent ||
-      axis.extent > static_cast<std::int64_t>(kMaxCoordinates)) {
+// The shortest text that reads back the same, as float32 where the file has no more.
+std::string coordinate_text(double value, double precision) {
+  std::array<char, 32> text{};
+  const bool single = precision >= static_cast<double>(std::numeric_limits<float>::epsilon());
+  const auto end = single ? std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value))
+                          : std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
+}
+
+std::string first_text(hid_t object, const char* name) {
+  const std::vector<std::string> texts = text_attribute(object, name);
+  return texts.empty() ? "" : texts[0];
+}
+
+// One rounding of a coordinate, as a part of it.
+double precision_of(hid_t dataset) {
+  const Hdf5Handle type(H5Dget_type(dataset));
+  const bool single = H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_precision(type.get()) <= 32;
+  return single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
+}
+
+// NetCDF's unlimited dimension, of which a simulation has one: axis 0, and no other.
+bool first_axis_grows(hid_t dataset, std::size_t rank) {
+  const Hdf5Handle space(H5Dget_space(dataset));
+  std::vector<hsize_t> dims(rank);
+  std::vector<hsize_t> most(rank);
+  if (rank == 0 || H5Sget_simple_extent_dims(space.get(), dims.data(), most.data()) != static_cast<int>(rank)) {
+    return false;
+  }
+  return most[0] == H5S_UNLIMITED && std::count(most.begin(), most.end(), H5S_UNLIMITED) == 1;
+}
+
+void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
+  const std::string name = last_part(scale);
+  if (axis.label.empty()) axis.label = name;
+  if (is_bare_dimension(scale)) {
+    axis.is_time = is_time_axis({name, {}, {}, {}, grows});
     return;
   }
-  std::vector<double> coordinates(static_cast<std::size_t>(axis.extent));
-  if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, coordinates.data()) < 0) return;
-  const bool single = kind == H5T_FLOAT && H5Tget_precision(type.get()) <= 32;
-  place_by_coordinates(
-      coordinates,
-      single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon(),
-      axis);
+  axis.has_coordinates = true;
+  axis.units = first_text(scale, "units");
+  axis.calendar = first_text(scale, "calendar");
+  axis.is_time = is_time_axis({name, axis.units, first_text(scale, "axis"), first_text(scale, "standard_name"), grows});
+  if (axis.spacing) return;
+  std::vector<double> coordinates = coordinate_values(scale);
+  if (std::cmp_not_equal(coordinates.size(), axis.extent)) return;
+  place_by_coordinates(coordinates, precision_of(scale), axis);
+  if (axis.is_time || !axis.spacing) axis.coordinates = std::move(coordinates);
+  if (axis.is_time) axis.falls = false;
 }
 
 }  // namespace
+
+std::vector<double> coordinate_values(hid_t dataset) {
+  const Hdf5Handle type(H5Dget_type(dataset));
+  const Hdf5Handle space(H5Dget_space(dataset));
+  const H5T_class_t kind = H5Tget_class(type.get());
+  const hssize_t points = H5Sget_simple_extent_npoints(space.get());
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_ndims(space.get()) > 1 || points < 1 ||
+      points > static_cast<hssize_t>(kMaxCoordinates)) {
+    return {};
+  }
+  std::vector<double> values(static_cast<std::size_t>(points));
+  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return {};
+  return values;
+}
 
 void place_by_coordinates(std::span<const double> coordinates, double precision, AxisPlace& axis) {
   if (coordinates.empty() ||
@@ -74,19 +125,22 @@ void place_by_coordinates(std::span<const double> coordinates, double precision,
     axis.origin = first;
     return;
   }
+  const std::string from_to =
+      cat(" from ", coordinate_text(first, precision), " to ", coordinate_text(last, precision));
   const double spacing = (last - first) / static_cast<double>(coordinates.size() - 1);
   const double tolerance =
       kRegularTolerance * std::fabs(spacing) + precision * std::max(std::fabs(first), std::fabs(last));
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const double regular = first + static_cast<double>(i) * spacing;
     if (spacing == 0.0 || !std::isfinite(spacing) || std::fabs(coordinates[i] - regular) > tolerance) {
-      axis.note = cat("irregular coordinates from ", first, " to ", last, ", taken as indices");
+      axis.note = cat("irregular coordinates", from_to, ", taken as indices");
       return;
     }
   }
   axis.spacing = std::fabs(spacing);
   axis.origin = std::min(first, last);
-  if (spacing < 0.0) axis.note = cat("coordinates fall from ", first, " to ", last, ": mirrored along this axis");
+  axis.falls = spacing < 0.0;
+  if (axis.falls) axis.note = cat("falls", from_to);
 }
 
 bool is_bare_dimension(hid_t dataset) {
@@ -98,10 +152,16 @@ bool is_bare_dimension(hid_t dataset) {
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes) {
   if (H5Iget_type(dataset) != H5I_DATASET) return;
   const std::vector<Hdf5Handle> scales = scales_of(dataset, axes.size());
+  const bool grows = first_axis_grows(dataset, axes.size());
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (!scales[i] || H5Iget_type(scales[i].get()) != H5I_DATASET) continue;
-    if (axes[i].label.empty()) axes[i].label = last_part(scales[i].get());
-    if (!axes[i].spacing && !is_bare_dimension(scales[i].get())) read_coordinates(scales[i].get(), axes[i]);
+    place_by_scale(scales[i].get(), i == 0 && grows, axes[i]);
+  }
+  const std::vector<std::string> labels = text_attribute(dataset, "DIMENSION_LABELS");
+  for (std::size_t i = 0; i < axes.size() && labels.size() == axes.size(); ++i) {
+    if (!axes[i].label.empty() || labels[i].empty()) continue;
+    axes[i].label = labels[i];
+    axes[i].is_time = is_time_axis({labels[i], {}, {}, {}, false});
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "ingest/hdf5/meaning/axis_place.h"
 
@@ -17,14 +18,18 @@ inline constexpr std::size_t kMaxCoordinates = std::size_t{1} << 20U;
 /// kilometres are often rounded to a few digits.
 inline constexpr double kRegularTolerance = 1e-3;
 
-/// Fills labels by the names of the scales of `dataset` (attribute DIMENSION_LIST), and spacing and origin, where
-/// they are not set, by their values. Irregular coordinates get a note instead. Falling coordinates get the
-/// spacing's size, the lowest coordinate as origin, and a note: indices stay as they are. The
-/// caller holds Hdf5Lock.
+/// Fills labels by the names of the scales of `dataset` (attribute DIMENSION_LIST), else by DIMENSION_LABELS; units and
+/// is_time by the scales' attributes; spacing and origin, where they are not set, by their values. Irregular
+/// coordinates get a note instead, and are kept, as those of a time are. Falling coordinates get the spacing's size and
+/// the lowest coordinate as origin, as elements in reverse order have them, and a note. The caller holds Hdf5Lock.
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 
 /// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values.
 bool is_bare_dimension(hid_t dataset);
+
+/// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none; empty where it is another. The
+/// caller holds Hdf5Lock.
+std::vector<double> coordinate_values(hid_t dataset);
 
 /// What place_by_scales makes of the coordinates of one axis.
 void place_by_coordinates(std::span<const double> coordinates, double precision, AxisPlace& axis);

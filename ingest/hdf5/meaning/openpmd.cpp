@@ -55,6 +55,15 @@ std::optional<double> openpmd_unit_si(hid_t object) {
   return unit[0];
 }
 
+std::optional<double> openpmd_time(std::span<const Hdf5Handle> groups) {
+  for (const Hdf5Handle& group : groups) {
+    const std::vector<double> time = number_attribute(group.get(), "time");
+    const std::vector<double> seconds = number_attribute(group.get(), "timeUnitSI");
+    if (time.size() == 1 && seconds.size() == 1) return time[0] * seconds[0];
+  }
+  return std::nullopt;
+}
+
 std::vector<std::int64_t> openpmd_shape(hid_t object) {
   std::vector<std::int64_t> shape;
   for (const StoredValue& value : stored_value_attribute(object, "shape")) {

@@ -21,6 +21,9 @@ void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::spa
 /// unitSI of `object`: values times it are in SI units.
 std::optional<double> openpmd_unit_si(hid_t object);
 
+/// The time of the iteration among `groups`, in seconds: its attributes time and timeUnitSI.
+std::optional<double> openpmd_time(std::span<const Hdf5Handle> groups);
+
 /// Extents of a constant component (is_openpmd_constant), slowest first; empty where they are no extents.
 std::vector<std::int64_t> openpmd_shape(hid_t object);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "format/base/ascii.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
@@ -48,6 +49,11 @@ bool equals(std::span<const std::byte> fill, const StoredType& type, const Store
   return is_missing(read);
 }
 
+bool says_unsigned(hid_t object) {
+  const std::vector<std::string> texts = text_attribute(object, "_Unsigned");
+  return !texts.empty() && lower_case(texts[0]) == "true";
+}
+
 // The attribute as one finite number; `fallback` where it is absent.
 double packing(hid_t object, const char* name, double fallback, std::string& obstacle) {
   if (!has_attribute(object, name)) return fallback;
@@ -59,12 +65,53 @@ double packing(hid_t object, const char* name, double fallback, std::string& obs
   return fallback;
 }
 
+// Attributes are of the type that the file has: -1 stands for the 255 of what is meant as uint8.
+StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
+  const auto* const negative = std::get_if<std::int64_t>(&value);
+  if (negative == nullptr || *negative >= 0) return value;
+  const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
+  return static_cast<std::uint64_t>(*negative) & (~std::uint64_t{0} >> (64U - bits));
+}
+
+std::string unused_attribute(hid_t object) {
+  for (const char* name : {"valid_range", "valid_min", "valid_max"}) {
+    if (has_attribute(object, name)) {
+      return cat("its attribute ", name, " is not applied: values outside it count as data");
+    }
+  }
+  return "";
+}
+
 }  // namespace
+
+StoredType type_as_meant(hid_t object, StoredType type) {
+  if (!says_unsigned(object)) return type;
+  switch (type.scalar) {
+    case ScalarType::int8:
+      type.scalar = ScalarType::uint8;
+      break;
+    case ScalarType::int16:
+      type.scalar = ScalarType::uint16;
+      break;
+    case ScalarType::int32:
+      type.scalar = ScalarType::uint32;
+      break;
+    case ScalarType::int64:
+      type.scalar = ScalarType::uint64;
+      break;
+    default:
+      break;
+  }
+  return type;
+}
 
 ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const std::byte> fill) {
   ValueMeaning meaning;
+  const bool meant_unsigned = says_unsigned(object);
   for (const char* name : {"_FillValue", "missing_value"}) {
-    for (const StoredValue& value : stored_value_attribute(object, name)) meaning.mapping.missing.push_back(value);
+    for (const StoredValue& value : stored_value_attribute(object, name)) {
+      meaning.mapping.missing.push_back(meant_unsigned ? as_unsigned(value, type.scalar) : value);
+    }
   }
   const auto by_netcdf = netcdf_default_fill(type.scalar);
   if (meaning.mapping.missing.empty() && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
@@ -78,6 +125,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     if (meaning.units.empty() && !texts.empty()) meaning.units = texts[0];
   }
   meaning.unit_si = openpmd_unit_si(object);
+  meaning.note = unused_attribute(object);
   return meaning;
 }
 

@@ -19,7 +19,12 @@ struct ValueMeaning {
   std::string units;              ///< attribute units (or Units); else empty
   std::optional<double> unit_si;  ///< of openPMD
   std::string obstacle;           ///< an attribute that makes the values unclear; else empty
+  std::string note;               ///< an attribute that nothing is made of; else empty
 };
+
+/// `type`, of signed integers whose attribute _Unsigned says that they are unsigned ones (NetCDF-3 had none) as these.
+/// The caller holds Hdf5Lock.
+StoredType type_as_meant(hid_t object, StoredType type);
 
 /// By the conventions of NetCDF and CF: _FillValue and missing_value are missing, values are packed by scale_factor
 /// and add_offset. In a NetCDF-4 file values equal to NetCDF's default fill are missing too where that is

@@ -1,62 +1,116 @@
 #include "ingest/hdf5/meaning/volume_slice.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/hdf5/meaning/component_axis.h"
 
 namespace weir {
 namespace {
 
 // "Time in 0..3, level in 0..13"
-std::string ranges_text(std::span<const AxisPlace> leading) {
+std::string ranges_text(std::span<const AxisPlace> axes, const std::vector<std::size_t>& others) {
   std::string text;
-  for (std::size_t i = 0; i < leading.size(); ++i) {
-    const std::string name = leading[i].label.empty() ? cat("axis ", i) : leading[i].label;
-    text += cat(i == 0 ? "" : ", ", name, " in 0..", leading[i].extent - 1);
+  for (const std::size_t i : others) {
+    const std::string name = axes[i].label.empty() ? cat("axis ", i) : axes[i].label;
+    text += cat(text.empty() ? "" : ", ", name, " in 0..", axes[i].extent - 1);
   }
   return text;
+}
+
+bool have_one_element_each(std::span<const AxisPlace> axes, const std::vector<std::size_t>& others) {
+  return std::all_of(others.begin(), others.end(), [&](std::size_t i) { return axes[i].extent == 1; });
+}
+
+void place(std::span<const AxisPlace> axes, VolumeSlice& slice) {
+  const auto axis_at = [&](std::size_t i) -> const AxisPlace& { return axes[slice.roles.volume.at(2 - i)]; };
+  slice.extent = {axis_at(0).extent, axis_at(1).extent, axis_at(2).extent};
+  for (std::size_t i = 0; i < kVolumeRank; ++i) {
+    const AxisPlace& axis = axis_at(i);
+    slice.labels[i] = axis.label;
+    slice.spacing[i] = axis.spacing.value_or(1.0);
+    slice.origin[i] = axis.origin.value_or(0.0);
+    slice.falls[i] = axis.falls;
+  }
+}
+
+// "0 to 2, x, y, z or magnitude"
+std::string choices_text(std::int64_t count) {
+  const std::string_view names = count == 2 ? ", x, y" : count == 3 ? ", x, y, z" : "";
+  return cat("0 to ", count - 1, names, " or magnitude");
+}
+
+// Of the axes of `component`, or none. `positions` are those of --index.
+ComponentAxis chosen_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& where,
+                          const std::optional<ComponentChoice>& component) {
+  const auto its_axes = [&] { return cat(where, ": its axes are ", axes_text(axes)); };
+  ComponentAxis vectors = component ? asked_component_axis(axes) : component_axis(axes);
+  if (vectors.leading && axis_roles(axes).interleaved()) vectors = {};
+  if (!component) {
+    if (!vectors.found() || positions == axes.size() - kVolumeRank) return {};
+    throw Error(ErrorKind::usage,
+                compose(its_axes(), ", the last of them of components (", vectors.evidence, "); give ",
+                        option("component"), ": ", choices_text(vectors.count), "; or ", option("index"), " with ",
+                        axes.size() - kVolumeRank, axes.size() == kVolumeRank + 1 ? " position" : " positions",
+                        " for volumes of ", axes.back().extent, " voxels along x"));
+  }
+  if (!vectors.found()) {
+    throw Error(ErrorKind::usage,
+                compose(its_axes(), ", none of them of components; leave ", option("component"), " out"));
+  }
+  if (!component->magnitude && component->position >= vectors.count) {
+    throw Error(ErrorKind::usage, compose(its_axes(), ", and ", option("component"), " is ", component->position,
+                                          "; give ", choices_text(vectors.count)));
+  }
+  return vectors;
 }
 
 }  // namespace
 
 std::size_t leading_axes(std::span<const AxisPlace> axes) {
+  if (component_axis(axes).found()) axes = axes.first(axes.size() - 1);
   if (axes.size() <= kVolumeRank) return 0;
-  const auto leading = axes.first(axes.size() - kVolumeRank);
-  return std::all_of(leading.begin(), leading.end(), [](const AxisPlace& a) { return a.extent == 1; }) ? 0
-                                                                                                       : leading.size();
+  const std::vector<std::size_t> others = axis_roles(axes).others;
+  return have_one_element_each(axes, others) ? 0 : others.size();
 }
 
-VolumeSlice volume_slice(std::span<const AxisPlace> axes, const std::vector<std::int64_t>& index,
-                         const std::string& where) {
-  const auto leading = axes.first(axes.size() - kVolumeRank);
-  const auto refuse = [&](const Message& found) {
-    const Message remedy = leading.empty()
-                               ? compose("leave ", option("index"), " out")
-                               : compose("give ", option("index"), " with ", leading.size(),
-                                         leading.size() == 1 ? " position: " : " positions: ", ranges_text(leading));
-    return Error(ErrorKind::usage, compose(where, ": its axes are ", axes_text(axes), found, "; ", remedy));
-  };
+VolumeSlice volume_slice(std::span<const AxisPlace> all_axes, const std::vector<std::int64_t>& index,
+                         const std::string& where, const std::optional<ComponentChoice>& component) {
   VolumeSlice slice;
-  slice.index = index.empty() && leading_axes(axes) == 0 ? std::vector<std::int64_t>(leading.size(), 0) : index;
-  if (slice.index.empty() && !leading.empty()) throw refuse(", and a volume has three");
-  if (slice.index.size() != leading.size()) {
+  const ComponentAxis vectors = chosen_axis(all_axes, index.size(), where, component);
+  const auto axes = all_axes.first(all_axes.size() - (vectors.found() && !vectors.leading ? 1 : 0));
+  slice.roles = axis_roles(axes);
+  std::vector<std::size_t>& others = slice.roles.others;
+  if (vectors.leading) others.pop_back();  // that of the components
+  const auto refuse = [&](const Message& found) {
+    const Message remedy =
+        others.empty() ? compose("leave ", option("index"), " out")
+                       : compose("give ", option("index"), " with ", others.size(),
+                                 others.size() == 1 ? " position: " : " positions: ", ranges_text(axes, others));
+    return Error(ErrorKind::usage, compose(where, ": its axes are ", axes_text(all_axes), found, "; ", remedy));
+  };
+  const bool single = have_one_element_each(axes, others);
+  slice.index = index.empty() && single ? std::vector<std::int64_t>(others.size(), 0) : index;
+  if (slice.index.empty() && !others.empty()) throw refuse(", and a volume has three");
+  if (slice.index.size() != others.size()) {
     throw refuse(
         compose(", and ", option("index"), " has ", index.size(), index.size() == 1 ? " position" : " positions"));
   }
-  for (std::size_t i = 0; i < leading.size(); ++i) {
-    if (slice.index[i] < 0 || slice.index[i] >= leading[i].extent) {
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (slice.index[i] < 0 || slice.index[i] >= axes[others[i]].extent) {
       throw refuse(compose(", and ", option("index"), " has ", slice.index[i]));
     }
   }
-  const auto last = axes.last(kVolumeRank);
-  slice.extent = {last[2].extent, last[1].extent, last[0].extent};
-  for (std::size_t i = 0; i < kVolumeRank; ++i) {
-    const AxisPlace& axis = last[kVolumeRank - 1 - i];
-    slice.labels[i] = axis.label;
-    slice.spacing[i] = axis.spacing.value_or(1.0);
-    slice.origin[i] = axis.origin.value_or(0.0);
+  slice.positions = slice.index;
+  if (vectors.leading && !component->magnitude) {
+    slice.positions.push_back(component->position);
+  } else if (vectors.found()) {
+    slice.components = {vectors.count, *component};
+    slice.planar = vectors.leading;
   }
+  place(axes, slice);
   return slice;
 }
 

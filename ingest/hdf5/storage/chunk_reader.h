@@ -1,6 +1,6 @@
 // Boxes of a chunked HDF5 dataset, decoded in parallel. The library runs its
 // filters under one global lock; here only the fetching of a stored chunk is
-// under it, and inflating, unshuffling and converting run on TBB's workers.
+// under it, and inflating, unshuffling and converting run on TBB's workers (ingest/chunks).
 #pragma once
 
 #include <hdf5.h>
@@ -8,31 +8,33 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
-#include <set>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
-#include "ingest/hdf5/storage/chunk_scratch.h"
+#include "ingest/chunks/chunk_boxes.h"
 #include "ingest/hdf5/storage/chunk_store.h"
+#include "ingest/source/component_choice.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
 
-/// A three-dimensional slice of a chunked dataset: its last three axes, at one position on the others.
+/// A three-dimensional slice of a chunked dataset: its last three axes, at one position on the others; or the three
+/// before the last, which has the components of each voxel.
 struct ChunkedSlice {
-  hid_t dataset = H5I_INVALID_HID;        ///< open, chunked, of rank >= 3; outlives the reader, which does not close it
+  hid_t dataset = H5I_INVALID_HID;        ///< open, chunked; outlives the reader, which does not close it
   std::string name;                       ///< "PATH: DATASET": messages begin with it
-  std::vector<std::int64_t> index;        ///< position on each leading axis, slowest first; rank - 3 of them, inside
+  std::vector<std::int64_t> index;        ///< position on each leading axis, slowest first; one for each, inside
   ScalarType type = ScalarType::float32;  ///< whose size is the stored type's
   bool big_endian = false;
   ValueMapping mapping;
-  std::vector<std::byte> fill;  ///< one stored value: what voxels of chunks that the file does not hold read as
+  std::vector<std::byte> fill;      ///< one stored value: what voxels of chunks that the file does not hold read as
+  VoxelComponents components = {};  ///< more than one: along the last axis, all of them in each chunk
+
+  std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
 /// What reading has done so far.
@@ -45,7 +47,7 @@ struct ChunkCounts {
 
 /// Takes the library's lock (Hdf5Lock) itself, in the constructor and in read: callers must not hold it.
 /// Thread-safe.
-class ChunkReader {
+class ChunkReader final : private StoredChunks {
  public:
   /// Whether all filters of a chunked dataset are ones that are run here (own_pipeline). The caller holds
   /// the lock.
@@ -56,7 +58,7 @@ class ChunkReader {
   ChunkReader(ChunkedSlice slice, std::uint64_t memory);
 
   /// Chunk extent in voxels and bytes per voxel, for the block plan; chunks begin at index 0.
-  AccessShape access() const;
+  AccessShape access() const { return boxes_.access(); }
   /// Memory for chunks being decoded, in bytes.
   std::uint64_t working_bytes() const { return scratch_.bytes(); }
   ChunkCounts counts() const;
@@ -64,29 +66,22 @@ class ChunkReader {
   /// Reads `box` (voxels from the slice's first, inside it, not empty) into `values`, x fastest. Every
   /// chunk it touches is decoded once. Throws Error(input), naming dataset and chunk, where a chunk cannot
   /// be fetched, fails its checksum, or decodes to more or fewer bytes than a chunk has.
-  ConversionLoss read(const Box& box, std::span<float> values);
+  ConversionLoss read(const Box& box, std::span<float> values) { return boxes_.read(box, values); }
 
  private:
-  /// The part of `box` that the chunk at `chunk` (chunk coordinates) holds.
-  ConversionLoss read_chunk(const Index3& chunk, const Box& box, std::span<float> values, ChunkScratch& scratch);
-  /// The chunk's bytes, filters undone, which lie in `scratch`; empty where the file does not hold it.
-  std::span<const std::byte> decode(std::span<const hsize_t> corner, ChunkScratch& scratch);
+  std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) override;
   std::vector<hsize_t> corner_of(const Index3& chunk) const;
 
   ChunkedSlice slice_;
   ChunkStore store_;
-  Index3 chunk_;                 ///< voxels
-  std::size_t first_byte_ = 0;   ///< of the slice inside a chunk
-  std::size_t chunk_bytes_ = 0;  ///< unfiltered, all leading axes
-  float fill_ = 0;
-  ConversionLoss fill_loss_;  ///< of one voxel
+  std::size_t chunk_bytes_;  ///< unfiltered, all leading axes
   ScratchPool scratch_;
+  ChunkBoxes boxes_;
+  std::size_t first_byte_;  ///< of the slice inside a chunk
 
   std::atomic<std::uint64_t> decoded_{0};
   std::atomic<std::uint64_t> unallocated_{0};
   std::atomic<std::uint64_t> bytes_read_{0};
-  mutable std::mutex mutex_;
-  std::set<std::thread::id> threads_;
 };
 
 }  // namespace weir

@@ -9,21 +9,25 @@
 #include "format/base/text.h"
 #include "ingest/plan/page_buffer.h"
 #include "ingest/source/extent.h"
-#include "ingest/values/decode_values.h"
+#include "ingest/values/decode_component.h"
 
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kAmpleBuffer = std::uint64_t{4} << 20U;  // more saves no time
-constexpr std::uint64_t kBufferShare = 16;                       // of --memory, for the buffer
+constexpr std::uint64_t kBufferShare = 16;  // of --memory, for the buffer
 
 class StoredBoxSource final : public VolumeSource {
  public:
-  StoredBoxSource(std::unique_ptr<StoredBoxes> boxes, SourceInfo info, bool big_endian, std::size_t buffer_bytes)
-      : boxes_(std::move(boxes)), info_(std::move(info)), big_endian_(big_endian), buffer_(buffer_bytes) {}
+  StoredBoxSource(std::unique_ptr<StoredBoxes> boxes, SourceInfo info, bool big_endian,
+                  const VoxelComponents& components, std::size_t buffer_bytes)
+      : boxes_(std::move(boxes)),
+        info_(std::move(info)),
+        big_endian_(big_endian),
+        components_(components),
+        buffer_(buffer_bytes) {}
 
   const SourceInfo& info() const override { return info_; }
-  AccessShape access() const override { return {value_bytes(), boxes_->chunk(), boxes_->chunk_origin()}; }
+  AccessShape access() const override { return {voxel_bytes(), boxes_->chunk(), boxes_->chunk_origin()}; }
   std::uint64_t working_bytes() const override { return boxes_->working_bytes() + buffer_.bytes().size(); }
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
@@ -35,17 +39,17 @@ class StoredBoxSource final : public VolumeSource {
     const std::lock_guard lock(mutex_);
     const Index3 unit = max(boxes_->chunk(), {1, 1, 1});
     const BoxCuts cuts(box, unit, boxes_->chunk_origin(),
-                       static_cast<std::int64_t>(buffer_.bytes().size() / value_bytes()));
+                       static_cast<std::int64_t>(buffer_.bytes().size() / voxel_bytes()));
     ConversionLoss loss;
     for (std::int64_t i = 0; i < cuts.size(); ++i) loss.add(read_part(cuts.part(i), box, values));
     return loss;
   }
 
  private:
-  std::size_t value_bytes() const { return scalar_bytes(info_.type); }
+  std::size_t voxel_bytes() const { return scalar_bytes(info_.type) * static_cast<std::size_t>(components_.count); }
 
   ConversionLoss read_part(const Box& part, const Box& box, std::span<float> values) {
-    const auto stored = buffer_.bytes().first(static_cast<std::size_t>(part.voxels()) * value_bytes());
+    const auto stored = buffer_.bytes().first(static_cast<std::size_t>(part.voxels()) * voxel_bytes());
     boxes_->read(part, stored);
     bytes_read_ += stored.size();
     const Index3 e = part.extent();
@@ -56,9 +60,9 @@ class StoredBoxSource final : public VolumeSource {
     ConversionLoss loss;
     for (std::int64_t done = 0; done < volume(e); done += run) {
       const std::int64_t at = linear_index(part.lo + index_at(done, e) - box.lo, box.extent());
-      loss.add(decode_values(
-          stored.subspan(static_cast<std::size_t>(done) * value_bytes(), static_cast<std::size_t>(run) * value_bytes()),
-          info_.type, big_endian_, info_.mapping,
+      loss.add(decode_component(
+          stored.subspan(static_cast<std::size_t>(done) * voxel_bytes(), static_cast<std::size_t>(run) * voxel_bytes()),
+          info_.type, big_endian_, info_.mapping, components_,
           values.subspan(static_cast<std::size_t>(at), static_cast<std::size_t>(run))));
     }
     return loss;
@@ -67,6 +71,7 @@ class StoredBoxSource final : public VolumeSource {
   std::unique_ptr<StoredBoxes> boxes_;
   SourceInfo info_;
   bool big_endian_;
+  VoxelComponents components_;
   std::mutex mutex_;  ///< of boxes_ and buffer_
   PageBuffer buffer_;
   std::atomic<std::uint64_t> bytes_read_{0};
@@ -75,12 +80,13 @@ class StoredBoxSource final : public VolumeSource {
 }  // namespace
 
 std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes> boxes, SourceInfo info,
-                                                     bool big_endian, std::uint64_t memory, const std::string& where) {
-  const std::uint64_t value_bytes = scalar_bytes(info.type);
+                                                     bool big_endian, std::uint64_t memory, const std::string& where,
+                                                     const VoxelComponents& components) {
+  const std::uint64_t voxel_bytes = scalar_bytes(info.type) * static_cast<std::uint64_t>(components.count);
   // A chunk may reach beyond the volume; what is asked for does not.
   const std::uint64_t chunk_bytes =
-      static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * value_bytes;
-  const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / value_bytes * value_bytes;
+      static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * voxel_bytes;
+  const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / voxel_bytes * voxel_bytes;
   const std::uint64_t buffer_bytes = std::max(chunk_bytes, ample);
   const std::uint64_t needed = buffer_bytes + boxes->working_bytes();
   if (needed > memory / 2) {
@@ -88,11 +94,9 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
                 compose(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of ",
                         option("memory", format_bytes(memory)), "; give at least ", (2 * needed >> 20U) + 1, "MiB"));
   }
-  return std::make_unique<StoredBoxSource>(std::move(boxes), std::move(info), big_endian,
+  return std::make_unique<StoredBoxSource>(std::move(boxes), std::move(info), big_endian, components,
                                            static_cast<std::size_t>(buffer_bytes));
 }
-
-namespace {}  // namespace
 
 BoxCuts::BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels)
     : box_(box), part_(unit) {

@@ -10,16 +10,21 @@
 #include <vector>
 
 #include "format/base/index.h"
+#include "ingest/source/component_choice.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
+
+/// Bytes that are read at a time: more saves no time.
+inline constexpr std::uint64_t kAmpleBuffer = std::uint64_t{4} << 20U;
 
 /// Where stored values come from. One thread at a time.
 class StoredBoxes {
  public:
   virtual ~StoredBoxes() = default;
 
-  /// Fills `stored` with the values of `box` as they are stored, x fastest. Throws Error(input).
+  /// Fills `stored` with the values of `box` as they are stored, x fastest, the components of a voxel side by side.
+  /// Throws Error(input).
   virtual void read(const Box& box, std::span<std::byte> stored) = 0;
   /// The grid that boxes should be cut at, so that no chunk is decoded for two of them: extent (zero where
   /// there is none) and a corner.
@@ -31,11 +36,12 @@ class StoredBoxes {
   virtual std::uint64_t working_bytes() const = 0;
 };
 
-/// A source of `info`, whose domain begins at index 0, with values of info.type. Reads in pieces of whole chunks,
-/// through one buffer that takes at most a sixteenth of `memory` bytes or one chunk. Throws Error(usage), naming
-/// `where` and a sufficient --memory, where chunks need more than half of it.
+/// A source of `info`, whose domain begins at index 0, with `components` of info.type each voxel. Reads in pieces of
+/// whole chunks, through one buffer that takes at most a sixteenth of `memory` bytes or one chunk. Throws Error(usage),
+/// naming `where` and a sufficient --memory, where chunks need more than half of it.
 std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes> boxes, SourceInfo info,
-                                                     bool big_endian, std::uint64_t memory, const std::string& where);
+                                                     bool big_endian, std::uint64_t memory, const std::string& where,
+                                                     const VoxelComponents& components = {});
 
 /// The parts of `box` between planes of the grid of `unit` voxels with a corner at `corner`: as many whole
 /// units together as `voxels` hold, along x first, then y, then z; one where even that is more.

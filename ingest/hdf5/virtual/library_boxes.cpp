@@ -6,7 +6,6 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_file.h"
-#include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/source/extent.h"
 
 namespace weir {
@@ -17,16 +16,14 @@ constexpr std::uint64_t kChunkCopies = 2;
 
 class LibraryBoxes final : public StoredBoxes {
  public:
-  LibraryBoxes(Hdf5Handle dataset, const Storage& storage, std::vector<std::int64_t> index, std::string where)
-      : dataset_(std::move(dataset)), index_(std::move(index)), where_(std::move(where)) {
+  LibraryBoxes(Hdf5Handle dataset, const Storage& storage, ArrayPlace place, std::string where)
+      : dataset_(std::move(dataset)), place_(std::move(place)), where_(std::move(where)) {
     const Hdf5Lock lock;
     type_ = Hdf5Handle(H5Dget_type(dataset_.get()));
     space_ = Hdf5Handle(H5Dget_space(dataset_.get()));
-    if (storage.chunk.size() < kVolumeRank) return;
-    const auto at = [&](std::size_t from_end) {
-      return static_cast<std::int64_t>(storage.chunk[storage.chunk.size() - from_end]);
-    };
-    chunk_ = {at(1), at(2), at(3)};
+    if (storage.chunk.size() < place_.index.size() + place_.axes.size()) return;
+    const auto at = [&](std::size_t i) { return static_cast<std::int64_t>(storage.chunk[place_.axes.at(i)]); };
+    chunk_ = {at(2), at(1), at(0)};
     library_bytes_ = kChunkCopies * H5Tget_size(type_.get());
     for (const hsize_t elements : storage.chunk) library_bytes_ *= elements;  // the library checks: below 2^32
   }
@@ -36,8 +33,8 @@ class LibraryBoxes final : public StoredBoxes {
 
   void read(const Box& box, std::span<std::byte> stored) override {
     const Hdf5Lock lock;
-    const Hdf5Handle in_file = select_box(space_.get(), index_, box);
-    const auto values = static_cast<hsize_t>(box.voxels());
+    const Hdf5Handle in_file = select_box(space_.get(), place_, box);
+    const auto values = static_cast<hsize_t>(H5Sget_select_npoints(in_file.get()));
     const Hdf5Handle in_memory(H5Screate_simple(1, &values, nullptr));
     // The file's own type in memory: conversion is ours.
     if (H5Dread(dataset_.get(), type_.get(), in_memory.get(), in_file.get(), H5P_DEFAULT, stored.data()) < 0) {
@@ -47,7 +44,7 @@ class LibraryBoxes final : public StoredBoxes {
 
  private:
   Hdf5Handle dataset_;
-  std::vector<std::int64_t> index_;
+  ArrayPlace place_;
   std::string where_;
   Hdf5Handle type_;
   Hdf5Handle space_;
@@ -57,20 +54,37 @@ class LibraryBoxes final : public StoredBoxes {
 
 }  // namespace
 
-Hdf5Handle select_box(hid_t space, const std::vector<std::int64_t>& index, const Box& box) {
-  std::vector<hsize_t> start(index.begin(), index.end());
-  std::vector<hsize_t> count(index.size(), 1);
+ArrayPlace ArrayPlace::behind(std::vector<std::int64_t> index) {
+  const std::size_t first = index.size();
+  return {{first, first + 1, first + 2}, std::move(index)};
+}
+
+Hdf5Handle select_box(hid_t space, const ArrayPlace& place, const Box& box) {
+  std::vector<hsize_t> start(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)), 0);
+  std::vector<hsize_t> count(start.size());
+  H5Sget_simple_extent_dims(space, count.data(), nullptr);  // what is said of no axis is selected whole
   const Index3 e = box.extent();
-  for (const std::int64_t lo : {box.lo.z, box.lo.y, box.lo.x}) start.push_back(static_cast<hsize_t>(lo));
-  for (const std::int64_t n : {e.z, e.y, e.x}) count.push_back(static_cast<hsize_t>(n));
+  const std::array<std::int64_t, 3> first{box.lo.z, box.lo.y, box.lo.x};
+  const std::array<std::int64_t, 3> extent{e.z, e.y, e.x};
+  std::size_t position = 0;
+  std::size_t of_volume = 0;
+  for (std::size_t axis = 0; axis < start.size(); ++axis) {
+    if (of_volume < place.axes.size() && place.axes.at(of_volume) == axis) {
+      start[axis] = static_cast<hsize_t>(first.at(of_volume));
+      count[axis] = static_cast<hsize_t>(extent.at(of_volume++));
+    } else if (position < place.index.size()) {
+      start[axis] = static_cast<hsize_t>(place.index[position++]);
+      count[axis] = 1;
+    }
+  }
   Hdf5Handle selected(H5Scopy(space));
   H5Sselect_hyperslab(selected.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
   return selected;
 }
 
-std::unique_ptr<StoredBoxes> make_library_boxes(Hdf5Handle dataset, const Storage& storage,
-                                                std::vector<std::int64_t> index, const std::string& where) {
-  return std::make_unique<LibraryBoxes>(std::move(dataset), storage, std::move(index), where);
+std::unique_ptr<StoredBoxes> make_library_boxes(Hdf5Handle dataset, const Storage& storage, ArrayPlace place,
+                                                const std::string& where) {
+  return std::make_unique<LibraryBoxes>(std::move(dataset), storage, std::move(place), where);
 }
 
 }  // namespace weir

@@ -1,7 +1,9 @@
 // Boxes by the library's own H5Dread: for filters that only its plugins undo,
-// for compact datasets and those in external files.
+// for compact datasets, those in external files, and those with a time between the axes of space.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -13,12 +15,21 @@
 
 namespace weir {
 
-/// Selects `box` (voxels) at position `index` of the leading axes in a copy of the space of `dataset`, of rank
-/// index.size() + 3. The caller holds Hdf5Lock.
-Hdf5Handle select_box(hid_t space, const std::vector<std::int64_t>& index, const Box& box);
+/// Where a volume lies in an array.
+struct ArrayPlace {
+  std::array<std::size_t, 3> axes;  ///< of z, y and x, 0 the slowest
+  std::vector<std::int64_t> index;  ///< one position for each other axis, but for a last one of components
 
-/// The last three axes of `dataset` at `index`, one position per leading axis. Messages begin with `where`.
-std::unique_ptr<StoredBoxes> make_library_boxes(Hdf5Handle dataset, const Storage& storage,
-                                                std::vector<std::int64_t> index, const std::string& where);
+  /// The three axes behind those of `index`.
+  static ArrayPlace behind(std::vector<std::int64_t> index);
+};
+
+/// Selects `box` (voxels) of `place` in a copy of `space`, which has an axis for each of its axes and positions; or one
+/// more, whose last axis has the components of each voxel and is selected whole. The caller holds Hdf5Lock.
+Hdf5Handle select_box(hid_t space, const ArrayPlace& place, const Box& box);
+
+/// The volume at `place` of `dataset`; voxels as select_box selects them. Messages begin with `where`.
+std::unique_ptr<StoredBoxes> make_library_boxes(Hdf5Handle dataset, const Storage& storage, ArrayPlace place,
+                                                const std::string& where);
 
 }  // namespace weir

@@ -20,7 +20,7 @@ constexpr std::uint64_t kBytesPerMapping = 4096;  // two selections and two name
 constexpr std::uint64_t kSourceChunkCopies = 2;   // before and behind a filter
 
 // Where a box at a position of the leading axes lies in the dataset.
-AxisBox axis_box(const std::vector<std::int64_t>& index, const Box& box) {
+AxisBox axis_box(const std::vector<std::int64_t>& index, const Box& box, std::int64_t components) {
   AxisBox placed;
   for (const std::int64_t i : index) {
     placed.lo.push_back(static_cast<hsize_t>(i));
@@ -28,6 +28,10 @@ AxisBox axis_box(const std::vector<std::int64_t>& index, const Box& box) {
   }
   for (const std::int64_t lo : {box.lo.z, box.lo.y, box.lo.x}) placed.lo.push_back(static_cast<hsize_t>(lo));
   for (const std::int64_t hi : {box.hi.z, box.hi.y, box.hi.x}) placed.hi.push_back(static_cast<hsize_t>(hi));
+  if (components > 1) {
+    placed.lo.push_back(0);
+    placed.hi.push_back(static_cast<hsize_t>(components));
+  }
   return placed;
 }
 
@@ -40,14 +44,16 @@ bool overlap(const AxisBox& a, const AxisBox& b) {
 
 class VirtualBoxes final : public StoredBoxes {
  public:
-  VirtualBoxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Index3& extent, const std::string& parent,
-               std::string where)
+  VirtualBoxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Index3& extent, std::int64_t components,
+               const std::string& parent, std::string where)
       : dataset_(std::move(dataset)),
         index_(std::move(index)),
+        components_(components),
         where_(std::move(where)),
         type_(H5Dget_type(dataset_.get())),
         space_(H5Dget_space(dataset_.get())),
-        mappings_(virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}), parent, where_)) {
+        mappings_(
+            virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}, components_), parent, where_)) {
     for (const VirtualMapping& mapping : mappings_) {
       if (mapping.chunk.empty()) continue;
       std::uint64_t bytes = kSourceChunkCopies * mapping.value_bytes;
@@ -65,8 +71,9 @@ class VirtualBoxes final : public StoredBoxes {
           from_end > chunk.size() ? 1 : std::min<hsize_t>(chunk[chunk.size() - from_end], wide));
     };
     const auto corner = [&](std::size_t from_end) { return static_cast<std::int64_t>(bounds.lo[rank - from_end]); };
-    chunk_ = {at(1), at(2), at(3)};
-    chunk_origin_ = {corner(1), corner(2), corner(3)};
+    const std::size_t x = components_ > 1 ? 2 : 1;
+    chunk_ = {at(x), at(x + 1), at(x + 2)};
+    chunk_origin_ = {corner(x), corner(x + 1), corner(x + 2)};
   }
 
   Index3 chunk() const override { return chunk_; }
@@ -82,8 +89,8 @@ class VirtualBoxes final : public StoredBoxes {
 
   void read(const Box& box, std::span<std::byte> stored) override {
     const Hdf5Lock lock;
-    const Hdf5Handle wanted = select_box(space_.get(), index_, box);
-    const AxisBox placed = axis_box(index_, box);
+    const Hdf5Handle wanted = select_box(space_.get(), ArrayPlace::behind(index_), box);
+    const AxisBox placed = axis_box(index_, box, components_);
     std::vector<hsize_t> dims;
     for (std::size_t i = 0; i < placed.lo.size(); ++i) dims.push_back(placed.hi[i] - placed.lo[i]);
     const std::vector<hssize_t> corner(placed.lo.begin(), placed.lo.end());
@@ -123,6 +130,7 @@ class VirtualBoxes final : public StoredBoxes {
 
   Hdf5Handle dataset_;
   std::vector<std::int64_t> index_;
+  std::int64_t components_;
   std::string where_;
   Hdf5Handle type_;
   Hdf5Handle space_;
@@ -136,9 +144,9 @@ class VirtualBoxes final : public StoredBoxes {
 }  // namespace
 
 std::unique_ptr<StoredBoxes> make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index,
-                                                const Index3& extent, const std::string& parent,
-                                                const std::string& where) {
-  return std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), extent, parent, where);
+                                                const Index3& extent, std::int64_t components,
+                                                const std::string& parent, const std::string& where) {
+  return std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), extent, components, parent, where);
 }
 
 }  // namespace weir

@@ -11,10 +11,11 @@
 
 namespace weir {
 
-/// The last three axes of `dataset` (in the file `parent`), `extent` voxels, at `index`, one position per
-/// leading axis. Throws what virtual_mappings throws. The caller holds Hdf5Lock.
+/// The three axes of `dataset` (in the file `parent`) behind the leading ones, `extent` voxels, at `index`, one
+/// position per leading axis; of several `components` a voxel these are the last axis. Throws what virtual_mappings
+/// throws. The caller holds Hdf5Lock.
 std::unique_ptr<StoredBoxes> make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index,
-                                                const Index3& extent, const std::string& parent,
-                                                const std::string& where);
+                                                const Index3& extent, std::int64_t components,
+                                                const std::string& parent, const std::string& where);
 
 }  // namespace weir

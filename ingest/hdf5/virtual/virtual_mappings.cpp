@@ -260,7 +260,7 @@ Hdf5Handle open_virtual_source(hid_t virtual_dataset, const std::string& file, c
   try {
     opened = file.empty() ? Hdf5Handle(H5Iget_file_id(virtual_dataset)) : open_hdf5_file(file);
   } catch (const Error& error) {
-    throw Error(error.kind(), compose(where, ": its source ", error.message()));
+    throw Error(error.kind(), compose(where, ": its source ", error.message()), error.system_failure());
   }
   Hdf5Handle source(H5Dopen2(opened.get(), dataset.c_str(), H5P_DEFAULT));
   if (source) return source;

@@ -96,8 +96,8 @@ static void volumes(void) {
   char name[257];
   memset(name, 'n', sizeof name);
   name[256] = 0;
-  REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 0, it must be 1 to 11", v.type = 0);
-  REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 12, it must be 1 to 11", v.type = 12);
+  REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 0, it must be 1 to 12", v.type = 0);
+  REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 13, it must be 1 to 12", v.type = 13);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "name has 256 bytes, a grid's has at most 255", v.name = name);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "missing is \"none\", it must be a number or nan", v.missing = "none");
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "reserved is 1, it must be 0", v.reserved = 1);
@@ -140,7 +140,9 @@ static void options(void) {
   REFUSE_OPTIONS("size is 4096, and budget_kind is not WEIR_BUDGET_SIZE; set one or the other", o.size = 4096);
   REFUSE_OPTIONS("encoding is 7, it must be 0 to 6", o.encoding = 7);
   REFUSE_OPTIONS("preview is 3, it must be 0 to 2", o.preview = 3);
-  REFUSE_OPTIONS("reserved is 1, it must be 0", o.reserved = 1);
+  REFUSE_OPTIONS("missing_policy is 4, it must be 0 to 3", o.missing_policy = 4);
+  REFUSE_OPTIONS("at_most needs size (WEIR_BUDGET_SIZE) or budget (WEIR_BUDGET_RATE)", o.at_most = 1);
+  REFUSE_OPTIONS("backend is 3, it must be 0 to 2", o.backend = 3);
   REFUSE_OPTIONS("metric is 4, it must be 0 to 3", o.metric = 4);
   REFUSE_OPTIONS("fill is 2, it must be 0 to 1", o.fill = 2);
   REFUSE_OPTIONS("nonfinite is 3, it must be 0 to 2", o.nonfinite = 3);
@@ -171,12 +173,19 @@ static void options(void) {
   } while (0)
 
 static void inputs(void) {
-  const int64_t index[2] = {0, -1};
-  REFUSE_INPUT("type is 12, it must be 1 to 11", i.type = 12);
+  const int64_t index[2] = {0, 1};
+  REFUSE_INPUT("type is 13, it must be 1 to 12", i.type = 13);
   REFUSE_INPUT("endian is 3, it must be 0 to 2", i.endian = 3);
   REFUSE_INPUT("index is a null pointer", i.index_count = 1);
   REFUSE_INPUT("index_count is 33, it must be at most 32", (i.index = index, i.index_count = 33));
-  REFUSE_INPUT("index is \"0,-1\", it must be i,j,..., whole numbers from 0 on, or * for each of them", (i.index = index, i.index_count = 2));
+  REFUSE_INPUT("component is \"w\", it must be x, y, z, magnitude or a whole number from 0 to 63", i.component = "w");
+  REFUSE_INPUT("magnitude is \"u\", it must be the names of two datasets or more, u,v,w", i.magnitude = "u");
+  REFUSE_INPUT("level is 1, and has_level is 0; set it", i.level = 1);
+  REFUSE_INPUT("level is \"-1\", it must be a whole number from 0, the coarsest level, to 99",
+               (i.level = -1, i.has_level = 1));
+  REFUSE_INPUT("upsample is 2, it must be 0 to 1", i.upsample = 2);
+  REFUSE_INPUT("missing_chunks is 2, it must be 0 to 1", i.missing_chunks = 2);
+  REFUSE_INPUT("component is empty; give a position, x, y, z or magnitude, or NULL", i.component = "");
   REFUSE_INPUT("missing is \"\", it must be a number or nan", i.missing = "");
   REFUSE_INPUT("origin is set, and has_origin is 0; set it", i.origin[0] = 1);
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert_file(path_of("x.raw"), NULL, NULL, path_of("a.nvdb"), &error));

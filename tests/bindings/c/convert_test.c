@@ -183,6 +183,17 @@ static void values_that_are_none(const float* values) {
   CHECK_OK(weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
   CHECK(info_of(path_of("holed.nvdb")).nonfinite == 2);
   CHECK(info_of(path_of("holed.nvdb")).missing == 1);
+  options.overwrite = 1;
+  options.nonfinite = WEIR_NONFINITE_BACKGROUND;
+  options.missing_policy = WEIR_MISSING_POLICY_ERROR;
+  CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
+  CHECK(strstr(error.message, " holds no data (stored as -9999), the first at ") != NULL);
+  CHECK(strstr(error.message, "; choose WEIR_MISSING_POLICY_BACKGROUND or, to take -9999 for data, "
+                              "WEIR_MISSING_POLICY_KEEP") != NULL);
+  options.missing_policy = WEIR_MISSING_POLICY_KEEP;
+  CHECK_OK(weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
+  CHECK(info_of(path_of("holed.nvdb")).missing == 1);
+  CHECK(info_of(path_of("holed.nvdb")).source_range[0] == -9999);
   free(holed);
 }
 
@@ -222,6 +233,44 @@ static void callbacks(const float* values) {
   }
 }
 
+/* Of vectors (v, 2 v, -2 v), whose length is 3 v, the component that is named becomes the volume. */
+static void components(const float* values) {
+  static const char* const names[] = {"0", "y", "2", "magnitude"};
+  static const float factors[] = {1, 2, -2, 3};
+  char path[512];
+  snprintf(path, sizeof path, "%s", path_of("vectors.vtk"));
+  FILE* const file = fopen(path, "w");
+  if (file == NULL) abort();
+  fprintf(file, "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS %d %d %d\n", NX, NY, NZ);
+  fprintf(file, "ORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA %d\nVECTORS v float\n", VOXELS);
+  for (int i = 0; i < VOXELS; ++i) {
+    fprintf(file, "%g %g %g\n", (double)values[i], 2 * (double)values[i], -2 * (double)values[i]);
+  }
+  if (fclose(file) != 0) abort();
+
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  float* const expected = malloc(sizeof(float) * VOXELS);
+  weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  volume.name = "v";
+  weir_input_options input;
+  CHECK(weir_input_options_init(&input, sizeof input) == WEIR_OK);
+  for (int i = 0; i < 4; ++i) {
+    input.component = names[i];
+    CHECK_OK(weir_convert_file(path, &input, &options, path_of("component.nvdb"), &error));
+    for (int v = 0; v < VOXELS; ++v) expected[v] = factors[i] * values[v];
+    CHECK_OK(weir_convert(&volume, expected, NULL, &options, path_of("expected.nvdb"), &error));
+    CHECK(same_files(path_of("component.nvdb"), path_of("expected.nvdb")));
+  }
+  free(expected);
+  input.component = NULL;
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert_file(path, &input, &options, path_of("none.nvdb"), &error));
+  CHECK(strstr(error.message, "array 'v': has 3 components a voxel; give component: 0 to 2, x, y, z or magnitude"));
+  input.component = "3";
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert_file(path, &input, &options, path_of("none.nvdb"), &error));
+  CHECK(strstr(error.message, "array 'v': has 3 components a voxel, and component is 3; give 0 to 2"));
+}
+
 static void places(const float* values) {
   const weir_volume volume = pattern_volume(WEIR_FLOAT32);
   weir_convert_options options = default_options();
@@ -249,6 +298,7 @@ int main(void) {
   every_budget(values);
   values_that_are_none(values);
   callbacks(values);
+  components(values);
   places(values);
   free(values);
   return finish();

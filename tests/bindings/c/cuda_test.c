@@ -1,4 +1,5 @@
-/* A grid on the device holds the bytes of the file's; without a device the load says so. */
+/* A grid on the device holds the bytes of the file's; without a device the load says so. Values on the device become
+ * the file that the host's become. */
 #include "check.h"
 
 #include <cuda_runtime_api.h>
@@ -37,6 +38,86 @@ static void arguments(weir_grid* grid) {
   weir_cuda_free(NULL);
 }
 
+/* Memory of the device where there is one. */
+static void* device_copy(const void* values, size_t bytes, int device) {
+  void* copy = NULL;
+  if (device) {
+    CHECK(cudaMalloc(&copy, bytes) == cudaSuccess);
+    CHECK(cudaMemcpy(copy, values, bytes, cudaMemcpyHostToDevice) == cudaSuccess);
+  } else {
+    copy = malloc(bytes);
+    memcpy(copy, values, bytes);
+  }
+  return copy;
+}
+static void free_copy(void* copy, int device) {
+  if (device) {
+    CHECK(cudaFree(copy) == cudaSuccess);
+  } else {
+    free(copy);
+  }
+}
+
+/* Slabs in any order, in the order of axes z, y, x, with and without device memory for them; and the one call. */
+static void pushes(int device) {
+  const size_t bytes = sizeof(int16_t) * VOXELS;
+  int16_t* const values = malloc(bytes);
+  int16_t* const transposed = malloc(bytes);
+  for (int z = 0; z < NZ; ++z) {
+    for (int y = 0; y < NY; ++y) {
+      for (int x = 0; x < NX; ++x) {
+        values[x + NX * (y + NY * z)] = (int16_t)pattern(x, y, z);
+        transposed[z + NZ * (y + NY * x)] = (int16_t)pattern(x, y, z);
+      }
+    }
+  }
+  const weir_volume volume = pattern_volume(WEIR_INT16);
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("whole.nvdb"), &error));
+  int16_t* const packed = device_copy(values, bytes, device);
+  int16_t* const strided = device_copy(transposed, bytes, device);
+  CHECK_OK(weir_convert_device(&volume, packed, NULL, NULL, &options, path_of("pushed.nvdb"), &error));
+  CHECK(same_files(path_of("whole.nvdb"), path_of("pushed.nvdb")));
+
+  const int64_t stride[3] = {2 * NZ * NY, 2 * NZ, 2};
+  for (uint64_t memory = 0; memory <= 4 * NX * NY; memory += 4 * NX * NY) {
+    weir_push* push = NULL;
+    CHECK_OK(weir_push_begin(&volume, &options, path_of("pushed.nvdb"), &push, &error));
+    CHECK_OK(weir_push_device_memory(push, memory, &error));
+    for (int z = NZ - 3; z >= 0; z -= 5) {
+      CHECK_OK(weir_push_slab_device(push, z, 3, strided + z, stride, NULL, &error));
+    }
+    for (int z = NZ - 5; z >= 0; z -= 5) {
+      CHECK_OK(weir_push_slab_device(push, z, 2, packed + NX * NY * z, NULL, NULL, &error));
+    }
+    CHECK_USAGE("memory: a slab of 2 planes from 2 on holds planes 2 to 3, given before; give each plane once",
+                weir_push_slab_device(push, 2, 2, packed, NULL, NULL, &error));
+    CHECK_OK(weir_push_end(push, &error));
+    weir_push_free(push);
+    CHECK(same_files(path_of("whole.nvdb"), path_of("pushed.nvdb")));
+  }
+
+  weir_push* push = NULL;
+  CHECK_USAGE("push is a null pointer", weir_push_slab_device(NULL, 0, 1, packed, NULL, NULL, &error));
+  CHECK_USAGE("push is a null pointer", weir_push_device_memory(NULL, 0, &error));
+  CHECK_OK(weir_push_begin(&volume, &options, path_of("refused.nvdb"), &push, &error));
+  CHECK_USAGE("data is a null pointer", weir_push_slab_device(push, 0, 1, NULL, NULL, NULL, &error));
+  if (device) {
+    const int64_t odd[3] = {2, 2 * NX + 1, 2 * NX * NY};
+    CHECK_USAGE("on a device, a slab's address and strides must be multiples of the 2 bytes of a value",
+                weir_push_slab_device(push, 0, 1, packed, odd, NULL, &error));
+    CHECK_USAGE("device memory is granted before the first slab of a device, which has come",
+                weir_push_device_memory(push, 1 << 20, &error));
+  }
+  weir_push_free(push);
+  CHECK(!exists(path_of("refused.nvdb")));
+  free_copy(packed, device);
+  free_copy(strided, device);
+  free(values);
+  free(transposed);
+}
+
 int main(void) {
   make_directory();
   float* const values = pattern_floats();
@@ -67,6 +148,7 @@ int main(void) {
     expect_on_device(a, loaded);
     weir_cuda_free(loaded);
   }
+  pushes(devices > 0);
   weir_close(a);
   weir_close(b);
   return finish();

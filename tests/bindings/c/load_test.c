@@ -47,6 +47,7 @@ static void metadata(const float* values) {
   CHECK_OK(weir_get_info(grid, &info, &error));
   CHECK(info.certified == 0 && info.psnr_db == 0 && weir_grid_sidecar(grid) == NULL);
   weir_close(grid);
+  volume.spacing[0] = 0.25;
   weir_buffer* const other = convert(&volume, values, WEIR_BUDGET_LOSSLESS);
   size_t bytes = 0;
   unsigned char* const file = read_file(path_of("a.nvdb"), &bytes);

@@ -3,6 +3,7 @@
 import json
 import logging
 import math
+import os
 import unittest
 
 import numpy
@@ -34,6 +35,14 @@ class Convert(FolderTest):
         noise((9, 9, 9), numpy.uint8).tofile(raw)
         weir.convert(str(raw), lossless=True)
         self.assertEqual(self.names(), ["b_9x9x9_uint8.nvdb", "b_9x9x9_uint8.nvdb.json", "b_9x9x9_uint8.raw"])
+
+    def test_at_most_pads_nothing(self):
+        values = numpy.arange(8000, dtype=numpy.float32).reshape(20, 20, 20)
+        longest = weir.convert(values, self.folder / "a.nvdb", lossless=True)["file"]["bytes"]
+        self.assertEqual(weir.convert(values, self.folder / "b.nvdb", size=longest + 5)["file"]["bytes"], longest + 5)
+        record = weir.convert(values, self.folder / "c.nvdb", size=longest + 5, at_most=True)
+        self.assertEqual(record["file"]["bytes"], longest)
+        self.assertEqual(os.path.getsize(self.folder / "c.nvdb"), longest)
 
     def test_the_record_is_the_sidecar(self):
         record = weir.convert(noise((20, 30, 40)), self.folder / "a.nvdb", psnr=40)
@@ -95,6 +104,45 @@ class Convert(FolderTest):
         for name, content in bytes_of.items():
             self.assertEqual(content, bytes_of["C"], name)
 
+    def test_component_chooses_from_an_array_of_vectors_in_a_file(self):
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("h5py is missing")
+        values = noise((20, 21, 22 * 3), numpy.float32).reshape(20, 21, 22, 3)
+        with h5py.File(self.folder / "v.h5", "w") as file:
+            file["v"] = values
+        length = numpy.sqrt((values.astype("f8") ** 2)[..., 0] + (values.astype("f8") ** 2)[..., 1] + (values.astype("f8") ** 2)[..., 2])
+        for component, wanted in ((1, values[..., 1]), ("x", values[..., 0]), ("magnitude", length)):
+            weir.convert(self.folder / "v.h5", self.folder / "v.nvdb", component=component, lossless=True, overwrite=True)
+            found = weir.open(self.folder / "v.nvdb").to_numpy()
+            self.assertTrue(same(found, numpy.ascontiguousarray(wanted, numpy.float32)), component)
+
+    def test_lengths_of_vectors_of_integers_are_no_integers(self):
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("h5py is missing")
+        for kind in (numpy.uint8, numpy.int8, numpy.uint16, numpy.int16):
+            values = noise((20, 21, 22 * 3), kind).reshape(20, 21, 22, 3)
+            values[:, :, :15] = (3, 4, 12)
+            with h5py.File(self.folder / "v.h5", "w") as file:
+                file["v"] = values
+            x, y, z = (values[..., component].astype("f8") for component in range(3))
+            length = numpy.sqrt(x * x + y * y + z * z).astype(numpy.float32)
+            for encoding in ("float", "auto", "packed"):
+                with self.subTest(kind=kind, encoding=encoding):
+                    record = weir.convert(
+                        self.folder / "v.h5",
+                        self.folder / "v.nvdb",
+                        component="magnitude",
+                        lossless=True,
+                        encoding=encoding,
+                        overwrite=True,
+                    )
+                    self.assertEqual(record["background"]["value"], 13)
+                    self.assertTrue(same(weir.open(self.folder / "v.nvdb").to_numpy(), length))
+
     def test_an_axis_of_stride_zero_is_read_again_and_again(self):
         values = numpy.broadcast_to(numpy.arange(10, dtype=numpy.uint8), (12, 11, 10))
         self.assertTrue(same(self.lossless(values).to_numpy(), values.astype(numpy.float32)))
@@ -107,6 +155,12 @@ class Convert(FolderTest):
         self.assertEqual(grid.origin, (10, 20, 30))
         self.assertEqual(grid.name, "charge")
         self.assertEqual(grid.to_numpy()[5, 3, 2], 50302)
+
+    def test_ghost_cells_are_left_out(self):
+        values = noise((20, 30, 40))
+        weir.convert(values, self.folder / "a.nvdb", lossless=True, ghost=(3, 2, 1))
+        with weir.open(self.folder / "a.nvdb") as grid:
+            self.assertTrue(same(grid.to_numpy(), values[1:-1, 2:-2, 3:-3].astype(numpy.float32)))
 
     def test_a_region_keeps_its_index(self):
         values = ramp(12, 20, 28)
@@ -122,9 +176,20 @@ class Convert(FolderTest):
         numpy.testing.assert_array_equal(grid.to_numpy(), values)
         self.assertEqual(grid.sidecar["missing"]["count"], 1)
 
+    def test_missing_policy(self):
+        values = ramp(9, 9, 9)
+        message = r"1 of 729 voxels .* choose missing_policy background or, to take 302 for data, missing_policy keep$"
+        with self.assertRaisesRegex(weir.InputError, message):
+            weir.convert(values, self.folder / "a.nvdb", missing=302)
+        grid = self.lossless(values, missing=302, missing_policy="keep")
+        self.assertTrue(same(grid.to_numpy(), values))
+        self.assertEqual(grid.sidecar["missing"], {"count": 1, "values": ["302"], "policy": "keep"})
+        grid = self.lossless(values, name="b.nvdb", missing=302, missing_policy="background")
+        self.assertEqual(grid.to_numpy()[0, 3, 2], grid.sidecar["background"]["value"])
+
     def test_progress_has_each_pass_to_its_end(self):
         calls = []
-        weir.convert(noise((64, 64, 64)), self.folder / "a.nvdb", progress=lambda *call: calls.append(call))
+        weir.convert(noise((64, 64, 64)), self.folder / "a.nvdb", rate=2, progress=lambda *call: calls.append(call))
         total = 64**3 * 4
         self.assertEqual([pass_ for pass_, done, all_ in calls if done == all_], ["survey", "encode"])
         for pass_, done, all_ in calls:
@@ -136,7 +201,83 @@ class Convert(FolderTest):
         with self.assertLogs("weir", logging.WARNING) as logs:
             weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb")
         self.assertEqual(len(logs.output), 1)
-        self.assertRegex(logs.output[0], r"^WARNING:weir:.*/a\.nvdb: rate 8 would be 365 bytes, less than the smallest tree; writing that: \d+ bytes$")
+        self.assertRegex(logs.output[0], r"^WARNING:weir:.*/a\.nvdb: no budget was given, and rate 8 would keep less than 40 dB of so small a volume; written .*: \d+ bytes, rate 0\.009\d+; give a budget for another size$")
+
+
+class SeveralPositions(FolderTest):
+    """An NRRD file of three volumes."""
+
+    def setUp(self):
+        super().setUp()
+        self.values = numpy.stack([ramp(5, 6, 7) + step for step in range(3)])
+        header = "NRRD0004\ntype: float\ndimension: 4\nsizes: 5 6 7 3\nendian: little\nencoding: raw\n\n"
+        (self.folder / "run.nrrd").write_bytes(header.encode() + self.values.astype("<f4").tobytes())
+
+    def test_a_range_converts_each_and_returns_a_list(self):
+        for index, steps in (("0:2", [0, 1]), ("*", [0, 1, 2]), ("2:", [2])):
+            records = weir.convert(self.folder / "run.nrrd", f"{self.folder}/out/", index=index, lossless=True, overwrite=True)
+            self.assertEqual([record["source"]["index"] for record in records], [[step] for step in steps])
+            for step in steps:
+                with weir.open(self.folder / f"out/run_{step}.nvdb") as grid:
+                    self.assertTrue((grid.to_numpy() == self.values[step]).all())
+
+    def test_one_position_is_one_record(self):
+        for index, step in ((1, 1), ("-1", 2), ([0], 0)):
+            record = weir.convert(self.folder / "run.nrrd", self.folder / "a.nvdb", index=index, lossless=True, overwrite=True)
+            self.assertEqual(record["source"]["index"], [step])
+
+
+class SeveralDatasets(FolderTest):
+    """A VTK image with two arrays of scalars and one of vectors."""
+
+    def setUp(self):
+        super().setUp()
+        self.values = {"a": ramp(5, 6, 7), "b": ramp(5, 6, 7) + 1}
+        text = "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 5 6 7\n"
+        text += "ORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 210\n"
+        for name, values in self.values.items():
+            text += f"SCALARS {name} float\nLOOKUP_TABLE default\n{' '.join(map(str, values.ravel()))}\n"
+        vectors = numpy.stack([self.values["a"], 2 * self.values["a"], 3 * self.values["a"]], -1)
+        text += f"VECTORS v float\n{' '.join(map(str, vectors.ravel()))}\n"
+        (self.folder / "run.vtk").write_text(text)
+
+    def test_a_list_converts_each(self):
+        records = weir.convert(self.folder / "run.vtk", f"{self.folder}/out/", dataset=["a", "b"], lossless=True)
+        self.assertEqual([record["source"]["dataset"] for record in records], ["a", "b"])
+        for name, values in self.values.items():
+            with weir.open(self.folder / f"out/run_{name}.nvdb") as grid:
+                self.assertTrue((grid.to_numpy() == values).all())
+
+    def test_a_pattern_in_a_list_and_a_list_of_one(self):
+        records = weir.convert(self.folder / "run.vtk", self.folder / "{dataset}.nvdb", dataset=("*",), lossless=True)
+        self.assertEqual(len(records), 2)
+        self.assertTrue({"a.nvdb", "b.nvdb"} <= set(self.names()))
+        (record,) = weir.convert(self.folder / "run.vtk", self.folder / "one.nvdb", dataset=["b"], lossless=True)
+        self.assertEqual(record["source"]["dataset"], "b")
+
+    def test_what_a_list_cannot_be(self):
+        path = self.folder / "run.vtk"
+        for message, source, dataset in (
+            ("dataset is an empty list; name a dataset in it", path, []),
+            ("dataset is a list; an array is one volume, whose name is a text", ramp(9, 9, 9), ["a"]),
+            (
+                "run.vtk: names 2 volumes; give dataset as a list for all of them, or convert them one by one",
+                path,
+                "*",
+            ),
+        ):
+            self.assertEqual(
+                self.refused(weir.UsageError, weir.convert, source, self.folder / "x.nvdb", dataset=dataset), message
+            )
+        self.assertEqual(self.names(), ["run.vtk"])
+
+    def test_a_component_of_vectors(self):
+        for component, factor in ((0, 1), ("y", 2), ("2", 3)):
+            weir.convert(
+                self.folder / "run.vtk", self.folder / "v.nvdb", dataset="v", component=component, lossless=True, overwrite=True
+            )
+            with weir.open(self.folder / "v.nvdb") as grid:
+                self.assertTrue((grid.to_numpy() == factor * self.values["a"]).all())
 
 
 if __name__ == "__main__":

@@ -1,12 +1,15 @@
 """What a caller did wrong, by the class and the whole message; nothing is left behind."""
 
+import errno
 import os
+import pickle
 import unittest
 
 import numpy
 
 import weir
 from support import FolderTest, noise, ramp
+from weir.errors import InputNotFoundError, InputSystemError, IoNotFoundError
 
 
 class Errors(FolderTest):
@@ -34,7 +37,7 @@ class Errors(FolderTest):
             'spacing is "1,2", it must be x,y,z, three numbers in world units': {"spacing": (1, 2)},
             'memory is "1000", it must be a size of at least 64.0 MiB, like 512MiB': {"memory": 1000},
             "dims says how to read a file; source is an array": {"dims": (9, 9, 9)},
-            "roi is ((0, 0), (1, 1, 1)), it must be ((x0, y0, z0), (x1, y1, z1)), half open": {
+            "roi is ((0, 0), (1, 1, 1)), it must be ((x0, y0, z0), (x1, y1, z1)), x0 inclusive, x1 exclusive": {
                 "roi": ((0, 0), (1, 1, 1))
             },
         }.items():
@@ -51,7 +54,7 @@ class Errors(FolderTest):
             "source has the other byte order (>f4); give source.astype(source.dtype.newbyteorder('='))": values.astype(
                 ">f4"
             ),
-            "source is a masked array; give source.filled(numpy.nan) and nonfinite, or a value and missing": (
+            "source is a masked array; give source.filled(VALUE), missing=VALUE and missing_policy": (
                 numpy.ma.masked_less(values, 5)
             ),
         }.items():
@@ -63,16 +66,63 @@ class Errors(FolderTest):
 
     def test_what_is_no_volume(self):
         message = self.refused(TypeError, weir.convert, [[[1.0]]], self.folder / "out.nvdb")
-        self.assertEqual(message, "source is a list, it must be a path or a numpy array")
+        self.assertEqual(message, "source is a list, it must be a path, a numpy array or an xarray.DataArray")
         message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9))
         self.assertEqual(message, "output is missing: an array has no name to make one from")
         message = self.refused(TypeError, weir.convert, ramp(9, 9, 9), "a.nvdb", rte=8)
         self.assertEqual(message, "convert() got an unexpected keyword argument 'rte'")
 
     def test_a_missing_input(self):
-        message = self.refused(weir.InputError, weir.convert, self.folder / "no.nrrd")
-        self.assertTrue(message.startswith("no.nrrd: "), message)
-        self.assertNotIn("\n", message)
+        message = self.refused(InputNotFoundError, weir.convert, self.folder / "no.nrrd")
+        self.assertEqual(message, "no.nrrd: cannot open for reading: No such file or directory")
+
+    def test_failures_of_the_system_have_number_and_name(self):
+        (self.folder / "a.nhdr").write_text(
+            "NRRD0004\ntype: float\ndimension: 3\nsizes: 9 9 9\nencoding: raw\nendian: little\ndata file: a.raw\n"
+        )
+        (self.folder / "file").write_text("")
+        for kind, builtin, number, name, call in (
+            (InputNotFoundError, FileNotFoundError, errno.ENOENT, "no.h5", lambda: weir.convert(self.folder / "no.h5")),
+            (InputNotFoundError, FileNotFoundError, errno.ENOENT, "no.nvdb", lambda: weir.open(self.folder / "no.nvdb")),
+            (InputNotFoundError, FileNotFoundError, errno.ENOENT, "a.raw", lambda: weir.convert(self.folder / "a.nhdr")),
+            (InputSystemError, OSError, errno.ENOTDIR, "file/a.nvdb", lambda: weir.open(self.folder / "file/a.nvdb")),
+            (
+                IoNotFoundError,
+                FileNotFoundError,
+                errno.ENOENT,
+                "no",
+                lambda: weir.convert(ramp(9, 9, 9), self.folder / "no/out.nvdb"),
+            ),
+        ):
+            with self.subTest(name), self.assertRaises(builtin) as raised:
+                call()
+            error = raised.exception
+            self.assertIs(error.__class__, kind)
+            self.assertEqual(error.errno, number)
+            self.assertEqual(error.filename, str(self.folder / name))
+            self.assertIn(name, str(error))
+            self.assertNotIn("Errno", str(error))
+            again = pickle.loads(pickle.dumps(error))
+            self.assertEqual((str(again), again.errno, again.filename), (str(error), number, error.filename))
+
+    def test_a_file_that_may_not_be_read(self):
+        paths = [self.folder / name for name in ("a.raw", "a.nvdb")]
+        for path in paths:
+            path.write_bytes(bytes(1000))
+            path.chmod(0)
+        self.folder.chmod(0o755)
+        user = os.geteuid()
+        if user == 0:
+            os.seteuid(65534)  # nobody: no file is closed to root
+        try:
+            for path, call in zip(paths, (weir.convert, weir.open)):
+                with self.assertRaises(PermissionError) as raised:
+                    call(path)
+                self.assertIsInstance(raised.exception, weir.Error)
+                self.assertEqual((raised.exception.errno, raised.exception.filename), (errno.EACCES, str(path)))
+                self.assertIn("Permission denied", str(raised.exception))
+        finally:
+            os.seteuid(user)
 
     def test_an_output_that_exists(self):
         weir.convert(ramp(9, 9, 9), self.folder / "out.nvdb", lossless=True)
@@ -104,7 +154,7 @@ class Errors(FolderTest):
         self.assertNotIn("--", message)
 
     def test_a_directory_that_is_missing(self):
-        message = self.refused(weir.IoError, weir.convert, ramp(9, 9, 9), self.folder / "no" / "out.nvdb")
+        message = self.refused(IoNotFoundError, weir.convert, ramp(9, 9, 9), self.folder / "no" / "out.nvdb")
         self.assertIn("no", message)
 
     def test_paths_of_any_bytes(self):
@@ -112,14 +162,14 @@ class Errors(FolderTest):
         weir.convert(ramp(9, 9, 9), os.fsdecode(path), lossless=True)
         with weir.open(os.fsdecode(path)) as grid:
             self.assertEqual(grid.range, (0, 80808))
-        message = self.refused(weir.InputError, weir.open, os.fsdecode(path + b".no"))
+        message = self.refused(InputNotFoundError, weir.open, os.fsdecode(path + b".no"))
         self.assertTrue(message.startswith("\udcff\udce4.nvdb.no: "), ascii(message))
 
 
 class OpenErrors(FolderTest):
     def test_no_file(self):
-        message = self.refused(weir.InputError, weir.open, self.folder / "a.nvdb")
-        self.assertTrue(message.startswith("a.nvdb: "), message)
+        message = self.refused(InputNotFoundError, weir.open, self.folder / "a.nvdb")
+        self.assertEqual(message, "a.nvdb: cannot open: No such file or directory")
 
     def test_no_nanovdb(self):
         (self.folder / "a.nvdb").write_bytes(b"nothing" * 1000)

@@ -13,7 +13,7 @@ PACKAGE = pathlib.Path(weir.__file__).parent
 
 
 def stub_names():
-    """{"convert_file": ["source", ...], "Grid.read": [...]} of _core.pyi; properties have None."""
+    """{"convert_files": ["source", ...], "Grid.read": [...]} of _core.pyi; properties have None."""
     names = {}
 
     def add(prefix, body):

@@ -7,6 +7,7 @@ import numpy
 import weir
 from png import read_png
 from support import FolderTest, ramp, run_weir
+from weir.errors import InputNotFoundError
 
 
 def ball(n=32):
@@ -31,7 +32,7 @@ class Render(FolderTest):
         ):
             with self.subTest(keywords):
                 picture = grid.render(size=(60, 40), backend="cpu", **keywords)
-                run_weir("render", grid.path, "-o", self.folder / "a.png", "--size", "60x40", "--backend", "cpu", *options)
+                run_weir("render", grid.path, "-o", self.folder / "a.png", "--size", "60x40", "--backend", "cpu", "--overwrite", *options)
                 self.assertEqual((picture.shape, picture.dtype), ((40, 60, 3), numpy.uint8))
                 numpy.testing.assert_array_equal(picture, read_png(self.folder / "a.png"))
                 self.assertGreater(picture.std(), 5)
@@ -41,6 +42,19 @@ class Render(FolderTest):
         self.assertEqual((picture.shape, picture.dtype), ((20, 30, 3), numpy.float32))
         self.assertTrue(numpy.isfinite(picture).all())
         self.assertGreater(picture[10, 15].max(), 0)
+
+    def test_a_colour_bar_stands_beside_the_picture(self):
+        grid = self.lossless(ball(), dataset="density")
+        plain = grid.render(size=(60, 80), mode="mip", colormap="viridis")
+        both = grid.render(size=(60, 80), mode="mip", colormap="viridis", colorbar=True)
+        numpy.testing.assert_array_equal(both[:, :60], plain)
+        self.assertEqual(tuple(both[40, 61]), (255, 255, 255))
+        numpy.testing.assert_allclose(both[70, 75], (68, 1, 84), atol=6)  # viridis at 0
+        numpy.testing.assert_allclose(both[9, 75], (253, 231, 37), atol=9)
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.render, linear=True, colorbar=True),
+            "linear asks for radiance, colorbar for colours as a screen shows them; give one of them",
+        )
 
     def test_progress_counts_samples(self):
         calls = []
@@ -57,8 +71,8 @@ class Render(FolderTest):
             'spp is "0", it must be a whole number from 1 to 1048576': {"spp": 0},
         }.items():
             self.assertEqual(self.refused(weir.UsageError, grid.render, **keywords), message)
-        message = self.refused(weir.InputError, grid.render, scene=self.folder / "no.toml")
-        self.assertTrue(message.startswith("no.toml: "), message)
+        message = self.refused(InputNotFoundError, grid.render, scene=self.folder / "no.toml")
+        self.assertEqual(message, "no.toml: cannot read the scene; it must be an existing TOML file")
 
 
 if __name__ == "__main__":

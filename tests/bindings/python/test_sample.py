@@ -31,6 +31,14 @@ class Sample(FolderTest):
         for filter in ("trilinear", "nearest"):
             self.assertTrue(same(grid.sample(centres, filter), values.astype(numpy.float32)))
 
+    def test_the_origin_is_the_centre_of_voxel_0(self):
+        values = noise((9, 17, 30))
+        grid = self.lossless(values, spacing=(2, 4, 8), origin=(10, 20, 30))
+        world = numpy.array([(10, 20, 30), (12, 20, 30), (10 + 2 * 29, 20 + 4 * 16, 30 + 8 * 8)], float)
+        positions = (world - grid.origin) / grid.spacing - grid.index_origin + 0.5
+        expected = numpy.array([values[0, 0, 0], values[0, 0, 1], values[8, 16, 29]], numpy.float32)
+        self.assertTrue(same(grid.sample(positions), expected))
+
     def test_a_ramp_is_exact_between_centres(self):
         grid = self.lossless(ramp(20, 30, 40))
         points = [(1, 1, 1), (7.75, 8, 8.25), (10.5, 20.25, 30.5), (19.5, 29.5, 39.5)]

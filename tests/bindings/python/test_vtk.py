@@ -8,6 +8,7 @@ import numpy
 
 import weir
 from support import SOURCE, FolderTest, noise, ramp, same
+from weir.errors import InputNotFoundError
 
 sys.path.insert(0, str(SOURCE / "bindings/paraview"))
 sys.dont_write_bytecode = True
@@ -147,7 +148,7 @@ class Reader(FolderTest):
     def test_errors_are_one_line(self):
         reader = WeirReader()
         self.assertEqual(self.told(reader.Update), "WeirReader: no file is named; call SetFileName")
-        message = self.refused(weir.InputError, weir.open, self.folder / "no.nvdb")
+        message = self.refused(InputNotFoundError, weir.open, self.folder / "no.nvdb")
         reader.SetFileName(str(self.folder / "no.nvdb"))
         self.assertEqual(self.told(reader.Update), f"WeirReader: {message}")
 

@@ -22,7 +22,7 @@ ValueRange range_of(const std::vector<float>& values) {
 
 double decoded_error(const std::vector<float>& values, const Quantiser& q, unsigned bits) {
   std::vector<std::uint16_t> codes(values.size());
-  quantise(values, q, bits, codes);
+  quantise(values, q, codes);
   double error = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_LT(codes[i], 1U << bits);
@@ -97,16 +97,81 @@ TEST(LeafQuantiser, SmallSignalOnALargeOffset) {
   }
 }
 
+// Values of many kinds of leaves, the same on every machine.
+std::vector<std::vector<float>> kinds_of_leaves() {
+  std::vector<std::vector<float>> kinds;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    kinds.push_back(noise(512, 3, 10, seed));
+    kinds.push_back(noise(512, 1e4F, 1e8F, seed));
+    kinds.push_back(noise(512, 1e-3F, -7, seed));
+    kinds.push_back(noise(512, 1.5e38F, 0, seed));
+    kinds.push_back(noise(37, 1e-30F, 1e-30F, seed));
+    kinds.push_back(noise(512, 0x1p-117F, 0, seed));
+    kinds.push_back(noise(512, 0x1p-122F, -0x1p-100F, seed));
+    std::vector<float> density = noise(512, 2, -0.4F, seed);  // empty space and what is in it
+    for (float& v : density) v = std::max(v, 0.0F);
+    kinds.push_back(density);
+    for (float& v : density) v = -v;
+    kinds.push_back(density);
+    std::vector<float> steep = noise(512, 9, 0, seed);
+    for (float& v : steep) v = std::exp(v);
+    kinds.push_back(steep);
+    std::vector<float> near_lattice = noise(512, 0.02F, 0, seed);
+    for (std::size_t i = 0; i < near_lattice.size(); ++i) {
+      near_lattice[i] += static_cast<float>((i * 7 + seed) % (seed % 13 + 2));
+    }
+    kinds.push_back(near_lattice);
+  }
+  return kinds;
+}
+
+TEST(LeafQuantiser, EveryValue_DecodesToOneInsideTheRange) {
+  for (const std::vector<float>& values : kinds_of_leaves()) {
+    const ValueRange range = range_of(values);
+    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+      for (const Quantiser& q : {fit_quantiser(values, range, bits), range_quantiser(range, bits)}) {
+        std::vector<std::uint16_t> codes(values.size());
+        quantise(values, q, codes);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          const float decoded = dequantize(codes[i], q.quantum, q.minimum);
+          ASSERT_GE(decoded, range.min) << bits << ' ' << values[i];
+          ASSERT_LE(decoded, range.max) << bits << ' ' << values[i];
+        }
+      }
+    }
+  }
+}
+
+TEST(LeafQuantiser, WhereTheLeastValueIsZero_ZerosDecodeToZero) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    std::vector<float> values = noise(512, 2, seed % 2 == 0 ? 0.7F : -0.7F, seed);
+    const float scale = seed > 40 ? std::ldexp(1.0F, 60 - 4 * static_cast<int>(seed)) : 1;  // 2^-104 to 2^-140
+    for (float& v : values) v = std::max(v, 0.0F) * scale;
+    values[seed] = 0;
+    if (seed % 3 == 0) values[seed + 1] = -0.0F;
+    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+      const Quantiser fit = fit_quantiser(values, range_of(values), bits);
+      std::vector<std::uint16_t> codes(values.size());
+      quantise(values, fit, codes);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values[i] != 0) continue;
+        ASSERT_EQ(dequantize(codes[i], fit.quantum, fit.minimum), 0.0F) << bits;
+      }
+    }
+  }
+}
+
 TEST(LeafQuantiser, ARangeTooSmallForFloat_IsOneLevel) {
-  const std::vector<float> values{0, 1e-44F, 3e-44F};
-  const ValueRange range = range_of(values);
-  for (const unsigned bits : {2U, 8U, 16U}) {
-    const Quantiser fit = fit_quantiser(values, range, bits);
-    EXPECT_EQ(fit.quantum, 0.0F);
-    EXPECT_EQ(fit.minimum, range.mean);
-    std::vector<std::uint16_t> codes(values.size());
-    quantise(values, fit, bits, codes);
-    EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
+  for (const std::vector<float>& values : {std::vector<float>{0, 1e-44F, 3e-44F}, {1e-44F, 2e-44F, 6e-44F}}) {
+    const ValueRange range = range_of(values);
+    for (const unsigned bits : {2U, 8U, 16U}) {
+      const Quantiser fit = fit_quantiser(values, range, bits);
+      EXPECT_EQ(fit.quantum, 0.0F);
+      EXPECT_EQ(fit.minimum, range.min == 0 ? 0.0F : range.mean);  // a least value of zero stays zero
+      std::vector<std::uint16_t> codes(values.size());
+      quantise(values, fit, codes);
+      EXPECT_EQ(codes, std::vector<std::uint16_t>(values.size(), 0));
+    }
   }
 }
 
@@ -117,13 +182,13 @@ TEST(LeafQuantiser, ARangeBeyondFloat_HasLevelsOverAsMuchAsFloatHolds) {
       *std::max_element(values.begin(), values.end(), [](float a, float b) { return std::fabs(a) < std::fabs(b); }));
   for (float& v : values) v *= 3.2e38F / most;
   const ValueRange range = range_of(values);
-  const double about_mean = decoded_error(values, {range.mean, 0}, 1);
+  const double about_mean = decoded_error(values, {range.mean, 0, 0}, 1);
   const std::array<double, 3> estimated = estimated_errors(values, range, 32, about_mean);
   double last = 0.5 * about_mean;
   for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
     const Quantiser fit = fit_quantiser(values, range, bits);
     EXPECT_GT(fit.quantum, 0.0F);
-    EXPECT_TRUE(std::isfinite(fit.quantum * static_cast<float>((1U << bits) - 1U))) << bits;
+    EXPECT_TRUE(std::isfinite(fit.quantum * static_cast<float>(fit.top))) << bits;
     const double error = decoded_error(values, fit, bits);
     EXPECT_LE(error, last) << bits;
     if (bits <= 4) {
@@ -139,7 +204,7 @@ TEST(LeafQuantiser, RangeLevelsAreWithinHalfAQuantum) {
   for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
     const Quantiser q = range_quantiser(range_of(values), bits);
     std::vector<std::uint16_t> codes(values.size());
-    quantise(values, q, bits, codes);
+    quantise(values, q, codes);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double d = static_cast<double>(values[i]) - static_cast<double>(dequantize(codes[i], q.quantum, q.minimum));
       EXPECT_LE(std::fabs(d), 0.5 * static_cast<double>(q.quantum) * (1 + 1e-2) + 1e-7);
@@ -170,6 +235,21 @@ TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALattice) {
     for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
       const double error = decoded_error(values, fit_quantiser(values, range, bits), bits);
       EXPECT_LE(error, last * 1.0001) << "leaf " << leaf << " at " << bits << " bits";
+      last = error;
+    }
+  }
+}
+
+// Where the levels of few bits, as many as those of many, would lie beyond float.
+TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALatticeOverNearlyAllOfFloat) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::vector<float> values = noise(512, 1e33F, 0, seed);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += 1.7e36F * static_cast<float>((i * 7 + seed) % 16);
+    const ValueRange range = range_of(values);
+    double last = std::numeric_limits<double>::infinity();
+    for (const unsigned bits : {1U, 2U, 4U, 8U, 16U}) {
+      const double error = decoded_error(values, fit_quantiser(values, range, bits), bits);
+      EXPECT_LE(error, last * 1.0001) << "leaf " << seed << " at " << bits << " bits";
       last = error;
     }
   }

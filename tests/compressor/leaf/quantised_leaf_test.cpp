@@ -137,13 +137,16 @@ TEST(QuantisedLeaf, VoxelsOutsideReadTheNearestInsideAndWidenNoRange) {
   }
 }
 
-TEST(QuantisedLeaf, ARangeTooSmallForFloat_IsItsMeanAtEveryWidth) {
-  const LeafValues values = filled([](std::size_t i) { return i % 4 == 0 ? 0.0F : 0x1p-130F; });
-  for (unsigned log2 = 0; log2 <= 4; ++log2) {
-    const QuantisedLeaf leaf = quantised(values, log2);
-    EXPECT_EQ(leaf.quantiser.quantum, 0.0F);
-    EXPECT_EQ(leaf.decoded[9], static_cast<float>(0.75 * 0x1p-130));
-    EXPECT_FALSE(leaf.exact);
+TEST(QuantisedLeaf, ARangeTooSmallForFloat_IsItsMeanAtEveryWidth_OrZeroWhereThatIsItsLeast) {
+  for (const float least : {0.0F, 0x1p-131F}) {
+    const LeafValues values = filled([least](std::size_t i) { return i % 4 == 0 ? least : 0x1p-130F; });
+    for (unsigned log2 = 0; log2 <= 4; ++log2) {
+      const QuantisedLeaf leaf = quantised(values, log2);
+      EXPECT_EQ(leaf.quantiser.quantum, 0.0F);
+      EXPECT_EQ(leaf.decoded[9], least == 0 ? 0.0F : static_cast<float>(0.875 * 0x1p-130));
+      EXPECT_EQ(leaf.zeros_lost, 0U);
+      EXPECT_FALSE(leaf.exact);
+    }
   }
 }
 

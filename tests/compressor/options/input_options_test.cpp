@@ -58,7 +58,9 @@ TEST(InputOptions, SizesAndTypes_AreTakenAsOthersWriteThem) {
               parse({{"type", "f3"}});
             }),
             "--type is \"f3\", it must be one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, "
-            "float32, float64");
+            "bfloat16, "
+            "float32, float64, or float, double, u1, i1, u2, i2, u4, i4, u8, i8, f2, f4, f8, where < or > before the "
+            "name says the byte order");
 }
 
 TEST(InputOptions, ImpossibleDims_AreRefused) {
@@ -68,6 +70,14 @@ TEST(InputOptions, ImpossibleDims_AreRefused) {
               }),
               "--dims is \"" + dims + "\", it must be X,Y,Z, three whole numbers of voxels, each from 1 to 2147483647");
   }
+  for (const std::string dims : {"2147483647,2147483647,2147483647", "1048576x1048576x1048576"}) {
+    EXPECT_EQ(message_of([&] {
+                parse({{"dims", dims}});
+              }),
+              "--dims is \"" + dims +
+                  "\", it must be X,Y,Z, three whole numbers of voxels, with fewer than 2^60 voxels together");
+  }
+  EXPECT_EQ(parse({{"dims", "1048576x1048576x1048575"}}).extent, (Index3{1 << 20, 1 << 20, (1 << 20) - 1}));
 }
 
 TEST(InputOptions, AllGiven) {
@@ -81,6 +91,10 @@ TEST(InputOptions, AllGiven) {
                                        {"direct-io", "off"},
                                        {"dataset", "/a b/c"},
                                        {"index", "3,0"},
+                                       {"component", "y"},
+                                       {"level", "2"},
+                                       {"upsample", "linear"},
+                                       {"missing-chunks", "error"},
                                        {"missing", "-9999"}});
   EXPECT_EQ(options.extent, (Index3{3, 4, 5}));
   EXPECT_EQ(options.type, ScalarType::uint16);
@@ -92,7 +106,18 @@ TEST(InputOptions, AllGiven) {
   EXPECT_EQ(options.direct_io, DirectIo::off);
   EXPECT_EQ(options.dataset, "/a b/c");
   EXPECT_EQ(options.index, (std::vector<std::int64_t>{3, 0}));
+  EXPECT_EQ(options.component, (ComponentChoice{false, 1}));
+  EXPECT_EQ(options.level, 2);
+  EXPECT_EQ(options.upsampling, Upsampling::linear);
+  EXPECT_EQ(options.missing_chunks, MissingChunks::error);
   EXPECT_EQ(options.missing, StoredValue{std::int64_t{-9999}});
+}
+
+TEST(InputOptions, MissingPolicy_KeepTellsTheSourceToo) {
+  EXPECT_EQ(read_conversion_request({}).conversion.missing, MissingPolicy::automatic);
+  EXPECT_FALSE(parse({{"missing-policy", "background"}}).keeps_missing);
+  EXPECT_TRUE(parse({{"missing-policy", "keep"}}).keeps_missing);
+  EXPECT_EQ(read_conversion_request({{"missing-policy", "keep"}}).conversion.missing, MissingPolicy::keep);
 }
 
 TEST(InputOptions, Dims) {
@@ -107,7 +132,9 @@ TEST(InputOptions, Type) {
               parse({{"type", "half"}});
             }),
             "--type is \"half\", it must be one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, "
-            "float32, float64");
+            "bfloat16, "
+            "float32, float64, or float, double, u1, i1, u2, i2, u4, i4, u8, i8, f2, f4, f8, where < or > before the "
+            "name says the byte order");
 }
 
 TEST(InputOptions, Endian) {
@@ -137,12 +164,17 @@ TEST(InputOptions, SpacingAndOrigin) {
 }
 
 TEST(InputOptions, Index) {
-  for (const std::string text : {"-1", "1,", "a", "1.5"}) {
+  for (const std::string text : {"1,", "a", "1.5", "=2"}) {
     EXPECT_EQ(message_of([&] {
                 parse({{"index", text}});
               }),
-              "--index is \"" + text + "\", it must be i,j,..., whole numbers from 0 on, or * for each of them");
+              "--index is \"" + text +
+                  "\", it must be i,j,..., whole numbers, below 0 from the end, FROM:TO or * for several, or AXIS=i");
   }
+  EXPECT_EQ(parse({{"index", "2,0"}}).index, (std::vector<std::int64_t>{2, 0}));
+  const SourceOptions choices = parse({{"index", "time=-1,level=0:2"}});
+  EXPECT_TRUE(choices.index.empty());
+  EXPECT_EQ(choices.index_choices, (std::vector<AxisChoice>{{"time", false, -1, std::nullopt}, {"level", true, 0, 2}}));
 }
 
 TEST(InputOptions, Missing) {
@@ -151,7 +183,7 @@ TEST(InputOptions, Missing) {
 }
 
 TEST(InputOptions, Roi) {
-  const std::string form = ", it must be x0:x1,y0:y1,z0:z1, whole numbers, half open";
+  const std::string form = ", it must be x0:x1,y0:y1,z0:z1, whole numbers, x0 inclusive, x1 exclusive";
   for (const std::string text : {"1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:6:7", "a:2,3:4,5:6", "1:2,3:4,5:6,7:8"}) {
     EXPECT_EQ(message_of([&] { parse({{"roi", text}}); }), "--roi is \"" + text + "\"" + form);
   }
@@ -159,6 +191,15 @@ TEST(InputOptions, Roi) {
               parse({{"roi", "1:1,3:4,5:6"}});
             }),
             "--roi is \"1:1,3:4,5:6\"" + form + ", with every end above its start");
+  const VolumeRegion open = parse({{"roi", "2:,:-3,:"}}).roi.value();
+  EXPECT_EQ(open.in({{0, 0, 0}, {10, 10, 10}}), (Box{{2, 0, 0}, {10, 7, 10}}));
+}
+
+TEST(InputOptions, Ghost_LeavesLayersOutAtBothEnds) {
+  const Box domain{{-3, 0, 5}, {7, 10, 15}};
+  EXPECT_EQ(parse({{"ghost", "2"}}).roi.value().in(domain), (Box{{-1, 2, 7}, {5, 8, 13}}));
+  EXPECT_EQ(parse({{"ghost", "0,1,4"}}).roi.value().in(domain), (Box{{-3, 1, 9}, {7, 9, 11}}));
+  EXPECT_EQ(parse({{"ghost", "0"}}).roi.value().in(domain), domain);
 }
 
 TEST(InputOptions, DirectIo) {

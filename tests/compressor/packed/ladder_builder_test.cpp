@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "compressor/leaf/leaf_summary.h"
 
@@ -25,19 +26,25 @@ LeafValues filled(float (*value)(double x, double y, double z)) {
   return block;
 }
 
-void expect_falling(const PackedLadder& ladder) {
-  EXPECT_LT(ladder.near[0].bytes, ladder.near[ladder.near_count - 1U].bytes);
-  for (std::size_t i = 1; i < ladder.near_count; ++i) {
-    EXPECT_LT(ladder.near[i].error.value(), ladder.near[i - 1].error.value()) << i;
+std::vector<RungPoint> near_points(const PackedLadder& ladder) {
+  std::vector<RungPoint> points;
+  for (std::size_t rung = 0; rung < ladder.near_count; ++rung) {
+    if (const auto point = ladder.near_point(rung)) points.push_back(*point);
   }
+  return points;
+}
+
+void expect_falling(const std::vector<RungPoint>& points) {
+  EXPECT_LT(points.front().bytes, points.back().bytes);
+  for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LT(points[i].share, points[i - 1].share) << i;
 }
 
 TEST(LadderBuilder, NearRungsOfASmoothBlockTakeFewerBytesTheMoreTheyLose) {
   const PackedLadder ladder = ladder_of(filled([](double x, double y, double z) {
     return static_cast<float>(std::sin(0.3 * x + 0.2 * y) + std::cos(0.4 * z));
   }));
-  EXPECT_GE(ladder.near_count, 10);
-  expect_falling(ladder);
+  EXPECT_GE(near_points(ladder).size(), 10U);
+  expect_falling(near_points(ladder));
   EXPECT_EQ(ladder.exact, ExactKind::ordered);
 }
 
@@ -46,9 +53,24 @@ TEST(LadderBuilder, BlocksFarFromZeroHaveNearRungs) {
   const PackedLadder ladder = ladder_of(filled([](double x, double y, double z) {
     return static_cast<float>(1000 + 0.02 * (std::sin(0.3 * x + 0.2 * y) + std::cos(0.4 * z)));
   }));
-  EXPECT_GE(ladder.near_count, 3);
-  expect_falling(ladder);
-  EXPECT_LT(ladder.near_exponent, -2);
+  EXPECT_GE(near_points(ladder).size(), 3U);
+  expect_falling(near_points(ladder));
+  EXPECT_FALSE(ladder.near_point(0));
+}
+
+TEST(LadderBuilder, LatticeIsOfStoredWholeNumbersOnly) {
+  SourceInfo source;
+  source.type = ScalarType::int8;
+  ASSERT_TRUE(lattice_of(source).has_value());
+  EXPECT_EQ(lattice_of(source)->minimum, -128.0F);
+  EXPECT_EQ(lattice_of(source)->bits, 8U);
+  source.lengths = true;
+  EXPECT_FALSE(lattice_of(source).has_value()) << "lengths of vectors";
+  source.lengths = false;
+  source.mapping.scale = 0.5;
+  EXPECT_FALSE(lattice_of(source).has_value()) << "scaled values";
+  source = {};
+  EXPECT_FALSE(lattice_of(source).has_value()) << "floats";
 }
 
 TEST(LadderBuilder, BlocksOnALatticeAreExactWithoutTheFloatsOrder) {

@@ -19,8 +19,8 @@
 
 #include "format/base/error.h"
 #include "ingest/values/array_source.h"
-#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/hard_cases.h"
+#include "tests/compressor/support/push_calls.h"
 #include "tests/compressor/support/pushed.h"
 #include "tests/support/temporary_directory.h"
 
@@ -262,31 +262,7 @@ INSTANTIATE_TEST_SUITE_P(Manifest, RealPush,
                                          "wmag_91x91x91_float32.raw"),
                          [](const auto& file) { return file.param.substr(0, file.param.find('_')); });
 
-class PushMisuse : public testing::Test {
- protected:
-  static constexpr Index3 kExtent{9, 5, 20};
-
-  PushMisuse() {
-    info_.path = "density";
-    info_.extent = kExtent;
-    options_.output = "out.nvdb";
-  }
-
-  std::string message(ErrorKind kind, const std::function<void()>& call) {
-    try {
-      call();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), kind) << error.what();
-      return error.what();
-    }
-    return "no error";
-  }
-
-  test::CrashFileSystem files_;
-  SourceInfo info_;
-  ConversionOptions options_;
-  std::vector<float> values_ = std::vector<float>(static_cast<std::size_t>(volume(kExtent)), 1.5F);
-};
+class PushMisuse : public test::PushCalls {};
 
 TEST_F(PushMisuse, InvalidCallsAreRefusedInOneLineAndChangeNothing) {
   PushedVolume pushed(info_, options_, {}, files_);

@@ -3,6 +3,7 @@
 // disturbed.
 #include <gtest/gtest.h>
 
+#include "compressor/packed/block_sample.h"
 #include "compressor/resume.h"
 #include "tests/compressor/support/resumed.h"
 
@@ -62,6 +63,29 @@ TEST_F(ResumeKillOfMissing, PackedNearlyLossless) {
   options.budget.kind = Budget::Kind::rate;
   options.budget.rate = 4;
   expect_same_bytes(options, kSanitized ? 6 : 16);
+}
+
+// Large enough for a look ahead, which misleads: but for the blocks that it sees, all is rough.
+class ResumeKillOfLarge : public ResumeTest {
+ protected:
+  static constexpr Box kLarge{{0, 0, 0}, {208, 208, 200}};
+  ResumeKillOfLarge()
+      : ResumeTest(
+            [](const Index3& i) {
+              static const BlockSample sample(make_lattice(kLarge, kLeafDim));
+              const bool sampled = sample.has(floor_div(i, kLeafDim));
+              return ripples(i) / 100 + (sampled ? 0 : static_cast<float>((i.x * 37 + i.y * 59 + i.z * 83) % 101));
+            },
+            kLarge) {}
+};
+
+TEST_F(ResumeKillOfLarge, PackedWithAnotherWindow) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 12U << 20U;
+  options.budget.kind = Budget::Kind::rate;
+  options.budget.rate = 30;
+  expect_same_bytes(options, 12);
 }
 
 TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {

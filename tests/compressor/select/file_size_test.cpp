@@ -63,8 +63,9 @@ TEST(Budget, AutomaticIsRateEightOrTheMinimumWithANotice) {
   const FileSize tight = file_size_for({}, 7999, sizes(1001, 5000), "out.nvdb");
   EXPECT_EQ(tight.bytes, 1001U);
   EXPECT_EQ(tight.kind, "minimum");
+  EXPECT_FALSE(tight.notice.is_remark());
   EXPECT_EQ(tight.notice.text(),
-            "out.nvdb: --rate 8 would be 1000 bytes, less than the smallest tree; writing that: 1001 bytes");
+            "out.nvdb: --rate 8 would be 1000 bytes, less than the smallest possible file, 1001 bytes; writing that");
 }
 
 TEST(Budget, BelowTheMinimumIsAnErrorThatNamesIt) {
@@ -88,7 +89,21 @@ TEST(Budget, MoreThanLosslessIsPaddingWithANotice) {
   const FileSize more = file_size_for({Budget::Kind::size, 8, 5001}, 9000, sizes(1000, 5000), "out.nvdb");
   EXPECT_EQ(more.bytes, 5001U);
   EXPECT_EQ(more.kind, "size");
-  EXPECT_EQ(more.notice.text(), "out.nvdb: lossless takes 5000 bytes; the other 1 of the 5001 asked are padding");
+  EXPECT_EQ(
+      more.notice.text(),
+      "out.nvdb: lossless takes 5000 bytes; the other 1 of the 5001 asked are padding, which --at-most leaves out");
+}
+
+TEST(Budget, AtMost_IsAsShortAsTheVolumeNeeds) {
+  Budget budget{Budget::Kind::size, 8, 5001};
+  budget.at_most = true;
+  const FileSize more = file_size_for(budget, 9000, sizes(1000, 5000), "out.nvdb");
+  EXPECT_EQ(more.bytes, 5000U);
+  EXPECT_EQ(more.kind, "size");
+  EXPECT_EQ(more.notice.text(), "out.nvdb: lossless in 5000 bytes; 5001 were allowed");
+  EXPECT_TRUE(more.notice.is_remark()) << "it is what was asked for";
+  budget.bytes = 4999;
+  EXPECT_EQ(file_size_for(budget, 9000, sizes(1000, 5000), "out.nvdb").bytes, 4999U);
 }
 
 TEST(Budget, LosslessTakesExactlyTheLosslessSize) {

@@ -164,7 +164,7 @@ double fitted_error(const std::vector<float>& values, const LeafRow& row, LeafWi
   const unsigned bits = 1U << bits_log2_of(width);
   const Quantiser fit = fit_quantiser(values, {row.min, row.max, row.mean}, bits);
   std::vector<std::uint16_t> codes(values.size());
-  quantise(values, fit, bits, codes);
+  quantise(values, fit, codes);
   double error = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     error += std::pow(

@@ -69,11 +69,12 @@ struct Result {
 
 class ResumeTest : public ::testing::Test {
  protected:
-  explicit ResumeTest(float (*value)(const Index3&) = ripples) : volume_(kDomain, value) {}
+  explicit ResumeTest(float (*value)(const Index3&) = ripples, const Box& domain = kDomain) : volume_(domain, value) {}
 
   ConversionOptions base() const {
     ConversionOptions options;
     options.output = "out.nvdb";
+    options.budget.kind = Budget::Kind::rate;
     options.resume = Resume::on;
     options.save_interval_s = 0;
     options.memory = 0;  // above the least there is

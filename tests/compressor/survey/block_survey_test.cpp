@@ -76,5 +76,22 @@ TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   EXPECT_EQ(std::memcmp(of_last.data(), &seen, sizeof seen), 0);
 }
 
+// The length of a vector of uint8 is often no uint8, and may be larger than any.
+TEST(BlockSurvey, LengthsOfVectorsAreNotCountedAsValuesOfTheirType) {
+  for (const ScalarType type : {ScalarType::uint8, ScalarType::int8, ScalarType::uint16, ScalarType::int16}) {
+    MemoryVolume volume({{0, 0, 0}, {20, 16, 16}}, [](const Index3& i) {
+      return static_cast<float>(std::sqrt(static_cast<double>(i.x * i.x + 90000 * (i.y % 2) * i.z * i.z)));
+    });
+    volume.info().type = type;
+    volume.info().lengths = true;
+    const Surveyed surveyed(volume);
+    EXPECT_TRUE(surveyed.survey.value_counts.empty());
+    EXPECT_EQ(surveyed.survey.max, static_cast<float>(std::sqrt(20250361.0)));
+    std::uint64_t counted = 0;
+    for (const std::uint64_t count : surveyed.survey.histogram.counts()) counted += count;
+    EXPECT_EQ(counted, 20U * 16 * 16);
+  }
+}
+
 }  // namespace
 }  // namespace weir::block_survey_test

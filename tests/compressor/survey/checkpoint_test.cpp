@@ -25,9 +25,11 @@ Checkpoint sample() {
   t.first_non_finite_value = NAN;
   t.histogram.add(1e38F, 7);
   t.value_counts = {0, 1, std::numeric_limits<std::uint64_t>::max()};
-  t.loss = {5, 6, 0.1};
+  t.first_missing = 9;
+  t.loss = {5, 6, 0.1, 8};
   c.survey.done.add({{0, 0, 0}, {1, 2, 3}});
   c.survey.done.add({{0, 5, 0}, {9, 9, 9}});
+  c.ladders = {true, true, 1.0 / 3, true, true, 2};
   c.background = {-1e-30F, "sampled-mode", 1.0 / 3};
   c.attempt = {3, std::numeric_limits<double>::infinity(), Encoding::fp8, "iso 3", 0.3};
   c.plan.bytes[15] = std::byte{255};
@@ -67,9 +69,17 @@ TEST(Checkpoint, ReadsBackBitForBit) {
   EXPECT_EQ(t.loss.inexact, 5U);
   EXPECT_EQ(t.loss.overflow, 6U);
   EXPECT_EQ(t.loss.max_abs_error, 0.1);
+  EXPECT_EQ(t.loss.unmarked, 8U);
+  EXPECT_EQ(t.first_missing, 9);
   EXPECT_EQ(bits_of(back->background->value), bits_of(-1e-30F));
   EXPECT_EQ(back->background->method, "sampled-mode");
   EXPECT_EQ(back->background->share, 1.0 / 3);
+  EXPECT_TRUE(back->ladders.decided);
+  EXPECT_TRUE(back->ladders.near_rungs);
+  EXPECT_EQ(back->ladders.centre, 1.0 / 3);
+  EXPECT_TRUE(back->ladders.built);
+  EXPECT_TRUE(back->ladders.rebuilt);
+  EXPECT_EQ(back->ladders.moves, 2);
   EXPECT_EQ(back->attempt->number, 3);
   EXPECT_EQ(back->attempt->planned_error, std::numeric_limits<double>::infinity());
   EXPECT_EQ(back->attempt->encoding, Encoding::fp8);
@@ -89,7 +99,7 @@ TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
 
 TEST(Checkpoint, DamagedCheckpointIsRejected) {
   const std::string text = to_text(sample());
-  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 3 ");
+  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 4 ");
   for (std::size_t length = 0; length < text.size(); ++length) {
     EXPECT_FALSE(parse_checkpoint(std::string_view(text).substr(0, length))) << length;
   }

@@ -55,6 +55,7 @@ TEST_P(ArrayConversion, HasTheBytesOfTheRawFiles) {
   ConversionOptions options;
   options.budget.kind = GetParam();
   options.encoding = Encoding::automatic;
+  options.missing = MissingPolicy::background;
   const test::Converted raw = of_raw_file(values, options);
 
   DenseArray packed{.data = values.data(), .type = ScalarType::int32, .extent = kExtent};

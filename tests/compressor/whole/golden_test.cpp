@@ -81,12 +81,12 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
 TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
   const std::string expected = GetParam().digest;
   for (const std::size_t threads : {1U, 2U, 3U, 4U, 7U}) {
-    EXPECT_EQ(convert(threads, 256 * kMiB, DirectIo::automatic), expected) << threads << " threads";
+    EXPECT_EQ(convert(threads, 384 * kMiB, DirectIo::automatic), expected) << threads << " threads";
   }
   EXPECT_EQ(convert(2, 3072 * kMiB, DirectIo::automatic), expected);
-  EXPECT_EQ(convert(2, 256 * kMiB, DirectIo::off), expected);
+  EXPECT_EQ(convert(2, 384 * kMiB, DirectIo::off), expected);
   try {
-    EXPECT_EQ(convert(2, 256 * kMiB, DirectIo::on), expected);
+    EXPECT_EQ(convert(2, 384 * kMiB, DirectIo::on), expected);
   } catch (const Error& error) {
     // The place for temporary files is on a file system that has no direct I/O.
     EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::mean,
                                                   NonFinitePolicy::error,
-                                                  "19c371a21b5d927bfb4ff0fa61f8e4a5",
+                                                  "cf1a1d609865d03816268da343a57b6f",
                                                   Encoding::automatic},
                                            Golden{"turbulence",
                                                   {131, 140, 135},
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::mean,
                                                   NonFinitePolicy::error,
-                                                  "d205c86889bc45b086ff0840a62f1590",
+                                                  "8e1a3484dfaa0a678b976f8ec7f67b71",
                                                   Encoding::fpn},
                                            Golden{"some-nan",
                                                   {100, 100, 100},
@@ -171,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::background,
                                                   NonFinitePolicy::background,
-                                                  "6f2c0c03619c57941b9b0fab522fe1f0",
+                                                  "be7bd51828eb6b957af5f1395ea06764",
                                                   Encoding::fpn},
                                            Golden{"offset",
                                                   {100, 101, 102},
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::mean,
                                                   NonFinitePolicy::error,
-                                                  "59c78a68799b87b1e28417441d6ac194",
+                                                  "d0cd170d3942e6bdc3944d84b3f69bf7",
                                                   Encoding::fp4},
                                            Golden{"cloud",
                                                   {300, 200, 150},
@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, GoldenTest,
                                                   Metric::sse,
                                                   FillMode::mean,
                                                   NonFinitePolicy::background,
-                                                  "b4e8ae3f46ed8312592804ac52985c74",
+                                                  "2e88581d4b72659c96b33f7972829c3d",
                                                   Encoding::packed},
                                            Golden{"offset",
                                                   {100, 101, 102},

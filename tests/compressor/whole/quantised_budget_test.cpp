@@ -85,17 +85,14 @@ TEST(QuantisedBudget, MixedVolumesFallBackToFloatAndSayWhy) {
   });
   const Converted best = lossless(volume, Encoding::automatic);
   EXPECT_EQ(best.grid().type(), GridType::float32);
-  EXPECT_EQ(best.notices, (std::vector<std::string>{"out.nvdb: lossless takes float32 leaves, 4 leaves hold values "
-                                                    "that no lattice of 16 bits gives back bit for bit"}));
+  EXPECT_EQ(best.notices, (std::vector<std::string>{"out.nvdb: 4 blocks need full float32 to be lossless"}));
   ConversionOptions options;
   options.budget.kind = Budget::Kind::lossless;
   for (const Encoding encoding : {Encoding::fpn, Encoding::fp16}) {
     options.encoding = encoding;
-    expect_refused(
-        volume, options, ErrorKind::budget,
-        "out.nvdb: --encoding " + encoding_name(encoding) +
-            " cannot be lossless: 4 leaves hold values that no lattice of 16 bits gives back bit for bit; use "
-            "--encoding auto or float");
+    expect_refused(volume, options, ErrorKind::budget,
+                   "out.nvdb: --encoding " + encoding_name(encoding) +
+                       " cannot be lossless: 4 blocks need full float32; use --encoding auto or float");
   }
 }
 
@@ -103,8 +100,7 @@ TEST(QuantisedBudget, OneZeroOfAnotherSignTakesFloat) {
   MemoryVolume volume(kDomain, [](const Index3& i) { return i == Index3{9, 9, 9} ? -0.0F : 0.0F; });
   const Converted best = lossless(volume, Encoding::automatic);
   EXPECT_EQ(best.grid().type(), GridType::float32);
-  EXPECT_EQ(best.notices, (std::vector<std::string>{"out.nvdb: lossless takes float32 leaves, 1 leaf holds values that "
-                                                    "no lattice of 16 bits gives back bit for bit"}));
+  EXPECT_EQ(best.notices, (std::vector<std::string>{"out.nvdb: 1 block needs full float32 to be lossless"}));
   EXPECT_TRUE(test::measure(volume, best, NonFinitePolicy::error).lossless);
 }
 

@@ -44,7 +44,8 @@ std::vector<NonFinitePolicy> quantised_policies(const MemoryVolume& volume) {
 std::uint64_t full_size(MemoryVolume& volume, ConversionOptions options) {
   const std::uint64_t dense = static_cast<std::uint64_t>(volume.info().domain().voxels()) * sizeof(float);
   const Converted converted = test::convert_to(volume, options, 2 * dense + 10'000'000);
-  static const std::regex form("out\\.nvdb: (lossless|the best this encoding can) takes ([0-9]+) bytes; the other .*");
+  static const std::regex form(
+      "out\\.nvdb: (lossless|the best that this encoding can do) takes ([0-9]+) bytes; the other .*");
   std::smatch match;
   if (converted.notices.size() == 1 && std::regex_match(converted.notices[0], match, form)) {
     return std::stoull(match[2]);
@@ -253,8 +254,8 @@ TEST_P(QuantisedConversionTest, LosslessAutoIsTheSmallerOfFloatAndFpn) {
     EXPECT_LE(best.file.size(), floats.file.size());
     options.encoding = Encoding::fpn;
     static const std::regex refusal(
-        "out\\.nvdb: --encoding fpn cannot be lossless: ([0-9]+ leaves hold|1 leaf holds) values that no lattice of 16 "
-        "bits gives back bit for bit; use --encoding auto or float");
+        "out\\.nvdb: --encoding fpn cannot be lossless: ([0-9]+ blocks need|1 block needs) full float32; "
+        "use --encoding auto or float");
     try {
       const Converted quantised = test::convert(volume, options);
       EXPECT_TRUE(test::measure(volume, quantised, policy).lossless);
@@ -265,9 +266,7 @@ TEST_P(QuantisedConversionTest, LosslessAutoIsTheSmallerOfFloatAndFpn) {
       EXPECT_TRUE(std::regex_match(error.what(), refusal)) << error.what();
       EXPECT_EQ(best.file, floats.file);
       ASSERT_EQ(best.notices.size(), 1U);
-      static const std::regex notice(
-          "out\\.nvdb: lossless takes float32 leaves, ([0-9]+ leaves hold|1 leaf holds) values that no lattice of 16 "
-          "bits gives back bit for bit");
+      static const std::regex notice("out\\.nvdb: ([0-9]+ blocks need|1 block needs) full float32 to be lossless");
       EXPECT_TRUE(std::regex_match(best.notices[0], notice)) << best.notices[0];
     }
   }

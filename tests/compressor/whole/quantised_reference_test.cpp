@@ -39,7 +39,8 @@ class LaneSum {
   std::array<float, kLanes> lanes_{};
 };
 
-float nearest_code(float value, const Quantiser& q, float top) {
+float nearest_code(float value, const Quantiser& q) {
+  const auto top = static_cast<float>(q.top);
   const float reciprocal = q.quantum > 0 ? 1 / q.quantum : 0.0F;
   float t = (value - q.minimum) * reciprocal;
   t = t > 0 ? t : 0.0F;
@@ -47,10 +48,32 @@ float nearest_code(float value, const Quantiser& q, float top) {
   return std::nearbyint(t);
 }
 
+// The level nearest to the largest value, whether or not it lies above that.
+std::uint32_t nearest_to_largest(const ValueRange& range, Quantiser q, unsigned bits) {
+  q.top = (1U << bits) - 1U;
+  return static_cast<std::uint32_t>(nearest_code(range.max, q));
+}
+
+float level(std::uint32_t code, const Quantiser& q) {
+  const float product = static_cast<float>(code) * q.quantum;
+  return product + q.minimum;
+}
+
+bool below(const Quantiser& q, const ValueRange& range) {
+  return range.min == 0 ? q.minimum != 0 : q.minimum < range.min;
+}
+
+// The largest quantum whose level `code` is inside, by stepping down from the quotient.
+float ending_quantum(std::uint32_t code, float minimum, const ValueRange& range) {
+  auto quantum = static_cast<float>((static_cast<double>(range.max) - static_cast<double>(minimum)) / code);
+  while (quantum > 0 && level(code, {minimum, quantum, 0}) > range.max) quantum = std::nextafter(quantum, 0.0F);
+  return quantum;
+}
+
 class Reference {
  public:
   Reference(const std::vector<float>& values, const ValueRange& range, unsigned bits)
-      : values_(values), range_(range), bits_(bits), top_(static_cast<float>((1U << bits) - 1U)) {
+      : values_(values), range_(range), bits_(bits), most_((1U << bits) - 1U) {
     const int exponent = -std::ilogb(range.max / 2 - range.min / 2);
     scale_ = std::ldexp(1.0F, exponent);
     unscale_ = std::ldexp(1.0, -exponent);
@@ -63,22 +86,27 @@ class Reference {
   void start(double share, int rounds) {
     const double half = (static_cast<double>(range_.max) - static_cast<double>(range_.min)) / 2 * share;
     const double middle = static_cast<double>(share == 1 ? range_.min : range_.mean) + (share == 1 ? half : 0);
-    refine({share == 1 ? range_.min : static_cast<float>(middle - half),
-            static_cast<float>(2 * half / static_cast<double>(top_))},
-           rounds);
+    Quantiser q{share == 1 ? range_.min : static_cast<float>(middle - half), static_cast<float>(2 * half / most_), 0};
+    if (below(q, range_)) {
+      q.minimum = range_.min;
+      q.quantum = static_cast<float>((middle + half - static_cast<double>(range_.min)) / most_);
+    }
+    if (middle + half >= static_cast<double>(range_.max)) q.quantum = ending_quantum(most_, q.minimum, range_);
+    refine(q, rounds);
   }
 
   void refine(Quantiser q, int rounds) {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
-      if (!(q.quantum >= 0x1p-120F) || !std::isfinite(q.minimum) || !std::isfinite(q.quantum * top_ + q.minimum))
-        return;
+      if (!usable(q)) return;
+      q.top = nearest_to_largest(range_, q, bits_);
+      while (q.top > 0 && !(level(q.top, q) <= range_.max)) --q.top;
       LaneSum measured;
       LaneSum codes;
       LaneSum code_squares;
       LaneSum code_values;
       for (std::size_t i = 0; i < values_.size(); ++i) {
-        const float code = nearest_code(values_[i], q, top_);
+        const float code = nearest_code(values_[i], q);
         const float product = code * q.quantum;
         const float error = (values_[i] - (product + q.minimum)) * scale_;
         measured.add(i, error * error);
@@ -86,42 +114,78 @@ class Reference {
         code_squares.add(i, code * code);
         code_values.add(i, code * deviation(i));
       }
-      const auto n = static_cast<double>(values_.size());
-      const auto c = static_cast<double>(codes.value());
-      const auto cc = static_cast<double>(code_squares.value());
-      const auto cv = static_cast<double>(code_values.value());
-      const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
-      const double minimum =
-          (static_cast<double>(q.minimum) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
-      const double followed =
-          squares_ + quantum * (quantum * cc - 2 * cv) + minimum * (n * minimum + 2 * (quantum * c - deviation_));
-      const double squares =
-          bits_ >= 8 || !(followed > 1e-4 * squares_) ? static_cast<double>(measured.value()) : followed;
+      const Sums sums{static_cast<double>(codes.value()), static_cast<double>(code_squares.value()),
+                      static_cast<double>(code_values.value())};
+      const double squares = bits_ >= 8 || !(followed(sums, q) > 1e-4 * squares_)
+                                 ? static_cast<double>(measured.value())
+                                 : followed(sums, q);
       if (squares < best_) {
         best_ = squares;
         fit = q;
       }
       if (!(squares < last)) return;
       last = squares;
-      // Least squares of value = minimum + code * quantum.
-      const double determinant = n * cc - c * c;
-      if (!(determinant > 0)) return;
-      const double slope = (n * cv - c * deviation_) / determinant;
-      const double offset = (deviation_ - slope * c) / n;
-      q.quantum = static_cast<float>(slope * unscale_);
-      q.minimum = static_cast<float>(static_cast<double>(range_.mean) + offset * unscale_);
+      if (!refit(sums, q)) return;
     }
   }
 
   Quantiser fit;
 
  private:
+  struct Sums {
+    double c;   // of codes
+    double cc;  // of their squares
+    double cv;  // of codes times deviations
+  };
+
+  bool usable(const Quantiser& q) const { return q.quantum >= 0x1p-120F && std::isfinite(q.minimum); }
+
+  double followed(const Sums& s, const Quantiser& q) const {
+    const auto n = static_cast<double>(values_.size());
+    const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
+    const double minimum = scaled(q.minimum);
+    return squares_ + quantum * (quantum * s.cc - 2 * s.cv) +
+           minimum * (n * minimum + 2 * (quantum * s.c - deviation_));
+  }
+
+  // Least squares of value = minimum + code * quantum with no level below the range.
+  bool refit(const Sums& s, Quantiser& q) const {
+    const auto n = static_cast<double>(values_.size());
+    const double determinant = n * s.cc - s.c * s.c;
+    if (!(determinant > 0)) return false;
+    const double slope = (n * s.cv - s.c * deviation_) / determinant;
+    q.quantum = static_cast<float>(slope * unscale_);
+    q.minimum = from_mean((deviation_ - slope * s.c) / n);
+    if (below(q, range_)) {
+      q.quantum = static_cast<float>((s.cv - scaled(range_.min) * s.c) / s.cc * unscale_);
+      q.minimum = range_.min;
+    }
+    if (!usable(q)) return true;
+    // Either the level above the largest value is not taken, or the levels end at the largest value.
+    const std::uint32_t highest = nearest_to_largest(range_, q, bits_);
+    if (highest == 0 || level(highest, q) <= range_.max) return true;
+    const double h = highest;
+    const double largest = scaled(range_.max);
+    const double quantum = ((h * n - s.c) * largest - (h * deviation_ - s.cv)) / (h * (h * n - 2 * s.c) + s.cc);
+    Quantiser ended{from_mean(largest - h * quantum), static_cast<float>(quantum * unscale_), 0};
+    if (below(ended, range_)) ended.minimum = range_.min;
+    ended.quantum = std::min(ended.quantum, ending_quantum(highest, ended.minimum, range_));
+    const double above = (static_cast<double>(range_.max) - static_cast<double>(level(highest, q))) * scale_;
+    const double under = (static_cast<double>(range_.max) - static_cast<double>(level(highest - 1, q))) * scale_;
+    if (highest == 1 || followed(s, ended) < followed(s, q) + (under * under - above * above)) q = ended;
+    return true;
+  }
+
+  double scaled(float value) const {
+    return (static_cast<double>(value) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
+  }
+  float from_mean(double v) const { return static_cast<float>(static_cast<double>(range_.mean) + v * unscale_); }
   float deviation(std::size_t i) const { return (values_[i] - range_.mean) * scale_; }
 
   const std::vector<float>& values_;
   ValueRange range_;
   unsigned bits_;
-  float top_;
+  std::uint32_t most_;
   float scale_;
   double unscale_;
   double deviation_;
@@ -141,7 +205,7 @@ Quantiser reference_fit(const std::vector<float>& values, const ValueRange& rang
   std::vector<Quantiser> tried{reference_over_range(values, range, bits)};
   for (unsigned width = bits; width > 1; width /= 2) {
     std::map<float, std::size_t> taken;
-    for (const float v : values) ++taken[nearest_code(v, tried.back(), static_cast<float>((1U << width) - 1U))];
+    for (const float v : values) ++taken[nearest_code(v, tried.back())];
     const std::size_t beside = values.size() / 8 / (std::size_t{1} << width);
     const auto levels =
         std::count_if(taken.begin(), taken.end(), [&](const auto& code) { return code.second > beside; });
@@ -207,11 +271,11 @@ TEST(QuantisedReference, FitsAndCodesHaveTheSameBits) {
       }
       ASSERT_EQ(bits_of(fit.minimum), bits_of(reference.minimum));
       ASSERT_EQ(bits_of(fit.quantum), bits_of(reference.quantum));
+      ASSERT_EQ(fit.top, reference.top);
       std::vector<std::uint16_t> codes(values.size());
-      quantise(values, fit, bits, codes);
-      const auto top = static_cast<float>((1U << bits) - 1U);
+      quantise(values, fit, codes);
       for (std::size_t i = 0; i < values.size(); ++i) {
-        ASSERT_EQ(static_cast<float>(codes[i]), nearest_code(values[i], fit, top));
+        ASSERT_EQ(static_cast<float>(codes[i]), nearest_code(values[i], fit));
       }
     }
   }

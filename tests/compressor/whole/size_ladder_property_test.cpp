@@ -35,7 +35,7 @@ constexpr std::array kEncodings{Encoding::automatic, Encoding::fpn, Encoding::fl
                                 Encoding::fp4,       Encoding::fp8, Encoding::fp16};
 
 TEST(SizeLadderProperty, ALargerBudget_NeverDoesWorse) {
-  const std::uint64_t volumes = test::property_volumes(30);
+  const std::uint64_t volumes = test::property_volumes(12);
   for (std::uint64_t seed = 0; seed < volumes; ++seed) {
     RandomVolume random = test::random_volume(seed, 64);
     std::array<double, 6> last{};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "format/base/error.h"
@@ -39,6 +40,14 @@ class Config : public testing::Test {
   TemporaryDirectory directory_;
   std::string path_ = directory_ / "watch.toml";
 };
+
+// As systemd sets it for a unit with StateDirectory, where /etc cannot be written.
+TEST_F(Config, StateLiesInTheStateDirectoryOfTheUnit) {
+  ::setenv("STATE_DIRECTORY", "/var/lib/weir/run42:/var/lib/other", 1);
+  EXPECT_EQ(load(kWatch).service.state, "/var/lib/weir/run42/weir.db");
+  EXPECT_EQ(load("[service]\nstate = 'mine.db'\n" + kWatch).service.state, directory_ / "mine.db");
+  ::unsetenv("STATE_DIRECTORY");
+}
 
 TEST_F(Config, Defaults) {
   const DaemonConfig config = load(kWatch);
@@ -214,7 +223,7 @@ TEST_F(Config, ListeningBeyondLoopback_NeedsAToken) {
     EXPECT_EQ(service_refusal("listen = '" + address + "'\ntoken = 'secret'"), "");
   }
   EXPECT_EQ(service_refusal("listen = '8470'"),
-            "2:10: \"8470\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
+            "2:10: \"8470\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
   EXPECT_EQ(service_refusal("token = ''"), "2:9: the token is empty; openssl rand -hex 32 makes one");
   EXPECT_EQ(service_refusal("token = 'a b'"),
             "2:9: the token must be ASCII without spaces; openssl rand -hex 32 makes one");

@@ -36,6 +36,8 @@ TEST(WatchOptions, KeysBecomeCommandLineOptions) {
   EXPECT_EQ(read("lossless = true\ndims = '64,64,64'\nnonfinite = 'keep'\ndirect_io = 'off'"),
             (Arguments{"--dims=64,64,64", "--direct-io=off", "--nonfinite=keep", "--lossless"}));
   EXPECT_EQ(read("lossless = false\nrate = 4"), Arguments{"--rate=4"});
+  EXPECT_EQ(read("component = 2"), Arguments{"--component=2"});
+  EXPECT_EQ(read("component = 'magnitude'"), Arguments{"--component=magnitude"});
 }
 
 TEST(WatchOptions, RelativeScenesStartAtTheConfigurationFile) {
@@ -52,8 +54,14 @@ TEST(WatchOptions, NumbersKeepAllTheirDigits) {
   EXPECT_EQ(read("background = -0.1"), Arguments{"--background=-0.1"});
   EXPECT_EQ(read("max_error = 1e-16"), Arguments{"--max-error=1e-16"});
   EXPECT_EQ(read("missing = nan"), Arguments{"--missing=nan"});
+  EXPECT_EQ(read("missing_policy = 'background'"), Arguments{"--missing-policy=background"});
   EXPECT_EQ(read("spacing = [64, 32, 0.5]"), Arguments{"--spacing=64,32,0.5"});
   EXPECT_EQ(read("roi = ['0:8', '0:8', '2:4']"), Arguments{"--roi=0:8,0:8,2:4"});
+}
+
+TEST(WatchOptions, DatasetsAreAnArgumentEach) {
+  EXPECT_EQ(read("dataset = ['/rho', '/fields/T']"), (Arguments{"--dataset=/rho", "--dataset=/fields/T"}));
+  EXPECT_EQ(read("dataset = '*'"), Arguments{"--dataset=*"});
 }
 
 TEST(WatchOptions, EmptyTextsAreNotGiven) {

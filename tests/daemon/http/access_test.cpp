@@ -66,6 +66,20 @@ TEST(Access, SaysHowToAuthenticate) {
   EXPECT_EQ(refusal->headers[0].second, "Bearer");
 }
 
+TEST(Access, TellsAWrongTokenFromNone) {
+  HttpRequest request;
+  EXPECT_EQ(refuse({"secret", true}, request, false)->body,
+            "{\"error\":\"this needs the service's token: Authorization: Bearer TOKEN\"}\n");
+  request.authorization = "Bearer other";
+  const auto wrong = refuse({"secret", true}, request, false);
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(wrong->status, 401U);
+  EXPECT_EQ(wrong->body,
+            "{\"error\":\"the token is not the service's; take the one that its configuration names (token, "
+            "token_file)\"}\n");
+  EXPECT_EQ(wrong->headers.at(0).second, "Bearer error=\"invalid_token\"");
+}
+
 TEST(Access, RefusesAPostWithoutJsonTypeOrWeirHeader) {
   HttpRequest request;
   request.method = "POST";
@@ -96,6 +110,26 @@ TEST(Access, RefusesAPostOutsideTheControlAddress) {
   EXPECT_NE(refusal->body.find("this address only shows; ask at unix:/run/weir.sock (--address, --config)"),
             std::string::npos)
       << refusal->body;
+}
+
+TEST(Access, RefusesSocketsOfForeignPages) {
+  const AccessRules rules;
+  HttpRequest request = request_for("localhost:8470");
+  EXPECT_EQ(status_of(refuse_socket(rules, request)), 0U) << "no browser";
+  for (const char* origin : {"http://localhost:8470", "https://LOCALHOST:8470"}) {
+    request.origin = origin;
+    EXPECT_EQ(status_of(refuse_socket(rules, request)), 0U) << origin;
+  }
+  for (const char* origin : {"http://localhost", "http://localhost:8471", "http://example.org", "null", "file://",
+                             "http://localhost:8470.example.org"}) {
+    request.origin = origin;
+    EXPECT_EQ(status_of(refuse_socket(rules, request)), 403U) << origin;
+  }
+  request.origin = "http://example.org";
+  EXPECT_EQ(refuse_socket(rules, request)->body,
+            "{\"error\":\"Origin http://example.org is not localhost:8470; open this server's own page\"}\n");
+  request.origin.clear();
+  EXPECT_EQ(status_of(refuse_socket({"secret", true}, request)), 401U);
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "format/base/text.h"
 #include "tests/daemon/support/fake_control.h"
+#include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::api_test {
@@ -255,6 +257,24 @@ TEST_F(ApiTest, UnknownRouteIs404AndWrongMethodIs405) {
   EXPECT_EQ(ask("HEAD", "/api/pause").status, 405U);
   EXPECT_EQ(ask("GET", "http://localhost/").status, 400U);
   EXPECT_TRUE(control_.asked.empty());
+}
+
+// "/api/jobs/*" is `/api/jobs/ID` there.
+TEST(ApiDocument, HasEveryRouteAndNoOther) {
+  const std::string document = read_file(WEIR_SOURCE_DIR "/docs/http-api.md");
+  std::set<std::string> described;
+  for (const std::string& line : split(document, '\n')) {
+    if (!line.starts_with("| `GET /") && !line.starts_with("| `POST /")) continue;
+    std::string route = line.substr(3, line.find('`', 3) - 3);
+    for (const char* name : {"/ID", "/NAME", "/N"}) {
+      const std::size_t at = route.find(name);
+      const std::size_t end = at + std::string_view(name).size();
+      if (at != std::string::npos && (end == route.size() || route[end] == '/')) route.replace(at, end - at, "/*");
+    }
+    EXPECT_TRUE(described.insert(route).second) << route;
+  }
+  const std::vector<std::string> routes = api_routes();
+  EXPECT_EQ(described, std::set<std::string>(routes.begin(), routes.end()));
 }
 
 TEST_F(ApiTest, ServesThumbnailsOfKnownOutputsOnly) {

@@ -63,7 +63,7 @@ TEST(ControlServer, ChecksTheTokenOnEveryRequestOfAConnection) {
   EXPECT_EQ(client.ask(start + "Authorization: Bearer secret\r\n\r\n").status, 200);
   const RawResponse refused = client.ask(start + "Authorization: Bearer guess\r\n\r\n");
   EXPECT_EQ(refused.status, 401);
-  EXPECT_EQ(refused.header("WWW-Authenticate"), "Bearer");
+  EXPECT_EQ(refused.header("WWW-Authenticate"), "Bearer error=\"invalid_token\"");
   EXPECT_EQ(client.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -40,11 +41,18 @@ class ConversionJobTest : public testing::Test {
     return task;
   }
 
+  /// The last report; the one before it, if any, is first_report_.
   TaskReport run(const ConversionTask& task, const std::function<void(ConversionJob&)>& meanwhile = {}) {
     boost::asio::io_context io;
     std::optional<TaskReport> report;
+    first_report_.reset();
     std::unique_ptr<ConversionJob> job = std::make_unique<ConversionJob>(io, task, [&](const TaskReport& ended) {
       EXPECT_FALSE(report);
+      if (ended.rendering) {
+        EXPECT_FALSE(first_report_);
+        first_report_ = ended;
+        return;
+      }
       report = ended;
       job.reset();
     });
@@ -56,6 +64,7 @@ class ConversionJobTest : public testing::Test {
   }
 
   TemporaryDirectory directory_;
+  std::optional<TaskReport> first_report_;
 };
 
 TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
@@ -90,6 +99,15 @@ TEST_F(ConversionJobTest, StoppedProcess_IsTheReasonGivenForAStall) {
   EXPECT_TRUE(stall.ends_with(" s: it was stopped by a signal; SIGCONT lets it go on")) << stall;
 }
 
+TEST_F(ConversionJobTest, LosslessOverValidVoxelsAlone_HasAnInfinitePsnr) {
+  ConversionTask work = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  work.convert_options = {"--lossless", "--missing=1", "--missing-policy=background"};
+  const TaskReport report = run(work, [](ConversionJob&) {});
+  ASSERT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  EXPECT_EQ(report.result.outputs.at(0).max_error, 0.0);
+  EXPECT_EQ(report.result.outputs.at(0).psnr_db, HUGE_VAL);
+}
+
 TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
   const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
   const std::string output = directory_ / "out/a_48x40x32_uint8.nvdb";
@@ -113,10 +131,17 @@ TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
   EXPECT_EQ(list_directory(directory_ / "out"),
             (Names{"a_48x40x32_uint8.nvdb", "a_48x40x32_uint8.nvdb.json", "a_48x40x32_uint8.nvdb.png"}));
 
+  ASSERT_TRUE(first_report_);
+  EXPECT_EQ(first_report_->end, TaskEnd::done);
+  EXPECT_TRUE(first_report_->converted);
+  EXPECT_EQ(first_report_->result.outputs.at(0).path, output);
+  EXPECT_EQ(first_report_->result.outputs[0].thumbnail, "");
+
   const auto written = fs::last_write_time(output + ".png");
   const TaskReport second = run(task(source));
   EXPECT_EQ(second.end, TaskEnd::done);
   EXPECT_FALSE(second.converted);
+  EXPECT_FALSE(first_report_);  // no thumbnail is to come
   EXPECT_EQ(second.result.bytes_written, 0U);
   EXPECT_EQ(second.result.outputs, first.result.outputs);
   EXPECT_EQ(fs::last_write_time(output + ".png"), written);
@@ -128,8 +153,18 @@ TEST_F(ConversionJobTest, FailedConversion_GivesTheMessageOfConvert) {
   EXPECT_EQ(report.end, TaskEnd::failed);
   EXPECT_EQ(report.result.exit_code, 3);
   EXPECT_TRUE(report.result.reason.starts_with(source + ": ")) << report.result.reason;
-  EXPECT_NE(report.result.log_tail.find("weir: " + report.result.reason), std::string::npos);
+  EXPECT_NE(report.result.log_tail.find(cat("weir: ", source, ": ")), std::string::npos);
   EXPECT_EQ(list_directory(directory_ / "out"), Names{});
+}
+
+TEST_F(ConversionJobTest, FailedConversion_NamesOptionsAsTheConfigurationDoes) {
+  ConversionTask missing = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  missing.convert_options = {"--missing=1"};
+  const TaskReport report = run(missing);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 3);
+  EXPECT_NE(report.result.reason.find("missing_policy background"), std::string::npos) << report.result.reason;
+  EXPECT_EQ(report.result.reason.find("--"), std::string::npos) << report.result.reason;
 }
 
 TEST_F(ConversionJobTest, ChangedSource_EndsAsSourceChanged) {
@@ -238,6 +273,32 @@ TEST_F(ConversionJobTest, KilledRender_IsRetriedOnce) {
   EXPECT_EQ(report.notices, std::vector<std::string>{});
   ASSERT_EQ(report.result.outputs.size(), 1U);
   EXPECT_TRUE(fs::exists(report.result.outputs[0].thumbnail));
+}
+
+TEST_F(ConversionJobTest, RenderThatCannotStart_LeavesTheJobDone) {
+  ConversionTask lost = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  const std::string program = directory_ / "weir.sh";
+  write_file(program,
+             "#!/bin/sh\nif [ \"$1\" = verify ]; then rm " + program + "; fi\nexec " + lost.program + " \"$@\"\n");
+  fs::permissions(program, fs::perms::owner_all);
+  lost.program = program;
+  const TaskReport report = run(lost);
+  EXPECT_EQ(report.end, TaskEnd::done);
+  EXPECT_EQ(report.result.exit_code, 0);
+  EXPECT_EQ(report.notices, Names{cat("no thumbnail: ", program, ": cannot start it: No such file or directory")});
+}
+
+TEST_F(ConversionJobTest, SourceChangedBeforeTheVerification_HasNoThumbnail) {
+  const std::string source = write_source("a_48x40x32_uint8.raw", 48 * 40 * 32);
+  bool rewritten = false;
+  const TaskReport report = run(task(source), [&](ConversionJob& job) {
+    if (rewritten || job.step() != "verify") return;
+    rewritten = true;
+    fs::last_write_time(source, fs::last_write_time(source) + std::chrono::hours(1));
+  });
+  EXPECT_EQ(report.end, TaskEnd::source_changed);
+  EXPECT_FALSE(first_report_);
+  EXPECT_FALSE(fs::exists(directory_ / "out/a_48x40x32_uint8.nvdb.png"));
 }
 
 }  // namespace

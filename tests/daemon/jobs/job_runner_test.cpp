@@ -95,7 +95,63 @@ TEST_F(JobRunnerTest, ConvertsWaitingJobs) {
     EXPECT_NE(log.find(cat(" info start job=", job.id, ' ')), std::string::npos) << log;
     EXPECT_NE(log.find(cat(" info done job=", job.id, ' ')), std::string::npos) << log;
   }
-  EXPECT_NE(log.find(cat(" error failed job=", bad.id, ' ')), std::string::npos) << log;
+  EXPECT_NE(log.find(cat(" error quarantined job=", bad.id, ' ')), std::string::npos) << log;
+}
+
+TEST_F(JobRunnerTest, JobIsDoneBeforeItsThumbnailIsRendered) {
+  config_.watches[0].thumbnails = true;
+  runner_.configure(config_);
+  const Job job = add("a", "one");
+  runner_.wake();
+  run_until([&] { return state(job) == JobState::done; });
+  EXPECT_EQ(runner_.running().count(job.id), 1U);
+  EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, "");
+  EXPECT_EQ(runner_.figures().totals().done, 1U);
+  run_until([&] { return idle(); });
+  EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, directory_ / "out/one_24x20x16_uint8.nvdb.png");
+  EXPECT_EQ(runner_.figures().totals().done, 1U);
+  EXPECT_TRUE(store_.unrendered().empty());
+}
+
+TEST_F(JobRunnerTest, ThumbnailsThatTheServiceEndedBefore_AreRenderedAtTheNextStart) {
+  const Job job = add("a", "one");
+  const Job moved = add("a", "moved");
+  runner_.wake();
+  run_until([&] { return idle() && store_.count({JobState::done, "", ""}) == 2; });
+  for (const Job& one : {job, moved}) {  // as if the service had ended before their thumbnails were there
+    const JobResult result = store_.job(one.id)->result;
+    ASSERT_TRUE(store_.retry(one.id, true));
+    store_.enqueue(one.id);
+    ASSERT_TRUE(store_.start(one.id));
+    ASSERT_TRUE(store_.finish(one.id, result, true));
+  }
+  const std::string output = store_.job(moved.id)->result.outputs.at(0).path;
+  fs::remove(output);
+  fs::remove(job.source);  // delete-after-verify
+  config_.watches[0].thumbnails = true;
+  runner_.configure(config_);
+  runner_.resume_thumbnails();
+  runner_.wake();
+  EXPECT_EQ(state(job), JobState::done);
+  run_until([&] { return idle(); });
+  EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, directory_ / "out/one_24x20x16_uint8.nvdb.png");
+  EXPECT_EQ(store_.job(moved.id)->result.outputs.at(0).thumbnail, "");
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_EQ(runner_.figures().totals().done, 2U);
+  EXPECT_TRUE(store_.unrendered().empty());
+}
+
+TEST_F(JobRunnerTest, ThumbnailThatIsCancelled_LeavesTheJobDoneAndItsSlotFree) {
+  config_.watches[0].thumbnails = true;
+  runner_.configure(config_);
+  const Job job = add("a", "one");
+  runner_.wake();
+  run_until([&] { return state(job) == JobState::done; });
+  EXPECT_TRUE(runner_.end_rendering(job));
+  run_until([&] { return idle(); });
+  EXPECT_EQ(state(job), JobState::done);
+  EXPECT_TRUE(store_.unrendered().empty());
+  EXPECT_FALSE(runner_.end_rendering(job));
 }
 
 TEST_F(JobRunnerTest, RunsNoMoreJobsAtOnceThanConfigured) {

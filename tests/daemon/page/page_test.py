@@ -76,6 +76,7 @@ def shows_the_service(browser):
     equal(browser.text("#done"), "24")
     equal(browser.text("#totals"), "done; since start 12.0 GiB in, 1.5 GiB out")
     equal(browser.text("#broken"), "2")
+    equal(browser.text("#broken-states"), "1 failed, 1 quarantined")
     equal(browser.texts("#running .name"), ["density_26_512x512x512_float32.raw", "density_27_512x512x512_float32.raw"])
     equal(browser.texts("#running .step"), ["convert", "verify"])
     equal(browser.script("return [...document.querySelectorAll('#running progress')].map(p => p.position)"), [0.62, -1])
@@ -95,7 +96,9 @@ def shows_the_service(browser):
           ["/scratch/run42 \u2192 /scratch/run42/nvdb", "/archive/ct \u2192 /archive/ct/nvdb"])
     equal(browser.texts("#watches .fact"), ["inotify, 24 done, 1 not taken yet, 1 overflow", "poll, 0 done"])
     equal(browser.texts("#watches .waiting"), ["15 (7.5 GiB)", "0"])
-    equal(browser.texts("#watches .broken"), ["1", "1"])
+    equal(browser.texts("#watches dt"), ["Waiting", "Failed", "Quarantined", "Done a minute", "Last result"] * 2)
+    equal(browser.texts("#watches .failed"), ["1", "0"])
+    equal(browser.texts("#watches .quarantined"), ["0", "1"])
     equal(browser.texts("#watches .rate"), ["11.0", "0.0"])
     last = browser.texts("#watches .last")
     assert last[0].endswith(" s ago") and last[1] == "none yet", last

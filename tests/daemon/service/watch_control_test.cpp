@@ -135,7 +135,9 @@ TEST(WatchControl, ShowsRatesDisksAndTheErrorOfOutputs) {
 
 TEST(WatchControl, SaysWhyAFileIsNotTakenYet) {
   ServiceHarness service;
+  service.add("first");
   service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << "else the file may be found, not seen as it is made: " << service.log();
   const std::string whole = ServiceHarness::volume(1);
   const Descriptor file(::open(service.in("open_24x20x16_uint8.raw").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
   ASSERT_EQ(::write(file.get(), whole.data(), 100), 100);
@@ -288,8 +290,9 @@ TEST(WatchControl, ThumbnailsAreWrittenAndListed) {
   service.start();
   const std::string name = service.add("one");
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_TRUE(
+      ServiceHarness::eventually([&] { return service.job(name + ".raw")["outputs"][0]["thumbnail"].get<bool>(); }));
   EXPECT_TRUE(fs::exists(service.out(name + ".nvdb.png")));
-  EXPECT_TRUE(service.job(name + ".raw")["outputs"][0]["thumbnail"].get<bool>());
   EXPECT_EQ(service.leftovers(), Names{});
 }
 

@@ -157,7 +157,7 @@ TEST(WatchFaults, OutputThatDoesNotFit_DelaysOnlyJobsAsLargeOnThatDisk) {
   EXPECT_NE(service.get("/api/status")["reason"].get<std::string>().find("; what needs more waits for it"),
             std::string::npos);
   fs::remove(service.out("ballast"));
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") > 0; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") > 0; })) << service.log();
   EXPECT_NE(service.log().find("4.8 MiB are needed, and its whole file system has 2.0 MiB; choose another output or a "
                                "smaller size"),
             std::string::npos)
@@ -170,10 +170,10 @@ TEST(WatchFaults, AReadOnlyOutputIsAFailureThatIsTriedAgain) {
   ServiceHarness service;
   ScopedMount mount(service.out(), 8 << 20);
   if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
-  mount.make_read_only();
   service.start();
+  mount.make_read_only();
   const std::string name = service.add("one");
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 1; })) << service.log();
   const auto job = service.job(name + ".raw");
   EXPECT_EQ(job["state"], "waiting") << "with a delay: the file system may be writable again";
   EXPECT_EQ(job["attempts"], 1);
@@ -185,10 +185,10 @@ TEST(WatchFaults, AReadOnlyOutputIsAFailureThatIsTriedAgain) {
 
 TEST(WatchFaults, OutputDirectoryBelowAFile_FailsWithTheReason) {
   ServiceHarness service("", "output = \"file/out\"\n");
-  write_file(service.path("file"), "");
   service.start();
+  write_file(service.path("file"), "");
   const std::string name = service.add("one");
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 1; })) << service.log();
   EXPECT_EQ(service.job(name + ".raw")["reason"], service.path("file/out") + ": make the directory: Not a directory");
 }
 
@@ -198,7 +198,7 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
   const std::string name = service.add("locked");
   fs::permissions(service.in(name + ".raw"), fs::perms::none);
   service.start();
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 1; })) << service.log();
   const auto job = service.job(name + ".raw");
   EXPECT_EQ(job["state"], "waiting");
   EXPECT_EQ(job["exit_code"], 5);
@@ -206,7 +206,7 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
             std::string::npos)
       << job;
   // Wait for the delay of 10 s, longer than a busy machine takes to notice.
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" failed ") == 2; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 2; })) << service.log();
   const auto due = service.job(name + ".raw")["next_attempt_at"];
   ASSERT_TRUE(due.is_number());
   fs::permissions(service.in(name + ".raw"), fs::perms::all);  // the file itself is as it was
@@ -271,7 +271,7 @@ TEST(WatchFaults, SourceDeletedWhileWaiting_RemovesItsJob) {
   service.post("/api/resume");
   const std::string fine = service.add("fine");
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
-  EXPECT_EQ(service.logged(" failed "), 0U) << service.log();
+  EXPECT_EQ(service.logged(" attempt-failed "), 0U) << service.log();
 }
 
 TEST(WatchFaults, ForeignOutput_IsNotReplaced) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/plotfile_writer.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::completion_test {
@@ -220,6 +221,34 @@ TEST(FileSampleTest, RegularFilesAndTheirMarkers) {
   EXPECT_FALSE(sample_file(directory.path().string(), "").exists);
   EXPECT_FALSE(sample_file(path + "/below", "").exists);
   EXPECT_FALSE(sample_file(directory / std::string(300, 'n'), "").exists);
+}
+
+TEST_F(CompletionTest, APlotfileIsWaitedForUntilAllOfItIsWritten) {
+  std::string rest = "Level_1/Cell_H is not there";
+  rules.unwritten = [&] { return rest; };
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::closed)), 0.2);
+  const CompletionAnswer answer = at(0.2);
+  EXPECT_DOUBLE_EQ(again(answer), 2.2);
+  EXPECT_EQ(answer.reason, rest);
+  EXPECT_DOUBLE_EQ(again(at(2.2)), 4.2);
+  rest.clear();
+  EXPECT_EQ(at(4.2).state, State::complete);
+}
+
+TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
+  const TemporaryDirectory directory;
+  const std::string header = directory / "plt00042/Header";
+  const WatchConfig watch;
+  EXPECT_FALSE(completion_rules(watch, directory / "a.h5").unwritten);
+  test::write_plotfile(directory / "plt00042", {});
+  const CompletionRules rules = completion_rules(watch, header);
+  EXPECT_TRUE(sample_file(header, "").exists);
+  EXPECT_EQ(rules.unwritten(), "");
+  std::filesystem::remove(directory / "plt00042/Level_0/Cell_H");
+  EXPECT_EQ(rules.unwritten(),
+            directory / "plt00042/Level_0/Cell_H: cannot open for reading: No such file or directory");
+  std::ofstream(header) << "CheckPointVersion_1.0\n";
+  EXPECT_FALSE(sample_file(header, "").exists);
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ class PathFilterTest : public testing::Test {
 };
 
 TEST_F(PathFilterTest, NoIncludePattern_TakesNamesOfKnownFormats) {
-  for (const char* name : {"a_64x64x64_uint8.raw", "sub/b_1x2x3_float32be.raw", "a.h5", "a.HDF5", "a.nc", "a.nii.gz",
-                           "a.nhdr", "a.mha", "a.vti", "a.vtk", "a.vdb", "name with\nnewline.nc", "\xff.h5"}) {
+  for (const char* name :
+       {"a_64x64x64_uint8.raw", "sub/b_1x2x3_float32be.raw", "a.h5", "a.HDF5", "a.nc", "a.nii.gz", "a.nhdr", "a.mha",
+        "a.vti", "a.vtk", "a.vdb", "a.zarr.zip", "a.ozx", "name with\nnewline.nc", "\xff.h5"}) {
     EXPECT_TRUE(accepts(name)) << name;
   }
   for (const char* name : {"a.raw", "a.txt", "a.log", "a.nvdb", "a.nvdb.png", "a.nvdb.json", "a.nvdb.partial",
@@ -52,6 +53,24 @@ TEST_F(PathFilterTest, PatternsWithASlashMatchPathsOthersMatchNames) {
   EXPECT_FALSE(accepts("a.h5"));
   EXPECT_FALSE(enters("x/old"));
   EXPECT_TRUE(enters("x/older"));
+}
+
+TEST_F(PathFilterTest, PlotfilesGoByTheNamesOfTheirDirectories) {
+  EXPECT_TRUE(accepts("plt00042/Header"));
+  EXPECT_TRUE(accepts("run7/plt00042/Header"));
+  EXPECT_FALSE(accepts("Header"));
+  EXPECT_FALSE(accepts("plt00042/Level_0/Cell_H"));
+  EXPECT_FALSE(accepts("plt00042.temp/Header"));
+  EXPECT_FALSE(accepts("plt00042.old.1234567/Header"));
+  watch.include = {"plt*", "run*/x*"};
+  EXPECT_TRUE(accepts("plt00042/Header"));
+  EXPECT_TRUE(accepts("deep/plt00042/Header"));
+  EXPECT_TRUE(accepts("run7/x1/Header"));
+  EXPECT_FALSE(accepts("chk00042/Header"));
+  watch.exclude = {"*1"};
+  EXPECT_FALSE(accepts("run7/x1/Header"));
+  watch.recursive = false;
+  EXPECT_FALSE(accepts("plt00042/Header"));
 }
 
 TEST_F(PathFilterTest, HiddenDirectoriesAreNotEnteredAndNoneWithoutRecursion) {

@@ -73,7 +73,8 @@ TEST(GoldenStream, ExactBlocks) {
         }
         Stream stream(kRawStreamBytes);
         const Lattice lattice{-64.125F, 0.25F, 12};
-        stream.resize(encode_exact(constants, own ? std::optional(lattice) : std::nullopt, block, stream));
+        stream.resize(encode_exact({constants.tables, ValueEncoder::Kind::lattice}, constants,
+                                   own ? std::optional(lattice) : std::nullopt, block, stream));
         streams.add(stream);
         const auto decoded = decode(constants, {}, stream);
         ASSERT_TRUE(decoded.has_value());

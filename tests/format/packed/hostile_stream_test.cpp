@@ -43,15 +43,16 @@ std::vector<Stream> valid_streams() {
       streams.push_back(stream);
     }
     Stream stream(kRawStreamBytes);
-    stream.resize(encode_exact(constants, std::nullopt, values, stream));
+    stream.resize(
+        encode_exact({constants.tables, ValueEncoder::Kind::lattice}, constants, std::nullopt, values, stream));
     streams.push_back(stream);
     BlockValues on_lattice;
     for (std::size_t i = 0; i < 512; ++i) on_lattice[i] = static_cast<float>(static_cast<int>(values[i] * 40)) / 2;
     for (const bool own : {false, true}) {
       stream.assign(kRawStreamBytes, std::byte{0});
       const Lattice lattice{-30, 0.5F, 12};
-      stream.resize(encode_exact(own ? constants_from(-6) : constants, own ? std::optional(lattice) : std::nullopt,
-                                 on_lattice, stream));
+      stream.resize(encode_exact({constants.tables, ValueEncoder::Kind::lattice}, own ? constants_from(-6) : constants,
+                                 own ? std::optional(lattice) : std::nullopt, on_lattice, stream));
       streams.push_back(stream);
     }
   }
@@ -195,7 +196,8 @@ TEST(HostileStream, OwnLatticesThatAreNotFiniteAreRefused) {
   BlockValues values;
   for (std::size_t i = 0; i < 512; ++i) values[i] = static_cast<float>(i % 7) * 0.25F;
   Stream stream(kRawStreamBytes);
-  stream.resize(encode_exact(constants_from(0), Lattice{0, 0.25F, 12}, values, stream));
+  stream.resize(encode_exact({constants_from(0).tables, ValueEncoder::Kind::lattice}, constants_from(0),
+                             Lattice{0, 0.25F, 12}, values, stream));
   ASSERT_TRUE(decode(constants_from(0), kMeans, stream).has_value());
   for (const std::size_t at : {1U, 5U}) {
     for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

@@ -33,7 +33,8 @@ Kind kind_of(const Stream& stream) {
 Stream encode_and_check(const BlockValues& values, const BlockConstants& constants,
                         const std::optional<Lattice>& own = std::nullopt, FloatOrder order = FloatOrder::used) {
   Stream stream(kRawStreamBytes + 1, std::byte{0xA5});
-  const std::uint32_t bytes = encode_exact(constants, own, values, std::span(stream).first(kRawStreamBytes), order);
+  const std::uint32_t bytes = encode_exact({constants.tables, ValueEncoder::Kind::lattice}, constants, own, values,
+                                           std::span(stream).first(kRawStreamBytes), order);
   EXPECT_LE(bytes, kRawStreamBytes);
   EXPECT_EQ(stream[kRawStreamBytes], std::byte{0xA5});
   stream.resize(bytes);

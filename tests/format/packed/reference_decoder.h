@@ -154,7 +154,7 @@ class ReferenceDecoder {
       }
       require(u[i] < 1U << 24U);
       const float product = static_cast<float>(u[i]) * quantum;
-      out[i] = product + minimum;
+      out[i] = clamp(product + minimum);
     }
     return out;
   }

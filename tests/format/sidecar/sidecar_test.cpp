@@ -36,12 +36,19 @@ Sidecar sample() {
               1e-4,
               0.5,
               -2,
-              "00112233445566778899aabbccddeeff"};
+              "00112233445566778899aabbccddeeff",
+              "cloud water",
+              "magnitude",
+              Sidecar::Time{1200, "seconds since 2000-01-01", "noleap"},
+              {"km", "", "m"},
+              Sidecar::IrregularAxes{{}, {}, {0.1, 0.3, 0.6}},
+              {"y"}};
   s.grid = {"density", "float32", {60, 61, 62}, {0.1, 0.2, 0.3}, {-1, 1e300, 5e-324}, {{-4, 5, 6}, {56, 66, 68}}};
   s.value_range = {-0.1, 1.0 / 3.0};
   s.nonfinite = {18446744073709551615U, "keep"};
-  s.missing = {7, {"-9999", "nan"}};
+  s.missing = {7, {"-9999", "nan"}, "background"};
   s.conversion_loss = {3, 4, 0.5};
+  s.zeros = Sidecar::Zeros{123, 45};
   s.background = {0.25, "modal", 0.9899};
   s.histogram = {-1, 2, {1, 0, 9007199254740993U}};
   s.budget = {"size", 1048576, 1048576, 1048592, 1.0000152587890625};
@@ -91,10 +98,10 @@ TEST(Sidecar, WritesOneKeyPerLineInTheDocumentedOrder) {
   for (std::string line; std::getline(lines, line);) {
     if (line.size() > 3) keys += line.substr(3, line.find('"', 3) - 3) + ' ';
   }
-  EXPECT_EQ(
-      keys,
-      "weir_sidecar source grid value_range nonfinite missing conversion_loss background histogram budget selection "
-      "error visible macrocells timing file weir ");
+  EXPECT_EQ(keys,
+            "weir_sidecar source grid value_range nonfinite missing conversion_loss zeros background histogram budget "
+            "selection "
+            "error visible macrocells timing file weir ");
 }
 
 TEST(Sidecar, NonFiniteValuesAreNullAndReadAsNaN) {
@@ -218,7 +225,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
                                      edited([](auto& d) { d["selection"]["leaves_kept"] = -1; })};
   const auto document = nlohmann::json::parse(to_json_text(sample()));
   for (const auto& [key, value] : document.items()) {
-    if (key == "visible") continue;  // there with a scene only
+    if (key == "visible" || key == "zeros") continue;  // there with a scene only; not in older sidecars
     documents.push_back(edited([k = key](auto& d) { d.erase(k); }));
   }
   EXPECT_EQ(validate_against_schema(documents), "yy" + std::string(documents.size() - 2, 'n'));

@@ -31,7 +31,7 @@ class ImageOutput : public testing::Test {
   }
   std::string message(const std::string& name, ErrorKind kind) const {
     try {
-      const ImageFile file(*files_, path(name));
+      const ImageFile file(*files_, path(name), false);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), kind);
       return error.what();
@@ -55,7 +55,7 @@ Image gradient_image() {
 }
 
 TEST_F(ImageOutput, PngReadsBack) {
-  ImageFile file(*files_, path("a.png"));
+  ImageFile file(*files_, path("a.png"), false);
   EXPECT_EQ(entries(), 1U);
   EXPECT_FALSE(fs::exists(path("a.png"))) << "nothing is there before commit";
   const std::uint64_t bytes = file.commit(gradient_image(), {.exposure = 1, .soft_clip = false});
@@ -81,7 +81,7 @@ TEST_F(ImageOutput, PngReadsBack) {
 }
 
 TEST_F(ImageOutput, ExrReadsBackExactly) {
-  ImageFile file(*files_, path("a.EXR"));
+  ImageFile file(*files_, path("a.EXR"), false);
   Image image = gradient_image();
   image.pixels[4] = {100, -1, 1e-7F};
   file.commit(image, {.exposure = 7, .soft_clip = true});
@@ -99,22 +99,30 @@ TEST_F(ImageOutput, ExrReadsBackExactly) {
 }
 
 TEST_F(ImageOutput, WithoutCommitNothingIsLeft) {
-  { const ImageFile file(*files_, path("a.png")); }
+  { const ImageFile file(*files_, path("a.png"), false); }
   EXPECT_EQ(entries(), 0U);
 }
 
 TEST_F(ImageOutput, CommitReplaces) {
   std::ofstream(path("a.png")) << "old";
-  ImageFile file(*files_, path("a.png"));
+  ImageFile file(*files_, path("a.png"), true);
   EXPECT_EQ(fs::file_size(path("a.png")), 3U) << "the old one stays until the new one is complete";
   file.commit(gradient_image(), {});
   EXPECT_GT(fs::file_size(path("a.png")), 60U);
 }
 
+TEST_F(ImageOutput, WithoutOverwrite_AnExistingFileIsRefusedAndStays) {
+  ImageFile early(*files_, path("a.png"), false);
+  std::ofstream(path("a.png")) << "old";
+  EXPECT_EQ(message("a.png", ErrorKind::usage), path("a.png") + ": exists; choose another name or pass --overwrite");
+  EXPECT_THROW(early.commit(gradient_image(), {}), Error) << "it came while the picture was made";
+  EXPECT_EQ(fs::file_size(path("a.png")), 3U);
+}
+
 TEST_F(ImageOutput, LongestNameLeavesNoOtherFile) {
   const std::string longest = std::string(251, 'n') + ".png";
   {
-    ImageFile file(*files_, path(longest));
+    ImageFile file(*files_, path(longest), false);
     file.commit(gradient_image(), {});
   }
   EXPECT_TRUE(fs::exists(path(longest)));
@@ -129,7 +137,8 @@ TEST_F(ImageOutput, WrongNamesAreUsage) {
 }
 
 TEST_F(ImageOutput, MissingDirectoryIsIo) {
-  EXPECT_NE(message("missing/a.png", ErrorKind::io).find("missing"), std::string::npos);
+  EXPECT_EQ(message("missing/a.png", ErrorKind::io), path("missing/a.png") + ": the directory " + path("missing") +
+                                                         " does not exist; make it or choose another name");
 }
 
 TEST(ToneMap, SoftClip) {

@@ -46,10 +46,12 @@ class LevelsOfDetail : public testing::Test {
     return scene;
   }
   static Picture picture(Backend& backend, LoadedVolume& volume, const Scene& scene,
-                         const std::optional<LevelOfDetail>& levels, std::uint32_t samples = 16) {
+                         const std::optional<LevelOfDetail>& levels, std::uint32_t samples = 16,
+                         std::uint64_t seed = 0) {
     RenderOptions options;
     options.width = 40;
     options.height = 30;
+    options.seed = seed;
     options.levels = levels;
     return backend.render(volume, scene, options, {samples, nullptr, {}});
   }
@@ -159,7 +161,9 @@ TEST_F(LevelsOfDetail, ScatteredLight_MaySeeCoarserLevelsThanTheCamera) {
   const Picture light = picture(*backend, *volume, scene, LevelOfDetail{0, 3}, 64);
   EXPECT_GE(light.finest_level, 1);
   EXPECT_NE(light.image.pixels, voxels.image.pixels);
-  EXPECT_LT(difference(light.image, voxels.image), 0.05F);
+  // The paths differ from where they meet a coarser level, so it is mostly noise in which the pictures differ.
+  const float noise = difference(picture(*backend, *volume, scene, std::nullopt, 64, 1).image, voxels.image);
+  EXPECT_LT(difference(light.image, voxels.image), 1.25F * noise);
   // Nothing else scatters.
   scene.mode = RenderMode::dvr;
   scene.camera.zoom = 12;

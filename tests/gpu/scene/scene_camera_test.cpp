@@ -105,12 +105,12 @@ TEST(MakeCamera, ZoomMagnifies) {
   EXPECT_NEAR(length(one.right), 4 * length(four.right), 1e-5F);
 }
 
-TEST(MakeCamera, PositionIsInTheWorld) {
+TEST(MakeCamera, WorldPositions_AreOfVoxelCentres) {
   SceneCamera scene;
-  scene.position = Double3{1 + 0.5 * 60, 2 + 0.5 * 70, 3};  // index (60, 70, 0)
+  scene.position = Double3{1 + 0.5 * 60, 2 + 0.5 * 70, 3};  // the centre of voxel (60, 70, 0)
   scene.look_at = Double3{1 + 0.5 * 60, 2 + 0.5 * 70, 50};
   const Camera camera = orbit(scene, kCube);
-  expect_near(camera.position, {50, 50, -30}, 1e-3F);
+  expect_near(camera.position, {50.5F, 50.5F, -29.5F}, 1e-3F);  // from the domain's lowest corner
   expect_near(camera.forward, {0, 0, 1});
   EXPECT_NEAR(dot(camera.right, camera.forward), 0, 1e-6F);
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "ingest/hdf5/file/hdf5_lock.h"
+#include "ingest/series.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 #include "tests/support/sanitized.h"
 
@@ -81,13 +82,17 @@ with h5py.File("flat.h5", "w") as f: f["lat"] = np.zeros((3, 4))
 with h5py.File("empty.h5", "w") as f: f.create_group("g")
 )");
   expect_reads(scratch_, "one.h5", {}, "v");
-  expect_reads(scratch_, "steps.h5", {}, "v");
   expect_reads(scratch_, "steps.h5", dataset_options("", {1}), "v");
+  const auto command = [&](const std::string& file) { return "weir convert " + scratch_.path(file) + " --dataset "; };
   EXPECT_EQ(refused("two.h5", {}, ErrorKind::usage),
-            scratch_.path("two.h5") + ": holds 2 volumes; choose one with --dataset: /a (5 x 7 x 9), /b (5 x 7 x 9)");
+            scratch_.path("two.h5") + ": holds 2 volumes; choose one with --dataset: " + command("two.h5") +
+                "/a (5 x 7 x 9); " + command("two.h5") + "/b (5 x 7 x 9)");
+  EXPECT_EQ(refused("steps.h5", {}, ErrorKind::usage),
+            scratch_.path("steps.h5") + ": holds 2 volumes; choose one with --dataset: " + command("steps.h5") +
+                "/steps --index 0 (2 x 5 x 7 x 9); " + command("steps.h5") + "/v (5 x 7 x 9)");
   EXPECT_EQ(refused("none.h5", {}), scratch_.path("none.h5") +
-                                        ": none of its 2 datasets is a volume (/lat: 2 axes (3 x 4); a volume has "
-                                        "three); weir inspect lists them");
+                                        ": none of its 2 datasets is a volume; the nearest is /lat: 2 axes (3 x 4); a "
+                                        "volume has three; weir inspect lists them");
   EXPECT_EQ(refused("flat.h5", {}), scratch_.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
   EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset");
 }
@@ -112,6 +117,57 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(refused("a.h5", dataset_options("v/w")),
             path + ": no dataset /v/w; the file holds /v, /fields/Temperature, /fields/density");
   EXPECT_EQ(refused("a.h5", dataset_options("type")), path + ": /type: a named type, no dataset");
+}
+
+TEST_F(Hdf5Choice, DatasetPatterns_AreTheVolumesTheyMatch) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name in ["fields/rho", "fields/T", "grid"]: f[name] = np.zeros((2, 3, 4), "f4")
+    f["times"] = np.zeros(4)
+    f["series"] = np.zeros((5, 2, 3, 4), "f4")
+)");
+  const auto datasets = [&](const std::string& dataset, std::vector<AxisChoice> choices = {}) {
+    SourceOptions options = dataset_options(dataset);
+    options.index_choices = std::move(choices);
+    std::string names;
+    for (const SeriesStep& step : expand_series(std::vector{scratch_.path("a.h5")}, options))
+      names += step.dataset + ' ';
+    return names;
+  };
+  EXPECT_EQ(datasets("*"), "/grid /fields/T /fields/rho ") << "what is no volume without --index is left out";
+  EXPECT_EQ(datasets("fields/*"), "/fields/T /fields/rho ");
+  EXPECT_EQ(datasets("/fields/[r]*"), "/fields/rho ");
+  EXPECT_EQ(datasets("*", {{{}, false, -1, {}}}), "/series ");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { datasets("x*"); }),
+            scratch_.path("a.h5") + ": no dataset's name matches x*; weir inspect lists what there is");
+}
+
+TEST_F(Hdf5Choice, IndexByName_BelowZeroAndRanges) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    v = f.create_dataset("v", data=np.arange(4 * 3 * 24, dtype="f4").reshape(4, 3, 2, 3, 4))
+    for axis, name in enumerate(["time", "level"]): v.dims[axis].label = name
+    for axis, (name, n) in enumerate([("time", 4), ("level", 3)]):
+        f[name] = np.arange(n, dtype="f8"); f[name].make_scale(name); v.dims[axis].attach_scale(f[name])
+)");
+  const auto first_value = [&](std::vector<AxisChoice> choices) {
+    SourceOptions options = dataset_options("v");
+    options.index_choices = std::move(choices);
+    return all_values(*open_source(scratch_.path("a.h5"), options)).front();
+  };
+  EXPECT_EQ(first_value({{{}, false, -1, {}}, {{}, false, 0, {}}}), 3 * 3 * 24);
+  EXPECT_EQ(first_value({{"level", false, 2, {}}, {"time", false, 1, {}}}), 1 * 3 * 24 + 2 * 24);
+  EXPECT_EQ(message_of_error(ErrorKind::usage,
+                             [&] {
+                               first_value({{"depth", false, 2, {}}});
+                             }),
+            scratch_.path("a.h5") + ": --index: no axis depth; /v has time, level");
+  EXPECT_EQ(message_of_error(ErrorKind::usage,
+                             [&] {
+                               first_value({{{}, false, -1, {}}});
+                             }),
+            scratch_.path("a.h5") +
+                ": --index has 1 position, and /v has time of 4, level of 3; weir inspect lists what there is");
 }
 
 TEST_F(Hdf5Choice, RefusesDatasetsThatAreNoNumericVolume) {

@@ -39,11 +39,28 @@ TEST(RawName, AllScalarTypes) {
   }
 }
 
+// As --type takes them.
+TEST(RawName, TypesOfCAndNumpy_AreTaken) {
+  const auto expect = [](const std::string& text, ScalarType type, bool big_endian) {
+    const auto name = parse_raw_name("a_4x4x4_" + text + ".raw");
+    ASSERT_TRUE(name) << text;
+    EXPECT_EQ(name->type, type) << text;
+    EXPECT_EQ(name->big_endian, big_endian) << text;
+    EXPECT_EQ(name->type_text, text);
+  };
+  expect("float", ScalarType::float32, false);
+  expect("double", ScalarType::float64, false);
+  expect("f4", ScalarType::float32, false);
+  expect("u2be", ScalarType::uint16, true);
+  expect("<f8", ScalarType::float64, false);
+  expect(">i2", ScalarType::int16, true);
+}
+
 TEST(RawName, UnknownTypeIsReportedAsWritten) {
-  const auto name = parse_raw_name("a_4x4x4_double.raw");
+  const auto name = parse_raw_name("a_4x4x4_real.raw");
   ASSERT_TRUE(name);
   EXPECT_FALSE(name->type);
-  EXPECT_EQ(name->type_text, "double");
+  EXPECT_EQ(name->type_text, "real");
 }
 
 TEST(RawName, ImpossibleExtentsAreReadAsWritten) {

@@ -238,7 +238,8 @@ TEST(RawSource, UnknownExtentOrTypeIsAskedFor) {
             path + ": extent unknown; give --dims X,Y,Z and --type or name the file NAME_XxYxZ_TYPE.raw");
   SourceOptions options;
   options.extent = kExtent;
-  const std::string types = "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, float32, float64";
+  const std::string types =
+      "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float16, bfloat16, float32, float64";
   EXPECT_EQ(scalar_names(), types);
   EXPECT_EQ(refusal(ErrorKind::usage, path, options), path + ": type unknown; give --type with one of " + types);
   const std::string named = scratch.write_values("v_7x5x9_byte.raw", ramp<std::uint8_t>());

@@ -63,6 +63,17 @@ TEST(SourceView, RefusesEmptyAndOutside) {
             path + ": --roi -1:9,2:8,1:4 reaches outside the volume 0:10,0:8,0:6; keep it within");
 }
 
+TEST(SourceView, GhostCells_AreLeftOut_ButNotAllThereIs) {
+  const Scratch scratch;
+  VolumeRegion region;
+  region.ghost = {2, 1, 0};
+  const auto inner = crop_to(open_ramp(scratch), region);
+  EXPECT_EQ(inner->info().domain(), (Box{{2, 1, 0}, {8, 7, 6}}));
+  region.ghost = {5, 0, 0};
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { crop_to(open_ramp(scratch), region); }),
+            scratch.path("v_10x8x6_uint16.raw") + ": --ghost 5,0,0 leaves no voxel of 10 x 8 x 6");
+}
+
 TEST(SourceView, ReadsNothingOutsideTheRegion) {
   const Scratch scratch;
   const auto source = crop_source(open_ramp(scratch), {{3, 2, 1}, {9, 8, 4}});

@@ -42,6 +42,8 @@ TEST(StoredValue, HoldsTellsWhetherATypeCanStoreAValue) {
   EXPECT_FALSE(holds(ScalarType::uint64, StoredValue{0x1p64}));
   EXPECT_FALSE(holds(ScalarType::int64, StoredValue{std::numeric_limits<std::uint64_t>::max()}));
   EXPECT_FALSE(holds(ScalarType::float16, StoredValue{1e5}));
+  EXPECT_TRUE(holds(ScalarType::bfloat16, StoredValue{3.38e38}));
+  EXPECT_FALSE(holds(ScalarType::bfloat16, StoredValue{3.4e38}));
   EXPECT_TRUE(holds(ScalarType::float32, StoredValue{-kInf}));
   EXPECT_FALSE(holds(ScalarType::float32, StoredValue{1e39}));
   EXPECT_TRUE(holds(ScalarType::float64, StoredValue{1e39}));

@@ -1,7 +1,6 @@
 // Deflate streams for tests, made by zlib.
 #pragma once
 
-#define ZLIB_CONST  // next_in points to const
 #include <zlib.h>
 
 #include <cstddef>
@@ -18,7 +17,7 @@ inline std::vector<std::byte> deflated(std::span<const std::byte> bytes, Wrapper
   const int window = wrapper == Wrapper::gzip ? MAX_WBITS + 16 : MAX_WBITS;
   if (deflateInit2(&stream, 6, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::runtime_error("deflate");
   std::vector<std::byte> packed(deflateBound(&stream, bytes.size()));
-  stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));  // zlib reads it only
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());
   stream.avail_out = static_cast<uInt>(packed.size());

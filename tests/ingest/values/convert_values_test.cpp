@@ -162,6 +162,16 @@ TEST(ConvertValues, HalfFloatsAreExact) {
   expect_lossless(loss);
 }
 
+TEST(ConvertValues, BFloat16IsExactAndKeepsNaNs) {
+  const auto [out, loss] =
+      convert(std::vector<std::uint16_t>{0x0000, 0x8000, 0x0001, 0x3F80, 0xC000, 0x7F7F, 0x7F80, 0xFF80, 0x7F81},
+              ScalarType::bfloat16);
+  const std::vector<float> expected{0.0F, -0.0F, 0x1p-133F, 1.0F, -2.0F, 0x1.FEp127F, kInf, -kInf};
+  EXPECT_EQ(std::memcmp(out.data(), expected.data(), expected.size() * sizeof(float)), 0);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(out[8]), 0x7F810000U);  // a signalling one, as it was
+  expect_lossless(loss);
+}
+
 TEST(ConvertValues, CountsInEveryPlaceOfEveryLength) {
   // The lanes of the vectorised loop and the tail after it count alike.
   for (std::size_t n = 1; n <= 50; ++n) {

@@ -133,6 +133,19 @@ TEST(DecodeValues, HalfFloats) {
   EXPECT_EQ(decoded.values[0], 2.0F);
   EXPECT_TRUE(is_missing(decoded.values[1]));
   EXPECT_EQ(decoded.values[2], 131008.0F);
+
+  const Decoded brain = decode(std::vector<std::uint16_t>{0x3F80, 0xBF80, 0x4049}, ScalarType::bfloat16, mapping);
+  EXPECT_EQ(brain.values[0], 2.0F);
+  EXPECT_TRUE(is_missing(brain.values[1]));
+  EXPECT_EQ(brain.values[2], 6.28125F);
+}
+
+TEST(DecodeValues, MissingKeptAsData_AreScaledAndCounted) {
+  const ValueMapping mapping{0.5, 10, {StoredValue{std::int64_t{-2}}}, true};
+  const Decoded decoded = decode(std::vector<std::int16_t>{-2, 4, -2}, ScalarType::int16, mapping);
+  EXPECT_EQ(decoded.values, (std::vector<float>{9.0F, 12.0F, 9.0F}));
+  EXPECT_EQ(decoded.loss.unmarked, 2U);
+  EXPECT_EQ(decoded.loss.inexact, 0U);
 }
 
 TEST(DecodeValues, WithoutMappingBytesPassAsTheyAre) {

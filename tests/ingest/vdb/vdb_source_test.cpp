@@ -167,7 +167,8 @@ TEST(VdbSource, MissingIsAStoredValue) {
   EXPECT_EQ(values[2], 2.0F);
 }
 
-TEST(VdbSource, TransformsBecomeSpacingAndOrigin) {
+// OpenVDB, "Transforms and Maps": an index (i, j, k) is the centre of its voxel, and the map gives its world position.
+TEST(VdbSource, TransformsBecomeSpacingAndOriginOfVoxelCentres) {
   const Scratch scratch;
   const auto placed = [&](OpenVdbGrid grid) {
     test::write_vdb(scratch.path("a.vdb"), {grid.fill({{-2, 0, 1}, {0, 2, 3}})});
@@ -201,18 +202,18 @@ TEST(VdbSource, ChoosesByName) {
   density.fill(box);
   second.fill(box, 2);
   heat.fill(box, 3);
-  test::write_vdb(path, {density, second, heat, OpenVdbGrid(GridKind::vec3, "vel")});
+  test::write_vdb(path, {density, second, heat, OpenVdbGrid(GridKind::points, "dust")});
   expect_same(*open_source(path, naming("density[1]")), second);
   expect_same(*open_source(path, naming("heat")), heat);
   EXPECT_EQ(
       message_of_error(ErrorKind::usage, [&] { open_source(path, {}); }),
       path + ": holds 3 grids that can be converted; name a grid with --dataset: 'density[0]', 'density[1]', 'heat'");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, naming("temp")); }),
-            path + ": has no grid 'temp'; it has 'density[0]', 'density[1]', 'heat', 'vel'");
-  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, naming("vel")); }),
+            path + ": has no grid 'temp'; it has 'density[0]', 'density[1]', 'heat', 'dust'");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, naming("dust")); }),
             path +
-                ": grid 'vel' cannot be converted: its type is 'Tree_vec3s_5_4_3', and float, double, int32, int64, "
-                "bool and mask trees of 5_4_3 can be read");
+                ": grid 'dust' cannot be converted: its type is 'Tree_ptdataidx32_5_4_3', and float, double, int32, "
+                "int64, bool, mask, vec3s, vec3d and vec3i trees of 5_4_3 can be read");
 }
 
 TEST(VdbSource, InstancesShareATreeAndHaveTheirOwnTransform) {
@@ -233,7 +234,7 @@ TEST(VdbSource, ListsGridsWithTypeLayoutAndObstacle) {
   const OpenVdbGrid empty(GridKind::boolean, "empty");
   OpenVdbGrid skewed(GridKind::float32, "skewed");
   skewed.fill({{0, 0, 0}, {1, 1, 1}}).frustum();
-  test::write_vdb(scratch.path("a.vdb"), {density, empty, skewed, OpenVdbGrid(GridKind::vec3, "vel")},
+  test::write_vdb(scratch.path("a.vdb"), {density, empty, skewed, OpenVdbGrid(GridKind::points, "dust")},
                   Compression::zip_active_mask);
   const auto list = list_vdb(scratch.path("a.vdb"), {});
   ASSERT_EQ(list.size(), 4U);
@@ -251,7 +252,7 @@ TEST(VdbSource, ListsGridsWithTypeLayoutAndObstacle) {
   EXPECT_EQ(list[1].obstacle, "it has no active voxel");
   EXPECT_EQ(list[2].obstacle,
             "its transform is a 'NonlinearFrustumMap', which has no voxel size; resample it to a linear one");
-  EXPECT_EQ(list[3].type, "Tree_vec3s_5_4_3");
+  EXPECT_EQ(list[3].type, "Tree_ptdataidx32_5_4_3");
 }
 
 TEST(VdbSource, RefusesWhatMemoryDoesNotHold) {

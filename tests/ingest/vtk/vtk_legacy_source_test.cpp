@@ -112,6 +112,39 @@ TEST(VtkLegacySource, FindsArraysAfterEveryOtherSection) {
             path + ": array 'bits' cannot be converted: its type is 'bit', and char to double can be read");
 }
 
+// Vectors (i, 2 i, -2 i) of voxel i, whose length is 3 i.
+TEST(VtkLegacySource, ComponentOfVectorsIsTheVolume) {
+  const Scratch scratch;
+  std::vector<float> vectors;
+  std::string text;
+  for (int i = 0; i < 24; ++i) {
+    for (const int factor : {1, 2, -2}) {
+      vectors.push_back(static_cast<float>(factor * i));
+      text += cat(factor * i, " ");
+    }
+  }
+  const auto times = [](float factor) {
+    std::vector<float> values = ramp();
+    for (float& value : values) value *= factor;
+    return values;
+  };
+  for (const std::string& file :
+       {head("BINARY", "POINT_DATA 24\nVECTORS v float\n") + chars(stored(vectors, true)) + "\n",
+        head("ASCII", "POINT_DATA 24\nVECTORS v float\n") + text + "\n" + scalars("s", "int", ramp_text())}) {
+    const std::string path = write_headed(scratch, "a.vtk", file);
+    for (const auto& [choice, factor] : {std::pair("x", 1.0F), std::pair("2", -2.0F), std::pair("magnitude", 3.0F)}) {
+      SourceOptions options;
+      options.component = parse_component(choice);
+      const auto source = open_source(path, options);
+      EXPECT_EQ(source->info().dataset, "v");
+      EXPECT_EQ(source->info().details.component, component_text(*options.component));
+      EXPECT_EQ(read_volume(*source), times(factor)) << choice;
+    }
+    EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, naming("v")); }),
+              path + ": array 'v': has 3 components a voxel; give --component: 0 to 2, x, y, z or magnitude");
+  }
+}
+
 TEST(VtkLegacySource, FindsArraysBehindText) {
   const Scratch scratch;
   const std::string text = head("ASCII", "POINT_DATA 24\nVECTORS v float\n") + ramp_text() + ramp_text() + ramp_text() +
@@ -121,7 +154,8 @@ TEST(VtkLegacySource, FindsArraysBehindText) {
   EXPECT_EQ(read_volume(*open_source(path, naming("b"))), ramp());
   const auto list = list_vtk_legacy(path, {});
   ASSERT_EQ(list.size(), 3U);
-  EXPECT_EQ(list[0].obstacle, "it has 3 components, and one value a voxel can be read");
+  EXPECT_EQ(list[0].components, 3);
+  EXPECT_EQ(list[0].obstacle, "");
   EXPECT_EQ(list[1].name, "a");
   EXPECT_EQ(list[1].type, "int32");
   EXPECT_EQ(list[1].layout, "text");

@@ -156,8 +156,8 @@ TEST(VtkXmlSource, ChoosesByNameOrByTheFilesMark) {
   std::string path = write_headed(scratch, "a.vti", vti({}, "<PointData Scalars=\"b\">" + arrays + "</PointData>"));
   EXPECT_EQ(open_source(path, {})->info().dataset, "b");
   EXPECT_EQ(read_volume(*open_source(path, naming("a")))[23], 1.0F);
-  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, naming("v")); }),
-            path + ": array 'v' cannot be converted: it has 3 components, and one value a voxel can be read");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, naming("v")); }),
+            path + ": array 'v': has 3 components a voxel; give --component: 0 to 2, x, y, z or magnitude");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, naming("c")); }),
             path + ": has no array 'c'; it has 'a', 'b', 'v'");
   path = write_headed(scratch, "a.vti", vti({}, "<PointData>" + arrays + "</PointData>"));
@@ -168,6 +168,73 @@ TEST(VtkXmlSource, ChoosesByNameOrByTheFilesMark) {
                                   "<DataArray type=\"UInt8\" Name=\"a\">1 2 3 4 5 6</DataArray></CellData>"));
   EXPECT_EQ(open_source(path, {})->info().dataset, "PointData/a");
   EXPECT_EQ(read_volume(*open_source(path, naming("CellData/a")))[5], 6.0F);
+}
+
+SourceOptions component(const std::string& text, const std::string& dataset = "") {
+  SourceOptions options = naming(dataset);
+  options.component = parse_component(text);
+  return options;
+}
+
+// Vectors (i, 2 i, -2 i) of voxel i, whose length is 3 i.
+std::vector<double> telling_vectors() {
+  std::vector<double> values;
+  for (int i = 0; i < 24; ++i) values.insert(values.end(), {1.0 * i, 2.0 * i, -2.0 * i});
+  return values;
+}
+
+std::vector<float> multiples(float factor) {
+  std::vector<float> values;
+  for (int i = 0; i < 24; ++i) values.push_back(factor * static_cast<float>(i));
+  return values;
+}
+
+TEST(VtkXmlSource, ComponentOfVectors_IsTheVolume_HoweverTheyAreStored) {
+  const Scratch scratch;
+  const std::string head = "type=\"Float64\" Name=\"v\" NumberOfComponents=\"3\" ";
+  std::string text;
+  for (const double value : telling_vectors()) text += cat(value, " ");
+  std::vector<std::string> files{vti({}, point_array(head + "format=\"ascii\"", text))};
+  for (const VtiStorage& storage : {VtiStorage{true, false, 0}, VtiStorage{false, true, 100}}) {
+    const VtiData data = vti_data(stored(telling_vectors(), storage.big_endian), storage);
+    files.push_back(vti(storage, point_array(head + "format=\"binary\"", data.text(storage))));
+    files.push_back(vti(storage, point_array(head + "format=\"appended\" offset=\"0\""),
+                        "<AppendedData encoding=\"raw\">_" + chars(data.raw()) + "</AppendedData>"));
+  }
+  for (const std::string& content : files) {
+    const std::string path = write_headed(scratch, "a.vti", content);
+    EXPECT_EQ(read_volume(*open_source(path, component("0"))), multiples(1));
+    EXPECT_EQ(read_volume(*open_source(path, component("z"))), multiples(-2));
+    const auto length = open_source(path, component("magnitude", "v"));
+    EXPECT_EQ(length->info().extent, (Index3{4, 3, 2}));
+    EXPECT_EQ(length->info().details.component, "magnitude");
+    EXPECT_EQ(read_volume(*length), multiples(3));
+  }
+}
+
+TEST(VtkXmlSource, ComponentThatDoesNotFit_IsRefused) {
+  const Scratch scratch;
+  const auto array = [](const std::string& name, int components) {
+    std::string text;
+    for (int i = 0; i < 24 * components; ++i) text += "1 ";
+    return cat("<DataArray type=\"UInt8\" Name=\"", name, "\" NumberOfComponents=\"", components, "\">", text,
+               "</DataArray>");
+  };
+  const std::string path = write_headed(
+      scratch, "a.vti", vti({}, "<PointData>" + array("a", 1) + array("t", 9) + array("w", 65) + "</PointData>"));
+  const auto refused = [&](const SourceOptions& options, ErrorKind kind = ErrorKind::usage) {
+    return message_of_error(kind, [&] { open_source(path, options); });
+  };
+  EXPECT_EQ(open_source(path, {})->info().dataset, "a");
+  EXPECT_EQ(open_source(path, component("8"))->info().dataset, "t");
+  EXPECT_EQ(refused(component("0", "a")),
+            path + ": array 'a': has one value a voxel, and no components; leave --component out");
+  EXPECT_EQ(refused(component("9")),
+            path + ": array 't': has 9 components a voxel, and --component is 9; give 0 to 8 or magnitude");
+  EXPECT_EQ(refused(naming("t")),
+            path + ": array 't': has 9 components a voxel; give --component: 0 to 8 or magnitude");
+  EXPECT_EQ(refused(component("0", "w"), ErrorKind::input),
+            path + ": array 'w' cannot be converted: it has 65 components, and one of 1 to 64 can be read");
 }
 
 TEST(VtkXmlSource, ListsTypeLayoutAndAttributes) {

@@ -42,10 +42,11 @@ TEST(Compare, LosslessFile) {
   EXPECT_EQ(report["volume"], volume.nvdb);
   EXPECT_GT(report["total_s"], 0.0);
   EXPECT_GT(report["peak_rss_bytes"], 1000000);
-  for (const char* varies : {"source", "volume", "total_s", "peak_rss_bytes", "value_range"}) report.erase(varies);
+  for (const char* varies : {"source", "volume", "total_s", "peak_rss_bytes", "value_range", "zeros"})
+    report.erase(varies);
   EXPECT_EQ(report, nlohmann::json::parse(R"({"mse": 0.0, "rmse": 0.0, "nmse": 0.0, "psnr_db": null, "max_abs": 0.0,
       "lossless": true, "max_abs_at": null, "voxels": 116550, "finite": 116550, "nonfinite": 0,
-      "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0})"));
+      "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0, "missing": 0, "zeros_lost": 0})"));
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
             "lossless: all 116550 finite voxels read bit for bit\n");
 }
@@ -66,8 +67,8 @@ TEST(Compare, OneVoxelChangedSinceTheConversion) {
   const CommandResult text = run_weir({"compare", volume.raw, volume.nvdb});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_EQ(text.out,
-            "mse        0.00125\nrmse       0.0353553391\nnmse       0.000555555556\npsnr       32.5527251 dB\n"
-            "max abs    1.5 at 7,3,8\ndifferent  1 of 1800 finite voxels\n");
+            "mse        0.00125\nrmse       0.03536\nnmse       0.0005556\npsnr       32.55 dB\n"
+            "max abs    1.5 (100 % of the range) at 7,3,8\ndifferent  1 of 1800 finite voxels\n");
 }
 
 TEST(Compare, EqualsTheCertificate) {
@@ -104,6 +105,31 @@ TEST(Compare, TypesByteOrderAndRegion) {
   EXPECT_EQ(report["voxels"], 47 * 50 * 22);
 }
 
+TEST(Compare, RegionOfTheConversion_IsTakenFromTheSidecar) {
+  const Converted region("noise", "60x50x40_float32", {"--lossless", "--roi", "3:-10,:,-9:"});
+  const CommandResult compared = run_weir({"compare", region.raw, region.nvdb});
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_EQ(compared.out, "lossless: all 21150 finite voxels read bit for bit\n");  // 47 x 50 x 9
+  const std::string told = region.raw + ": read with --roi 3:50,0:50,31:40, as " + region.nvdb + ".json records\n";
+  EXPECT_TRUE(compared.err.ends_with(" info " + told)) << compared.err;
+  EXPECT_EQ(run_weir({"compare", region.raw, region.nvdb, "--roi", "0:60,0:50,0:40"}).exit_code, 3)
+      << "what is given counts";
+}
+
+TEST(Compare, IndexOfTheConversion_IsTakenFromTheSidecar) {
+  const TemporaryDirectory directory;
+  std::string values(5 * 4 * 3 * 2, '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<char>(i);
+  const std::string nrrd = directory / "a.nrrd";
+  write_file(nrrd, "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 5 4 3 2\nencoding: raw\n\n" + values);
+  const std::string volume = directory / "a.nvdb";
+  ASSERT_EQ(run_weir({"convert", nrrd, "--index", "-1", "-o", volume, "--lossless"}).exit_code, 0);
+  const CommandResult compared = run_weir({"compare", nrrd, volume});
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n");
+  EXPECT_EQ(nlohmann::json::parse(run_weir({"compare", nrrd, volume, "--index", "0", "--json"}).out)["different"], 60);
+}
+
 TEST(Compare, NonFiniteVoxelsAreCounted) {
   const Converted volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
   const nlohmann::json report = volume.compare();
@@ -112,7 +138,7 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
   EXPECT_EQ(report["finite"], 9400);
   EXPECT_EQ(report["lossless"], true);
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
-            "lossless: all 9400 finite voxels read bit for bit\n"
+            "lossless over valid voxels: all 9400 finite voxels read bit for bit\n"
             "not finite 300 voxels of the source, left out of the error; 300 of them read differently\n");
 }
 
@@ -142,7 +168,7 @@ TEST(Compare, Refusals) {
   EXPECT_EQ(refusal({"compare", volume.raw, volume.nvdb, "--dims", "20,10,8"}, 2),
             "weir: " + volume.raw +
                 ": --dims 20,10,8 contradicts the file's name, which says 20x10x9; drop it or rename the file\n");
-  EXPECT_EQ(refusal({"compare", volume.raw}, 2), "weir: volume is required; see weir --help\n");
+  EXPECT_EQ(refusal({"compare", volume.raw}, 2), "weir: volume is required; see weir compare --help\n");
 }
 
 }  // namespace

@@ -93,7 +93,8 @@ TEST_F(DenseRender, PlacedAndCutByTheInputOptions) {
   EXPECT_TRUE(picture({directory_ / "v.nvdb"}, {}) == picture(dense, {}));
   // Raw bytes without a name that says what they are; and voxels that stand for no data become the background.
   std::filesystem::rename(raw, directory_ / "plain");
-  const std::vector<std::string> shape{"--dims", "40,30,20", "--type", "int16", "--missing", "0"};
+  const std::vector<std::string> shape{"--dims",    "40,30,20", "--type",           "int16",
+                                       "--missing", "0",        "--missing-policy", "background"};
   dense = {directory_ / "plain", "--volume", "dense"};
   dense.insert(dense.end(), shape.begin(), shape.end());
   convert = {"convert", directory_ / "plain", "-o", directory_ / "v.nvdb", "--lossless", "--overwrite"};

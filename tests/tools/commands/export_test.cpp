@@ -88,6 +88,14 @@ TEST_F(ExportCommand, EveryKindOfVolumeBitForBit) {
   }
 }
 
+// The centre of voxel (0, 0, 0), as OpenVDB's map takes an index: both files have --origin there.
+TEST_F(ExportCommand, Origin_IsWhereOpenVdbHasTheCentreOfVoxel0) {
+  sample("turbulence", "9,8,7", {"--spacing", "2,4,8", "--origin", "10,20,30", "--roi", "1:9,0:8,0:7"});
+  exported();
+  EXPECT_EQ(NvdbFile(nvdb_).grid().world_origin(), (std::array<double, 3>{10, 20, 30}));
+  EXPECT_EQ(test::read_facts(vdb_).origin, (std::array<double, 3>{10, 20, 30}));
+}
+
 TEST_F(ExportCommand, ConvertedBack_IsLossless) {
   sample("turbulence", "130,100,90", {"--rate", "4", "--spacing", "0.5,0.25,2", "--origin", "1,2,3"});
   exported({"--compression", "zip"});

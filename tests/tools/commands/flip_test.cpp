@@ -1,6 +1,7 @@
 // weir flip from outside.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -81,7 +82,22 @@ TEST_F(FlipCommand, PrintsAReadableSummary) {
             "1st weighted quartile    0\n3rd weighted quartile    0\nmin                      0\nmax                   "
             "   0\n");
   const CommandResult result = run_weir({"flip", black, white});
-  EXPECT_EQ(result.out.rfind("mean                     0.9673", 0), 0U) << result.out;
+  EXPECT_EQ(result.out.rfind("mean                     0.9674", 0), 0U) << result.out;
+}
+
+TEST_F(FlipCommand, ColorBar_StandsBesideTheMapThatIsAsWithoutIt) {
+  const std::string a = picture("a.png", 64, 80, 100, 110);
+  const std::string b = picture("b.png", 64, 80, 110, 100);
+  ASSERT_EQ(run_weir({"flip", a, b, "-o", directory_ / "map.png"}).exit_code, 0);
+  const CommandResult result = run_weir({"flip", a, b, "-o", directory_ / "bar.png", "--colorbar"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Image plain = read_png(directory_ / "map.png");
+  const Image both = read_png(directory_ / "bar.png");
+  ASSERT_GT(both.width, 64 + 30);
+  for (std::int32_t y = 0; y < 80; ++y) {
+    for (std::int32_t x = 0; x < 64; ++x) ASSERT_EQ(both.at(x, y), plain.at(x, y));
+  }
+  EXPECT_EQ(run_weir({"flip", a, b, "--colorbar"}).exit_code, 2);
 }
 
 TEST_F(FlipCommand, FewerPixelsPerDegree_GiveALargerError) {
@@ -107,9 +123,28 @@ TEST_F(FlipCommand, Refusals) {
   write_file(directory_ / "no.png", "GIF89a");
   expect_refused({"flip", directory_ / "no.png", a}, 3,
                  (directory_ / "no.png") + ": not a PNG file; give a picture as .png");
-  const CommandResult result = run_weir({"flip", a, a, "-o", directory_ / "no/map.png"});
-  EXPECT_EQ(result.exit_code, 5);
-  EXPECT_EQ(result.out, "");
+  write_file(directory_ / "map.png", "precious");
+  expect_refused({"flip", a, a, "-o", directory_ / "map.png"}, 2,
+                 (directory_ / "map.png") + ": exists; choose another name or pass --overwrite");
+  EXPECT_EQ(read_file(directory_ / "map.png"), "precious");
+  EXPECT_EQ(run_weir({"flip", a, a, "-o", directory_ / "map.png", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(read_png(directory_ / "map.png").width, 6);
+  expect_refused({"flip", a, a, "-o", directory_ / "no/map.png"}, 5,
+                 (directory_ / "no/map.png") + ": the directory " + (directory_ / "no") +
+                     " does not exist; make it or choose another name");
+}
+
+TEST_F(FlipCommand, OutputThatIsAnInput_IsRefused) {
+  const std::string a = picture("a.png", 6, 4, 0, 9);
+  const std::string b = picture("b.png", 6, 4, 0, 8);
+  const std::string before = read_file(a);
+  std::filesystem::create_symlink(b, directory_ / "c.png");
+  for (const std::string& output : {a, b, directory_ / "c.png"}) {
+    expect_refused({"flip", a, b, "-o", output, "--overwrite"}, 2,
+                   output + ": belongs to the input, and writing " + output +
+                       " would replace or remove it; choose another output");
+  }
+  EXPECT_EQ(read_file(a), before);
 }
 
 }  // namespace

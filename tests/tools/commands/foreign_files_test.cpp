@@ -66,11 +66,12 @@ TEST_F(ForeignFiles, DetachedData_IsNotReplaced) {
 }
 
 TEST_F(ForeignFiles, PlaneOfAStack_IsNotReplaced) {
-  for (const char* name : {"p_0_16x16x8_uint8.raw", "p_1_16x16x8_uint8.raw"}) {
+  for (const char* name : {"p_0.slices", "p_1.slices"}) {
     write_file(directory_ / name, std::string(kVoxels / 2, '\1'));
   }
-  const std::string plane = directory_ / "p_1_16x16x8_uint8.raw";
-  expect_refused({"convert", directory_ / "p_%d_16x16x8_uint8.raw", "--stack", "-o", plane, "--overwrite"},
+  const std::string plane = directory_ / "p_1.slices";
+  expect_refused({"convert", directory_ / "p_%d.slices", "--stack", "--dims", "16,16,8", "--type", "uint8", "-o", plane,
+                  "--overwrite"},
                  belongs(plane, plane));
 }
 

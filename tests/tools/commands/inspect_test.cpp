@@ -46,5 +46,23 @@ TEST_F(Inspect, WorksWithoutSidecar) {
   EXPECT_EQ(bad.exit_code, 2);
 }
 
+TEST_F(Inspect, SeveralFilesAndPatterns_AreListedOneAfterTheOther) {
+  fs::copy_file(volume_, directory_ / "step_0001.nvdb");
+  fs::copy_file(volume_, directory_ / "step_0010.nvdb");
+  for (const std::string pattern : {"step_*.nvdb", "step_%04d.nvdb"}) {
+    const auto report =
+        nlohmann::json::parse(run_weir({"inspect", directory_ / pattern, "--json", "--progress", "never"}).out);
+    ASSERT_EQ(report["files"].size(), 2U) << pattern;
+    EXPECT_EQ(report["files"][0]["path"], directory_ / "step_0001.nvdb");
+    EXPECT_EQ(report["files"][1]["path"], directory_ / "step_0010.nvdb");
+  }
+  const CommandResult text = run_weir({"inspect", volume_, directory_ / "step_0001.nvdb", "--progress", "never"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_NE(text.out.find("\n\nfile        " + volume_ + '\n'), std::string::npos) << text.out;
+  const CommandResult plotted = run_weir({"inspect", directory_ / "*.nvdb", "--plot", directory_ / "h.png"});
+  EXPECT_EQ(plotted.exit_code, 2);
+  EXPECT_EQ(plotted.err, "weir: --plot draws one histogram, and 3 files are given; give one of them\n");
+}
+
 }  // namespace
 }  // namespace weir::inspect_test

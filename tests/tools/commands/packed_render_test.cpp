@@ -29,7 +29,7 @@ class PackedRender : public testing::Test {
 
   CommandResult render(const std::string& image, const std::vector<std::string>& more) const {
     std::vector<std::string> all{"render", volume_, "-o",     image,       "--size", "160x120",
-                                 "--spp",  "2",     "--json", "--backend", "cpu"};
+                                 "--spp",  "2",     "--json", "--backend", "cpu",    "--overwrite"};
     all.insert(all.end(), more.begin(), more.end());
     return run_weir(all);
   }

@@ -35,8 +35,8 @@ class Play : public ::testing::Test {
   std::string rendered(const std::string& volume, const std::string& range) const {
     write_file(directory_ / "fixed.toml", "[camera]\nframe = \"volume\"\n");
     const std::string image = directory_ / "one.png";
-    const CommandResult result =
-        run_weir(with({"render", volume, "-o", image, "--scene", directory_ / "fixed.toml", "--range", range}, {}));
+    const CommandResult result = run_weir(with(
+        {"render", volume, "-o", image, "--overwrite", "--scene", directory_ / "fixed.toml", "--range", range}, {}));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return read_file(image);
   }
@@ -152,6 +152,15 @@ TEST_F(Play, BrokenFile_EndsPlayAfterTheFramesBefore) {
   EXPECT_EQ(missing.err, run_weir({"render", directory_ / "s_9.nvdb", "-o", directory_ / "x.png"}).err);
 }
 
+TEST_F(Play, IsoValueOutsideAllSteps_IsWarnedOf) {
+  const std::string one = make("s_1.nvdb", "sphere", 1);
+  const CommandResult result = run_weir({"play", one, "-o", out_, "--size", "8x8", "--spp", "1", "--iso", "9"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find(" warning the iso value 9 lies outside the values, 0 .. "), std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find(": the picture shows no surface\n"), std::string::npos) << result.err;
+}
+
 TEST_F(Play, Refusals) {
   const std::string volume = make("a.nvdb", "noise", 1);
   expect_refused({"play", volume}, 2, "give one of -o DIR and --raw -");
@@ -163,7 +172,7 @@ TEST_F(Play, Refusals) {
   expect_refused({"play", volume, "-o", out_, "--range", "1,0"}, 2,
                  "--range is \"1,0\", it must be LOW,HIGH, two numbers that do not fall");
   expect_refused({"play", directory_ / "n*.nvdb", "-o", out_}, 3,
-                 (directory_ / "n*.nvdb") + ": no file has such a name; give .nvdb files or a pattern in quotes");
+                 (directory_ / "n*.nvdb") + ": no file has such a name; give files, or a pattern in quotes");
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "format/nanovdb/nvdb_file.h"
+#include "gpu/image/png_input.h"
 #include "gpu/render/cpu_renderer.h"
 #include "gpu/render/render_scene.h"
 #include "tests/support/run_command.h"
@@ -31,7 +32,8 @@ class Render : public ::testing::Test {
   }
 
   std::vector<std::string> arguments(const std::string& image, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"render", volume_, "-o", out_ + "/" + image, "--size", "40x30", "--spp", "2"};
+    std::vector<std::string> all{"render", volume_, "-o", out_ + "/" + image, "--overwrite", "--size",
+                                 "40x30",  "--spp", "2"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -99,6 +101,38 @@ TEST_F(Render, CommandLineOverridesTheSceneFile) {
             "iso");
 }
 
+TEST_F(Render, IsoValueWithoutAMode_DrawsTheSurface) {
+  const CommandResult result = run_weir(arguments("a.png", {"--json", "--iso", "0.25"}));
+  EXPECT_EQ(nlohmann::json::parse(result.out)["mode"], "iso");
+  EXPECT_EQ(result.err, "");
+  const CommandResult outside = run_weir(arguments("b.png", {"--iso", "7"}));
+  EXPECT_EQ(outside.exit_code, 0);
+  EXPECT_NE(outside.err.find("warning the iso value 7 lies outside the values, 0 .. "), std::string::npos)
+      << outside.err;
+  EXPECT_NE(outside.err.find(": the picture shows no surface\n"), std::string::npos) << outside.err;
+}
+
+TEST_F(Render, ColorBar_StandsRightOfThePictureThatIsAsWithoutIt) {
+  const auto rendered = [&](const std::string& image, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"render", volume_, "-o",         out_ + "/" + image, "--size", "40x80",
+                                 "--mode", "mip",   "--colormap", "viridis",          "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const CommandResult result = run_weir(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  rendered("a.png", {});
+  const nlohmann::json report = rendered("b.png", {"--colorbar"});
+  const Image plain = read_png(out_ + "/a.png");
+  const Image both = read_png(out_ + "/b.png");
+  EXPECT_EQ(report["width"], both.width);
+  ASSERT_GT(both.width, 56);
+  for (std::int32_t y = 0; y < 80; ++y) {
+    for (std::int32_t x = 0; x < 40; ++x) ASSERT_EQ(both.at(x, y), plain.at(x, y));
+  }
+  EXPECT_EQ(both.at(41, 40), (Float3{1, 1, 1}));
+}
+
 TEST_F(Render, Refusals) {
 #ifndef WEIR_HAVE_CUDA
   expect_refused(arguments("a.png", {"--backend", "cuda"}), 2,
@@ -108,14 +142,31 @@ TEST_F(Render, Refusals) {
     expect_refused(arguments("a.png", {"--devices=" + devices}), 2,
                    "--devices is \"" + devices + "\", it must be numbers of CUDA devices, each once");
   }
+  expect_refused(arguments("a.exr", {"--colorbar"}), 2,
+                 out_ +
+                     "/a.exr: holds radiance, and --colorbar colours as a screen shows them; choose a name that ends "
+                     "in .png");
+  expect_refused(arguments("a.png", {"--colorbar"}), 2,
+                 "--colorbar needs a picture of at least 64 pixels in height, this one has 30");
+  for (const std::vector<std::string>& surface : {std::vector<std::string>{"--mode", "iso"}, {"--iso", "0.25"}}) {
+    expect_refused(arguments("a.png", {"--colorbar", surface[0], surface[1]}), 2,
+                   "--colorbar says which colour is which value, and --mode iso draws the surface of one; leave one of "
+                   "them out");
+  }
+  expect_refused(arguments("no/a.png"), 5,
+                 out_ + "/no/a.png: the directory " + out_ + "/no does not exist; make it or choose another name");
   expect_refused(arguments("a.jpg"), 2, out_ + "/a.jpg: an image's name must end in .png or .exr");
-  expect_refused(arguments("a.png", {"--colormap", "jet"}), 2,
-                 "--colormap is \"jet\", it must be gray, white, heat, cool-warm, dusk, ct, water or magma");
+  expect_refused(
+      arguments("a.png", {"--colormap", "jet"}), 2,
+      "--colormap is \"jet\", it must be gray, white, heat, cool-warm, dusk, ct, water, magma, viridis, plasma, "
+      "inferno or cividis");
   expect_refused(
       arguments("a.png", {"--camera", "1"}), 2,
       "--camera is \"1\", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, zoom from "
       "0.01 to 100");
   expect_refused(arguments("a.png", {"--iso", "high"}), 2, "--iso is \"high\", it must be a number");
+  expect_refused(arguments("a.png", {"--mode", "dvr", "--iso", "1"}), 2,
+                 "--iso is of the surface that --mode iso draws; not --mode dvr");
   expect_refused(arguments("a.png", {"--threads", "-1"}), 2,
                  "--threads is \"-1\", it must be a whole number from 0 to 4096");
   for (const std::string memory : {"0", "-1", "much"}) {
@@ -135,6 +186,8 @@ TEST_F(Render, Refusals) {
     if (!level.empty()) options.insert(options.end(), {"--lod", level});
     expect_refused(arguments("a.png", options), 2, "--lod-scattered needs --lod auto or a number of levels");
   }
+  expect_refused(arguments("a.png", {"--mode", "dvr", "--lod", "auto", "--lod-scattered", "2"}), 2,
+                 "--lod-scattered is of the light that --mode path scatters; not --mode dvr");
   expect_refused(arguments("a.png", {"--seed", "1.5"}), 2,
                  "--seed is \"1.5\", it must be a whole number from 0 to 9223372036854775807");
   for (const std::string size : {"640", "0x480", "640x-1", "axb", "640x480x2", "99999x1", "32768x32768"}) {
@@ -174,6 +227,16 @@ TEST_F(Render, UnwritableOutput_IsRefusedBeforeRendering) {
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_NE(result.err.find("missing"), std::string::npos) << result.err;
   EXPECT_EQ(result.err.find('\n'), result.err.size() - 1);
+}
+
+TEST_F(Render, ExistingPicture_IsReplacedWithOverwriteOnly) {
+  const std::string picture = directory_ / "a.png";
+  write_file(picture, "precious");
+  expect_refused({"render", volume_, "-o", picture, "--spp", "1000000"}, 2,
+                 picture + ": exists; choose another name or pass --overwrite");
+  EXPECT_EQ(read_file(picture), "precious");
+  EXPECT_EQ(run_weir({"render", volume_, "-o", picture, "--size", "8x6", "--spp", "1", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(read_file(picture).substr(1, 3), "PNG");
 }
 
 TEST_F(Render, MissingOrForeignInput) {

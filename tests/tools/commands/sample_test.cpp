@@ -142,7 +142,7 @@ TEST(Sample, NamesThatContradictTheOptions) {
   expect_refusal(run_weir({"sample", "zero", "-o", half}), 2,
                  half +
                      ": unknown type 'half' in the file's name; it must be one of uint8, int8, uint16, int16, uint32, "
-                     "int32, uint64, int64, float16, float32, float64, with be appended for big-endian");
+                     "int32, uint64, int64, float16, bfloat16, float32, float64, with be appended for big-endian");
   EXPECT_EQ(list_directory(directory.path()), std::vector<std::string>{});
 }
 

@@ -70,13 +70,39 @@ TEST_F(SeriesCommand, StepsOfTwoExtentsNeedASize) {
   const std::string first = directory_ / "t_0_64x48x40_uint8.raw";
   const auto by_rate = run_weir({"convert", first, other, "--rate", "1"});
   EXPECT_EQ(by_rate.exit_code, 3);
+  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "t_0_64x48x40_uint8.nvdb")) << "the first is converted";
   EXPECT_NE(by_rate.err.find(other + ": extent 9x8x7 differs from 64x48x40 of " + first +
                              ", so that a rate gives files of two sizes; give --size"),
             std::string::npos)
       << by_rate.err;
+  const auto by_default = run_weir({"convert", first, other});
+  EXPECT_EQ(by_default.exit_code, 0) << by_default.err;
+  EXPECT_NE(by_default.err.find("; give --size for files of one size\n"), std::string::npos) << by_default.err;
   const auto by_size = run_weir({"convert", first, other, "--size", "1MB", "--overwrite"});
   EXPECT_EQ(by_size.exit_code, 0) << by_size.err;
   EXPECT_EQ(std::filesystem::file_size(directory_.path() / "u_9x8x7_uint8.nvdb"), 1000000U);
+}
+
+TEST_F(SeriesCommand, ShellPatternInQuotes_IsASeries) {
+  write_steps(3);
+  CommandOptions here;
+  here.directory = directory_.path();
+  const auto made = run_weir({"convert", "t_*.raw", "-o", "out/", "--size", "400000"}, here);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(list_directory(directory_.path() / "out"),
+            (std::vector<std::string>{"t_0_64x48x40_uint8.nvdb", "t_0_64x48x40_uint8.nvdb.json",
+                                      "t_1_64x48x40_uint8.nvdb", "t_1_64x48x40_uint8.nvdb.json",
+                                      "t_2_64x48x40_uint8.nvdb", "t_2_64x48x40_uint8.nvdb.json"}));
+}
+
+TEST_F(SeriesCommand, SeveralPositionsOfAnArray_HaveANameEach) {
+  const std::string nrrd = directory_ / "a.nrrd";
+  write_file(nrrd, "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 5 4 3 12\nencoding: raw\n\n" + std::string(720, '\7'));
+  const auto made = run_weir({"convert", nrrd, "--index", "-3:", "-o", directory_ / "out/", "--size", "400000"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(list_directory(directory_.path() / "out"),
+            (std::vector<std::string>{"a_09.nvdb", "a_09.nvdb.json", "a_10.nvdb", "a_10.nvdb.json", "a_11.nvdb",
+                                      "a_11.nvdb.json"}));
 }
 
 TEST_F(SeriesCommand, AStackIsOneVolume) {

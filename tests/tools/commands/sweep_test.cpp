@@ -253,10 +253,11 @@ TEST_F(SweepCommand, Refusals) {
   EXPECT_EQ(refusal({"--dims", "32,32,31"}, 2).find("weir: " + input + ": --dims 32,32,31 contradicts"), 0U);
   EXPECT_EQ(run_weir({"sweep", directory_ / "none.raw", "-o", out_}).exit_code, 3);
   EXPECT_FALSE(fs::exists(out_));
-  EXPECT_EQ(run_weir({"sweep", input}).err, "weir: --output is required; see weir --help\n");
+  EXPECT_EQ(run_weir({"sweep", input}).err, "weir: --output is required; see weir sweep --help\n");
   EXPECT_EQ(run_weir({"sweep", input, "-o", input}).err,
             "weir: " + input + ": is no directory; choose another one with -o\n");
-  EXPECT_EQ(run_weir({"sweep", input, "-o", directory_ / "a/b"}).exit_code, 5);
+  EXPECT_EQ(run_weir({"sweep", input, "-o", input + "/a/b"}).err,
+            "weir: " + input + ": is no directory; choose another one with -o\n");
 }
 
 TEST_F(SweepCommand, InterruptLeavesNothing) {

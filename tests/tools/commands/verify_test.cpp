@@ -42,10 +42,29 @@ std::string bytes_of(T value) {
   return bytes;
 }
 
+TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
+  for (const std::string name : {"step_0001.nvdb", "step_0010.nvdb"}) {
+    fs::copy_file(volume_, directory_ / name);
+    fs::copy_file(sidecar_path(volume_), sidecar_path(directory_ / name));
+  }
+  const CommandResult whole = run_weir({"verify", directory_ / "step_%04d.nvdb", "--progress", "never"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_EQ(whole.out.find(directory_ / "step_0001.nvdb: all "), 0U) << whole.out;
+  EXPECT_NE(whole.out.find('\n' + (directory_ / "step_0010.nvdb: all ")), std::string::npos) << whole.out;
+  write_file(directory_ / "step_0001.nvdb", "no volume");
+  const CommandResult damaged = run_weir({"verify", directory_ / "step_*.nvdb", "--json", "--progress", "never"});
+  EXPECT_EQ(damaged.exit_code, 3);
+  const auto report = nlohmann::json::parse(damaged.out);
+  EXPECT_EQ(report["ok"], false);
+  ASSERT_EQ(report["volumes"].size(), 2U);
+  EXPECT_EQ(report["volumes"][0]["ok"], false);
+  EXPECT_EQ(report["volumes"][1]["ok"], true);
+}
+
 TEST_F(Verify, IntactVolumeHoldsAllChecks) {
   const CommandResult result = verify();
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.out, volume_ + ": all 25 checks hold\n");
+  EXPECT_EQ(result.out, volume_ + ": all 27 checks hold\n");
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(fs::file_size(volume_), 450001U);
 }
@@ -54,7 +73,7 @@ TEST_F(Verify, JsonListsEveryCheck) {
   const CommandResult result = run_weir({"verify", volume_, "--json", "--progress", "never"});
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["ok"], true);
-  EXPECT_EQ(report["checks"].size(), 25U);
+  EXPECT_EQ(report["checks"].size(), 27U);
   write_file(sidecar_path(volume_), "{}");
   const CommandResult broken = run_weir({"verify", volume_, "--json", "--progress", "never"});
   EXPECT_EQ(broken.exit_code, 3);

@@ -116,7 +116,7 @@ TEST_F(WatchCheck, AMistakeIsOneLineAndExitCode3) {
 TEST_F(WatchCheck, WithoutAFileIsAUsageError) {
   const CommandResult result = run_weir({"watch", "--check"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.err, "weir: config is required; see weir --help\n");
+  EXPECT_EQ(result.err, "weir: config is required; see weir watch --help\n");
 }
 
 }  // namespace

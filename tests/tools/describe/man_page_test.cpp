@@ -39,6 +39,17 @@ Print this help message and exit
 .TP
 \fB\-\-version\fR
 Display program version information and exit
+.SH EXAMPLES
+Make a volume, convert it, check the result and look at it:
+.PP
+.nf
+.RS
+weir sample cloud \-\-dims 128,128,128 \-o cloud_128x128x128_float32.raw
+weir convert cloud_128x128x128_float32.raw \-o cloud.nvdb
+weir verify cloud.nvdb
+weir render cloud.nvdb \-o cloud.png
+.RE
+.fi
 )" + kExitStatus + R"(.SH SEE ALSO
 \fBweir\-open\fR(1),
 \fBweir\-measure\fR(1)
@@ -100,9 +111,11 @@ TEST(ManPage, OfEveryCommand) {
     const std::string name = help.substr(at + 3, help.find(' ', at + 3) - at - 3);
     if (name.empty()) continue;
     ++listed;
-    EXPECT_NE(std::find(pages.begin(), pages.end(), cat("weir-", name, ".1")), pages.end()) << name;
+    const std::string page = cat("weir-", name, ".1");
+    ASSERT_NE(std::find(pages.begin(), pages.end(), page), pages.end()) << name;
+    EXPECT_NE(read_file(directory / page).find(cat(".SH EXAMPLES\n")), std::string::npos) << name;
   }
-  EXPECT_EQ(pages.size(), listed + 1);
+  EXPECT_EQ(pages.size(), listed + 2) << "weir.1 and weir.toml.5";
   if (run_command({"sh", "-c", "command -v groff"}).exit_code != 0) GTEST_SKIP() << "groff is not installed";
   for (const std::string& page : pages) {
     const CommandResult read = run_command({"groff", "-man", "-ww", "-z", directory / page});

@@ -70,17 +70,17 @@ TEST(CInterface, TheHeaderIsC99AndCPlusPlus) {
 TEST(CInterface, TheDocumentShowsTheCodeThatIsCompiled) {
   const std::string document = read_file(WEIR_SOURCE_DIR "/docs/embedding.md");
   std::string files;
-  for (const char* name : {"convert_memory.c", "push/gray_scott.c", "push/gray_scott.f90"}) {
+  for (const char* name : {"convert_memory.c", "push/gray_scott.c", "push/gray_scott.f90", "push_cuda/gray_scott.cu"}) {
     files += read_file(cat(kExamples, "/", name));
   }
   std::size_t blocks = 0;
-  for (const char* language : {"c", "fortran"}) {
+  for (const char* language : {"c", "fortran", "cuda"}) {
     for (const std::string& block : blocks_of(document, language)) {
       EXPECT_NE(files.find(block), std::string::npos) << "in no example:\n" << block;
       ++blocks;
     }
   }
-  EXPECT_GE(blocks, 3U);
+  EXPECT_GE(blocks, 4U);
   const std::string build = read_file(kExamples + "/push/CMakeLists.txt");
   EXPECT_NE(document.find("```cmake\n" + build + "```\n"), std::string::npos);
 }

@@ -133,6 +133,9 @@ std::set<std::string> python_files([[maybe_unused]] const std::string& folder) {
   std::set<std::string> files;
 #ifdef WEIR_PYTHON_CORE
   files.insert({"share/weir/paraview/weir_reader.py", cat(folder, "/weir/" WEIR_PYTHON_CORE)});
+  for (const char* name : {"METADATA", "entry_points.txt"}) {
+    files.insert(cat(folder, "/weir-" WEIR_VERSION ".dist-info/", name));
+  }
   add_files(WEIR_SOURCE_DIR "/bindings/python/weir", cat(folder, "/weir"), files);
 #endif
   return files;
@@ -158,6 +161,7 @@ std::set<std::string> installed_files(bool has_cuda, const std::string& python) 
       "lib/cmake/weir/weirTargets.cmake",
       "lib/cmake/weir/weirTargets-release.cmake",
       "lib/pkgconfig/weir.pc",
+      "etc/weir/example.toml",
       "lib/systemd/system/weir@.service",
       "lib/sysusers.d/weir.conf",
       "share/bash-completion/completions/weir",
@@ -178,7 +182,9 @@ std::set<std::string> installed_files(bool has_cuda, const std::string& python) 
   add_files(WEIR_SOURCE_DIR "/examples", "share/doc/weir/examples", expected);
   const TemporaryDirectory pages;
   EXPECT_EQ(run_weir({"man", pages.path()}).exit_code, 0);
-  for (const std::string& page : list_directory(pages.path())) expected.insert(cat("share/man/man1/", page, ".gz"));
+  for (const std::string& page : list_directory(pages.path())) {
+    expected.insert(cat("share/man/man", page.back(), '/', page, ".gz"));
+  }
   return expected;
 }
 
@@ -213,12 +219,15 @@ TEST_F(Installation, DebianPackageHasTheSameFiles) {
   expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and wants these two:
   expected.insert({"share/doc/weir/changelog.gz", "share/doc/weir/copyright"});
   std::set<std::string> found;
-  for (const std::string& path : files_below(work / "content")) found.insert(path.substr(path.find('/') + 1));
+  for (const std::string& path : files_below(work / "content")) {
+    found.insert(path.starts_with("usr/") ? path.substr(4) : path);
+  }
   EXPECT_EQ(found, expected);
   EXPECT_EQ(run_command({work / "content/usr/bin/weir", "--version"}).out, WEIR_VERSION "\n");
   const std::string unit = read_file(work / "content/usr/lib/systemd/system/weir@.service");
   EXPECT_EQ(unit, read_file(WEIR_SOURCE_DIR "/daemon/weir@.service")) << "written for /usr";
   EXPECT_EQ(run_command({"dpkg-deb", "--info", package, "triggers"}).out, "activate-noawait ldconfig\n");
+  EXPECT_EQ(run_command({"dpkg-deb", "--info", package, "conffiles"}).out, "/etc/weir/example.toml\n");
   const std::string needs = run_command({"dpkg-deb", "--field", package, "Depends"}).out;
   for (const char* library : {"libc6 (", "libhdf5-", "libopenvdb", "libtbb", "libsqlite3-0"}) {
     EXPECT_NE(needs.find(library), std::string::npos) << needs;

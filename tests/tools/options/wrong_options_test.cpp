@@ -95,7 +95,7 @@ TEST(WrongOptions, Configuration) {
     const std::string message = message_of_error(ErrorKind::input, [&] { read_watch_options(reader, table); });
     EXPECT_EQ(message.substr(message.find(": ") + 2), wrong.reason.worded(key_wording));
   }
-  EXPECT_EQ(refused, 27);
+  EXPECT_EQ(refused, 37);
 }
 
 /// The members of weir.h that say the same; none where C cannot say it.
@@ -106,6 +106,8 @@ bool set_members(const GivenOptions& given, weir_convert_options& o) {
       if (o.budget_kind != WEIR_BUDGET_AUTO) return false;
       o.budget_kind = key == "rate" ? WEIR_BUDGET_RATE : key == "psnr" ? WEIR_BUDGET_PSNR : WEIR_BUDGET_MAX_ERROR;
       o.budget = number;
+    } else if (key == "at-most") {
+      o.at_most = 1;
     } else if (key == "size") {
       o.budget_kind = WEIR_BUDGET_SIZE;
     } else if (key == "metric" && text == "farthest") {
@@ -140,7 +142,7 @@ TEST(WrongOptions, CMembers) {
     EXPECT_EQ(weir_convert(&volume, values.data(), nullptr, &options, "/none/a.nvdb", &error), WEIR_ERROR_USAGE);
     EXPECT_EQ(std::string(error.message), wrong.reason.worded(c::c_wording));
   }
-  EXPECT_EQ(refused, 9);
+  EXPECT_EQ(refused, 11);
 }
 
 }  // namespace

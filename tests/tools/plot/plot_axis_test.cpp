@@ -55,5 +55,17 @@ TEST(PlotAxis, MinorTicksLieWithinTheRange) {
   EXPECT_EQ(minor_decade_ticks(1.1, 1.9), Ticks{});
 }
 
+TEST(TickText, HasTheDigitsThatTellTicksApart) {
+  EXPECT_EQ(tick_text(0.30000000000000004, 0.1), "0.3");
+  EXPECT_EQ(tick_text(-2, 0.5), "-2.0");
+  EXPECT_EQ(tick_text(250, 50), "250");
+  EXPECT_EQ(tick_text(1e-17, 0.1), "0");
+  EXPECT_EQ(tick_text(-0.0, 0), "0");
+  EXPECT_EQ(tick_text(1.2e-5, 2e-6), "1.2e-05");
+  EXPECT_EQ(tick_text(1000000.25, 0.05), "1.00000025e+06");
+  EXPECT_EQ(tick_text(3e38, 1e38), "3e+38");
+  EXPECT_EQ(tick_text(7, 7), "7");
+}
+
 }  // namespace
 }  // namespace weir::plot_axis_test

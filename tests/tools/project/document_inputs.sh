@@ -17,6 +17,11 @@ with h5py.File("run_0042.h5", "w") as run:
     run["fields/density"].attrs["units"] = "kg m-3"
 with h5py.File("steps.h5", "w") as steps:
     steps.create_dataset("temperature", data=numpy.stack([part, 2 * part]), chunks=(1, 32, 64, 64))
+with h5py.File("flow.h5", "w") as flow:
+    flow["velocity"] = numpy.stack([part, 2 * part, 3 * part], axis=-1)
+with h5py.File("wind.h5", "w") as wind:
+    for name, factor in (("u", 1), ("v", 2), ("w", -3)):
+        wind[name] = factor * part
 with netCDF4.Dataset("wrf.nc", "w") as wrf:
     for name, size in (("Time", 2), ("z", 64), ("y", 128), ("x", 128)):
         wrf.createDimension(name, size)

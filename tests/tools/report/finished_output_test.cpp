@@ -10,6 +10,7 @@
 
 #include "compressor/resume/journal.h"
 #include "format/io/file_system.h"
+#include "tests/support/python.h"
 #include "tests/support/run_command.h"
 
 namespace weir::finished_output_test {
@@ -56,6 +57,77 @@ TEST_F(SkipDone, FinishedOutput_IsSkippedAndReportedTheSame) {
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_TRUE(leaves_it());
   EXPECT_TRUE(leaves_it({"--memory", "256MiB", "--threads", "1", "--overwrite"})) << "the bytes would be the same";
+}
+
+TEST_F(SkipDone, OneFileWithAnotherPath_IsTheSameSource) {
+  ASSERT_EQ(convert().exit_code, 0);
+  source_ = directory_ / "./v_40x32x24_uint8.raw";
+  EXPECT_TRUE(leaves_it());
+}
+
+TEST_F(SkipDone, EqualOptionsWrittenOtherwise_AreSkipped) {
+  const auto expect_equal = [&](const std::vector<std::string>& first, const std::vector<std::string>& second) {
+    ASSERT_EQ(convert(first).exit_code, 0);
+    EXPECT_TRUE(leaves_it(second)) << second.front();
+  };
+  expect_equal({"--size", "512KiB"}, {"--size", "524288"});
+  expect_equal({"--rate", "0.3"}, {"--rate", "0.30"});
+  expect_equal({"--psnr", "50"}, {"--psnr=5e1", "--encoding", "auto", "--fill", "mean", "--background", "auto"});
+  expect_equal({"--origin", "1,2,3", "--type", "uint8"}, {"--origin", "1.0,2,3e0", "--type", "u1"});
+  EXPECT_FALSE(leaves_it({"--origin", "1,2,3.0000001"}));
+}
+
+TEST_F(SkipDone, OptionsThatSayWhatIsMeantWithoutThem_AreSkipped) {
+  ASSERT_EQ(convert().exit_code, 0);
+  for (const std::vector<std::string>& same : std::vector<std::vector<std::string>>{
+           {"--quiet"},
+           {"-q", "--missing-policy", "error"},
+           {"--dims", "40,32,24"},
+           {"--dims", "40x32x24", "--type", "uint8", "--endian", "little", "--offset", "0"},
+           {"--spacing", "1,1,1", "--origin", "0,0,0"},
+           {"--roi", "0:40,:,-24:"},
+           {"--roi", "0:40,0:32,0:24"},
+           {"--ghost", "0"}}) {
+    const auto before = fs::last_write_time(output_);
+    EXPECT_EQ(convert(same).exit_code, 0) << same.back();
+    EXPECT_EQ(fs::last_write_time(output_), before) << same.back();
+  }
+  for (const std::vector<std::string>& other : std::vector<std::vector<std::string>>{
+           {"--ghost", "1"}, {"--roi", "0:39,:,:"}, {"--roi", "1:40,:,:"}, {"--spacing", "1,1,2"}}) {
+    EXPECT_FALSE(leaves_it(other)) << other.back();
+  }
+  const CommandResult whole = convert();
+  EXPECT_NE(whole.err.find(": converted again: made of another region, or with another spacing or origin\n"),
+            std::string::npos)
+      << whole.err;
+}
+
+// A name of another spelling, and a position counted from the end or named, are the same volume.
+TEST_F(SkipDone, TheSameDatasetAndPosition_AreSkippedHoweverTheyAreGiven) {
+  if (!python_has("netCDF4, numpy")) GTEST_SKIP() << "python3 with netCDF4 is missing";
+  ASSERT_TRUE(run_python(R"(
+import sys, netCDF4
+n = netCDF4.Dataset(sys.argv[1] + "/a.nc", "w")
+for name, size in [("time", 4), ("z", 5), ("y", 6), ("x", 7)]: n.createDimension(name, size)
+v = n.createVariable("a", "f4", ("time", "z", "y", "x"))
+for t in range(4): v[t] = t
+n.close()
+)",
+                         directory_.path().string()));
+  source_ = directory_ / "a.nc";
+  const auto made = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> command{"convert", source_, "-o", output_, "--skip-done"};
+    command.insert(command.end(), options.begin(), options.end());
+    const CommandResult result = run_weir(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err.find(": done already\n") == std::string::npos;
+  };
+  EXPECT_TRUE(made({"--dataset", "a", "--index", "3"}));
+  EXPECT_FALSE(made({"--dataset", "/a", "--index", "3"}));
+  EXPECT_FALSE(made({"--dataset", "/a", "--index", "-1"}));
+  EXPECT_FALSE(made({"--dataset", "a", "--index", "time=3"}));
+  EXPECT_FALSE(made({"--index", "3"}));
+  EXPECT_TRUE(made({"--dataset", "a", "--index", "2"}));
 }
 
 TEST_F(SkipDone, ConvertsAgainWhatChanged) {
@@ -259,7 +331,8 @@ TEST_F(SkipDone, AnnouncesOutputsToItsCaller) {
 TEST_F(SkipDone, RefusesAClosedDescriptor) {
   const CommandResult result = convert({"--progress-fd", "77"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.err, "weir: --progress-fd: \"77\" is not the number of an open descriptor; see weir --help\n");
+  EXPECT_EQ(result.err,
+            "weir: --progress-fd: \"77\" is not the number of an open descriptor; see weir convert --help\n");
 }
 
 }  // namespace

@@ -59,14 +59,14 @@ TEST(HistogramText, OneBinOfAConstantVolume) {
 Float3 pixel(const Image& image, std::int32_t x, std::int32_t y) { return image.at(x, y); }
 
 Image histogram_image(const Sidecar::Histogram& histogram, std::optional<double> background) {
-  return test::picture_of(histogram_chart(histogram, background, PlotFormat::png));
+  return test::picture_of(histogram_chart(histogram, background, {"t.raw", "value"}, PlotFormat::png));
 }
 
 TEST(HistogramImage, BarsStandWhereTheCountsAre) {
-  // Two of four bins over the plot's 632 pixels from x = 64; the floor is at y = 312.
+  // Two of four bins over the plot's 632 pixels from x = 64; the floor is at y = 336.
   const Image image = histogram_image({0, 4, {100, 0, 0, 100}}, std::nullopt);
   EXPECT_EQ(image.width, 720);
-  EXPECT_EQ(image.height, 360);
+  EXPECT_EQ(image.height, 384);
   const Float3 bar = pixel(image, 80, 200);
   EXPECT_LT(bar.x, 0.5F);
   EXPECT_EQ(pixel(image, 680, 200), bar);
@@ -81,6 +81,22 @@ TEST(HistogramImage, MarksTheBackgroundOnlyWithinTheRange) {
   EXPECT_EQ(outside.pixels, without.pixels);
 }
 
+TEST(HistogramImage, HasTitleAndUnits) {
+  const auto dark = [](const std::string& title, const std::string& values, std::int32_t y0, std::int32_t y1) {
+    const Image image =
+        test::picture_of(histogram_chart({0, 4, {1, 1}}, std::nullopt, {title, values}, PlotFormat::png));
+    std::int64_t count = 0;
+    for (std::int32_t y = y0; y < y1; ++y) {
+      for (std::int32_t x = 0; x < image.width; ++x) count += pixel(image, x, y).x < 0.5F ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(dark("", "", 5, 30), 0);
+  EXPECT_GT(dark("run.h5 /qc at 2", "", 5, 30), 100);
+  EXPECT_EQ(dark("", "", 362, 380), 0);
+  EXPECT_GT(dark("", "qc (kg kg-1)", 362, 380), 50);
+}
+
 // Ranges whose ticks could loop, divide by zero or overflow.
 TEST(HistogramImage, SurvivesExtremeRanges) {
   const double big = 1e300;
@@ -88,7 +104,7 @@ TEST(HistogramImage, SurvivesExtremeRanges) {
        {Sidecar::Histogram{big, std::nextafter(big, 2 * big), {1, 2}}, Sidecar::Histogram{0, 5e-324, {1, 2}},
         Sidecar::Histogram{-1.7e308, 1.7e308, {1, 2}}, Sidecar::Histogram{1e8, 1e8 + 1e-3, {1, 2}},
         Sidecar::Histogram{0, 1, {std::numeric_limits<std::uint64_t>::max(), 1}}, Sidecar::Histogram{}}) {
-    EXPECT_EQ(histogram_image(h, h.min).pixels.size(), 720U * 360U);
+    EXPECT_EQ(histogram_image(h, h.min).pixels.size(), 720U * 384U);
   }
 }
 

@@ -9,15 +9,6 @@
 namespace weir::input_listing_test {
 namespace {
 
-TEST(InputListing, CommandsAreQuotedForAShell) {
-  const InputListing listing{"runs/a b.h5", "hdf5", true, {}};
-  DatasetInfo dataset;
-  dataset.name = "/it's";
-  dataset.leading_axes = 2;
-  EXPECT_EQ(convert_command(listing, dataset), "weir convert 'runs/a b.h5' --dataset '/it'\\''s' --index 0,0");
-  EXPECT_EQ(convert_command({"a.nrrd", "nrrd", false, {}}, {}), "weir convert a.nrrd");
-}
-
 TEST(InputListing, ARawFileIsOneVolume) {
   const TemporaryDirectory directory;
   const std::string path = directory / "a_4x3x2_uint8.raw";

@@ -87,6 +87,31 @@ TEST_F(ServiceCommands, RetryJobs) {
   EXPECT_EQ(weir(served, {"retry", "77"}).err, cat("weir: ", served.address(), ": there is no job 77\n"));
 }
 
+TEST_F(ServiceCommands, CancelJobs) {
+  Served served(control_);
+  control_.all[1].state = JobState::waiting;
+  const CommandResult one = weir(served, {"cancel", "2"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(one.out, "job 2 is cancelled: /scratch/run 1/2.raw\n");
+  const CommandResult done = weir(served, {"cancel", "1"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_EQ(done.err, cat("weir: ", served.address(), ": job 1 is done: nothing to cancel\n"));
+  EXPECT_EQ(run_weir({"cancel"}).exit_code, 2);
+}
+
+TEST_F(ServiceCommands, PauseAndResume) {
+  Served served(control_);
+  const CommandResult paused = weir(served, {"pause"});
+  EXPECT_EQ(paused.exit_code, 0) << paused.err;
+  EXPECT_EQ(paused.out, "paused: nothing starts until weir resume, and 0 jobs go on to the end\n");
+  EXPECT_EQ(weir(served, {"resume"}).out, "resumed: 0 jobs wait\n");
+  served.run([&] { return control_.now.reason = "no room in /scratch"; });
+  EXPECT_EQ(weir(served, {"resume"}).out, "resumed, but nothing starts yet: no room in /scratch\n");
+  EXPECT_EQ(nlohmann::json::parse(weir(served, {"pause", "--json"}).out).at("version"), "0.1.0");
+  EXPECT_EQ(served.run([&] { return control_.asked; }),
+            (std::vector<std::string>{"pause", "resume", "resume", "pause"}));
+}
+
 TEST_F(ServiceCommands, AskAtTheUnixSocket) {
   const std::string socket = directory_ / "weir.sock";
   const std::string config = directory_ / "weir.toml";
@@ -137,8 +162,7 @@ TEST_F(ServiceCommands, NoServiceAtTheAddress_IsReported) {
 TEST_F(ServiceCommands, RefuseAMalformedAddress) {
   const CommandResult result = run_weir({"jobs", "--address", "8470"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.err,
-            "weir: \"8470\" is no address to listen on; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
+  EXPECT_EQ(result.err, "weir: \"8470\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
 }
 
 TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {
@@ -150,7 +174,17 @@ TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {
   write_file(directory_ / "token", "secret\n");
   EXPECT_EQ(weir(served, {"status", "--token-file", directory_ / "token"}).exit_code, 0);
   write_file(directory_ / "other", "other\n");
-  EXPECT_EQ(weir(served, {"status", "--token-file", directory_ / "other"}).exit_code, 2);
+  for (const std::string& empty : {directory_ / "empty", directory_.path().string()}) {
+    if (empty == directory_ / "empty") write_file(empty, " \n");
+    const CommandResult none = weir(served, {"status", "--token-file", empty});
+    EXPECT_EQ(none.exit_code, 2);
+    EXPECT_EQ(none.err, "weir: " + empty + ": holds no token; name a file with one\n");
+  }
+  const CommandResult other = weir(served, {"status", "--token-file", directory_ / "other"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_EQ(other.err, cat("weir: ", served.address(),
+                           ": the service has another token than the one given; check --token-file, WEIR_TOKEN or the "
+                           "token of --config\n"));
   CommandOptions options;
   options.environment = {"WEIR_TOKEN=secret"};
   EXPECT_EQ(run_weir({"jobs", "--address", served.address()}, options).exit_code, 0);

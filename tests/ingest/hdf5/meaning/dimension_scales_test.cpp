@@ -43,11 +43,14 @@ TEST(DimensionScales, IrregularOnesAreTakenAsIndices) {
   }
 }
 
-TEST(DimensionScales, FallingOnesAreMirrored) {
+TEST(DimensionScales, FallingOnesGiveThePlacesOfElementsInReverseOrder) {
   const AxisPlace axis = placed({1000, 750, 500});
   EXPECT_EQ(axis.spacing, 250);
   EXPECT_EQ(axis.origin, 500);
-  EXPECT_EQ(axis.note, "coordinates fall from 1000 to 500: mirrored along this axis");
+  EXPECT_TRUE(axis.falls);
+  EXPECT_EQ(axis.note, "falls from 1000 to 500");
+  EXPECT_FALSE(placed({500, 750, 1000}).falls);
+  EXPECT_FALSE(placed({1000, 750, 600}).falls) << "irregular: indices are the places";
 }
 
 TEST(DimensionScales, SingleCoordinateGivesAnOriginOnly) {

@@ -102,9 +102,12 @@ n.close()
   EXPECT_EQ(t.origin[1], 30);
   EXPECT_EQ(t.spacing[2], 1);
   EXPECT_EQ(t.origin[2], 0);
-  EXPECT_EQ(attribute("a.nc", "/t", "axis y"), "coordinates fall from 60 to 30: mirrored along this axis");
+  EXPECT_EQ(attribute("a.nc", "/t", "axis y"),
+            "falls from 60 to 30: rows are read in reverse order, so that positions rise");
   EXPECT_EQ(attribute("a.nc", "/t", "axis z"), "irregular coordinates from 1000 to 100, taken as indices");
   EXPECT_EQ(attribute("a.nc", "/t", "axes"), "time=2 x level=5 x lat=7 x lon=9");
+  EXPECT_TRUE(t.details.axes[1].reversed);
+  EXPECT_FALSE(t.details.axes[2].reversed);
   const SourceInfo u = info_of("a.nc", "u");
   EXPECT_EQ(u.axis_labels, (Labels{"bare", "lat", "level"}));
   EXPECT_EQ(u.spacing[0], 1);
@@ -114,6 +117,32 @@ n.close()
                 "--index with 1 position: time in 0..1");
   // The dimension without coordinates is no dataset.
   for (const DatasetInfo& listed : list_hdf5(scratch_.path("a.nc"), {})) EXPECT_NE(listed.name, "/bare");
+}
+
+TEST_F(Hdf5Placement, FallingCoordinates_ReverseTheElementsOfEveryStorage) {
+  write_by_h5py(scratch_, R"(
+v = values("f4"); w = values("i2", SHAPE + (3,))
+expect("v", v[::-1, :, ::-1]); expect("w", w[::-1, :, ::-1, 2])
+falling = {0: [5, 4, 3, 2, 1], 1: [0, 1, 2, 3, 4, 5, 6], 2: np.arange(9, 0, -1) / 2}
+with h5py.File("a.h5", "w") as f:
+    for axis, coordinates in falling.items():
+        f["c%d" % axis] = np.asarray(coordinates, "f8"); f["c%d" % axis].make_scale()
+    def field(name, data, **layout):
+        d = f.create_dataset(name, data=data, **layout)
+        for axis in falling: d.dims[axis].attach_scale(f["c%d" % axis])
+    field("contiguous", v); field("gzip", v, chunks=(2, 3, 4), compression="gzip"); field("szip", v, chunks=(5, 7, 9), compression="szip")
+    field("vectors", w, chunks=(2, 3, 4, 3), compression="gzip")
+)");
+  for (const char* name : {"contiguous", "gzip", "szip"}) expect_reads(scratch_, "a.h5", dataset_options(name), "v");
+  SourceOptions z = dataset_options("vectors");
+  z.component = ComponentChoice{false, 2};
+  expect_reads(scratch_, "a.h5", z, "w");
+  const SourceInfo info = info_of("a.h5", "gzip");
+  EXPECT_EQ(info.spacing, (Triple{0.5, 1, 1}));
+  EXPECT_EQ(info.origin, (Triple{0.5, 0, 1}));
+  EXPECT_EQ(info.details.axes[0].note,
+            "falls from 4.5 to 0.5: columns are read in reverse order, so that positions rise");
+  EXPECT_EQ(info.details.axes[2].note, "falls from 5 to 1: planes are read in reverse order, so that positions rise");
 }
 
 TEST_F(Hdf5Placement, NetcdfPackingAndMissingValues) {
@@ -220,6 +249,53 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info_of("a.h5", "cube").spacing, (Triple{0.25, 0.25, 0.25}));
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("a.h5", "negative"); }),
             scratch_.path("a.h5") + ": its spacing has -1, which is not finite and above 0; give --spacing x,y,z");
+}
+
+// "VTKHDF File Format", ImageData: the origin is that of point 0,0,0, at which WholeExtent need not begin; cells lie
+// between points. Direction's columns are the axes' directions.
+TEST_F(Hdf5Placement, VtkHdfPointsLieOnTheLatticeAndCellsHalfASpacingOn) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.vtkhdf", "w") as f:
+    def image(name, **more):
+        g = f.create_group(name)
+        g.attrs.update({"Type": np.bytes_("ImageData"), "Origin": [10.0, 20.0, 30.0], "Spacing": [2.0, 4.0, 8.0], **more})
+        g["PointData/p"] = values("f4", (2, 3, 4))
+        g["CellData/c"] = values("f4", (1, 2, 3))
+    image("VTKHDF", WholeExtent=[0, 3, 0, 2, 0, 1])
+    image("later", WholeExtent=[5, 8, 0, 2, -1, 0])
+    image("turned", WholeExtent=[0, 3, 0, 2, 0, 1], Direction=[0.0, -1, 0, 1, 0, 0, 0, 0, 1])
+)");
+  const auto origin = [&](const std::string& name) { return info_of("a.vtkhdf", name).origin; };
+  EXPECT_EQ(info_of("a.vtkhdf", "VTKHDF/CellData/c").spacing, (Triple{2, 4, 8}));
+  EXPECT_EQ(origin("VTKHDF/PointData/p"), (Triple{10, 20, 30}));
+  EXPECT_EQ(origin("VTKHDF/CellData/c"), (Triple{11, 22, 34}));
+  EXPECT_EQ(origin("later/PointData/p"), (Triple{20, 20, 22}));
+  EXPECT_EQ(origin("later/CellData/c"), (Triple{21, 22, 26}));
+  EXPECT_EQ(origin("turned/CellData/c"), (Triple{21, 8, 34}));
+}
+
+// CF conventions, 4: a coordinate variable gives the locations of the values themselves; cells around them are in
+// `bounds`, which changes nothing. openPMD 1.1: gridGlobalOffset is where the first cell begins, `position` where in
+// its cell a value lies, from 0 to 1.
+TEST_F(Hdf5Placement, CoordinatesAndOpenPmdPositionsAreOfVoxelCentres) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    v = f.create_dataset("v", data=values("f4", (2, 3, 4)))
+    for axis, (name, first, step) in enumerate([("z", 30, 8), ("y", 20, 4), ("x", 10, 2)]):
+        n = v.shape[axis]
+        f[name] = first + step * np.arange(n, dtype="f8")
+        f[name].attrs["bounds"] = name + "_bounds"
+        f[name + "_bounds"] = np.stack([f[name][:] - step / 2, f[name][:] + step / 2], axis=1)
+        f[name].make_scale(name)
+        v.dims[axis].attach_scale(f[name])
+    for name, position in (("node", [0.0] * 3), ("cell", [0.5] * 3)):
+        d = f.create_dataset("data/0/meshes/" + name, data=values("f4", (2, 3, 4)))
+        d.attrs.update({"axisLabels": np.array(["z", "y", "x"], "S"), "gridSpacing": [8., 4., 2.],
+                        "gridGlobalOffset": [30., 20., 10.], "position": position})
+)");
+  EXPECT_EQ(info_of("a.h5", "v").origin, (Triple{10, 20, 30}));
+  EXPECT_EQ(info_of("a.h5", "/data/0/meshes/node").origin, (Triple{10, 20, 30}));
+  EXPECT_EQ(info_of("a.h5", "/data/0/meshes/cell").origin, (Triple{11, 22, 34}));
 }
 
 // Every name weir looks for, in every shape and type there is: no crash, and the volume opens or is refused in one

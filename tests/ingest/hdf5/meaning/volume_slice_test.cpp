@@ -46,5 +46,39 @@ TEST(VolumeSlice, AnIndexThatDoesNotFitIsAnErrorOfUse) {
   EXPECT_EQ(refused({5, 6, 7}, {0}), "here: its axes are 5 x 6 x 7, and --index has 1 position; leave --index out");
 }
 
+TEST(VolumeSlice, AxisOfComponentsNeedsAChoice) {
+  const auto vectors = axes({4, 20, 21, 22, 3});
+  const auto refused = [&](const std::vector<std::int64_t>& index, const std::optional<ComponentChoice>& component) {
+    return message_of_error(ErrorKind::usage, [&] { volume_slice(vectors, index, "here", component); });
+  };
+  const VolumeSlice slice = volume_slice(vectors, {2}, "here", ComponentChoice{true, 0});
+  EXPECT_EQ(slice.extent, (Index3{22, 21, 20}));
+  EXPECT_EQ(slice.index, std::vector<std::int64_t>{2});
+  EXPECT_EQ(slice.components.count, 3);
+  EXPECT_EQ(leading_axes(vectors), 1U);
+  EXPECT_EQ(refused({2}, {}),
+            "here: its axes are 4 x 20 x 21 x 22 x 3, the last of them of components (by its extent alone); give "
+            "--component: 0 to 2, x, y, z or magnitude; or --index with 2 positions for volumes of 3 voxels along x");
+  EXPECT_EQ(refused({2}, ComponentChoice{false, 3}),
+            "here: its axes are 4 x 20 x 21 x 22 x 3, and --component is 3; give 0 to 2, x, y, z or magnitude");
+  EXPECT_EQ(refused({}, ComponentChoice{false, 0}),
+            "here: its axes are 4 x 20 x 21 x 22 x 3, and a volume has three; give --index with 1 position: axis 0 in "
+            "0..3");
+}
+
+TEST(VolumeSlice, PositionsForAllButThreeAxesReadComponentsAsX) {
+  const VolumeSlice slice = volume_slice(axes({20, 21, 22, 3}), {7}, "here");
+  EXPECT_EQ(slice.extent, (Index3{3, 22, 21}));
+  EXPECT_EQ(slice.components.count, 1);
+}
+
+TEST(VolumeSlice, ComponentOfAScalarFieldIsAnErrorOfUse) {
+  EXPECT_EQ(message_of_error(ErrorKind::usage,
+                             [&] {
+                               volume_slice(axes({5, 6, 7}), {}, "here", ComponentChoice{true, 0});
+                             }),
+            "here: its axes are 5 x 6 x 7, none of them of components; leave --component out");
+}
+
 }  // namespace
 }  // namespace weir::volume_slice_test

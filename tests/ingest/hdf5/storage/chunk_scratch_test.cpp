@@ -1,8 +1,9 @@
-#include "ingest/hdf5/storage/chunk_scratch.h"
+#include "ingest/chunks/chunk_scratch.h"
 
 #include <atomic>
 #include <thread>
 
+#include "ingest/hdf5/filters/filter_pipeline.h"
 #include "tests/ingest/support/scratch.h"
 
 namespace weir::chunk_scratch_test {
@@ -12,7 +13,8 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 const FilterPipeline kGzip{{FilterKind::shuffle, 4}, {FilterKind::deflate}};
 
 ScratchPool pool_for(const FilterPipeline& pipeline, std::uint64_t memory) {
-  return ScratchPool(pipeline, 4 * kMiB, memory, "run.h5: d");
+  return ScratchPool({4 * kMiB, most_stored_bytes(pipeline, 4 * kMiB), needs_other_buffer(pipeline), 0}, memory,
+                     "run.h5: d");
 }
 
 TEST(ChunkScratch, AnEighthOfTheMemoryOrOneChunk) {

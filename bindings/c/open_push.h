@@ -1,0 +1,50 @@
+// A push as C holds it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "bindings/c/conversion_options.h"
+#include "bindings/c/weir.h"
+#include "compressor/push/pushed_volume.h"
+
+namespace weir::c {
+
+/// Slabs on their way to a push, which is older than this.
+class PushInFlight {
+ public:
+  PushInFlight() = default;
+  virtual ~PushInFlight() = default;
+  PushInFlight(const PushInFlight&) = delete;
+  PushInFlight& operator=(const PushInFlight&) = delete;
+
+  /// Waits until they have arrived. Throws what ended the push.
+  virtual void finish() = 0;
+};
+
+/// A push that has begun. Throws Error.
+std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_convert_options* options,
+                                      const char* output);
+
+/// The `stride` that a slab was given, or, where that is null, that of values without gaps.
+std::array<std::int64_t, 3> slab_stride(const PushedVolume& volume, const std::int64_t* stride);
+
+/// Waits for what is in flight, and writes the file. Throws Error.
+void end_push(weir_push& push);
+
+}  // namespace weir::c
+
+/// What outlives another member comes before it.
+struct weir_push {
+  explicit weir_push(const weir_convert_options& given) : callbacks(given), files(weir::make_posix_file_system()) {}
+
+  weir::c::Callbacks callbacks;
+  std::unique_ptr<weir::FileSystem> files;
+  std::unique_ptr<weir::BlockCoder> coder;
+  std::unique_ptr<weir::PushedVolume> volume;
+  std::mutex mutex;                                  // of the rest
+  std::uint64_t device_memory = 0;                   // bytes that slabs of a device may wait in
+  std::unique_ptr<weir::c::PushInFlight> in_flight;  // none before the first slab of a device
+};

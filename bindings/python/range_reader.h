@@ -1,0 +1,15 @@
+// Bytes of a remote file, by a function of Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "format/remote/byte_range.h"
+
+namespace weir::python {
+
+/// Calls `fetch` with a list of (offset, bytes), and takes as many objects with a buffer of that length each. May be
+/// called and destroyed by any thread, without the interpreter's lock. Throws what `fetch` raises, and Error(io) where
+/// it returns something else.
+RangeReader python_range_reader(const pybind11::function& fetch);
+
+}  // namespace weir::python

@@ -1,0 +1,93 @@
+"""Indices and slices of arrays, as grid[...] takes them: which voxels they ask for."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any, NamedTuple
+
+import numpy
+
+
+class Selection(NamedTuple):
+    """Voxels along the axes [z, y, x]: first, first + step, ..., `count` of them, and the array that they become."""
+
+    first: tuple[int, ...]
+    step: tuple[int, ...]
+    count: tuple[int, ...]
+    shape: tuple[int, ...]  #: without the axes that an index takes away, with those that None adds
+
+    @property
+    def low(self) -> tuple[int, ...]:
+        """The lowest voxel (z, y, x); where there is any."""
+        return tuple(min(a, a + (n - 1) * s) for a, s, n in zip(self.first, self.step, self.count))
+
+    @property
+    def high(self) -> tuple[int, ...]:
+        """One past the highest voxel (z, y, x)."""
+        return tuple(max(a, a + (n - 1) * s) + 1 for a, s, n in zip(self.first, self.step, self.count))
+
+
+def select(key: Any, shape: tuple[int, int, int]) -> Selection:
+    """What `key` asks of an array of `shape` [z, y, x]: whole numbers, also from the end, slices, `...` and None.
+
+    Raises IndexError for a place outside, and for anything else that numpy takes as an index.
+    """
+    parts = _with_all_axes(key if isinstance(key, tuple) else (key,))
+    ends: list[tuple[int, int, int]] = []
+    axes: list[int] = []
+    for part in parts:
+        if part is None:
+            axes.append(1)
+            continue
+        voxels = shape[len(ends)]
+        if isinstance(part, slice):
+            begin, end, step = part.indices(voxels)
+            count = len(range(begin, end, step))
+            step = step if count > 1 else 1
+            axes.append(count)
+        else:
+            begin, step, count = _position(part, len(ends), shape), 1, 1
+        ends.append((begin, step, count))
+    first, step_of, count_of = zip(*ends)
+    return Selection(first, step_of, count_of, tuple(axes))
+
+
+def _with_all_axes(parts: tuple[Any, ...]) -> list[Any]:
+    """`parts` with slices for the axes that `...`, or nothing, stands for."""
+    dots = [place for place, part in enumerate(parts) if part is Ellipsis]
+    if len(dots) > 1:
+        raise IndexError("an index can only have a single ellipsis ('...')")
+    given = sum(part is not None and part is not Ellipsis for part in parts)
+    if given > 3:
+        raise IndexError(f"too many indices: a grid has the 3 axes [z, y, x], but {given} were given")
+    place = dots[0] if dots else len(parts)
+    return [*parts[:place], *[slice(None)] * (3 - given), *parts[place + 1 :]]
+
+
+def _described(part: Any) -> str:
+    """In a few words: of an array its type and shape, of anything long its type."""
+    if isinstance(part, numpy.ndarray):
+        return f"an array of {part.dtype} with the shape {part.shape}"
+    text = repr(part)
+    return text if len(text) <= 40 and text.isprintable() else f"a {part.__class__.__name__}"
+
+
+def _position(part: Any, axis: int, shape: tuple[int, int, int]) -> int:
+    """A whole number as a place along `axis`, counted from 0."""
+    try:
+        if isinstance(part, (bool, numpy.bool_, numpy.ndarray)):
+            raise TypeError
+        place = operator.index(part)
+    except TypeError:
+        raise IndexError(
+            "an index of a grid is a whole number, a slice, ... or None, not "
+            f"{_described(part)}; for others index to_numpy()"
+        ) from None
+    voxels = shape[axis]
+    if not -voxels <= place < voxels:
+        extent = " x ".join(map(str, shape))
+        raise IndexError(
+            f"index {place} is out of bounds for axis {axis} ({'zyx'[axis]}) with size {voxels}; "
+            f"the grid has {extent} voxels [z, y, x]"
+        )
+    return place % voxels

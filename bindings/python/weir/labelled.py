@@ -1,0 +1,120 @@
+"""An xarray.DataArray as weir.convert takes it: values [z, y, x], their place, and what they mean."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional
+
+import numpy
+from numpy.typing import NDArray
+
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Regular coordinates may be off their places by this part of the spacing, and by a rounding of float32.
+_TOLERANCE = 1e-3
+_KNOWN = {"x": "x", "lon": "x", "longitude": "x", "y": "y", "lat": "y", "latitude": "y", "z": "z"}
+
+
+class Labelled(NamedTuple):
+    """An array, and what convert_array takes besides."""
+
+    values: NDArray[Any]  #: [z, y, x]
+    spacing: tuple[float, float, float]  #: x, y, z
+    origin: tuple[float, float, float]
+    name: Optional[str]
+    meaning: dict[str, Any]  #: "units", "long_name", "time", and of "axes" x, y, z: "name", "units", "coordinates", "note"
+
+
+def is_data_array(source: Any) -> bool:
+    """Whether it is an xarray.DataArray; xarray is not imported for that."""
+    xarray = sys.modules.get("xarray")
+    return xarray is not None and isinstance(source, getattr(xarray, "DataArray", ()))
+
+
+def take_apart(array: xarray.DataArray) -> Labelled:
+    """Values are read. Axes whose coordinates fall are turned round. Raises UsageError for other than three axes."""
+    while array.ndim > 3 and 1 in array.shape:
+        array = array.isel({array.dims[array.shape.index(1)]: 0})
+    if array.ndim != 3:
+        axes = ", ".join(map(str, array.dims))
+        remedy = f"; choose with source.isel({array.dims[0]}=0)" if array.ndim > 3 else ""
+        raise UsageError(f"source has the axes ({axes}), it must have three{remedy}")
+    array = array.transpose(*_z_y_x(array))
+    values = array.values
+    axes, spacing, origin = [], [], []
+    for place in (2, 1, 0):
+        axis, step, first, falls = _axis(array, place)
+        axes.append(axis)
+        spacing.append(step)
+        origin.append(first)
+        if falls:
+            values = numpy.flip(values, place)
+    attributes = {key: str(array.attrs[key]) for key in ("units", "long_name") if array.attrs.get(key)}
+    meaning: dict[str, Any] = {"axes": axes, **attributes}
+    time = _time(array)
+    if time is not None:
+        meaning["time"] = time
+    x, y, z = spacing
+    a, b, c = origin
+    return Labelled(values, (x, y, z), (a, b, c), None if array.name is None else str(array.name), meaning)
+
+
+def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
+    """The axes in the order z, y, x where two of them say which they are; else as they are."""
+    axis_of: dict[str, Any] = {}
+    for name in array.dims:
+        said = str(array.coords[name].attrs.get("axis", "")) if name in array.coords else ""
+        axis = said.lower() if said in ("X", "Y", "Z") else _KNOWN.get(str(name).lower())
+        if axis is not None:
+            axis_of.setdefault(axis, name)
+    if len(axis_of) == 2:
+        (missing,) = set("xyz") - set(axis_of)
+        (axis_of[missing],) = set(array.dims) - set(axis_of.values())
+    return tuple(axis_of[axis] for axis in "zyx") if len(axis_of) == 3 else array.dims
+
+
+def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, float, bool]:
+    """What is said of it, its spacing, its first coordinate, and whether the coordinates fall."""
+    name = array.dims[place]
+    axis: dict[str, Any] = {"name": str(name)}
+    if name not in array.coords or array.coords[name].dtype.kind not in "iuf":
+        return axis, 1.0, 0.0, False
+    coordinate = array.coords[name]
+    if coordinate.attrs.get("units"):
+        axis["units"] = str(coordinate.attrs["units"])
+    positions = coordinate.values.astype(float)
+    if not numpy.isfinite(positions).all():
+        return axis, 1.0, 0.0, False
+    if len(positions) == 1:
+        return axis, 1.0, float(positions[0]), False
+    falls = bool(positions[0] > positions[-1])
+    if falls:
+        positions = positions[::-1]
+    first, last = float(positions[0]), float(positions[-1])
+    step = (last - first) / (len(positions) - 1)
+    precision = 2.0**-23 if coordinate.dtype.itemsize <= 4 else 2.0**-52
+    allowed = _TOLERANCE * step + precision * max(abs(first), abs(last))
+    regular = first + step * numpy.arange(len(positions))
+    if step > 0 and (abs(positions - regular) <= allowed).all():
+        return axis, step, first, falls
+    axis["coordinates"] = positions.tolist()
+    axis["note"] = f"irregular coordinates from {first:.9g} to {last:.9g}, taken as indices"
+    return axis, 1.0, 0.0, falls
+
+
+def _time(array: xarray.DataArray) -> Optional[tuple[float, str]]:
+    """The scalar coordinate `time`, and what it counts."""
+    if "time" not in array.coords or array.coords["time"].ndim != 0:
+        return None
+    coordinate = array.coords["time"]
+    if coordinate.dtype.kind == "M":
+        since = coordinate.values - numpy.datetime64("1970-01-01")
+        return float(since / numpy.timedelta64(1, "s")), "seconds since 1970-01-01 00:00:00"
+    if coordinate.dtype.kind == "m":
+        return float(coordinate.values / numpy.timedelta64(1, "s")), "s"
+    if coordinate.dtype.kind in "iuf":
+        return float(coordinate), str(coordinate.attrs.get("units", ""))
+    return None

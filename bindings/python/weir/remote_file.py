@@ -1,0 +1,208 @@
+"""Ranges of a file elsewhere: by HTTP through urllib3, by all else through fsspec."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
+
+from .errors import InputError, InputNotFoundError, InputPermissionError, IoError, UsageError
+
+if TYPE_CHECKING:
+    import urllib3
+
+#: Bytes from an offset on.
+Range = tuple[int, int]
+
+#: Longer ranges are read in pieces of so many bytes, at once.
+_PIECE = 8 << 20
+_AT_ONCE = 8
+#: No sidecar is longer.
+_LONGEST_SIDECAR = 4 << 20
+
+
+class RemoteFile:
+    """A file of which parts are read, and counted. May be used by several threads."""
+
+    def __init__(self) -> None:
+        self.requests = 0
+        self.bytes_read = 0
+        self._lock = threading.Lock()
+
+    def read(self, ranges: Sequence[Range]) -> list[bytes]:
+        """The bytes of each range, all there or an exception. In pieces, several at once."""
+        pieces = [_pieces(*asked) for asked in ranges]
+        flat = [piece for parts in pieces for piece in parts]
+        if len(flat) == 1:
+            found = iter([self._read_piece(flat[0])])
+        else:
+            with ThreadPoolExecutor(min(_AT_ONCE, len(flat))) as pool:
+                found = iter(list(pool.map(self._read_piece, flat)))
+        return [b"".join(next(found) for _ in parts) for parts in pieces]
+
+    def read_beside(self, url: str) -> Optional[str]:
+        """The text of another, short file of the same place; None where it is missing."""
+        raise NotImplementedError
+
+    def _read_piece(self, piece: Range) -> bytes:
+        raise NotImplementedError
+
+    def _count(self, data: bytes) -> bytes:
+        with self._lock:
+            self.requests += 1
+            self.bytes_read += len(data)
+        return data
+
+
+class HttpFile(RemoteFile):
+    """A file by http or https, from a server that answers requests for ranges."""
+
+    def __init__(self, url: str) -> None:
+        super().__init__()
+        try:
+            import urllib3
+        except ImportError:
+            raise UsageError(f"{url}: reading it wants urllib3; install python3-urllib3") from None
+        self._url = url
+        self._failures = urllib3.exceptions.HTTPError
+        retries = urllib3.Retry(total=4, backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
+        self._pool = urllib3.PoolManager(
+            maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30)
+        )
+        self._version: Optional[str] = None  # by which the server tells that the file has changed
+
+    def _read_piece(self, piece: Range) -> bytes:
+        offset, count = piece
+        headers = {"Range": f"bytes={offset}-{offset + count - 1}", "Accept-Encoding": "identity"}
+        if self._version is not None:
+            headers["If-Range"] = self._version
+        with self._answer(self._url, headers) as response:
+            if response.status == 416:
+                raise InputError(f"{self._url}: ends before byte {offset + count}; is it complete, and a NanoVDB file?")
+            if response.status == 200 and self._version is not None:
+                raise InputError(f"{self._url}: changed while it was read; open it again")
+            if response.status == 200:
+                raise InputError(f"{self._url}: its server sends whole files only (status 200); copy the file to this machine")
+            _check_status(self._url, response)
+            self._check_range(response, offset, count)
+            data = self._body(response)
+        if len(data) != count:
+            raise InputError(f"{self._url}: {len(data)} bytes instead of {count} at byte {offset}; is it complete?")
+        return self._count(data)
+
+    def _check_range(self, response: urllib3.HTTPResponse, offset: int, count: int) -> None:
+        said = response.headers.get("Content-Range", "")
+        if response.status != 206 or not said.startswith(f"bytes {offset}-"):
+            raise IoError(
+                f"{self._url}: its server answers bytes {offset} to {offset + count - 1} with status {response.status} and "
+                f'Content-Range "{said}"; copy the file to this machine'
+            )
+        version = _version(response)
+        if self._version is None:
+            self._version = version
+        elif version is not None and version != self._version:
+            raise InputError(f"{self._url}: changed while it was read; open it again")
+
+    def read_beside(self, url: str) -> Optional[str]:
+        with self._answer(url, {"Accept-Encoding": "identity"}) as response:
+            if response.status in (401, 403, 404, 410):  # some stores say 403 of what is missing
+                return None
+            _check_status(url, response)
+            data = self._body(response, _LONGEST_SIDECAR + 1)
+        return _sidecar_text(url, self._count(data))
+
+    @contextlib.contextmanager
+    def _answer(self, url: str, headers: dict[str, str]) -> Iterator[urllib3.HTTPResponse]:
+        """The answer to a request, of which what is not read is not waited for."""
+        try:
+            response = self._pool.request("GET", url, headers=headers, preload_content=False)
+        except self._failures as error:
+            raise IoError(f"{url}: cannot be read: {error}") from error
+        try:
+            yield response
+        finally:
+            if response.length_remaining != 0:  # the connection still has the rest of the body
+                response.close()
+            response.release_conn()
+
+    def _body(self, response: urllib3.HTTPResponse, most: Optional[int] = None) -> bytes:
+        try:
+            return response.read(most)
+        except self._failures as error:
+            raise IoError(f"{self._url}: the connection broke: {error}") from error
+
+
+class FsspecFile(RemoteFile):
+    """A file by any of fsspec's file systems."""
+
+    def __init__(self, url: str, options: dict[str, Any]) -> None:
+        super().__init__()
+        try:
+            import fsspec.core
+        except ImportError:
+            raise UsageError(f"{url}: reading it wants fsspec; install python3-fsspec") from None
+        self._url = url
+        try:
+            self._system, self._path = fsspec.core.url_to_fs(url, **options)
+        except (ImportError, ValueError) as error:
+            raise UsageError(f"{url}: cannot be opened: {error}") from error
+
+    def _read_piece(self, piece: Range) -> bytes:
+        offset, count = piece
+        data = self._cat(self._path, offset, offset + count)
+        if len(data) != count:
+            raise InputError(
+                f"{self._url}: {len(data)} bytes instead of {count} at byte {offset}; is it complete, and a NanoVDB file?"
+            )
+        return self._count(data)
+
+    def read_beside(self, url: str) -> Optional[str]:
+        try:
+            data = self._cat(self._path + ".json", 0, _LONGEST_SIDECAR + 1)
+        except (FileNotFoundError, PermissionError):
+            return None
+        return _sidecar_text(url, self._count(data))
+
+    def _cat(self, path: str, start: int, end: int) -> bytes:
+        try:
+            return self._system.cat_file(path, start=start, end=end)
+        except FileNotFoundError as error:
+            raise InputNotFoundError(2, f"{self._url}: there is no such file", self._url) from error
+        except PermissionError as error:
+            raise InputPermissionError(13, f"{self._url}: may not be read: {error}", self._url) from error
+        except Exception as error:  # each file system has its own
+            raise IoError(f"{self._url}: cannot be read: {error or error.__class__.__name__}") from error
+
+
+def _pieces(offset: int, count: int) -> list[Range]:
+    end = offset + count
+    return [(at, min(_PIECE, end - at)) for at in range(offset, end, _PIECE)]
+
+
+def _version(response: urllib3.HTTPResponse) -> Optional[str]:
+    """What a server answers ranges of this version alone for; a weak tag promises too little."""
+    tag = response.headers.get("ETag")
+    if tag is not None and not tag.startswith("W/"):
+        return tag
+    return response.headers.get("Last-Modified")
+
+
+def _check_status(url: str, response: urllib3.HTTPResponse) -> None:
+    if response.status < 300:
+        return
+    said = f"{url}: its server says {response.status} {response.reason or ''}".rstrip()
+    if response.status in (404, 410):
+        raise InputNotFoundError(2, f"{said}; there is no such file", url)
+    if response.status in (401, 403):
+        raise InputPermissionError(13, f"{said}; it may not be read without other rights", url)
+    raise IoError(said)
+
+
+def _sidecar_text(url: str, data: bytes) -> str:
+    if len(data) > _LONGEST_SIDECAR:
+        raise InputError(f"{url}: more than {_LONGEST_SIDECAR} bytes are no sidecar")
+    try:
+        return data.decode()
+    except UnicodeDecodeError:
+        raise InputError(f"{url}: is no text, so no sidecar") from None

@@ -1,0 +1,171 @@
+"""Grids for xarray: Grid.to_xarray, and the engine "weir" of xarray.open_dataset. Values are decoded when they are used."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Iterable, Optional
+
+import numpy
+import xarray
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core import indexing
+
+from . import xarray_accessor as _xarray_accessor  # noqa: F401
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from .grid import Grid
+
+#: Edge of the chunks that dask gets with chunks={}: 8 MiB, and whole blocks of 8^3 voxels.
+CHUNK = 128
+_UNNAMED = "values"
+
+
+class GridArray(BackendArray):  # type: ignore[misc]
+    """A level of a grid as xarray reads arrays: of lists of places along axes, the box that holds them is read."""
+
+    def __init__(self, grid: Grid, level: int) -> None:
+        self.grid = grid
+        self.level = level
+        self.shape = grid.level_shape(level)
+        self.dtype = grid.dtype
+
+    def __getitem__(self, key: Any) -> Any:
+        # Not by xarray's explicit_indexing_adapter, which misplaces slices with negative steps.
+        box, rest = zip(*(_box_and_rest(part) for part in key.tuple))
+        values = self.grid._read(box, self.level)
+        rest = tuple(part for part in rest if part is not None)  # the axes that are left
+        if isinstance(key, indexing.VectorizedIndexer):
+            return _point_by_point(values, rest)
+        for axis, part in enumerate(rest):
+            if not isinstance(part, slice):
+                values = values.take(part, axis)
+        return values
+
+
+def _box_and_rest(part: Any) -> tuple[Any, Any]:
+    """The place or slice that holds what `part` asks of an axis, and what it asks of that; None: the axis is gone."""
+    if isinstance(part, slice):
+        return part, slice(None)
+    if isinstance(part, numpy.ndarray) and part.ndim > 0:
+        if part.size == 0:
+            return slice(0, 0), part
+        return slice(int(part.min()), int(part.max()) + 1), part - part.min()
+    return int(part), None
+
+
+def _point_by_point(values: Any, rest: tuple[Any, ...]) -> Any:
+    """values[rest], the axes of the arrays in it before those of its slices, as xarray has them."""
+    arrays = [axis for axis, part in enumerate(rest) if isinstance(part, numpy.ndarray)]
+    found = values[rest]
+    together = arrays == list(range(arrays[0], arrays[-1] + 1)) if arrays else True
+    if not arrays or not together:  # numpy puts them first itself
+        return found
+    count = numpy.broadcast(*(rest[axis] for axis in arrays)).ndim
+    return numpy.moveaxis(found, range(arrays[0], arrays[0] + count), range(count))
+
+
+def _variable_name(grid_name: str, taken: Iterable[str]) -> str:
+    """The last part of "/velocity/x", or, where a coordinate is called so, "velocity_x"."""
+    parts = [part for part in grid_name.split("/") if part]
+    for name in (parts[-1:], parts[-2:] if len(parts) > 1 else []):
+        if name and "_".join(name) not in taken:
+            return "_".join(name)
+    return _UNNAMED
+
+
+def data_array(grid: Grid, level: int = 0, decode_times: bool = True) -> xarray.DataArray:
+    """What Grid.to_xarray returns; decode_times as of xarray.open_dataset: whether a time is a date, not a number."""
+    sidecar = grid.sidecar or {}
+    source = sidecar.get("source", {})
+    names = _axis_names(source)
+    values = indexing.LazilyIndexedArray(GridArray(grid, level))
+    chunks = dict(zip(names, (min(CHUNK, count) for count in grid.level_shape(level))))
+    variable = xarray.Variable(names, values, _attributes(sidecar), {"preferred_chunks": chunks})
+    coordinates = {name: _coordinate(grid, source, level, axis, name) for axis, name in enumerate(names)}
+    if "time" in source and "time" not in coordinates:
+        coordinates["time"] = _time(source["time"], decode_times)
+    name = _variable_name(grid.name, coordinates)
+    array = xarray.Dataset({name: variable}, coordinates)[name]  # DataArray(variable) would read all values
+    return array.rename(None) if name == _UNNAMED else array
+
+
+class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
+    """The engine "weir" of xarray.open_dataset: a dataset with the one variable that the file has."""
+
+    description = "NanoVDB files, with the sidecars of weir"
+    open_dataset_parameters = ("filename_or_obj", "drop_variables", "decode_times", "level")
+
+    def open_dataset(
+        self,
+        filename_or_obj: Any,
+        *,
+        drop_variables: Optional[Iterable[str]] = None,
+        decode_times: bool = True,
+        level: int = 0,
+    ) -> xarray.Dataset:
+        """xarray calls it. level, as of Grid.to_numpy: means over cubes of 2^level voxels along an edge."""
+        from .grid import open as open_grid
+
+        if not isinstance(filename_or_obj, (str, os.PathLike)):
+            raise UsageError(f"filename_or_obj is {filename_or_obj!r}, it must be the path or URL of a NanoVDB file")
+        grid = open_grid(filename_or_obj)
+        try:
+            array = data_array(grid, level, decode_times)
+            dataset = array.to_dataset(name=array.name or _UNNAMED).drop_vars(_listed(drop_variables), errors="ignore")
+        except BaseException:
+            grid.close()
+            raise
+        dataset.encoding["source"] = os.fspath(filename_or_obj)
+        dataset.set_close(grid.close)
+        return dataset
+
+    def guess_can_open(self, filename_or_obj: Any) -> bool:
+        """Whether it is the path of an .nvdb file."""
+        return isinstance(filename_or_obj, (str, os.PathLike)) and str(filename_or_obj).lower().endswith(".nvdb")
+
+
+def _listed(names: Optional[Iterable[str]]) -> list[str]:
+    return [names] if isinstance(names, str) else list(names or [])
+
+
+def _axis_names(source: dict[str, Any]) -> tuple[str, ...]:
+    """The source's names of [z, y, x] where it has three that differ."""
+    given = tuple((source.get("axes") or [])[::-1])
+    return given if len(set(given)) == 3 and all(given) else ("z", "y", "x")
+
+
+def _attributes(sidecar: dict[str, Any]) -> dict[str, Any]:
+    """units, long_name and what the values differ from the source's by at most, of those that are known."""
+    source, error = sidecar.get("source", {}), sidecar.get("error", {})
+    found = {key: source.get(key) for key in ("units", "long_name")}
+    found["max_abs_error"], found["psnr_db"] = error.get("max_abs"), error.get("psnr_db")
+    return {key: value for key, value in found.items() if value not in (None, "")}
+
+
+def _coordinate(grid: Grid, source: dict[str, Any], level: int, axis: int, name: str) -> xarray.Variable:
+    """World positions of the centres along `axis` of [z, y, x]; of means, the mean of their voxels' positions."""
+    place = 2 - axis
+    first, count = grid.index_origin[place], grid.extent[place]
+    listed = (source.get("irregular_axes") or {}).get("xyz"[place])
+    if listed and len(listed) >= first + count and first >= 0:
+        positions = numpy.array(listed[first : first + count], float)
+    else:
+        positions = grid.origin[place] + grid.spacing[place] * numpy.arange(first, first + count, dtype=float)
+    if level > 0:
+        edges = numpy.arange(0, count, 1 << level)
+        positions = numpy.add.reduceat(positions, edges) / numpy.diff(numpy.append(edges, count))
+    units = (source.get("axis_units") or ["", "", ""])[place]
+    return xarray.Variable((name,), positions, {"units": units} if units else {})
+
+
+def _time(time: dict[str, Any], decode: bool) -> xarray.Variable:
+    """A date where the units say since when, and the calendar is one that xarray knows here; else the number."""
+    attributes = {key: time[key] for key in ("units", "calendar") if time.get(key)}
+    variable = xarray.Variable((), time["value"], attributes)
+    if not decode or " since " not in attributes.get("units", ""):
+        return variable
+    try:
+        return xarray.decode_cf(xarray.Dataset(coords={"time": variable}))["time"].variable
+    except (ImportError, ValueError):  # cftime is missing, or the units are of no calendar
+        return variable

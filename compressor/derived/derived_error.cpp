@@ -1,0 +1,69 @@
+#include "compressor/derived/derived_error.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compressor/derived/pair_stream.h"
+
+namespace weir {
+namespace {
+
+/// Of the windows that begin at the last voxel of a block.
+constexpr PairMargin kWithWindows{1, SimilarityTally::kWindow - 1};
+constexpr PairMargin kNeighbours{1, 1};
+
+struct DerivedTally {
+  ErrorHistogram errors;
+  GradientTally gradient;
+  SimilarityTally similarity;
+
+  void add(const ValuePair& values, const Box& part) {
+    for_each_index(part, [&](const Index3& i) {
+      const std::size_t at = values.at(i);
+      if (values.finite(at)) errors.add(std::fabs(values.error(at)));
+    });
+    gradient.add(values, part);
+    similarity.add(values, part);
+  }
+  void merge(const DerivedTally& other) {
+    errors.add(other.errors);
+    gradient.merge(other.gradient);
+    similarity.merge(other.similarity);
+  }
+};
+
+}  // namespace
+
+DerivedErrors derive_errors(VolumeSource& source, const NvdbGrid& grid, const Comparison& compared,
+                            const CompareOptions& options) {
+  const MinMax range = compared.range.value_or(MinMax{0, 0});
+  const DerivedTally none{
+      {}, GradientTally(source.info().spacing), SimilarityTally(double{range.min}, double{range.max})};
+  tbb::enumerable_thread_specific<DerivedTally> tallies(none);
+  stream_pairs(source, grid, kWithWindows, options,
+               [&](const ValuePair& values, const Box& part) { tallies.local().add(values, part); });
+  DerivedTally total = none;
+  for (const DerivedTally& tally : tallies) total.merge(tally);
+  DerivedErrors all;
+  for (std::size_t i = 0; i < DerivedErrors::kShares.size(); ++i) {
+    all.quantiles[i] = total.errors.quantile(DerivedErrors::kShares[i], compared.error.max_abs);
+  }
+  all.octaves = total.errors.octaves();
+  all.gradient = total.gradient.result();
+  all.similarity = total.similarity.result();
+  return all;
+}
+
+GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options) {
+  const GradientTally none(source.info().spacing);
+  tbb::enumerable_thread_specific<GradientTally> tallies(none);
+  stream_pairs(source, grid, kNeighbours, options,
+               [&](const ValuePair& values, const Box& part) { tallies.local().add(values, part); });
+  GradientTally total = none;
+  for (const GradientTally& tally : tallies) total.merge(tally);
+  return total.result();
+}
+
+}  // namespace weir

@@ -1,0 +1,42 @@
+// The error of a volume's gradient: central differences, at the faces of the volume those to the next voxel, as
+// numpy.gradient has them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "compressor/derived/value_pair.h"
+#include "compressor/leaf/exact_sum.h"
+
+namespace weir {
+
+struct GradientError {
+  std::uint64_t voxels = 0;            ///< over which it is taken
+  std::uint64_t left_out = 0;          ///< those at which a value that it takes is not finite
+  double rms = 0;                      ///< of |gradient of the error|, value per world unit
+  std::optional<double> relative_rms;  ///< that as a share of the source's; none where that is 0
+  double max_abs = 0;                  ///< the largest |gradient of the error|, value per world unit
+};
+
+/// For one thread; sums do not depend on order and grouping.
+class GradientTally {
+ public:
+  /// `spacing`: world units per voxel.
+  explicit GradientTally(const std::array<double, 3>& spacing) : spacing_(spacing) {}
+
+  /// The voxels `part`, a block of 8^3 cut to the volume; `values` has a voxel more on each side that the volume has.
+  void add(const ValuePair& values, const Box& part);
+  void merge(const GradientTally& other);
+  GradientError result() const;
+
+ private:
+  std::array<double, 3> spacing_;
+  ExactSum error_;
+  ExactSum source_;
+  double largest_ = 0;  // squared
+  std::uint64_t voxels_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace weir

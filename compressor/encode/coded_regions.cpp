@@ -1,0 +1,53 @@
+#include "compressor/encode/coded_regions.h"
+
+#include <utility>
+
+#include "format/packed/block_steps.h"
+
+namespace weir {
+namespace {
+
+// Blocks whose values, codes and streams a batch has at most, but for what one region has: 16 MiB of values.
+constexpr std::size_t kMostBlocks = 8192;
+constexpr std::size_t kRegionBlocks = 4096;
+
+}  // namespace
+
+std::optional<CodedStream> CodedRegion::find(const Index3& leaf) const {
+  const std::int32_t ask = ask_of_[at(leaf)];
+  if (ask == kNone || !made_) return std::nullopt;
+  const auto i = static_cast<std::size_t>(ask);
+  if (made_->made[i] == 0) return std::nullopt;
+  return CodedStream{made_->bytes.subspan(asks_[i].offset, asks_[i].bytes), made_->decoded.subspan(512 * i, 512)};
+}
+
+CodedBatch::CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,
+                       LoadedBlocks& blocks) {
+  for (const std::int64_t region : regions) {
+    add(target, leaf_box, region);
+    if (asks_.size() + kRegionBlocks > kMostBlocks) break;
+  }
+  if (!asks_.empty()) pending_ = blocks.encode(asks_, target.packed->constants);
+}
+
+void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64_t region) {
+  RegionPlaces places;
+  places.streams.emplace(target.packed->streams.read(region));
+  const Box box = intersect(target.tree.leaf_box(region), leaf_box);
+  CodedRegion coded(box, asks_, made_);
+  const StreamPlaces& streams = *places.streams;
+  for (std::int64_t i = 0; i < box.voxels(); ++i) {
+    const Index3 leaf = box.lo + index_at(i, box.extent());
+    const std::size_t position = target.tree.mask_position(leaf);
+    const std::int16_t step = streams.plan().steps[position];
+    if (!streams.kept(position) || step < kLeastStep || step > kMostStep) continue;
+    const std::uint32_t offset = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
+    coded.set(leaf, asks_.size());
+    asks_.push_back({streams.plan().region.means,
+                     static_cast<std::uint32_t>(linear_index(leaf - leaf_box.lo, leaf_box.extent())), offset,
+                     static_cast<std::uint16_t>(streams.bytes(position)), step});
+  }
+  regions_.push_back({region, std::move(places), box, std::move(coded)});
+}
+
+}  // namespace weir

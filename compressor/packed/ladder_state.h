@@ -1,0 +1,22 @@
+// Which ladders the blocks of a volume get, as far as that is decided: by the whole conversion, and saved in its
+// journal.
+#pragma once
+
+#include <optional>
+
+#include "compressor/packed/ladder_window.h"
+
+namespace weir {
+
+struct LadderState {
+  bool decided = false;            ///< before, the rest means nothing
+  bool near_rungs = false;         ///< all blocks have near rungs, not the sampled ones alone
+  std::optional<double> centre{};  ///< of the window that cuts are expected in; none: all rungs count
+  bool built = false;    ///< ladders are built so; else with all rungs, and near rungs of sampled blocks alone
+  bool rebuilt = false;  ///< by a pass after the survey, which may not have come to its end
+  int moves = 0;         ///< how often a cut lay outside the window, so that another one was taken
+
+  std::optional<KeyWindow> window() const { return centre ? std::optional(KeyWindow{*centre}) : std::nullopt; }
+};
+
+}  // namespace weir

@@ -1,0 +1,99 @@
+// Which rungs of a ladder a budget can choose among, once it is known about where its cut lies. The survey then builds
+// five of some twenty. What is chosen is the same: at a cut within the window, the best of all rungs is among them,
+// as long as each further byte of a block saves less error than the one before.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "compressor/leaf/leaf_row.h"
+#include "compressor/packed/packed_ladder.h"
+
+namespace weir {
+
+/// Keys between which the cut of a selection lies: squared error saved per byte.
+struct KeyWindow {
+  double centre = 0;  ///< a normal number, > 0
+
+  /// About a key; none about one so small that nothing is left to save.
+  static std::optional<KeyWindow> about(double key) {
+    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow{key}) : std::nullopt;
+  }
+
+  /// A sample of the blocks tells the cut within that factor.
+  static constexpr double kWidth = 2.5;
+
+  double low() const { return centre / kWidth; }
+  double high() const { return centre * kWidth; }
+  bool holds(double key) const { return key >= low() && key <= high(); }
+  /// Of a quantiser whose uniform error falls by that much per byte: at size^2 / 12 a value, halving the step takes a
+  /// bit a value, and saves size^2 / 2 a byte.
+  double quantum() const { return std::sqrt(2 * centre); }
+  /// The coarsest step whose size is at most that, or the finest.
+  std::int32_t step() const;
+};
+
+/// Rungs [first, end), which are next to each other; none where first == end.
+struct RungRange {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  bool more = true;  ///< a finer way to keep the block may be chosen, too
+  bool has(std::size_t rung) const { return rung >= first && rung < end; }
+};
+
+/// Of rungs [first, end), from coarse to fine, those that the window may choose; `start` is about in its middle, and
+/// `energy` what a block without a rung loses. at(rung) is its point, or nullopt where there is none; it is asked only
+/// for rungs that it takes to tell. The answer is the same whether further rungs have points or not.
+template <typename At>
+RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start, std::size_t first, std::size_t end,
+                       const At& at) {
+  if (first >= end) return {first, first, true};
+  std::size_t coarse = std::min(std::max(start, first), end - 1);
+  std::optional<RungPoint> point = at(coarse);
+  while (!point && coarse > first) point = at(--coarse);
+  if (!point) return {first, first, true};
+  const auto slope = [&](const RungPoint& from, const RungPoint& to) {
+    return energy * (from.share - to.share) / (to.bytes - from.bytes);
+  };
+  std::size_t fine = coarse;
+  bool more = true;
+  RungPoint last = *point;
+  while (fine + 1 < end) {
+    const std::optional<RungPoint> next = at(fine + 1);
+    if (!next) break;
+    ++fine;
+    if (!(next->bytes > last.bytes)) continue;
+    more = !(slope(last, *next) < window.low());
+    if (!more) break;
+    last = *next;
+  }
+  RungPoint begin = *point;
+  constexpr RungPoint kMeanAlone{1, 1};
+  while (coarse > first) {
+    const std::optional<RungPoint> next = at(coarse - 1);
+    if (!next) break;
+    --coarse;
+    const bool steep = next->bytes < begin.bytes && slope(*next, begin) > window.high();
+    begin = *next;
+    if (steep && slope(kMeanAlone, *next) > window.high()) break;
+  }
+  return {coarse, fine + 1, more};
+}
+
+/// Of a ladder's rungs, those of a window; the mean alone, at rungs 0 and 1, is always kept. The ladder may have been
+/// built with that window, or without one.
+struct LadderRange {
+  RungRange rungs;
+  RungRange near;
+};
+LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row);
+
+/// Where the search of rungs_within() begins.
+std::size_t start_rung(const KeyWindow& window, const PackedLadder& ladder);
+std::size_t start_near_rung(const KeyWindow& window, const PackedLadder& ladder);
+
+}  // namespace weir

@@ -1,0 +1,176 @@
+#include "compressor/select/budget_outlook.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compressor/leaf/bounds.h"
+#include "compressor/packed/block_sample.h"
+#include "compressor/select/preview.h"
+#include "compressor/select/step_keys.h"
+#include "format/nanovdb/macrocells.h"
+
+namespace weir {
+namespace {
+
+/// The steps of sampled blocks, counted by their keys.
+class SampledSteps {
+ public:
+  void add(const PackedLadder& ladder, const LeafStep& step) {
+    Bucket& bucket = buckets_[key_bits(step.key) >> kDropped];
+    const auto bytes = static_cast<double>(step.bytes);
+    bucket.bytes += bytes;
+    bucket.gain += step.gain;
+    const bool exact = step.level == kExactLevel;
+    if (exact ? ladder.exact == ExactKind::ordered : step.level >= kFirstNearLevel) bucket.near_bytes += bytes;
+  }
+
+  /// Of what is bought for so many bytes.
+  BudgetOutlook within_bytes(double bytes) const {
+    double bought = 0;
+    double near = 0;
+    std::size_t cut = buckets_.size();
+    while (cut > 0 && bought <= bytes) {
+      --cut;
+      bought += buckets_[cut].bytes;
+      near += buckets_[cut].near_bytes;
+    }
+    return {count(near, bought), bought > bytes ? window_at(cut) : std::nullopt};
+  }
+
+  /// Of what must be bought so that no more than that error is left.
+  BudgetOutlook within_error(double squared_error) const {
+    double left = 0;
+    double bought = 0;
+    double near = 0;
+    std::optional<std::size_t> cut;
+    for (std::size_t i = 0; i < buckets_.size(); ++i) {
+      left += buckets_[i].gain;
+      if (left <= squared_error) continue;
+      if (!cut) cut = i;
+      bought += buckets_[i].bytes;
+      near += buckets_[i].near_bytes;
+    }
+    return {count(near, bought), cut ? window_at(*cut) : std::nullopt};
+  }
+
+ private:
+  struct Bucket {
+    double bytes = 0;
+    double gain = 0;
+    double near_bytes = 0;
+  };
+  static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
+
+  static std::optional<KeyWindow> window_at(std::size_t bucket) {
+    return KeyWindow::about(std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped));
+  }
+
+  // Fewer are not worth their time; a twentieth saves 6 dB of a sparse volume.
+  static bool count(double near, double bought) { return near > bought / 256; }
+
+  std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
+};
+
+/// What a packed file holds besides its blocks' streams and their ends.
+double fixed_bytes(const FileRequest& request, double asked) {
+  const TreeRegions tree(request.domain);
+  const auto with = [&](bool preview) {
+    NodeCounts counts;
+    counts.root_tiles = tree.uppers.size();
+    counts.macrocells = static_cast<std::uint64_t>(make_lattice(request.domain, kMacrocell).size());
+    const std::uint64_t regions = tree.regions.size();
+    set_packed_counts(PackedRule{preview, 0}, tree, regions, counts);
+    counts.packed_bytes += regions * kChunkCost;
+    return static_cast<double>(make_layout(counts).content_end);
+  };
+  const double without = with(false);
+  if (request.packed.preview == Preview::off) return without;
+  const double both = with(true);
+  if (request.packed.preview == Preview::on) return both;
+  return asked >= kLeastOfPreview * (both - without) ? both : without;
+}
+
+/// The sampled blocks whose values are all finite.
+struct Sample {
+  struct Leaf {
+    std::int64_t linear;
+    std::int64_t voxels;
+    LeafRow row;
+  };
+  std::vector<Leaf> leaves;  // but for those of one value
+  std::int64_t count = 0;    // those too
+  std::uint64_t voxels = 0;
+  MinMax range = kNoBounds;
+};
+
+Sample read_sample(const RowStore& rows) {
+  const NodeLattice& leaves = rows.leaves();
+  Sample sample;
+  std::vector<LeafRow> found;
+  for (const Box& box : BlockSample(leaves).rows()) {
+    rows.read_box(box, found);
+    for (std::int64_t i = 0; i < box.voxels(); ++i) {
+      const Index3 leaf = box.lo + index_at(i, box.extent());
+      const LeafRow& row = found[static_cast<std::size_t>(i)];
+      const std::int64_t voxels = leaves.voxels(leaf).voxels();
+      if (row.finite < voxels) continue;
+      ++sample.count;
+      sample.voxels += static_cast<std::uint64_t>(voxels);
+      widen(sample.range, {row.min, row.max});
+      if (!row.uniform()) sample.leaves.push_back({leaves.linear(leaf), voxels, row});
+    }
+  }
+  return sample;
+}
+
+BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
+  const Sample sample = read_sample(rows);
+  if (sample.count == 0) return {true, std::nullopt};  // nothing to judge by
+  const MeanRange range{sample.range.min, sample.range.max};
+  GainRule rule = request.rule;
+  rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
+  SampledSteps steps;
+  RegionGains gains;
+  for (const Sample::Leaf& sampled : sample.leaves) {
+    PackedLadder ladder;
+    rows.ladders()->read(sampled.linear, std::span(&ladder, 1));
+    MinMax reach;
+    if (rule.visibility != nullptr) rows.reaches()->read(sampled.linear, std::span(&reach, 1));
+    // Alone in its region, its mean the value of blocks without a stream.
+    const SharedValues region{sampled.row.mean, range};
+    LeafGain leaf;
+    gains.clear();
+    gains.begin(leaf);
+    rule.add_packed_steps(ladder, region, sampled.row, sampled.voxels, rule.visibility == nullptr ? nullptr : &reach,
+                          leaf, gains);
+    for (const LeafStep& step : leaf.all_steps()) steps.add(ladder, step);
+  }
+  const Budget& budget = request.budget;
+  BudgetOutlook outlook;
+  if (budget.kind == Budget::Kind::psnr) {
+    const double width = static_cast<double>(range.high) - static_cast<double>(range.low);
+    outlook = steps.within_error(width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10));
+  } else {
+    const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
+    const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+    const auto asked = static_cast<double>(asked_bytes(budget, dense));
+    outlook = steps.within_bytes(std::max(0.0, asked - fixed_bytes(request, asked)) * share);
+  }
+  if (rule.visibility != nullptr || rows.leaves().size() < kLeastForecastBlocks) outlook.window.reset();
+  return outlook;
+}
+
+}  // namespace
+
+BudgetOutlook outlook_of(const FileRequest& request, const RowStore& rows) {
+  BudgetOutlook outlook;
+  rows.team().lead([&] { outlook = judge(request, rows); });
+  rows.team().follow(outlook);
+  return outlook;
+}
+
+}  // namespace weir

@@ -1,0 +1,35 @@
+// What a budget will buy of a packed volume, as far as a sample of its blocks (compressor/packed/block_sample.h) tells:
+// which ladders are worth building for all of them.
+#pragma once
+
+#include <optional>
+
+#include "compressor/packed/ladder_state.h"
+#include "compressor/packed/ladder_window.h"
+#include "compressor/select/encoding_choice.h"
+#include "compressor/survey/row_store.h"
+
+namespace weir {
+
+struct BudgetOutlook {
+  /// Whether the best file keeps some blocks by near rungs or as floats in order.
+  bool near_rungs = false;
+  /// Where the cut of the selection lies, about. None: unknown, or all can be bought, or a scene weighs.
+  std::optional<KeyWindow> window{};
+};
+
+/// What that decides.
+inline LadderState decided_by(const BudgetOutlook& outlook) {
+  return {true, outlook.near_rungs, outlook.window ? std::optional(outlook.window->centre) : std::nullopt};
+}
+
+/// Volumes of fewer blocks have all rungs built: looking ahead would take as long.
+inline constexpr std::int64_t kLeastForecastBlocks = 16384;
+
+/// By the sampled blocks whose values are all finite; `rows` has their rows, and ladders with all rungs. Of the request
+/// it looks at the budget, the domain, the preview and what the scene weighs. Whatever else is known of the volume does
+/// not count, so that the outlook is the same before the survey and after it. The same on all ranks.
+/// Throws as File::read_at.
+BudgetOutlook outlook_of(const FileRequest& request, const RowStore& rows);
+
+}  // namespace weir

@@ -1,0 +1,31 @@
+// Walks over the survey's rows in the order of their leaves, a piece of them for each thread at a time.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compressor/survey/row_store.h"
+
+namespace weir {
+
+/// Calls visit(first, rows) for pieces that together are the leaves [begin, end) by linear index: the rows from leaf
+/// `first` on. On several threads at once, in no order. Throws as LeafStore::read.
+template <typename Visit>
+void for_each_row_piece(const RowStore& store, std::int64_t begin, std::int64_t end, const Visit& visit) {
+  constexpr std::int64_t kPiece = 4096;
+  tbb::enumerable_thread_specific<std::vector<LeafRow>> pieces;
+  tbb::parallel_for(std::int64_t{0}, (end - begin + kPiece - 1) / kPiece, [&](std::int64_t index) {
+    const std::int64_t first = begin + index * kPiece;
+    std::vector<LeafRow>& piece = pieces.local();
+    piece.resize(static_cast<std::size_t>(std::min(kPiece, end - first)));
+    store.read(first, piece);
+    visit(first, std::span<const LeafRow>(piece));
+  });
+}
+
+}  // namespace weir

@@ -1,0 +1,89 @@
+#include "daemon/config/check_access.h"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string user_name() {
+  std::array<char, 1024> room{};
+  passwd entry{};
+  passwd* found = nullptr;
+  const uid_t id = ::geteuid();
+  if (::getpwuid_r(id, &entry, room.data(), room.size(), &found) == 0 && found != nullptr) return found->pw_name;
+  return cat("with the ID ", id);
+}
+
+std::string remedy(int error, std::string_view key, const std::string& path) {
+  const std::string other = cat("or choose another ", key);
+  if (error == EROFS) {
+    return cat("mount it for writing, in a unit of systemd add ReadWritePaths=", path, " (systemctl edit), ", other);
+  }
+  if (error == ENOENT) return cat("make it, ", other);
+  if (error == EACCES) return cat("give that user the permission (chown, chmod, setfacl), ", other);
+  return cat("check the file system, ", other);
+}
+
+[[noreturn]] void refuse_access(const std::string& path, std::string_view key, const char* what, int error) {
+  throw Error(ErrorKind::io, cat(path, ": ", key, " cannot be ", what, " by user ", user_name(), ": ",
+                                 std::strerror(error), "; ", remedy(error, key, path)));
+}
+
+bool may(const std::string& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
+
+void require_writable_directory(const std::string& path, std::string_view key) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) {
+    refuse_access(path, key, "written to", ENOTDIR);
+  }
+  if (!may(path, W_OK | X_OK)) refuse_access(path, key, "written to", errno);
+}
+
+/// A file that is made where it is missing, in a directory that must be there.
+void require_file(const std::string& path, std::string_view key) {
+  if (path.empty()) return;
+  require_writable_directory(fs::path(path).parent_path().string(), key);
+  if (!may(path, R_OK | W_OK) && errno != ENOENT) refuse_access(path, key, "written to", errno);
+}
+
+/// A directory that is made where it is missing, with those above it.
+void require_directory(const std::string& path, std::string_view key) {
+  if (path.empty()) return;
+  fs::path there = path;
+  std::error_code ignored;
+  while (!fs::exists(there, ignored) && !ignored && there.has_relative_path()) there = there.parent_path();
+  require_writable_directory(there.string(), key);
+}
+
+}  // namespace
+
+void check_access(const DaemonConfig& config) {
+  const ServiceConfig& service = config.service;
+  require_file(service.state, "state");
+  require_file(service.log_file, "log");
+  require_file(service.port_file, "port_file");
+  require_file(service.control_socket, "control_socket");
+  require_directory(service.work_dir, "work_dir");
+  for (const WatchConfig& watch : config.watches) {
+    require_directory(watch.output, "output");
+    std::error_code ignored;
+    if (!fs::exists(watch.directory, ignored) && !ignored) continue;
+    if (!may(watch.directory, R_OK | X_OK)) refuse_access(watch.directory, "directory", "read", errno);
+    if (watch.source == AfterDone::delete_after_verify) require_writable_directory(watch.directory, "directory");
+  }
+}
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+#include "daemon/config/token_file.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+std::string read_token_file(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    throw Error(ErrorKind::input, io_error(path, "read the token", errno).message());
+  }
+  if ((status.st_mode & S_IROTH) != 0) throw input_error(path, "can be read by everybody; chmod o-r it");
+  std::ifstream in(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).message());
+  return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+}
+
+std::string token_fault(std::string_view token) {
+  if (token.empty()) return "the token is empty; openssl rand -hex 32 makes one";
+  const bool fits_a_header = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; });
+  return fits_a_header ? "" : "the token must be ASCII without spaces; openssl rand -hex 32 makes one";
+}
+
+}  // namespace weir

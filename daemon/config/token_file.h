@@ -1,0 +1,16 @@
+// The token that clients of a server must know, and the file that holds it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace weir {
+
+/// The text of the file without white space at its end. Throws Error(input) "PATH: ..." where it cannot be read, or can
+/// be by everybody: that is no secret.
+std::string read_token_file(const std::string& path);
+
+/// Why `token` cannot be one, with the remedy; empty where it can.
+std::string token_fault(std::string_view token);
+
+}  // namespace weir

@@ -1,0 +1,51 @@
+// What a JobRunner does where a file system has no room, and what it says of that.
+#include <filesystem>
+
+#include "daemon/disks/disk_room.h"
+#include "daemon/jobs/job_runner.h"
+#include "format/base/text.h"
+
+namespace weir {
+
+void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
+  const std::string directory = std::filesystem::path(run.work->task().output).parent_path().string();
+  const DiskRoom room = room_in(directory);
+  if (report.planned_bytes > room.total) {  // waiting makes no disk larger
+    TaskReport never = report;
+    never.result.reason =
+        cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",
+            format_bytes(room.total), "; choose another output or a smaller size");
+    failed(run, never);
+    return;
+  }
+  figures_.attempt_failed("disk-full");
+  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
+                  std::chrono::steady_clock::now());
+  log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
+  writes_.add([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
+}
+
+void JobRunner::look_at_disks() {
+  const auto free_of = [](const std::string& directory) { return room_in(directory).free; };
+  for (const std::string& directory : full_disks_.look(free_of, std::chrono::steady_clock::now())) {
+    log_.info("disk-has-room", {{"directory", directory}, {"free", format_bytes(free_of(directory))}});
+  }
+}
+
+std::string JobRunner::hold() const {
+  if (!writes_.fault().empty()) return writes_.fault();
+  std::string full;
+  for (const OutputDisk& disk : disks()) {
+    const std::string held = hold_of(disk.room);
+    if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
+  }
+  if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
+  if (!full.empty()) return full;
+  return scheduler_.paused() ? "paused by request" : "";
+}
+
+std::string JobRunner::hold_of(const DiskRoom& disk) const { return full_disks_.hold_of(disk); }
+
+std::vector<OutputDisk> JobRunner::disks() const { return disks_.disks(std::chrono::steady_clock::now()); }
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+#include "daemon/jobs/pending_writes.h"
+
+#include <utility>
+
+#include "daemon/store/sqlite.h"
+
+namespace weir {
+
+void PendingWrites::add(std::function<void()> step) {
+  steps_.push_back(std::move(step));
+  write();
+}
+
+void PendingWrites::write() {
+  try {
+    while (!steps_.empty()) {
+      steps_.front()();
+      steps_.pop_front();
+    }
+    fault_.clear();
+  } catch (const CorruptDatabase&) {
+    throw;
+  } catch (const Error& error) {
+    say_fault(error);
+  }
+}
+
+void PendingWrites::say_fault(const Error& error) {
+  if (fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
+  fault_ = error.what();
+}
+
+}  // namespace weir

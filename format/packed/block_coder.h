@@ -1,0 +1,121 @@
+// Where many packed blocks are looked at and encoded at a time: a device. What it gives has the bits that
+// TransformBlock gives; what it leaves is for its caller to do. Made by who has a device; the conversion knows this
+// interface alone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "format/base/index.h"
+#include "format/packed/block_constants.h"
+#include "format/packed/block_steps.h"
+
+namespace weir {
+
+/// Who does that. automatic: a CUDA device where one answers and there is memory for it, else the CPU.
+enum class CoderChoice : std::uint8_t { automatic, cpu, cuda };
+
+/// Which rungs of a ladder are looked at.
+struct RungAsk {
+  bool all = true;          ///< from kLadderMeanRungs on; else those about `wanted`
+  std::int32_t wanted = 0;  ///< step
+
+  /// Of each block.
+  std::uint32_t most() const { return all ? kLadderRungs - kLadderMeanRungs : kRungsAbout; }
+  /// A search among them goes four to the coarse side and three to the fine one.
+  static constexpr std::uint32_t kRungsAbout = 8;
+};
+
+/// TransformBlock::cost() of a rung.
+struct RungCost {
+  double squared_error = 0;
+  std::uint32_t bits = 0;  ///< 0: not looked at
+  std::uint32_t unused = 0;
+};
+
+/// What TransformBlock::set() finds of a block.
+struct BlockFigures {
+  double energy = 0;
+  float mean = 0;
+  float largest = 0;
+  std::int16_t first_step = 0;   ///< of the ladder
+  std::uint8_t first_rung = 0;   ///< of those looked at
+  std::uint8_t rungs = 0;        ///< that were looked at
+  std::uint8_t transformed = 0;  ///< 0: the values are too large or too small for that
+  std::uint8_t lattice = 0;      ///< whether they may lie on a lattice; who has time looks closer
+  std::uint16_t unused = 0;
+};
+
+/// A stream to be written.
+struct StreamAsk {
+  MeanRange means;           ///< of the block's region
+  std::uint32_t block = 0;   ///< of the box, x fastest
+  std::uint32_t offset = 0;  ///< among all streams: sums of `bytes`
+  std::uint16_t bytes = 0;
+  std::int16_t step = 0;
+};
+
+/// What a survey finds of each block, and RungAsk::most() costs of each.
+struct SurveyedBlocks {
+  std::span<const BlockFigures> figures;
+  std::span<const RungCost> costs;
+};
+
+/// Streams and what they decode to, by ask.
+struct MadeStreams {
+  std::span<const std::byte> bytes;    ///< of all, one after the other
+  std::span<const float> decoded;      ///< 512 of each, in the order of a leaf
+  std::span<const std::uint8_t> made;  ///< 0: the caller has to encode it
+};
+
+/// Streams that are being written.
+class PendingStreams {
+ public:
+  PendingStreams() = default;
+  virtual ~PendingStreams() = default;
+  PendingStreams(const PendingStreams&) = delete;
+  PendingStreams& operator=(const PendingStreams&) = delete;
+
+  /// Waits for them; what it gives stays as long as the object. Nullopt where that has failed.
+  virtual std::optional<MadeStreams> wait() = 0;
+};
+
+/// Values of a box, where the blocks of a volume are looked at. One thread uses it.
+class LoadedBlocks {
+ public:
+  LoadedBlocks() = default;
+  virtual ~LoadedBlocks() = default;
+  LoadedBlocks(const LoadedBlocks&) = delete;
+  LoadedBlocks& operator=(const LoadedBlocks&) = delete;
+
+  /// Begins to look at all blocks of the box.
+  virtual void begin_survey(const RungAsk& ask) = 0;
+  /// Waits for it; what it gives stays as long as the object. Nullopt where that has failed.
+  virtual std::optional<SurveyedBlocks> end_survey() = 0;
+
+  /// Begins to write streams of some of its blocks, one ask at least; the object must stay until they are waited for.
+  /// Null where that has failed.
+  virtual std::unique_ptr<PendingStreams> encode(std::span<const StreamAsk> asks, const BlockConstants& constants) = 0;
+};
+
+/// Any threads may use it at once. A failure is said once; after it everything is left to the caller.
+class BlockCoder {
+ public:
+  BlockCoder() = default;
+  virtual ~BlockCoder() = default;
+  BlockCoder(const BlockCoder&) = delete;
+  BlockCoder& operator=(const BlockCoder&) = delete;
+
+  /// Values over `voxels`, x fastest, of which `blocks` are the blocks' boxes together, multiples of 8 long; where that
+  /// is larger, values outside are those of the nearest voxel inside. Null where it has failed, has no room, or has
+  /// enough to do: the caller does the work then.
+  virtual std::unique_ptr<LoadedBlocks> load(std::span<const float> values, const Box& voxels, const Box& blocks) = 0;
+
+  /// What it takes of the process's memory while it works, at most, in bytes.
+  virtual std::uint64_t host_bytes() const = 0;
+};
+
+}  // namespace weir

@@ -1,0 +1,156 @@
+// The contexts of a block's coded values by rows of eight: what counting them (row_costs.h) and coding them
+// (value_encoder.h) have in common.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "format/base/simd.h"
+#include "format/packed/block_scan.h"
+
+namespace weir {
+
+/// Rows of eight magnitudes by index, after eight rows of zeros. Those of floats in order may have all 32 bits.
+struct MagnitudeRows {
+  alignas(64) std::int32_t padded[8 * 72] = {};
+  std::uint64_t live = ~std::uint64_t{0};  ///< bit i not set: row i is zero
+
+  std::int32_t* row(unsigned i) { return padded + std::size_t{8} * (i + 8); }
+  const std::int32_t* row(unsigned i) const { return padded + std::size_t{8} * (i + 8); }
+  std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(row(index / 8)[index % 8]); }
+};
+
+/// What contexts are made from, by index. The first four places are not in it: place 0 is not coded, and the others
+/// look at each other.
+struct RowPlaces {
+  alignas(64) std::int32_t weight[512] = {};
+  alignas(64) std::int32_t place[512] = {};         ///< 512 for the first four
+  alignas(64) std::int32_t first_symbol[512] = {};  ///< of level 0, counted from the first table's
+  std::int32_t first_place[64] = {};                ///< the least of each row
+};
+
+/// `bands`: of transformed blocks, which have a set of levels for each band.
+constexpr RowPlaces make_row_places(bool bands) {
+  RowPlaces rows;
+  for (std::int32_t& least : rows.first_place) least = 512;
+  for (unsigned place = 0; place < 512; ++place) {
+    const unsigned index = kBlockScan.index[place];
+    rows.weight[index] = kBlockScan.weight[place];
+    rows.place[index] = place < 4 ? 512 : static_cast<std::int32_t>(place);
+    rows.first_symbol[index] =
+        static_cast<std::int32_t>((bands ? kBlockScan.band[place] : 0U) * kPackedLevels * kPackedSymbols);
+    std::int32_t& least = rows.first_place[index / 8];
+    least = rows.place[index] < least ? rows.place[index] : least;
+  }
+  return rows;
+}
+
+inline constexpr RowPlaces kTransformPlaces = make_row_places(true);
+inline constexpr RowPlaces kLatticePlaces = make_row_places(false);
+inline const RowPlaces& row_places(bool bands) { return bands ? kTransformPlaces : kLatticePlaces; }
+
+/// Places by index, as lanes take them.
+struct PlacesByIndex {
+  alignas(64) std::int32_t place[512] = {};
+};
+constexpr PlacesByIndex make_places_by_index() {
+  PlacesByIndex places;
+  for (unsigned index = 0; index < 512; ++index) places.place[index] = kBlockScan.place[index];
+  return places;
+}
+inline constexpr PlacesByIndex kPlacesByIndex = make_places_by_index();
+
+namespace packed_detail {
+
+inline constexpr auto kFirstEscape = static_cast<std::int32_t>(kPackedSymbols) - 1;
+
+#ifdef WEIR_SIMD_PATHS
+inline bool has_avx512() { return __builtin_cpu_supports("avx512f") != 0; }
+#endif
+
+// Lanes of one row, or of two that follow each other. Each path has the width that its instructions have: compilers
+// take wider lanes apart.
+struct OneRow {
+  using Ints = Ints8;
+  using Floats = Floats8;
+};
+struct TwoRows {
+  using Ints = Ints16;
+  using Floats = Floats16;
+};
+
+// A difference shifted by 31 has all bits where it is negative; comparisons of that many lanes are slow.
+
+// Those of a float: 2^exponent * (1 + mantissa / 2^23).
+template <typename Lanes>
+[[gnu::always_inline]] inline void split(const typename Lanes::Ints& v, typename Lanes::Ints& exponent,
+                                         typename Lanes::Ints& mantissa) {
+  const auto f = __builtin_convertvector(v, typename Lanes::Floats);
+  typename Lanes::Ints bits;
+  __builtin_memcpy(&bits, &f, sizeof bits);
+  exponent = (bits >> 23) - 127;
+  mantissa = bits & 0x7FFFFF;
+}
+
+// BlockScan::level of sums of neighbours: floor(3 log2(1 + 2 t / 3)), at most the last; of v = 3 + 2 t its thresholds
+// are 3 * 2^(n / 3).
+template <typename Lanes>
+[[gnu::always_inline]] inline void level_of(const typename Lanes::Ints& t, typename Lanes::Ints& level) {
+  typename Lanes::Ints exponent;
+  typename Lanes::Ints mantissa;
+  split<Lanes>(3 + 2 * t, exponent, mantissa);
+  constexpr std::int32_t kTwoThirds = 0x1863F8;  // of 1.5 * 2^(2/3) / 2
+  constexpr std::int32_t kWhole = 0x400000;      // of 1.5
+  constexpr std::int32_t kThird = 0x71E7A4;      // of 1.5 * 2^(1/3)
+  level =
+      3 * exponent - 2 + ((mantissa - kTwoThirds) >> 31) + ((mantissa - kWhole) >> 31) + ((mantissa - kThird) >> 31);
+  constexpr auto kLast = static_cast<std::int32_t>(kPackedLevels - 1);
+  const typename Lanes::Ints none{};
+  level = level < kLast ? level : none + kLast;
+}
+
+// extra_bits() of sums of neighbours: floor(log2(t / 18)) of more than 36, at most 16.
+template <typename Lanes>
+[[gnu::always_inline]] inline void extra_of(const typename Lanes::Ints& t, typename Lanes::Ints& extra) {
+  typename Lanes::Ints exponent;
+  typename Lanes::Ints mantissa;
+  split<Lanes>(t, exponent, mantissa);
+  extra = exponent - 4 + ((mantissa - 0x100000) >> 31);  // 18 is 1.125 * 2^4
+  const typename Lanes::Ints none{};
+  extra = extra < 16 ? extra : none + 16;
+  extra &= (36 - t) >> 31;
+}
+
+template <typename Ints>
+[[gnu::always_inline]] inline void load_lanes(const std::int32_t* at, Ints& lanes) {
+  __builtin_memcpy(&lanes, at, sizeof lanes);
+}
+
+// Which lanes have a neighbour before them.
+template <typename Lanes>
+struct Before {
+  typename Lanes::Ints in_row{};      // all bits but at the first of each row
+  typename Lanes::Ints second_row{};  // all bits in the second row
+  [[gnu::always_inline]] inline Before() {
+    constexpr unsigned kLanes = sizeof(typename Lanes::Ints) / sizeof(std::int32_t);
+    for (unsigned l = 0; l < kLanes; ++l) {
+      in_row[l] = l % 8 == 0 ? 0 : -1;
+      second_row[l] = l < 8 ? 0 : -1;
+    }
+  }
+};
+
+// The magnitudes before those of row `row` along each axis, 0 where there is none.
+template <typename Lanes>
+[[gnu::always_inline]] inline void load_neighbours(const std::int32_t* at, unsigned row, const Before<Lanes>& before,
+                                                   typename Lanes::Ints& up, typename Lanes::Ints& left,
+                                                   typename Lanes::Ints& back) {
+  load_lanes(at - 64, up);
+  load_lanes(at - 8, left);
+  if (row % 8 == 0) left &= before.second_row;  // of j = 0 the row before is of another i
+  load_lanes(at - 1, back);
+  back &= before.in_row;
+}
+
+}  // namespace packed_detail
+}  // namespace weir

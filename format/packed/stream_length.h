@@ -1,0 +1,29 @@
+// How long the stream of coded values will be, from what its parts take. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "format/base/host_device.h"
+#include "format/packed/coefficient_decoder.h"
+
+namespace weir {
+
+/// Bits of a front and of what lies behind it: `symbols` 1/256 bits of symbols, `raw` bits as they are and `nonzero`
+/// signs in a stream whose end, of `end_bits`, is `end` > 0, beside a number of `number_bits`.
+WEIR_HOST_DEVICE inline std::uint32_t coded_stream_bits(std::uint32_t symbols, std::uint32_t raw, std::uint32_t nonzero,
+                                                        unsigned end, unsigned end_bits, unsigned number_bits) {
+  const unsigned states = states_of(end);
+  // Each state begins at 16 bits, which hold signs and the number's low bits, and ends in whole bytes of 3 or more.
+  // A state begins with 16 to 17 bits, and whole numbers in it lose a little of each symbol.
+  std::uint32_t coded = symbols + 256 * (raw + 17 * states);
+  coded += coded / 1024;
+  const std::uint32_t words = (coded + 2047) / 2048 + (states - 1);
+  const std::uint32_t back = words < 3 * states ? 3 * states : words;
+  std::int32_t spare = static_cast<std::int32_t>(nonzero) - static_cast<std::int32_t>(16 * states);
+  const std::int32_t least = -static_cast<std::int32_t>(number_bits);
+  spare = spare < least ? least : spare;
+  const std::int32_t front = static_cast<std::int32_t>(end_bits + states) + spare;
+  return static_cast<std::uint32_t>(front + static_cast<std::int32_t>(8 * back));
+}
+
+}  // namespace weir

@@ -1,0 +1,302 @@
+#include "format/packed/value_encoder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "format/base/simd.h"
+
+namespace weir {
+namespace {
+
+using packed_detail::Before;
+using packed_detail::extra_of;
+using packed_detail::kFirstEscape;
+using packed_detail::level_of;
+using packed_detail::load_lanes;
+using packed_detail::load_neighbours;
+using packed_detail::OneRow;
+using packed_detail::TwoRows;
+
+constexpr std::uint32_t kTotal = 1U << kFrequencyBits;
+
+// ceil(2^44 / f): x * inverse >> 44 is x / f for every x below f * 2^20, which is what a state is reduced to before it
+// takes a symbol of frequency f.
+static_assert(kFrequencyBits <= 12, "a state below 2^32 is below f * 2^20 then");
+constexpr unsigned kInverseBits = 44;
+
+// At most, for each value: a symbol, five bits of an escape, twice two halves of raw bits.
+constexpr std::size_t kMostWords = 512 * 6;
+
+// What each value is coded as, by index.
+struct CodedRows {
+  alignas(64) std::int32_t symbol[512];  // of its context, counted from the first table's
+  alignas(64) std::int32_t extra[512];   // low bits that are raw
+};
+
+template <typename Ints>
+[[gnu::always_inline]] inline void limit_neighbours(Ints& magnitudes) {
+  // Those of 32 bits look negative.
+  constexpr auto kMost = static_cast<std::int32_t>(kMostOfNeighbour);
+  const Ints none{};
+  const Ints large = (magnitudes >> 31) | ((kMost - magnitudes) >> 31);
+  magnitudes = (magnitudes & ~large) | ((none + kMost) & large);
+}
+
+// All places but the first four, and only those below `limit`.
+template <typename Lanes>
+[[gnu::always_inline]] inline void find_symbols(const RowPlaces& places, const std::int32_t* padded, std::int32_t limit,
+                                                CodedRows& coded) {
+  using Ints = typename Lanes::Ints;
+  constexpr unsigned kRows = sizeof(Ints) / (8 * sizeof(std::int32_t));
+  const Before<Lanes> before;
+  const Ints none{};
+  for (unsigned row = 0; row < 64; row += kRows) {
+    if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
+    const std::int32_t* at = padded + 8 * (row + 8);
+    Ints m, up, left, back, weight, symbol;
+    load_lanes(at, m);
+    load_neighbours<Lanes>(at, row, before, up, left, back);
+    limit_neighbours(up);
+    limit_neighbours(left);
+    limit_neighbours(back);
+    load_lanes(places.weight + 8 * row, weight);
+    load_lanes(places.first_symbol + 8 * row, symbol);
+    const Ints t = (up + left + back) * weight;
+    Ints extra;
+    extra_of<Lanes>(t, extra);
+    Ints level;
+    level_of<Lanes>(t, level);
+    const Ints high = m >> extra;
+    const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits where there is no escape
+    symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
+    __builtin_memcpy(coded.symbol + 8 * row, &symbol, sizeof symbol);
+    __builtin_memcpy(coded.extra + 8 * row, &extra, sizeof extra);
+  }
+}
+
+#ifdef WEIR_SIMD_PATHS
+__attribute__((target("avx512f"))) void symbols_512(const RowPlaces& places, const std::int32_t* padded,
+                                                    std::int32_t limit, CodedRows& coded) {
+  find_symbols<TwoRows>(places, padded, limit, coded);
+}
+
+__attribute__((target_clones("avx2", "default"))) void symbols_256(const RowPlaces& places, const std::int32_t* padded,
+                                                                   std::int32_t limit, CodedRows& coded) {
+  find_symbols<OneRow>(places, padded, limit, coded);
+}
+
+void symbols_of(const RowPlaces& places, const std::int32_t* padded, std::int32_t limit, CodedRows& coded) {
+  static const bool wide = packed_detail::has_avx512();
+  (wide ? symbols_512 : symbols_256)(places, padded, limit, coded);
+}
+#else
+void symbols_of(const RowPlaces& places, const std::int32_t* padded, std::int32_t limit, CodedRows& coded) {
+  find_symbols<OneRow>(places, padded, limit, coded);
+}
+#endif
+
+// Signs of coded values in their order.
+class SignBits {
+ public:
+  SignBits(const SignedRows& values, unsigned places) {
+    std::uint64_t held = 0;
+    std::uint32_t bits = 0;
+    std::uint32_t* out = words_.data();
+    for (unsigned place = 1; place < places; ++place) {
+      const unsigned index = kBlockScan.index[place];
+      const std::uint32_t coded = values.magnitudes.at(index) != 0 ? 1 : 0;
+      const std::uint32_t negative = values.signs[index] >> 31U & coded;
+      held |= std::uint64_t{negative} << bits;
+      bits += coded;
+      if (bits < 32) continue;
+      *out++ = static_cast<std::uint32_t>(held);
+      held >>= 32U;
+      bits -= 32;
+      count_ += 32;
+    }
+    *out = static_cast<std::uint32_t>(held);
+    count_ += bits;
+  }
+  std::uint32_t count() const { return count_; }
+  /// At most 32 of them, from `first` on, the first one the lowest bit.
+  std::uint32_t bits(std::uint32_t first, std::uint32_t count) const {
+    const std::uint64_t two = words_[first / 32] | std::uint64_t{words_[first / 32 + 1]} << 32U;
+    return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
+  }
+
+ private:
+  std::array<std::uint32_t, 512 / 32 + 2> words_{};
+  std::uint32_t count_ = 0;
+};
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::span<std::byte> out) : out_(out) {}
+  /// The low `bits` of `value`. What `out` has no room for is only counted.
+  void write(std::uint32_t value, unsigned bits) {
+    std::uint64_t shifted = (value & ((std::uint64_t{1} << bits) - 1)) << (at_ % 8);
+    for (std::size_t byte = at_ / 8; shifted != 0 && byte < out_.size(); ++byte, shifted >>= 8U) {
+      out_[byte] |= static_cast<std::byte>(shifted & 0xFFU);
+    }
+    at_ += bits;
+  }
+  std::uint32_t bytes() const { return static_cast<std::uint32_t>((at_ + 7) / 8); }
+
+ private:
+  std::span<std::byte> out_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+// Words in the order in which they are made, which is that of their addresses.
+class ValueEncoder::Words {
+ public:
+  void put_symbol(std::uint32_t& x, const Symbol& symbol) {
+    const std::uint64_t limit = std::uint64_t{symbol.frequency} << (32U - kFrequencyBits);
+    if (x >= limit) emit(x);
+    const auto whole = static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits);
+    x = (whole << kFrequencyBits) + (x - whole * symbol.frequency) + symbol.low;
+  }
+  /// Up to 16 bits as they are. Decoding shifts right and then reads a word where the state is below the least.
+  void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
+    if (bits == 0) return;
+    if (x >> (32U - bits) != 0) emit(x);
+    x = x << bits | value;
+  }
+  /// What put after it reads before: the parts of an escape in turn, the length first.
+  void put_escape(std::uint32_t& x, std::uint32_t high) {
+    const std::uint32_t over = high - (kEscape - 1);
+    const auto length = static_cast<unsigned>(std::bit_width(over) - 1);
+    const std::uint32_t rest = over - (1U << length);
+    if (length > 16) put_raw(x, rest >> 16U, length - 16);
+    put_raw(x, rest & 0xFFFFU, std::min(length, 16U));
+    put_raw(x, length, 5);
+  }
+  std::span<const std::uint16_t> all() const { return {words_.data(), count_}; }
+
+ private:
+  void emit(std::uint32_t& x) {
+    words_[count_++] = static_cast<std::uint16_t>(x & 0xFFFFU);
+    x >>= 16U;
+  }
+
+  std::array<std::uint16_t, kMostWords> words_;
+  std::size_t count_ = 0;
+};
+
+unsigned end_of(const MagnitudeRows& magnitudes) {
+  for (unsigned place = 512; place > 1; --place) {
+    if (magnitudes.at(kBlockScan.index[place - 1]) != 0) return (place + kEndUnit - 1) / kEndUnit;
+  }
+  return 0;
+}
+
+ValueEncoder::ValueEncoder(const std::uint16_t* tables, Kind kind) : bands_(kind == Kind::transform) {
+  const unsigned first = bands_ ? 0 : kPackedBands * kPackedLevels;
+  for (unsigned context = 0; context < (bands_ ? kPackedBands : 1) * kPackedLevels; ++context) {
+    const std::uint16_t* table = tables + std::size_t{kPackedSymbols} * (first + context);
+    for (unsigned s = 0; s < kPackedSymbols; ++s) {
+      const std::uint32_t end = s + 1 < kPackedSymbols ? table[s + 1] : kTotal;
+      Symbol& symbol = symbols_[std::size_t{kPackedSymbols} * context + s];
+      symbol.low = table[s];
+      symbol.frequency = end - table[s];
+      if (symbol.frequency == 0) continue;
+      symbol.inverse = ((std::uint64_t{1} << kInverseBits) + symbol.frequency - 1) / symbol.frequency;
+    }
+  }
+}
+
+// From the last place to the first, and what is decoded last of a place first.
+template <unsigned States>
+void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& magnitudes, std::uint32_t (&states)[2],
+                              Words& words) const {
+  CodedRows coded;
+  const RowPlaces& places = row_places(bands_);
+  symbols_of(places, magnitudes.padded, static_cast<std::int32_t>(kEndUnit * front.end), coded);
+  std::uint32_t before = 0;
+  for (unsigned place = 1; place < 4; ++place) {
+    const unsigned index = kBlockScan.index[place];
+    const std::uint32_t m = magnitudes.at(index);
+    const std::uint32_t t = kBlockScan.weight[place] * before;
+    const unsigned level = t < kLevelSums ? kBlockScan.level[t] : kPackedLevels - 1;
+    const unsigned extra = extra_bits(t);
+    coded.extra[index] = static_cast<std::int32_t>(extra);
+    coded.symbol[index] =
+        places.first_symbol[index] + static_cast<std::int32_t>(kPackedSymbols * level + std::min(m >> extra, kEscape));
+    before += std::min(m, kMostOfNeighbour);
+  }
+  std::uint32_t x[2] = {states[0], states[1]};
+  for (unsigned place = kEndUnit * front.end - 1; place > 0; --place) {
+    const unsigned index = kBlockScan.index[place];
+    std::uint32_t& state = x[States == 2 ? place & 1U : 0];
+    const std::int32_t symbol = coded.symbol[index];
+    const auto extra = static_cast<unsigned>(coded.extra[index]);
+    const bool escapes = (static_cast<unsigned>(symbol) & (kPackedSymbols - 1)) == kEscape;
+    if (extra != 0 || escapes) {
+      const std::uint32_t m = magnitudes.at(index);
+      words.put_raw(state, m & ((1U << extra) - 1U), extra);
+      if (escapes) words.put_escape(state, m >> extra);
+    }
+    words.put_symbol(state, symbols_[static_cast<std::size_t>(symbol)]);
+  }
+  states[0] = x[0];
+  states[1] = x[1];
+}
+
+bool ValueEncoder::encode(const StreamFront& front, const SignedRows& values, std::span<std::byte> out,
+                          StreamSize* size) const {
+  std::fill(out.begin(), out.end(), std::byte{0});
+  BitWriter bits(out);
+  bits.write(front.end_bits == 5 ? front.end - 1 : front.end, front.end_bits);
+  if (front.end == 0) {
+    bits.write(front.number, front.number_bits);
+    if (size != nullptr) *size = {bits.bytes(), 0};
+    return bits.bytes() <= out.size();
+  }
+  const unsigned states = states_of(front.end);
+  const unsigned capacity = 16 * states;
+  const SignBits signs(values, kEndUnit * front.end);
+  const std::uint32_t late = std::min(signs.count(), capacity);
+  const unsigned moved = std::min(capacity - late, front.number_bits);
+  std::uint32_t payload = signs.bits(signs.count() - late, late);
+  if (moved > 0) {
+    const std::uint32_t low = moved == 32 ? front.number : front.number & ((1U << moved) - 1U);
+    payload |= low << late;
+  }
+
+  std::uint32_t state[2] = {kLeastState | (payload & 0xFFFFU), kLeastState | payload >> 16U};
+  Words words;
+  if (states == 2) {
+    put_values<2>(front, values.magnitudes, state, words);
+  } else {
+    put_values<1>(front, values.magnitudes, state, words);
+  }
+
+  std::array<unsigned, 2> state_bytes{};
+  for (unsigned s = 0; s < states; ++s) {
+    state_bytes[s] = state[s] >> 24U == 0 ? 3 : 4;
+    bits.write(state_bytes[s] == 3 ? 1 : 0, 1);
+  }
+  bits.write(moved == 32 ? 0 : front.number >> moved, front.number_bits - moved);
+  for (std::uint32_t i = 0; i + late < signs.count(); i += 32) {
+    const std::uint32_t some = std::min(32U, signs.count() - late - i);
+    bits.write(signs.bits(i, some), some);
+  }
+  const std::size_t back = words.all().size_bytes() + state_bytes[0] + state_bytes[1];
+  if (size != nullptr) *size = {bits.bytes(), static_cast<std::uint32_t>(back)};
+  if (bits.bytes() + back > out.size()) return false;
+  std::size_t at = out.size() - back;
+  for (const std::uint16_t word : words.all()) {
+    out[at++] = static_cast<std::byte>(word & 0xFFU);
+    out[at++] = static_cast<std::byte>(word >> 8U);
+  }
+  for (unsigned s = states; s > 0; --s) {
+    for (unsigned b = 0; b < state_bytes[s - 1]; ++b)
+      out[at++] = static_cast<std::byte>(state[s - 1] >> (8 * b) & 0xFFU);
+  }
+  return true;
+}
+
+}  // namespace weir

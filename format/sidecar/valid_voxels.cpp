@@ -1,0 +1,76 @@
+#include "format/sidecar/valid_voxels.h"
+
+#include "format/base/share_text.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+std::uint64_t all_voxels(const Sidecar& s) {
+  return static_cast<std::uint64_t>(s.source.extent.x) * static_cast<std::uint64_t>(s.source.extent.y) *
+         static_cast<std::uint64_t>(s.source.extent.z);
+}
+
+// What became of missing voxels, in files of weir 0.1 too.
+std::string policy_of(const Sidecar& s) {
+  if (!s.missing.policy.empty()) return s.missing.policy;
+  return s.nonfinite.policy == "keep" ? "nan" : "background";
+}
+
+}  // namespace
+
+std::uint64_t valid_voxels(const Sidecar& s) {
+  const std::uint64_t without = s.nonfinite.count + (policy_of(s) == "keep" ? 0 : s.missing.count);
+  return all_voxels(s) - without;
+}
+
+bool lossless_everywhere(const Sidecar& s) {
+  const bool other_values =
+      (s.nonfinite.count > 0 && s.nonfinite.policy != "keep") || (s.missing.count > 0 && policy_of(s) != "keep");
+  return s.error.lossless && !other_values;
+}
+
+std::string lossless_text(const Sidecar& s) {
+  return lossless_everywhere(s) ? "lossless" : "lossless over valid voxels";
+}
+
+namespace {
+
+// "1234 of 8000 voxels (15.4 %) ", with the first of the two verbs where it is one voxel.
+std::string counted(const Sidecar& s, std::uint64_t count, const char* of_one, const char* of_several) {
+  return cat(count, " of ", all_voxels(s), " voxels (", share_text(count, all_voxels(s)), ") ",
+             count == 1 ? of_one : of_several);
+}
+
+// What became of voxels that the background takes the place of, after what they are. Blocks lose what they lose of the
+// other voxels, and a block kept as its mean has theirs.
+std::string under_background(const Sidecar& s, bool one) {
+  if (s.error.lossless) return one ? " and reads as the background" : " and read as the background";
+  return cat(one ? "; it reads" : "; they read", " as the background, ", short_number(s.background.value),
+             ", only where a block is exact, and ", one ? "its" : "their", " error is not counted");
+}
+
+}  // namespace
+
+std::string missing_text(const Sidecar& s) {
+  const std::uint64_t count = s.missing.count;
+  if (count == 0) return "";
+  const std::string policy = policy_of(s);
+  const bool one = count == 1;
+  const std::string without = counted(s, count, "holds no data", "hold no data");
+  if (policy == "keep") return without + (one ? " and is kept as data" : " and are kept as data");
+  if (policy == "nan") return without + (one ? " and reads NaN" : " and read NaN");
+  return without + under_background(s, one);
+}
+
+std::string nonfinite_text(const Sidecar& s) {
+  const std::uint64_t count = s.nonfinite.count;
+  if (count == 0 || s.nonfinite.policy == "keep") return "";
+  return counted(s, count, "is NaN or infinite", "are NaN or infinite") + under_background(s, count == 1);
+}
+
+std::string lost_zeros_text(std::uint64_t lost, std::uint64_t zeros) {
+  return lost == 0 ? "" : cat(lost, " of ", zeros, " zeros (", share_text(lost, zeros), ") lost");
+}
+
+}  // namespace weir

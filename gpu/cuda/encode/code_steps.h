@@ -1,0 +1,205 @@
+// How a warp quantises a block at its step, finds what each value is coded as, and makes the values that the stream
+// will decode to: the first step of encoding. For host and device.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "format/base/host_device.h"
+#include "format/packed/block_decode.h"
+#include "gpu/cuda/encode/survey_steps.h"
+#include "gpu/cuda/packed/stream_queue.h"
+
+namespace weir {
+namespace encode_detail {
+
+using decode_detail::Quad;
+
+// Parts of a code: context | bits beside the symbol << kExtraShift | magnitude << kMagnitudeShift.
+inline constexpr unsigned kExtraShift = 7;
+inline constexpr unsigned kMagnitudeShift = 12;
+// Larger magnitudes, of steps that no ladder has, are left to the host.
+inline constexpr std::uint32_t kMostCoded = (1U << (32 - kMagnitudeShift)) - 1;
+static_assert(kPackedBands * kPackedLevels <= 1U << kExtraShift);
+static_assert(kMostCoded > kMostMagnitude && kMostCoded <= kMostOfNeighbour);
+
+// What a warp has of shared memory.
+struct alignas(16) CodeStage {
+  float values[kStageWords];
+  std::uint32_t magnitudes[520];  // by index; 512 stands for no neighbour
+  std::uint32_t signs[17];
+};
+
+// Places of a lane: one after the other.
+inline constexpr unsigned kOwnPlaces = 512 / kLanes;
+
+WEIR_HOST_DEVICE inline bool is_negative(float v) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, &v, sizeof bits);
+  return bits >> 31U != 0;
+}
+
+// Fills the magnitudes. Returns the last place that is not zero, or more than any place where one is too large.
+template <class Warp>
+WEIR_HOST_DEVICE std::uint32_t fill_magnitudes(const Warp& warp, const CostTables& tables, float step,
+                                               CodeStage& stage) {
+  typename Warp::template Own<std::uint32_t> last;
+  const float scale = 1.0F / step;
+  warp.each([&](unsigned lane) {
+    std::uint32_t most = 0;
+    WEIR_UNROLL
+    for (unsigned k = 0; k < 16; ++k) {
+      const unsigned index = lane + kLanes * k;
+      const std::uint32_t m = magnitude_at(stage.values[stage_of(index)], scale);
+      stage.magnitudes[index] = m;
+      const std::uint32_t place = m == 0 ? 0U : m > kMostCoded ? 512U : tables.place[index] & 511U;
+      most = place > most ? place : most;
+    }
+    last(lane) = most;
+    if (lane < 8) stage.magnitudes[512 + lane] = 0;
+    if (lane < 17) stage.signs[lane] = 0;
+  });
+  return warp.of_all(last, [](std::uint32_t a, std::uint32_t b) { return b > a ? b : a; });
+}
+
+// The sum of the magnitudes beside those at a place (block_scan.h); that of index 0 is 0.
+WEIR_HOST_DEVICE inline std::uint32_t sum_beside(const CodeStage& stage, unsigned place, unsigned index) {
+  const std::uint32_t* m = stage.magnitudes;
+  if (place < 4) return (place > 1 ? m[1] : 0) + (place > 2 ? m[8] : 0);
+  const unsigned up = index >= 64 ? index - 64 : 512;
+  const unsigned left = (index & 56U) != 0 ? index - 8 : 512;
+  const unsigned back = (index & 7U) != 0 ? index - 1 : 512;
+  return m[up] + m[left] + m[back];
+}
+
+WEIR_HOST_DEVICE inline std::uint32_t code_of(const CostTables& tables, const CodeStage& stage, unsigned place,
+                                              unsigned index) {
+  const std::uint32_t known = tables.place[index];
+  const std::uint32_t t = sum_beside(stage, place, index) * (known >> 9U & 7U);
+  const std::uint32_t context = (known >> 12U) * kPackedLevels + tables.level_of(t);
+  return context | extra_bits(t) << kExtraShift | stage.magnitudes[index] << kMagnitudeShift;
+}
+
+// Writes codes of places below `limit`, and their signs one after the other; returns how many there are.
+template <class Warp>
+WEIR_HOST_DEVICE std::uint32_t write_codes(const Warp& warp, const CostTables& tables, unsigned limit, CodeStage& stage,
+                                           std::uint32_t* codes) {
+  typename Warp::template Own<std::uint32_t> signs, count, before;
+  warp.each([&](unsigned lane) {
+    if (kOwnPlaces * lane >= limit) return;
+    std::uint32_t held = 0;
+    std::uint32_t bits = 0;
+    WEIR_UNROLL
+    for (unsigned q = 0; q < kOwnPlaces / 4; ++q) {
+      Quad quad;
+      WEIR_UNROLL
+      for (unsigned k = 0; k < 4; ++k) {
+        const unsigned place = kOwnPlaces * lane + 4 * q + k;
+        const unsigned index = tables.index[place];
+        const std::uint32_t code = place == 0 ? 0U : code_of(tables, stage, place, index);
+        quad.of[k] = code;
+        const std::uint32_t coded = code >> kMagnitudeShift != 0 ? 1U : 0U;
+        if (coded != 0 && is_negative(stage.values[stage_of(index)])) held |= 1U << bits;
+        bits += coded;
+      }
+      reinterpret_cast<Quad*>(codes)[kOwnPlaces / 4 * lane + q] = quad;
+    }
+    signs(lane) = held;
+    count(lane) = bits;
+    before(lane) = bits;
+  });
+  const std::uint32_t all = warp.add_before(before);
+  warp.each([&](unsigned lane) {
+    if (count(lane) == 0) return;
+    const std::uint32_t first = before(lane);
+    warp.set_bits(&stage.signs[first / 32], signs(lane) << (first % 32));
+    if (first % 32 + count(lane) > 32) warp.set_bits(&stage.signs[first / 32 + 1], signs(lane) >> (32 - first % 32));
+  });
+  return all;
+}
+
+// Coefficients become what is decoded of the stream, and these values.
+template <class Warp>
+WEIR_HOST_DEVICE void decode_stage(const Warp& warp, const BlockConstants& constants, float step, float mean,
+                                   CodeStage& stage, float* out) {
+  using namespace packed_detail;
+  warp.each([&](unsigned lane) {
+    WEIR_UNROLL
+    for (unsigned k = 0; k < 16; ++k) {
+      const unsigned index = lane + kLanes * k;
+      float& v = stage.values[stage_of(index)];
+      const float c = coefficient(stage.magnitudes[index], constants, step);
+      v = is_negative(v) ? -c : c;
+    }
+  });
+  const auto line = [](float(&values)[8]) { inverse_transform_8(values); };
+  warp.each([&](unsigned lane) { for_lane_lines<2>(stage.values, lane, line); });
+  warp.each([&](unsigned lane) { for_lane_lines<1>(stage.values, lane, line); });
+  warp.each([&](unsigned lane) { for_lane_lines<0>(stage.values, lane, line); });
+  warp.each([&](unsigned lane) {
+    WEIR_UNROLL
+    for (unsigned k = 0; k < 16; ++k) {
+      const unsigned index = lane + kLanes * k;
+      out[index] = clamp_to(constants, mean + stage.values[stage_of(index)]);
+    }
+  });
+}
+
+// The code of a mean, as TransformBlock::encode() has it.
+WEIR_HOST_DEVICE inline std::uint32_t code_of_mean(const MeanRange& range, std::int32_t step, float mean) {
+  const float width = range.high - range.low;
+  const float quantum = mean_quantum(step);
+  const double last = static_cast<double>(static_cast<std::uint32_t>(width / quantum) + 1);
+  const double code = rint((static_cast<double>(mean) - static_cast<double>(range.low)) / static_cast<double>(quantum));
+  return static_cast<std::uint32_t>(code < 0 ? 0.0 : code > last ? last : code);
+}
+
+}  // namespace encode_detail
+
+/// The state, codes and decoded values of an ask of the call.
+template <class Warp>
+WEIR_HOST_DEVICE void code_block(const Warp& warp, const EncodeCall& call, const CostTables& tables, std::uint32_t i,
+                                 encode_detail::CodeStage& stage) {
+  using namespace encode_detail;
+  const StreamAsk ask = call.asks[i];
+  StreamState& state = call.states[i];
+  float* decoded = call.decoded + std::size_t{512} * i;
+  gather_block(warp, call.box, ask.block, stage.values);
+  const ValueRange8 range = range_of_block(warp, stage.values);
+  const unsigned number_bits = mean_bits(ask.means, ask.step);
+  std::uint32_t last = 512;
+  const float step = step_size(ask.step);
+  if (range.transformed && number_bits != kNoMeanBits) {
+    transform_stage(warp, range.mean, stage.values);
+    last = fill_magnitudes(warp, tables, step, stage);
+  }
+  const bool left = last > 511;
+  const unsigned end = left || last == 0 ? 0 : last / kEndUnit + 1;
+  std::uint32_t number = 0;
+  std::uint32_t nonzero = 0;
+  if (!left) {
+    number = code_of_mean(ask.means, ask.step, range.mean);
+    const float mean = packed_detail::decode_mean(ask.means, ask.step, number);
+    if (end > 0) {
+      nonzero = write_codes(warp, tables, kEndUnit * end, stage, call.coded + std::size_t{512} * i);
+      decode_stage(warp, call.constants, step, mean, stage, decoded);
+    } else {
+      const float value = packed_detail::clamp_to(call.constants, mean);
+      warp.each([&](unsigned lane) {
+        for (unsigned k = 0; k < 16; ++k) decoded[lane + kLanes * k] = value;
+      });
+    }
+  }
+  warp.each([&](unsigned lane) {
+    if (lane < 16) state.signs[lane] = stage.signs[lane];
+    if (lane > 0) return;
+    state.number = number;
+    state.nonzero = static_cast<std::uint16_t>(nonzero);
+    state.end = static_cast<std::uint8_t>(end);
+    state.number_bits = static_cast<std::uint8_t>(number_bits);
+    state.left = left ? 1 : 0;
+  });
+}
+
+}  // namespace weir

@@ -1,0 +1,17 @@
+// Starts the kernels that survey and encode packed blocks.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "gpu/cuda/encode/encode_call.h"
+
+namespace weir {
+
+/// survey_block() of each block of the box, in a stream of the current device, where all of the call's memory lies.
+/// Throws Error(io).
+void launch_survey(const SurveyCall& call, cudaStream_t stream);
+
+/// code_block(), put_words() and put_bytes() of each ask.
+void launch_encode(const EncodeCall& call, cudaStream_t stream);
+
+}  // namespace weir

@@ -1,0 +1,89 @@
+// Memory of a device and page-locked memory that calls use one after the other, and grow where one needs more.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+#include "gpu/cuda/load/pinned_memory.h"
+#include "gpu/cuda/runtime/device_array.h"
+
+namespace weir {
+
+/// Of T on the current device.
+template <class T>
+class GrowingArray {
+ public:
+  /// Room for so many, whose values are lost where there was less. Throws Error(io).
+  T* at_least(std::size_t size) {
+    if (size > array_.size()) {
+      array_ = DeviceArray<T>();
+      array_ = DeviceArray<T>(size + size / 4);
+    }
+    return array_.data();
+  }
+
+ private:
+  DeviceArray<T> array_;
+};
+
+class GrowingPinned {
+ public:
+  /// As GrowingArray::at_least.
+  std::byte* at_least(std::size_t bytes) {
+    if (bytes > bytes_) {
+      memory_.reset();
+      bytes_ = 0;
+      std::string refusal;
+      memory_ = PinnedMemory::make(bytes + bytes / 4, refusal);
+      if (!memory_) throw Error(ErrorKind::io, refusal);
+      bytes_ = bytes + bytes / 4;
+    }
+    return memory_->data();
+  }
+
+ private:
+  std::optional<PinnedMemory> memory_;
+  std::size_t bytes_ = 0;
+};
+
+/// Memories that are lent, `most` of them at a time, and kept for the next. Thread-safe.
+template <class Memory>
+class MemoryPool {
+ public:
+  explicit MemoryPool(std::size_t most = std::numeric_limits<std::size_t>::max()) : most_(most) {}
+
+  /// One that was given back, else a new one; null where as many are lent as may be.
+  std::unique_ptr<Memory> take() {
+    const std::lock_guard lock(mutex_);
+    if (lent_ == most_) return nullptr;
+    std::unique_ptr<Memory> memory;
+    if (free_.empty()) {
+      memory = std::make_unique<Memory>();
+    } else {
+      memory = std::move(free_.back());
+      free_.pop_back();
+    }
+    ++lent_;
+    return memory;
+  }
+  void give_back(std::unique_ptr<Memory> memory) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(memory));
+    --lent_;
+  }
+
+ private:
+  const std::size_t most_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Memory>> free_;
+  std::size_t lent_ = 0;
+};
+
+}  // namespace weir

@@ -1,0 +1,208 @@
+// How streams are written of the codes of their values: a thread a block runs the entropy coder, then a warp a block
+// puts its bytes in place. ValueEncoder::encode() of value_encoder.h, word by word. For host and device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "format/base/host_device.h"
+#include "gpu/cuda/encode/code_steps.h"
+
+namespace weir {
+namespace encode_detail {
+
+// `count` <= 32 bits of words from bit `first` on, which may lie beyond the last of the 16 words: zeros then.
+WEIR_HOST_DEVICE inline std::uint32_t sign_bits(const std::uint32_t* words, std::uint32_t first, std::uint32_t count) {
+  const std::uint32_t at = first / 32;
+  const std::uint32_t low = at < 16 ? words[at] : 0U;
+  const std::uint32_t high = at + 1 < 16 ? words[at + 1] : 0U;
+  const std::uint64_t two = low | std::uint64_t{high} << 32U;
+  return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
+}
+
+// What lies where in a stream that has values.
+struct StreamParts {
+  unsigned states;
+  std::uint32_t late;   // signs that the states begin with, and
+  std::uint32_t moved;  // low bits of the number
+  std::uint32_t early;  // signs in front
+};
+
+WEIR_HOST_DEVICE inline StreamParts parts_of(const StreamState& state) {
+  StreamParts parts;
+  parts.states = states_of(state.end);
+  const std::uint32_t capacity = 16 * parts.states;
+  parts.late = state.nonzero < capacity ? state.nonzero : capacity;
+  const std::uint32_t rest = capacity - parts.late;
+  parts.moved = rest < state.number_bits ? rest : state.number_bits;
+  parts.early = state.nonzero - parts.late;
+  return parts;
+}
+
+// Words in the order in which they are made, as many as there is room for.
+class WordWriter {
+ public:
+  WEIR_HOST_DEVICE WordWriter(std::uint16_t* words, std::uint32_t most) : words_(words), most_(most) {}
+
+  WEIR_HOST_DEVICE void put_symbol(std::uint32_t& x, const SymbolCode& symbol) {
+    if (x >= std::uint64_t{symbol.frequency} << (32U - kFrequencyBits)) emit(x);
+    const auto whole = static_cast<std::uint32_t>(x * symbol.inverse >> kSymbolInverseBits);
+    x = (whole << kFrequencyBits) + (x - whole * symbol.frequency) + symbol.low;
+  }
+  WEIR_HOST_DEVICE void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
+    if (bits == 0) return;
+    if (x >> (32U - bits) != 0) emit(x);
+    x = x << bits | value;
+  }
+  WEIR_HOST_DEVICE void put_escape(std::uint32_t& x, std::uint32_t high) {
+    const std::uint32_t over = high - (kEscape - 1);
+    const unsigned length = 31U - static_cast<unsigned>(__builtin_clz(over));
+    const std::uint32_t rest = over - (1U << length);
+    if (length > 16) put_raw(x, rest >> 16U, length - 16);
+    put_raw(x, rest & 0xFFFFU, length < 16 ? length : 16U);
+    put_raw(x, length, 5);
+  }
+  /// More than there is room for where it is not fits().
+  WEIR_HOST_DEVICE std::uint32_t count() const { return count_; }
+  WEIR_HOST_DEVICE bool fits() const { return count_ <= most_; }
+
+ private:
+  WEIR_HOST_DEVICE void emit(std::uint32_t& x) {
+    if (count_ < most_) words_[count_] = static_cast<std::uint16_t>(x);
+    ++count_;
+    x >>= 16U;
+  }
+
+  std::uint16_t* words_;
+  std::uint32_t most_;
+  std::uint32_t count_ = 0;
+};
+
+WEIR_HOST_DEVICE inline void put_code(const CodeTables& codes, std::uint32_t code, std::uint32_t& x,
+                                      WordWriter& words) {
+  const std::uint32_t context = code & ((1U << kExtraShift) - 1U);
+  const unsigned extra = code >> kExtraShift & 31U;
+  const std::uint32_t m = code >> kMagnitudeShift;
+  const std::uint32_t high = m >> extra;
+  const bool escapes = high >= kEscape;
+  if (extra != 0 || escapes) {
+    words.put_raw(x, m & ((1U << extra) - 1U), extra);
+    if (escapes) words.put_escape(x, high);
+  }
+  words.put_symbol(x, codes.of[kPackedSymbols * context + (escapes ? kEscape : high)]);
+}
+
+// From the last place to the first.
+template <bool kTwo>
+WEIR_HOST_DEVICE void put_values(const CodeTables& codes, const Quad* coded, unsigned end, std::uint32_t& first,
+                                 std::uint32_t& second, WordWriter& words) {
+  Quad next = coded[kEndUnit / 4 * end - 1];
+  WEIR_NO_UNROLL
+  for (unsigned q = kEndUnit / 4 * end; q > 0; --q) {
+    const Quad quad = next;
+    if (q > 1) next = coded[q - 2];
+    WEIR_UNROLL
+    for (unsigned k = 4; k > 0; --k) {
+      if (q == 1 && k == 1) break;  // the mean's place
+      put_code(codes, quad.of[k - 1], kTwo && k % 2 == 0 ? second : first, words);
+    }
+  }
+}
+
+// Byte `at` of a stream's bits, which begin behind its first byte: a front of `bits`, then the early signs.
+WEIR_HOST_DEVICE inline std::uint32_t front_byte(std::uint64_t head, std::uint32_t bits, const StreamState& state,
+                                                 std::uint32_t early, std::uint32_t at) {
+  const std::uint32_t first = 8 * at;
+  std::uint32_t byte = first < 64 ? static_cast<std::uint32_t>(head >> first) & 0xFFU : 0U;
+  if (first + 8 <= bits) return byte;
+  const std::uint32_t skipped = first < bits ? bits - first : 0U;  // bits of the byte that are the head's
+  const std::uint32_t sign = first + skipped - bits;
+  const std::uint32_t left = early > sign ? early - sign : 0U;
+  const std::uint32_t room = 8 - skipped;
+  byte |= sign_bits(state.signs, sign, left < room ? left : room) << skipped;
+  return byte & 0xFFU;
+}
+
+WEIR_HOST_DEVICE inline unsigned bytes_of_state(std::uint32_t x) { return x >> 24U == 0 ? 3 : 4; }
+
+}  // namespace encode_detail
+
+/// Words and states of an ask that code_block() has not left.
+WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const CodeTables& codes, std::uint32_t i) {
+  using namespace encode_detail;
+  StreamState& state = call.states[i];
+  if (state.left != 0 || state.end == 0) return;
+  const StreamParts parts = parts_of(state);
+  std::uint32_t payload = sign_bits(state.signs, parts.early, parts.late);
+  if (parts.moved > 0) payload |= (state.number & ((1U << parts.moved) - 1U)) << parts.late;
+  std::uint32_t first = kLeastState | (payload & 0xFFFFU);
+  std::uint32_t second = kLeastState | payload >> 16U;
+  WordWriter words(call.words + call.words_at(i), call.asks[i].bytes / 2);
+  const auto* coded = reinterpret_cast<const Quad*>(call.coded + std::size_t{512} * i);
+  if (parts.states == 2) {
+    put_values<true>(codes, coded, state.end, first, second, words);
+  } else {
+    put_values<false>(codes, coded, state.end, first, second, words);
+  }
+  state.state[0] = first;
+  state.state[1] = second;
+  if (!words.fits()) state.left = 1;
+  state.words = static_cast<std::uint16_t>(words.count());
+}
+
+/// Its bytes; where they are more than was asked for, it is left.
+template <class Warp>
+WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::uint32_t i) {
+  using namespace encode_detail;
+  const StreamState& state = call.states[i];
+  const StreamAsk ask = call.asks[i];
+  std::byte* out = call.out + ask.offset;
+  const auto kind = state.end == 0 ? StreamKind::mean : StreamKind::transform;
+  const auto head_byte = static_cast<std::byte>(static_cast<unsigned>(kind) |
+                                                static_cast<unsigned>(ask.step - call.constants.coarsest) << 2U);
+  std::uint64_t head = state.number;
+  std::uint32_t bits = state.number_bits;
+  std::uint32_t early = 0;
+  std::uint32_t back = 0;
+  unsigned state_bytes[2] = {0, 0};
+  if (state.end > 0) {
+    const StreamParts parts = parts_of(state);
+    head = state.end - 1U;
+    bits = 5;
+    for (unsigned s = 0; s < parts.states; ++s) {
+      state_bytes[s] = bytes_of_state(state.state[s]);
+      head |= std::uint64_t{state_bytes[s] == 3 ? 1U : 0U} << bits++;
+    }
+    head |= std::uint64_t{state.number >> parts.moved} << bits;
+    bits += state.number_bits - parts.moved;
+    early = parts.early;
+    back = 2U * state.words + state_bytes[0] + state_bytes[1];
+  }
+  const std::uint32_t front = 1 + (bits + early + 7) / 8;
+  // A mean's stream may be shorter than its bits, as the planned bytes of all.
+  const bool fits = state.left == 0 && (state.end == 0 || front + back <= ask.bytes);
+  const std::uint16_t* words = call.words + call.words_at(i);
+  warp.each([&](unsigned lane) {
+    if (lane == 0) call.made[i] = fits ? 1 : 0;
+    if (!fits) return;
+    for (std::uint32_t at = lane; at < ask.bytes; at += kLanes) {
+      std::uint32_t byte = 0;
+      if (at > 0 && at < front) {
+        byte = front_byte(head, bits, state, early, at - 1);
+      } else if (at + back >= ask.bytes) {
+        const std::uint32_t behind = at + back - ask.bytes;
+        const std::uint32_t of_states = behind - 2U * state.words;
+        if (behind < 2U * state.words) {
+          byte = words[behind / 2] >> (8 * (behind % 2)) & 0xFFU;
+        } else if (of_states < state_bytes[1]) {
+          byte = state.state[1] >> (8 * of_states) & 0xFFU;
+        } else {
+          byte = state.state[0] >> (8 * (of_states - state_bytes[1])) & 0xFFU;
+        }
+      }
+      out[at] = at == 0 ? head_byte : static_cast<std::byte>(byte);
+    }
+  });
+}
+
+}  // namespace weir

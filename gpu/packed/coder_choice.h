@@ -1,0 +1,55 @@
+// Who surveys and encodes packed blocks: --backend of a conversion. Needs no CUDA toolkit; a program with
+// weir_cuda_encode has the device.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "format/base/error.h"
+#include "format/base/message.h"
+#include "format/packed/block_coder.h"
+#ifdef WEIR_HAVE_CUDA
+#include "gpu/cuda/encode/device_coder.h"
+#include "gpu/cuda/runtime/check.h"
+#endif
+
+namespace weir {
+
+/// A device's driver takes some hundred MiB of the process: nobody who gives less memory gets one unasked.
+inline constexpr std::uint64_t kLeastMemoryOfDevice = std::uint64_t{1} << 30U;
+
+/// Of a conversion whose blocks are `packed`, or may be no such ones, under a ceiling of `memory` bytes; null: the CPU.
+/// What fails later, and with CoderChoice::automatic before, is said to `notice`, once: the CPU goes on. Throws
+/// Error(usage) for CoderChoice::cuda where blocks are not packed, or this build or this machine has no device, and
+/// Error(io) where that has no room.
+inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
+                                                const Notice& notice) {
+  if (choice == CoderChoice::cpu) return nullptr;
+  if (choice == CoderChoice::automatic && (!packed || memory < kLeastMemoryOfDevice)) return nullptr;
+  if (!packed) {
+    throw Error(ErrorKind::usage, compose(option("backend", "cuda"), " converts to ", option("encoding", "packed"),
+                                          " alone; give that, or use ", option("backend", "auto")));
+  }
+#ifdef WEIR_HAVE_CUDA
+  const auto failed = [notice](const Error& error) {
+    if (notice)
+      notice(cat("the CUDA device has failed (", error.what(), "); the CPU does its work, to the same bytes"));
+  };
+  if (choice == CoderChoice::cuda) return make_device_coder(0, failed);
+  if (device_count() == 0) return nullptr;
+  try {
+    return make_device_coder(0, failed);
+  } catch (const Error& error) {
+    failed(error);
+    return nullptr;
+  }
+#else
+  if (choice == CoderChoice::automatic) return nullptr;
+  (void)notice;
+  throw Error(ErrorKind::usage, compose(option("backend", "cuda"), ": this build has no CUDA encoder; use ",
+                                        option("backend", "cpu"), " or auto"));
+#endif
+}
+
+}  // namespace weir

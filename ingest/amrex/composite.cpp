@@ -1,0 +1,151 @@
+#include "ingest/amrex/composite.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/amrex/linear_cells.h"
+#include "ingest/plan/for_pieces.h"
+#include "ingest/plan/staging.h"
+#include "ingest/source/extent.h"
+
+namespace weir {
+namespace {
+
+/// Boxes below so many values a thread are not worth another thread.
+constexpr std::int64_t kValuesPerThread = 64 * 1024;
+/// Linear values are made tile by tile, so that what is held of coarser levels has a bound.
+constexpr std::int64_t kTile = 64;
+
+/// The parts of each FAB, which lie side by side in `parts`.
+std::vector<std::span<const CoverPart>> by_fab(std::span<const CoverPart> parts) {
+  std::vector<std::span<const CoverPart>> groups;
+  while (!parts.empty()) {
+    const CoverPart& first = parts.front();
+    const auto end = std::find_if(parts.begin(), parts.end(), [&](const CoverPart& part) {
+      return part.level != first.level || part.fab != first.fab;
+    });
+    const auto count = static_cast<std::size_t>(end - parts.begin());
+    groups.push_back(parts.first(count));
+    parts = parts.subspan(count);
+  }
+  return groups;
+}
+
+std::size_t threads_for(const Box& box) {
+  return static_cast<std::size_t>(
+      std::clamp<std::int64_t>(box.voxels() / kValuesPerThread, 1, static_cast<std::int64_t>(kIoThreads)));
+}
+
+Error uncovered(const Plotfile& plotfile, const Box& box) {
+  return Error(ErrorKind::internal, cat(plotfile.path, ": no level has the cells ", box_text(box)));
+}
+
+Box bounds_of_boxes(const std::vector<Box>& boxes) {
+  Box bounds = boxes.front();
+  for (const Box& box : boxes) bounds = {min(bounds.lo, box.lo), max(bounds.hi, box.hi)};
+  return bounds;
+}
+
+/// The cells between planes of the grid of kTile.
+std::vector<Box> tiles_of(const Box& box) {
+  const Index3 first = floor_div(box.lo, kTile);
+  const Index3 end = floor_div(box.hi - Index3{1, 1, 1}, kTile) + Index3{1, 1, 1};
+  std::vector<Box> tiles;
+  for_each_index({first, end}, [&](const Index3& i) {
+    tiles.push_back(intersect({i * kTile, (i + Index3{1, 1, 1}) * kTile}, box));
+  });
+  return tiles;
+}
+
+}  // namespace
+
+Composite::Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping,
+                     Upsampling upsampling, DirectIo mode)
+    : plotfile_(plotfile),
+      wanted_(plotfile.levels.size() - 1),
+      upsampling_(upsampling),
+      reader_(plotfile, component, mapping, mode) {}
+
+ConversionLoss Composite::read(const Box& box, std::span<float> values) {
+  return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);
+}
+
+ConversionLoss Composite::read_constant(const Box& box, std::span<float> values) {
+  const LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
+  if (!cover.rest.empty()) throw uncovered(plotfile_, cover.rest.front());
+  const auto groups = by_fab(cover.parts);
+  const auto slabs = static_cast<std::int64_t>(threads_for(box));
+  ConversionLoss total;
+  std::mutex mutex;
+  if (std::ssize(groups) < slabs && box.extent().z >= slabs) {  // few large boxes: each of them by several threads
+    const std::int64_t plane = box.extent().x * box.extent().y;
+    for_pieces(slabs, static_cast<std::size_t>(slabs), [&](std::int64_t i) {
+      Box slab = box;
+      slab.lo.z = box.lo.z + box.extent().z * i / slabs;
+      slab.hi.z = box.lo.z + box.extent().z * (i + 1) / slabs;
+      const auto part = values.subspan(static_cast<std::size_t>((slab.lo.z - box.lo.z) * plane),
+                                       static_cast<std::size_t>(slab.voxels()));
+      const LevelCover of_slab = cover_box(plotfile_.levels, wanted_, 0, slab);
+      for (const auto& parts : by_fab(of_slab.parts)) {
+        const ConversionLoss loss = reader_.read(wanted_, parts, slab, part);
+        const std::lock_guard lock(mutex);
+        total.add(loss);
+      }
+    });
+    return total;
+  }
+  for_pieces(std::ssize(groups), threads_for(box), [&](std::int64_t i) {
+    const ConversionLoss loss = reader_.read(wanted_, groups[static_cast<std::size_t>(i)], box, values);
+    const std::lock_guard lock(mutex);
+    total.add(loss);
+  });
+  return total;
+}
+
+ConversionLoss Composite::read_linear(const Box& box, std::span<float> values) {
+  const std::vector<Box> tiles = tiles_of(box);
+  ConversionLoss total;
+  std::mutex mutex;
+  for_pieces(std::ssize(tiles), threads_for(box), [&](std::int64_t i) {
+    const Box& tile = tiles[static_cast<std::size_t>(i)];
+    const Index3 e = tile.extent();
+    std::vector<float> of_tile(static_cast<std::size_t>(tile.voxels()));
+    const ConversionLoss loss = read_tile(wanted_, tile, of_tile);
+    for (std::int64_t row = 0; row < e.y * e.z; ++row) {
+      const Index3 first{0, row % e.y, row / e.y};
+      std::copy_n(of_tile.begin() + row * e.x, e.x,
+                  values.begin() + linear_index(tile.lo - box.lo + first, box.extent()));
+    }
+    const std::lock_guard lock(mutex);
+    total.add(loss);
+  });
+  return total;
+}
+
+ConversionLoss Composite::read_tile(std::size_t level, const Box& box, std::span<float> values) {
+  const LevelCover cover = cover_box(plotfile_.levels, level, level, box);
+  ConversionLoss loss;
+  for (const auto& parts : by_fab(cover.parts)) loss.add(reader_.read(level, parts, box, values));
+  if (cover.rest.empty()) return loss;
+  if (level == 0) throw uncovered(plotfile_, cover.rest.front());
+  const Index3 by = plotfile_.levels[level].ratio;
+  const Box support = linear_support(bounds_of_boxes(cover.rest), by, plotfile_.levels[level - 1].extent);
+  std::vector<float> coarse(static_cast<std::size_t>(support.voxels()));
+  read_tile(level - 1, support, coarse);
+  for (const Box& part : cover.rest) upsample_linear({support, coarse}, by, part, box, values);
+  return loss;
+}
+
+std::uint64_t Composite::working_bytes() const {
+  std::uint64_t boxes = 0;
+  for (const PlotfileLevel& level : plotfile_.levels) boxes += level.boxes.size() * kBytesPerBox;
+  constexpr std::uint64_t kParts = std::uint64_t{2} << 20U;  // of a block of the smallest boxes there are
+  constexpr std::uint64_t kTileBytes = kTile * kTile * kTile * sizeof(float);
+  return boxes + kParts + (upsampling_ == Upsampling::linear ? 2 * kIoThreads * kTileBytes : 0);
+}
+
+}  // namespace weir

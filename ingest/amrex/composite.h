@@ -1,0 +1,45 @@
+// The grid that the levels of a plotfile make together, read box by box: each cell of the wanted level has the value of
+// the finest level that has cells there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ingest/amrex/fab_reader.h"
+#include "ingest/amrex/plotfile.h"
+#include "ingest/source/stored_value.h"
+#include "ingest/source/upsampling.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Thread-safe. Holds no values but those of a read in progress.
+class Composite {
+ public:
+  /// Of the component of this position, at the finest level that `plotfile` was opened with. `plotfile` outlives the
+  /// object.
+  Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, Upsampling upsampling,
+            DirectIo mode);
+
+  /// Reads `box` of the wanted level's domain, which begins at 0; x fastest. Of linear values, loss is that of the
+  /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.
+  ConversionLoss read(const Box& box, std::span<float> values);
+
+  /// What a read takes at most besides the caller's values and kStagingBytes.
+  std::uint64_t working_bytes() const;
+  std::uint64_t bytes_read() const { return reader_.bytes_read(); }
+
+ private:
+  ConversionLoss read_constant(const Box& box, std::span<float> values);
+  ConversionLoss read_linear(const Box& box, std::span<float> values);
+  /// One tile of a composite of linear values; by the calling thread alone.
+  ConversionLoss read_tile(std::size_t level, const Box& box, std::span<float> values);
+
+  const Plotfile& plotfile_;
+  std::size_t wanted_;
+  Upsampling upsampling_;
+  FabReader reader_;
+};
+
+}  // namespace weir

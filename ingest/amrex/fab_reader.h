@@ -1,0 +1,38 @@
+// Values of one component out of FABs, a bounded number of bytes at a time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ingest/amrex/fab_files.h"
+#include "ingest/amrex/level_cover.h"
+#include "ingest/amrex/plotfile.h"
+#include "ingest/plan/staging.h"
+#include "ingest/source/stored_value.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Thread-safe. Needs kStagingBytes besides the callers' buffers.
+class FabReader {
+ public:
+  /// `plotfile` outlives the object.
+  FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode);
+
+  /// Writes the values of `parts`, which are of one FAB and lie in `box`, of cells of level `wanted`, to their places
+  /// in `values`, that box x fastest. A cell of a coarser level gives all cells in it its value. Loss is counted of
+  /// what is written. Rows of the FAB that lie near each other are read together.
+  ConversionLoss read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box, std::span<float> values);
+
+  std::uint64_t bytes_read() const { return files_.bytes_read(); }
+
+ private:
+  const Plotfile& plotfile_;
+  std::size_t component_;
+  ValueMapping mapping_;
+  FabFiles files_;
+  StagingPool staging_;
+};
+
+}  // namespace weir

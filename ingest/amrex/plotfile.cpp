@@ -1,0 +1,203 @@
+#include "ingest/amrex/plotfile.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/amrex/fab_header.h"
+#include "ingest/files/input_directory.h"
+#include "ingest/source/extent.h"
+#include "ingest/vtk/file_text.h"
+
+namespace weir {
+namespace {
+
+constexpr auto kMostVolume = static_cast<std::int64_t>(UINT64_C(1) << 60U);  // cells: their bytes are a 64-bit number
+
+/// A header's file and its text.
+struct HeaderFile {
+  explicit HeaderFile(const std::string& path)
+      : file(path, DirectIo::off), pieces(file, 0, file.size()), text(path, [this] { return pieces.next_piece(); }) {}
+
+  InputFile file;
+  FileText pieces;
+  PlotfileText text;
+};
+
+void note(Plotfile& plotfile, const FileState& state) {
+  plotfile.files.add(state);
+  plotfile.bytes += state.bytes;
+  plotfile.mtime_ns = std::max(plotfile.mtime_ns, state.mtime_ns);
+}
+
+std::string corner_text(const Index3& i) { return cat('(', i.x, ',', i.y, ',', i.z, ')'); }
+
+/// In the file's own indices, as its headers have it.
+std::string shown(const Box& box) { return cat(corner_text(box.lo), " to ", corner_text(box.hi - Index3{1, 1, 1})); }
+
+void move_to_domain(const std::string& path, const Box& domain, std::vector<CellBox>& boxes) {
+  for (CellBox& box : boxes) {
+    if (!domain.contains(box.box())) {
+      throw input_error(path, cat("box ", shown(box.box()), " reaches outside the level's domain, ", shown(domain),
+                                  "; the header is damaged"));
+    }
+    const Box moved{box.box().lo - domain.lo, box.box().hi - domain.lo};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto of = [axis](const Index3& i) {
+        return static_cast<std::int32_t>(axis == 0 ? i.x : axis == 1 ? i.y : i.z);
+      };
+      box.lo.at(axis) = of(moved.lo);
+      box.last.at(axis) = of(moved.hi - Index3{1, 1, 1});
+    }
+  }
+}
+
+void refuse_overlaps(const std::string& path, const PlotfileLevel& level, const Index3& first) {
+  const auto [a, b] = level.index.overlapping();
+  if (a == b) return;
+  const auto in_file = [&](std::uint32_t i) {
+    const Box box = level.boxes[i].box();
+    return shown({box.lo + first, box.hi + first});
+  };
+  throw input_error(path, cat("boxes ", a, " and ", b, ", ", in_file(a), " and ", in_file(b),
+                              ", have cells in common; the header is damaged"));
+}
+
+void require_cover(const std::string& path, const PlotfileLevel& level) {
+  std::uint64_t covered = 0;
+  for (std::size_t i = 0; i < level.boxes.size(); ++i) covered += level.cells(i);
+  const auto all = static_cast<std::uint64_t>(volume(level.extent));
+  if (covered == all) return;
+  throw input_error(path, cat("the boxes of level 0 cover ", covered, " of the ", all,
+                              " cells of its domain, and must cover all; write the plotfile of the whole domain"));
+}
+
+/// The FAB that lies last in each file.
+std::vector<std::size_t> last_fabs(const PlotfileLevel& level) {
+  std::vector<std::size_t> last(level.files.size(), SIZE_MAX);
+  for (std::size_t i = 0; i < level.places.size(); ++i) {
+    std::size_t& known = last[level.places[i].file];
+    if (known == SIZE_MAX || level.places[i].offset > level.places[known].offset) known = i;
+  }
+  return last;
+}
+
+std::unique_ptr<InputFile> open_fab_file(const std::string& path, const std::string& header) {
+  try {
+    return std::make_unique<InputFile>(path, DirectIo::off);
+  } catch (const Error& error) {
+    throw Error(error.kind(), compose(error.message(), "; ", header, " has FABs in it"), error.system_failure());
+  }
+}
+
+/// What of the file a FAB takes, its header included. Fills plotfile.layout where it is the first one.
+std::uint64_t fab_end(InputFile& file, const PlotfileLevel& level, std::size_t fab, Plotfile& plotfile, bool first) {
+  const std::uint64_t offset = level.places[fab].offset;
+  std::uint64_t header_bytes = 0;
+  if (!level.bare) {
+    const FabHeader header = read_fab_header(file, offset);
+    if (first) plotfile.layout = header.layout;
+    header_bytes = header.bytes;
+  }
+  const std::uint64_t cells = level.cells(fab);
+  const std::uint64_t components = plotfile.header.components.size();
+  std::uint64_t bytes = 0;
+  if (__builtin_mul_overflow(cells, components * scalar_bytes(plotfile.layout.type), &bytes) ||
+      __builtin_add_overflow(bytes, offset + header_bytes, &bytes)) {
+    return UINT64_MAX;
+  }
+  return bytes;
+}
+
+void check_fab_files(Plotfile& plotfile, const PlotfileLevel& level, const std::string& header, bool first) {
+  const std::vector<std::size_t> last = last_fabs(level);
+  for (std::uint32_t i = 0; i < level.files.size(); ++i) {
+    const auto file = open_fab_file(level.path(i), header);
+    note(plotfile, file->state());
+    const std::uint64_t offset = level.places[last[i]].offset;
+    const std::uint64_t end =
+        offset < file->size() ? fab_end(*file, level, last[i], plotfile, std::exchange(first, false)) : offset + 1;
+    if (end <= file->size()) continue;
+    throw input_error(file->path(), cat("has ", file->size(), " bytes, and the FAB at offset ", offset, " ends at ",
+                                        end, "; the file is cut, or not written to its end"));
+  }
+}
+
+PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t memory, bool ranges) {
+  const AmrexLevelHeader& said = plotfile.header.levels[number];
+  const std::string path = cat(plotfile_directory(plotfile.path), '/', said.cells, "_H");
+  HeaderFile file(path);
+  note(plotfile, file.file.state());
+  CellHeader cells = parse_cell_header(file.text, file.file.size(), memory, ranges);
+  if (std::cmp_not_equal(cells.components, plotfile.header.components.size())) {
+    throw input_error(path, cat("has ", cells.components, " components, and Header has ",
+                                plotfile.header.components.size(), "; the plotfile is damaged"));
+  }
+  if (std::cmp_not_equal(cells.boxes.size(), said.boxes)) {
+    throw input_error(
+        path, cat("has ", cells.boxes.size(), " boxes, and Header has ", said.boxes, "; the plotfile is damaged"));
+  }
+  move_to_domain(path, said.domain, cells.boxes);
+  PlotfileLevel level;
+  level.extent = said.domain.extent();
+  level.ratio = said.ratio;
+  level.directory = std::filesystem::path(path).parent_path().string();
+  level.boxes = std::move(cells.boxes);
+  level.places = std::move(cells.places);
+  level.files = std::move(cells.files);
+  level.ranges = std::move(cells.ranges);
+  level.bare = cells.layout.has_value();
+  if (cells.layout && number > 0 && *cells.layout != plotfile.layout) {
+    throw input_error(path, cat("its numbers are ", real_layout_text(*cells.layout), ", and those of level 0 ",
+                                real_layout_text(plotfile.layout), "; all must be alike"));
+  }
+  if (cells.layout) plotfile.layout = *cells.layout;
+  level.index = BoxIndex(level.boxes);
+  refuse_overlaps(path, level, said.domain.lo);
+  if (number == 0) require_cover(path, level);
+  check_fab_files(plotfile, level, path, number == 0);
+  return level;
+}
+
+}  // namespace
+
+std::string plotfile_directory(const std::string& path) {
+  const std::filesystem::path named(path);
+  if (named.filename() != kDirectoryHead || is_input_directory(path)) return path;
+  return named.has_parent_path() ? named.parent_path().string() : ".";
+}
+
+AmrexHeader read_amrex_header(const std::string& path) {
+  HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead));
+  return parse_amrex_header(file.text);
+}
+
+Plotfile open_plotfile(const std::string& path, const PlotfileParts& parts) {
+  Plotfile plotfile;
+  plotfile.path = path;
+  {
+    HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead));
+    note(plotfile, file.file.state());
+    plotfile.header = parse_amrex_header(file.text);
+    for (const AmrexLevelHeader& level : plotfile.header.levels) {
+      const Index3 e = level.domain.extent();
+      std::int64_t cells = 0;
+      if (__builtin_mul_overflow(e.x, e.y, &cells) || __builtin_mul_overflow(cells, e.z, &cells) ||
+          cells > kMostVolume) {
+        throw file.text.error(cat("a domain of ", extent_text(e), " cells is impossible; the header is damaged"));
+      }
+    }
+  }
+  const std::size_t levels = std::min(parts.levels, plotfile.header.levels.size());
+  std::uint64_t memory = parts.memory;
+  for (std::size_t i = 0; i < levels; ++i) {
+    plotfile.levels.push_back(open_level(plotfile, i, memory, parts.ranges));
+    memory -= std::min(memory, plotfile.levels.back().boxes.size() * kBytesPerBox);
+  }
+  return plotfile;
+}
+
+}  // namespace weir

@@ -1,0 +1,80 @@
+#include "ingest/hdf5/meaning/component_axis.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "format/base/ascii.h"
+#include "format/base/text.h"
+#include "ingest/hdf5/meaning/space_axis.h"
+#include "ingest/source/component_choice.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kVolumeAxes = 3;
+
+bool names_components(const std::string& label) {
+  constexpr std::array<std::string_view, 10> kNames{"comp", "ncomp", "vec",  "xyz",       "uvw",
+                                                    "rgb",  "rgba",  "dirs", "direction", "channels"};
+  const std::string name = lower_case(label);
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || has("component") || has("vector") ||
+         has("tensor") || has("channel");
+}
+
+bool is_named(const AxisPlace& axis) {
+  return axis.extent >= 2 && axis.extent <= kMostComponents && names_components(axis.label);
+}
+
+bool is_shorter(const AxisPlace& axis, std::span<const AxisPlace> others) {
+  return std::all_of(others.begin(), others.end(),
+                     [&](const AxisPlace& other) { return other.extent > axis.extent && !other.is_time; });
+}
+
+bool is_unknown(const AxisPlace& axis) { return axis.label.empty() && !axis.is_time; }
+
+bool has_extent_of_components(const AxisPlace& axis) {
+  constexpr std::array<std::int64_t, 4> kExtents{2, 3, 4, 9};
+  return !axis.is_time && std::find(kExtents.begin(), kExtents.end(), axis.extent) != kExtents.end();
+}
+
+ComponentAxis by_extent(std::span<const AxisPlace> axes) {
+  const AxisPlace& last = axes.back();
+  const AxisPlace& before = axes[axes.size() - 2];
+  if (!has_extent_of_components(last) || is_space_axis(last)) return {};
+  if (names_x_axis(before.label) || (before.has_coordinates && !last.has_coordinates)) {
+    return {last.extent, cat("by its extent, after the axis ", before.label), false};
+  }
+  const auto of_space = std::count_if(axes.begin(), axes.end() - 1, [](const AxisPlace& a) { return !a.is_time; });
+  if (before.extent < last.extent || of_space < static_cast<std::ptrdiff_t>(kVolumeAxes)) return {};
+  return {last.extent, "by its extent alone", false};
+}
+
+}  // namespace
+
+ComponentAxis component_axis(std::span<const AxisPlace> axes) {
+  if (axes.size() <= kVolumeAxes) return {};
+  const AxisPlace& last = axes.back();
+  if (is_named(last)) return {last.extent, cat("by its name ", last.label), false};
+  return by_extent(axes);
+}
+
+ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
+  const ComponentAxis sure = component_axis(axes);
+  if (sure.found() || axes.size() <= kVolumeAxes) return sure;
+  const AxisPlace& last = axes.back();
+  const AxisPlace& leading = axes[axes.size() - 1 - kVolumeAxes];
+  const auto may_be = [](const AxisPlace& axis) {
+    return is_unknown(axis) && axis.extent >= 2 && axis.extent <= kMostComponents;
+  };
+  const ComponentAxis as_asked{last.extent, "as asked for", false};
+  if (is_named(leading)) return {leading.extent, cat("by its name ", leading.label), true};
+  const bool before_is_shorter = axes[axes.size() - 2].extent < last.extent;
+  if (has_extent_of_components(last) && !is_space_axis(last) && !before_is_shorter) return as_asked;
+  if (may_be(last) && is_shorter(last, axes.last(kVolumeAxes + 1).first(kVolumeAxes))) return as_asked;
+  if (may_be(leading) && is_shorter(leading, axes.last(kVolumeAxes))) return {leading.extent, "as asked for", true};
+  return has_extent_of_components(last) ? as_asked : ComponentAxis{};
+}
+
+}  // namespace weir

@@ -1,0 +1,33 @@
+// Arrays of vectors and tensors: the axis of their components.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "ingest/hdf5/meaning/axis_place.h"
+
+namespace weir {
+
+/// The last axis of four or more, where it holds the components of each voxel; or the one before the last three.
+struct ComponentAxis {
+  std::int64_t count = 1;  ///< 1: there is none
+  std::string evidence;    ///< how sure that is: "by its name vector", "by its extent alone"
+  bool leading = false;    ///< before the last three axes: each component is a volume
+
+  bool found() const { return count > 1; }
+};
+
+/// A last axis, by its name (component, vector, rgb ...). Else by its extent of 2, 3, 4 or 9, where it is neither a
+/// time nor like an axis of space (space_axis.h): after an axis that is called like an x axis, or has coordinates while
+/// the last has none; or by the extent alone, where the axis before is not shorter and three are left that are no time.
+/// Never a leading one: its components are volumes as they are.
+ComponentAxis component_axis(std::span<const AxisPlace> axes);
+
+/// The same for a user who says that there is one. Also the axis before the last three, by its name; a last one of 2,
+/// 3, 4 or 9 that is no axis of space, unless that before it is shorter; else one of the two of which the file says
+/// nothing, of 2 to kMostComponents and shorter than the three beside it; else a last one of 2, 3, 4 or 9 whatever it
+/// is.
+ComponentAxis asked_component_axis(std::span<const AxisPlace> axes);
+
+}  // namespace weir

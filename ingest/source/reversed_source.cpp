@@ -1,0 +1,89 @@
+#include "ingest/source/reversed_source.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace weir {
+namespace {
+
+class ReversedSource final : public VolumeSource {
+ public:
+  ReversedSource(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed)
+      : source_(std::move(source)), reversed_(reversed) {}
+
+  const SourceInfo& info() const override { return source_->info(); }
+  bool in_memory() const override { return source_->in_memory(); }
+  std::uint64_t working_bytes() const override { return source_->working_bytes(); }
+  std::uint64_t bytes_read() const override { return source_->bytes_read(); }
+
+  // Chunks end where they began.
+  AccessShape access() const override {
+    AccessShape shape = source_->access();
+    shape.chunk_origin = mirrored({shape.chunk_origin, shape.chunk_origin}).lo;
+    return shape;
+  }
+  ConversionLoss read(const Box& box, std::span<float> values) override {
+    const ConversionLoss loss = source_->read(mirrored(box), values);
+    reverse(box.extent(), values);
+    return loss;
+  }
+  ConversionLoss read_alone(const Box& box, std::span<float> values) override {
+    const ConversionLoss loss = source_->read_alone(mirrored(box), values);
+    reverse(box.extent(), values);
+    return loss;
+  }
+
+ private:
+  // Where the source has the voxels of `box`.
+  Box mirrored(const Box& box) const {
+    const Box domain = info().domain();
+    const auto along = [](bool reversed, std::int64_t first, std::int64_t end, std::int64_t& lo, std::int64_t& hi) {
+      if (!reversed) return;
+      const std::int64_t from = first + end - hi;
+      hi = first + end - lo;
+      lo = from;
+    };
+    Box there = box;
+    along(reversed_[0], domain.lo.x, domain.hi.x, there.lo.x, there.hi.x);
+    along(reversed_[1], domain.lo.y, domain.hi.y, there.lo.y, there.hi.y);
+    along(reversed_[2], domain.lo.z, domain.hi.z, there.lo.z, there.hi.z);
+    return there;
+  }
+
+  void reverse(const Index3& extent, std::span<float> values) const {
+    const auto row = static_cast<std::size_t>(extent.x);
+    const std::size_t plane = row * static_cast<std::size_t>(extent.y);
+    if (reversed_[0]) {
+      for (std::size_t at = 0; at < values.size(); at += row) std::ranges::reverse(values.subspan(at, row));
+    }
+    if (reversed_[1]) {
+      for (std::size_t at = 0; at < values.size(); at += plane) reverse_runs(values.subspan(at, plane), row);
+    }
+    if (reversed_[2]) reverse_runs(values, plane);
+  }
+
+  // Runs of `length` values in reverse order, each as it is.
+  static void reverse_runs(std::span<float> values, std::size_t length) {
+    for (std::size_t first = 0, last = values.size(); last - first >= 2 * length; first += length) {
+      last -= length;
+      std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>(first),
+                       values.begin() + static_cast<std::ptrdiff_t>(first + length),
+                       values.begin() + static_cast<std::ptrdiff_t>(last));
+    }
+  }
+
+  std::unique_ptr<VolumeSource> source_;
+  std::array<bool, 3> reversed_;
+};
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> reverse_axes(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed) {
+  if (reversed == std::array<bool, 3>{}) return source;
+  return std::make_unique<ReversedSource>(std::move(source), reversed);
+}
+
+}  // namespace weir

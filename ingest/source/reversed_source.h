@@ -1,0 +1,17 @@
+// Another source with its elements in reverse order along some of its axes: a file whose latitudes fall from north to
+// south, as a volume whose positions rise.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// `source`, in which the voxel at i along each axis of `reversed` (x, y, z) is what lies as far from the other end of
+/// its domain. All that its info says of positions is taken as said of the reversed volume. The source itself where no
+/// axis is reversed.
+std::unique_ptr<VolumeSource> reverse_axes(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed);
+
+}  // namespace weir

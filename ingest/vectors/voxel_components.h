@@ -1,0 +1,42 @@
+// Arrays and grids of vectors and tensors, several numbers a voxel: --component chooses among them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ingest/headers/named_choice.h"
+#include "ingest/source/component_choice.h"
+
+namespace weir {
+
+/// Why an array of so many numbers a voxel cannot be converted; empty where it can.
+std::string components_obstacle(std::int64_t components);
+
+/// `choice` among the `components` numbers of each voxel. Throws Error(usage), beginning with `where`, where one must
+/// be made, or does not fit.
+VoxelComponents choose_components(std::int64_t components, const std::optional<ComponentChoice>& choice,
+                                  const std::string& where);
+
+/// What choose_volume chooses among: `arrays`, each with a name, an obstacle and a number of components. Where no name
+/// is wanted and arrays of both kinds can be converted, --component asks for one of vectors, its absence for one of
+/// scalars.
+template <typename Array>
+std::vector<NamedVolume> volumes_of_kind(const std::vector<Array>& arrays, const std::string& wanted,
+                                         const std::optional<ComponentChoice>& choice) {
+  const auto meant = [&](const Array& array) { return (array.components > 1) == choice.has_value(); };
+  const bool by_kind = wanted.empty() && std::any_of(arrays.begin(), arrays.end(), [&](const Array& array) {
+                         return array.obstacle.empty() && meant(array);
+                       });
+  std::vector<NamedVolume> choices;
+  for (const Array& array : arrays) {
+    const bool other = by_kind && array.obstacle.empty() && !meant(array);
+    choices.push_back({array.name, other ? "it is of the other kind" : array.obstacle});
+  }
+  return choices;
+}
+
+}  // namespace weir

@@ -1,0 +1,31 @@
+// Which array of a Zarr hierarchy becomes the volume.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ingest/source/dataset_info.h"
+#include "ingest/zarr/meaning/array_meaning.h"
+#include "ingest/zarr/meaning/zarr_nodes.h"
+#include "ingest/zarr/metadata/zarr_array.h"
+#include "ingest/zarr/store/zarr_store.h"
+
+namespace weir {
+
+/// An array and what is known of it.
+struct ChosenArray {
+  ZarrNode node;
+  ZarrArray array;
+  ArrayMeaning meaning;
+};
+
+/// `dataset`, a key or, where that is an image of several scales, its finest level. Empty: the finest level of the
+/// image that the root is, or the only array that is a volume, levels other than the finest aside. Throws Error(usage),
+/// with the commands, where there are several; Error(input) where there is none of that name or none is a volume.
+ChosenArray choose_array(ZarrStore& store, const std::string& path, const std::string& dataset);
+
+/// What `weir inspect` lists of all arrays. Damaged metadata are the obstacle of their array. Throws Error(input) where
+/// there is none.
+std::vector<DatasetInfo> list_arrays(ZarrStore& store, const std::string& path);
+
+}  // namespace weir

@@ -1,0 +1,146 @@
+#include "ingest/zarr/meaning/array_meaning.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/zarr/codecs/library_codecs.h"
+#include "ingest/zarr/metadata/zarr_json.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kSpaceRank = 3;
+
+// By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
+void read_value_attributes(const ZarrArray& array, ArrayMeaning& meaning) {
+  const nlohmann::json& attributes = array.attributes;
+  const nlohmann::json& scale = json_member(attributes, "scale_factor");
+  const nlohmann::json& offset = json_member(attributes, "add_offset");
+  if (scale.is_number()) meaning.mapping.scale = scale.get<double>();
+  if (offset.is_number()) meaning.mapping.offset = offset.get<double>();
+  for (const char* const key : {"missing_value", "_FillValue"}) {
+    const auto value = json_number(json_member(attributes, key));
+    if (value && holds(array.type, *value)) meaning.mapping.missing.push_back(*value);
+  }
+  meaning.units = json_string(attributes, "units");
+  meaning.long_name = json_string(attributes, "long_name");
+}
+
+std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) {
+  const std::size_t rank = array.shape.size();
+  if (rank < kSpaceRank) {
+    return rank == 0 ? "a single value; a volume has three axes"
+                     : cat(rank, rank == 1 ? " axis (" : " axes (", axes_text(array, meaning), "); a volume has three");
+  }
+  if (std::count(array.shape.begin(), array.shape.end(), 0) > 0) return cat("empty: ", axes_text(array, meaning));
+  const auto is_other = [](const ScaleAxis& axis) { return !axis.type.empty() && axis.type != "space"; };
+  const auto others = std::count_if(meaning.axes.end() - kSpaceRank, meaning.axes.end(), is_other);
+  if (others == 0) return {};
+  return cat(static_cast<std::int64_t>(kSpaceRank) - others, " axes of space at its end (", axes_text(array, meaning),
+             "); a volume has three");
+}
+
+std::string codec_obstacle(const ZarrArray& array) {
+  if (has_library_codecs()) return {};
+  for (const ZarrPacker packer : array.values().packers) {
+    if (packer != ZarrPacker::zstd && packer != ZarrPacker::blosc) continue;
+    return cat("packed by ", packer_name(packer),
+               ", which this build of weir was left without; build it with libblosc-dev and libzstd-dev "
+               "(WEIR_ZARR_CODECS=ON)");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string axes_text(const ZarrArray& array, const ArrayMeaning& meaning) {
+  std::string text;
+  for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
+    const std::string& name = meaning.axes[axis].name;
+    text += cat(text.empty() ? "" : ", ", name, name.empty() ? "" : " ", array.shape[axis]);
+  }
+  return text;
+}
+
+std::vector<LeadingAxis> ArrayMeaning::leading(const ZarrArray& array) const {
+  std::vector<LeadingAxis> leading;
+  for (std::size_t axis = 0; axis + kSpaceRank < array.shape.size(); ++axis) {
+    leading.push_back({axes[axis].name, array.shape[axis]});
+  }
+  return leading;
+}
+
+ArrayMeaning array_meaning(const ZarrArray& array, const std::optional<FoundLevel>& level) {
+  const std::size_t rank = array.shape.size();
+  ArrayMeaning meaning;
+  meaning.axes.resize(rank);
+  meaning.scale.assign(rank, 1.0);
+  meaning.translation.assign(rank, 0.0);
+  for (std::size_t axis = 0; axis < rank; ++axis) meaning.axes[axis].name = array.axis_names[axis];
+  if (level) {
+    const ScaleLevel& found = level->image.levels[level->level];
+    if (level->image.axes.size() == rank) meaning.axes = level->image.axes;
+    if (found.scale.size() == rank) meaning.scale = found.scale;
+    if (found.translation.size() == rank) meaning.translation = found.translation;
+  }
+  read_value_attributes(array, meaning);
+  meaning.obstacle = shape_obstacle(array, meaning);
+  if (meaning.obstacle.empty()) meaning.obstacle = codec_obstacle(array);
+  return meaning;
+}
+
+std::vector<std::int64_t> checked_index(const ZarrArray& array, const ArrayMeaning& meaning,
+                                        const std::vector<std::int64_t>& index, const std::string& where) {
+  const std::vector<LeadingAxis> leading = meaning.leading(array);
+  const bool single =
+      std::all_of(leading.begin(), leading.end(), [](const LeadingAxis& axis) { return axis.extent == 1; });
+  if (index.empty() && single) return std::vector<std::int64_t>(leading.size(), 0);
+  const auto refuse = [&](const Message& found) {
+    std::string ranges;
+    for (std::size_t axis = 0; axis < leading.size(); ++axis) {
+      const std::string name = leading[axis].name.empty() ? cat("axis ", axis) : leading[axis].name;
+      ranges += cat(ranges.empty() ? "" : ", ", name, " in 0..", leading[axis].extent - 1);
+    }
+    const Message remedy = leading.empty() ? compose("leave ", option("index"), " out")
+                                           : compose("give ", option("index"), " with ", leading.size(),
+                                                     leading.size() == 1 ? " position: " : " positions: ", ranges);
+    return usage_error(compose(where, ": its axes are ", axes_text(array, meaning), found, "; ", remedy));
+  };
+  if (index.empty()) throw refuse(", and a volume has three");
+  if (index.size() != leading.size()) {
+    throw refuse(
+        compose(", and ", option("index"), " has ", index.size(), index.size() == 1 ? " position" : " positions"));
+  }
+  for (std::size_t axis = 0; axis < leading.size(); ++axis) {
+    if (index[axis] >= 0 && index[axis] < leading[axis].extent) continue;
+    throw refuse(compose(", and ", option("index"), " has ", index[axis]));
+  }
+  return index;
+}
+
+void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const std::vector<std::int64_t>& index,
+                     SourceInfo& info) {
+  const std::size_t rank = array.shape.size();
+  info.extent = {array.shape[rank - 1], array.shape[rank - 2], array.shape[rank - 3]};
+  info.index = index;
+  info.type = array.type;
+  info.mapping = meaning.mapping;
+  info.units = meaning.units;
+  info.details.long_name = meaning.long_name;
+  for (std::size_t i = 0; i < kSpaceRank; ++i) {
+    const std::size_t axis = rank - 1 - i;
+    info.spacing.at(i) = meaning.scale[axis];
+    info.origin.at(i) = meaning.translation[axis];
+    info.axis_labels.at(i) = meaning.axes[axis].name;
+    info.details.axes.at(i).units = meaning.axes[axis].unit;
+  }
+  for (std::size_t axis = 0; axis < index.size(); ++axis) {
+    if (meaning.axes[axis].type != "time") continue;
+    const double time = static_cast<double>(index[axis]) * meaning.scale[axis] + meaning.translation[axis];
+    info.details.time = TimePoint{time, meaning.axes[axis].unit, {}};
+  }
+}
+
+}  // namespace weir

@@ -1,0 +1,82 @@
+#include "ingest/zarr/meaning/zarr_nodes.h"
+
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/zarr/metadata/array_v2.h"
+#include "ingest/zarr/metadata/array_v3.h"
+#include "ingest/zarr/metadata/zarr_json.h"
+
+namespace weir {
+namespace {
+
+nlohmann::json attributes_v2(ZarrStore& store, const std::string& key) {
+  const std::string document = joined_key(key, ".zattrs");
+  const auto text = store.text(document);
+  return text ? parse_zarr_json(*text, store.shown(document)) : nlohmann::json::object();
+}
+
+/// What a walk has seen so far.
+struct ZarrWalk {
+  ZarrStore& store;
+  std::size_t nodes = 0;
+  std::uint64_t bytes = 0;  ///< of metadata
+  std::vector<ZarrNode> arrays;
+};
+
+void add_arrays(ZarrWalk& walk, const std::string& key, std::size_t depth) {
+  auto node = zarr_node(walk.store, key);
+  if (node) walk.bytes += walk.store.look(node->document).value_or(ZarrObjectState{}).bytes;
+  if (++walk.nodes > kMostZarrNodes || depth > kMostZarrDepth || walk.bytes > kMostWalkedBytes) {
+    throw input_error(walk.store.shown({}), cat("has more than ", kMostZarrNodes, " groups and arrays, ",
+                                                kMostZarrDepth, " groups in each other or ", kMostWalkedBytes,
+                                                " bytes of metadata; name a group or an array in it"));
+  }
+  if (node && node->array) {
+    walk.arrays.push_back(std::move(*node));
+    return;
+  }
+  // The root of a zip file may be a directory without metadata, in which the hierarchy lies.
+  if (!node && depth > 1) return;
+  for (const std::string& name : walk.store.groups_in(key)) add_arrays(walk, joined_key(key, name), depth + 1);
+}
+
+}  // namespace
+
+std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key) {
+  ZarrNode node;
+  node.key = key;
+  node.document = joined_key(key, "zarr.json");
+  if (const auto text = store.text(node.document)) {
+    node.metadata = parse_zarr_json(*text, store.shown(node.document));
+    node.array = json_member(node.metadata, "node_type") != "group";
+    node.attributes = json_member(node.metadata, "attributes");
+    return node;
+  }
+  node.version = 2;
+  node.document = joined_key(key, ".zarray");
+  if (const auto text = store.text(node.document)) {
+    node.array = true;
+    node.metadata = parse_zarr_json(*text, store.shown(node.document));
+    node.attributes = attributes_v2(store, key);
+    return node;
+  }
+  node.document = joined_key(key, ".zgroup");
+  if (!store.look(node.document)) return std::nullopt;
+  node.attributes = attributes_v2(store, key);
+  return node;
+}
+
+ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node) {
+  const std::string where = store.shown(node.document);
+  return node.version == 3 ? parse_zarr_v3(node.metadata, where) : parse_zarr_v2(node.metadata, node.attributes, where);
+}
+
+std::vector<ZarrNode> zarr_arrays(ZarrStore& store) {
+  ZarrWalk walk{store, 0, 0, {}};
+  add_arrays(walk, {}, 0);
+  return std::move(walk.arrays);
+}
+
+}  // namespace weir

@@ -1,0 +1,147 @@
+#include "ingest/zarr/metadata/fill_value.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/source/stored_value.h"
+#include "ingest/zarr/metadata/zarr_json.h"
+
+namespace weir {
+namespace {
+
+/// The IEEE half nearest to `value`, which one holds.
+std::uint16_t half_bits(double value) {
+  constexpr int kFractionBits = 10;
+  constexpr int kLeastExponent = -14;
+  const auto sign = static_cast<std::uint16_t>(std::signbit(value) ? 0x8000 : 0);
+  if (std::isnan(value)) return 0x7E00;
+  if (std::isinf(value)) return sign | 0x7C00;
+  const double size = std::fabs(value);
+  const int exponent = size == 0 ? kLeastExponent : std::max(std::ilogb(size), kLeastExponent);
+  // The leading bit of a normal number adds the one that is missing in the exponent.
+  const int fraction = static_cast<int>(std::nearbyint(std::ldexp(size, kFractionBits - exponent)));
+  return static_cast<std::uint16_t>(sign | (((exponent - kLeastExponent) << kFractionBits) + fraction));
+}
+
+/// The bfloat16 nearest to `value`, ties to even.
+std::uint16_t bfloat16_bits(double value) {
+  if (std::isnan(value)) return 0x7FC0;
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  return static_cast<std::uint16_t>((bits + 0x7FFFU + (bits >> 16U & 1U)) >> 16U);
+}
+
+template <typename T>
+std::vector<std::byte> bytes_of(T value) {
+  std::vector<std::byte> bytes(sizeof value);
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+template <typename T>
+std::vector<std::byte> bytes_as(const StoredValue& value) {
+  return std::visit([](auto v) { return bytes_of(static_cast<T>(v)); }, value);
+}
+
+/// In this machine's order; `type` holds `value`.
+std::vector<std::byte> native_bytes(ScalarType type, const StoredValue& value) {
+  switch (type) {
+    case ScalarType::uint8:
+      return bytes_as<std::uint8_t>(value);
+    case ScalarType::int8:
+      return bytes_as<std::int8_t>(value);
+    case ScalarType::uint16:
+      return bytes_as<std::uint16_t>(value);
+    case ScalarType::int16:
+      return bytes_as<std::int16_t>(value);
+    case ScalarType::uint32:
+      return bytes_as<std::uint32_t>(value);
+    case ScalarType::int32:
+      return bytes_as<std::int32_t>(value);
+    case ScalarType::uint64:
+      return bytes_as<std::uint64_t>(value);
+    case ScalarType::int64:
+      return bytes_as<std::int64_t>(value);
+    case ScalarType::float16:
+      return bytes_of(half_bits(as_double(value)));
+    case ScalarType::bfloat16:
+      return bytes_of(bfloat16_bits(as_double(value)));
+    case ScalarType::float32:
+      return bytes_as<float>(value);
+    case ScalarType::float64:
+      return bytes_as<double>(value);
+  }
+  return {};
+}
+
+std::optional<StoredValue> number_in(const nlohmann::json& fill) {
+  if (fill == "Infinity") return StoredValue{std::numeric_limits<double>::infinity()};
+  if (fill == "-Infinity") return StoredValue{-std::numeric_limits<double>::infinity()};
+  return json_number(fill);
+}
+
+/// "0x7fc00000": the bits of a value of `size` bytes, the highest first.
+std::optional<std::vector<std::byte>> hexadecimal(std::string_view text, std::size_t size) {
+  if (!text.starts_with("0x") || text.size() != 2 + 2 * size) return std::nullopt;
+  text.remove_prefix(2);
+  std::uint64_t bits = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), bits, 16);
+  if (error != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
+  std::vector<std::byte> bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[size - 1 - i] = static_cast<std::byte>(bits >> (8 * i));
+  return bytes;
+}
+
+/// The `size` bytes that `text` encodes (RFC 4648, 4); nullopt where it encodes others.
+std::optional<std::vector<std::byte>> base64(std::string_view text, std::size_t size) {
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  while (text.ends_with('=')) text.remove_suffix(1);
+  if (text.size() != (size * 8 + 5) / 6) return std::nullopt;
+  std::vector<std::byte> bytes;
+  std::uint32_t bits = 0;
+  unsigned held = 0;
+  for (const char c : text) {
+    const std::size_t digit = kAlphabet.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = bits << 6U | static_cast<std::uint32_t>(digit);
+    held += 6;
+    if (held < 8) continue;
+    held -= 8;
+    bytes.push_back(static_cast<std::byte>(bits >> held));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
+                                  const std::string& where) {
+  const std::size_t size = scalar_bytes(type);
+  const auto number = number_in(fill);
+  if (number && holds(type, *number)) {
+    // No integer holds NaN and infinities.
+    std::vector<std::byte> bytes = native_bytes(type, *number);
+    if (big_endian != kNativeIsBig) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+  }
+  if (!number && fill.is_string()) {
+    const std::string text = fill.get<std::string>();
+    if (auto bits = hexadecimal(text, size)) {
+      if (!big_endian) std::reverse(bits->begin(), bits->end());
+      return *bits;
+    }
+    if (auto stored = base64(text, size)) return *stored;
+  }
+  throw input_error(
+      where, cat("fill_value is ", json_text(fill), ", which is no ", scalar_name(type), "; the file is damaged"));
+}
+
+}  // namespace weir

@@ -1,0 +1,20 @@
+// What voxels of chunks read that a Zarr array does not store.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "format/base/scalar_type.h"
+
+namespace weir {
+
+/// The value that `fill`, the fill_value of an array's metadata, stands for, as bytes of `type` in the order asked for:
+/// a number, "NaN", "Infinity", "-Infinity", "0x" and the bits in hexadecimal, or, as version 2 has it for types
+/// without numbers, its bytes in base64 as they are stored. Throws Error(input), beginning with `where`, where it is
+/// none of these or `type` does not hold it.
+std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
+                                  const std::string& where);
+
+}  // namespace weir

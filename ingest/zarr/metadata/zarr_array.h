@@ -1,0 +1,68 @@
+// An array of Zarr, version 2 or 3, as its metadata describes it. Axes in the array's order, slowest first.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "format/base/scalar_type.h"
+
+namespace weir {
+
+/// What packs or checks the bytes of a chunk.
+enum class ZarrPacker { zlib, gzip, zstd, blosc, crc32c };
+
+/// How the values of a chunk become the bytes that are stored.
+struct ZarrCodecs {
+  /// Axis i of what is stored is axis transpose[i] of the chunk; empty: the chunk's own order.
+  std::vector<std::size_t> transpose;
+  bool big_endian = false;
+  std::vector<ZarrPacker> packers;  ///< in the order of writing
+};
+
+/// Chunks that lie together in one object, a shard, with an index of their places.
+struct ZarrSharding {
+  std::vector<std::int64_t> chunk;  ///< elements of each inner chunk; divides the shard's
+  ZarrCodecs codecs;                ///< of an inner chunk
+  bool index_big_endian = false;
+  bool index_checksum = false;  ///< a crc32c behind the index
+  bool index_first = false;     ///< else at the shard's end
+};
+
+/// How the key of a chunk is made of its position in the grid.
+struct ZarrChunkKeys {
+  bool prefix = false;   ///< "c" stands before the numbers, as in version 3
+  char separator = '.';  ///< between all parts
+
+  /// "0.0.1" or "c/0/0/1".
+  std::string key(std::span<const std::int64_t> position) const;
+};
+
+struct ZarrArray {
+  std::vector<std::int64_t> shape;  ///< elements, each >= 0
+  std::vector<std::int64_t> chunk;  ///< elements of each stored object, each >= 1; as many axes as shape
+  ScalarType type = ScalarType::float32;
+  ZarrCodecs codecs;  ///< of a stored object; what `sharding` says where there is one
+  std::optional<ZarrSharding> sharding;
+  ZarrChunkKeys keys;
+  std::optional<std::vector<std::byte>> fill;  ///< one value, in the byte order of values(); none: it is null
+  std::string fill_text;                       ///< as the metadata writes it
+  std::vector<std::string> axis_names;         ///< as many as axes; empty texts where there are none
+  nlohmann::json attributes;                   ///< of the user
+
+  /// The elements that are decoded together, and how: of an inner chunk where there are shards.
+  const std::vector<std::int64_t>& unit() const { return sharding ? sharding->chunk : chunk; }
+  const ZarrCodecs& values() const { return sharding ? sharding->codecs : codecs; }
+
+  /// "chunked 64 x 64 x 64 in shards of 256 x 256 x 256, blosc, crc32c".
+  std::string layout_text() const;
+};
+
+/// "zstd".
+const char* packer_name(ZarrPacker packer);
+
+}  // namespace weir

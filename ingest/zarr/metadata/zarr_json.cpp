@@ -1,0 +1,113 @@
+#include "ingest/zarr/metadata/zarr_json.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kMostShown = 60;
+constexpr std::size_t kMostAxes = 32;
+
+/// Levels of lists and objects in each other: copies of a value go as deep as it does.
+constexpr int kMostNesting = 64;
+
+/// `text` with the numbers that are no JSON in quotes. Throws where it is nested deeper than metadata are.
+std::string with_quoted_numbers(std::string_view text, const std::string& where) {
+  constexpr std::array<std::string_view, 3> kWords{"-Infinity", "Infinity", "NaN"};
+  std::string out;
+  out.reserve(text.size() + kMostShown);
+  bool in_string = false;
+  int nesting = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto word = std::find_if(kWords.begin(), kWords.end(),
+                                   [&](std::string_view w) { return !in_string && text.substr(i, w.size()) == w; });
+    if (word != kWords.end()) {
+      out += cat('"', *word, '"');
+      i += word->size() - 1;
+      continue;
+    }
+    out += text[i];
+    if (!in_string && (text[i] == '[' || text[i] == '{') && ++nesting > kMostNesting) {
+      throw input_error(where, cat("has more than ", kMostNesting, " lists and objects in each other at byte ", i,
+                                   "; the file is damaged"));
+    }
+    if (!in_string && (text[i] == ']' || text[i] == '}')) --nesting;
+    if (in_string && text[i] == '\\' && i + 1 < text.size()) {
+      out += text[++i];
+    } else if (text[i] == '"') {
+      in_string = !in_string;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+nlohmann::json parse_zarr_json(std::string_view text, const std::string& where) {
+  try {
+    nlohmann::json document = nlohmann::json::parse(with_quoted_numbers(text, where));
+    if (document.is_object()) return document;
+  } catch (const nlohmann::json::parse_error& error) {
+    throw input_error(where, cat("is no JSON at byte ", error.byte, "; the file is damaged or still being written"));
+  } catch (const nlohmann::json::exception&) {
+    throw input_error(where, "has a number that no 64-bit one holds; the file is damaged");
+  }
+  throw input_error(where, "is no JSON object; the file is damaged");
+}
+
+std::string json_text(const nlohmann::json& value) {
+  std::string text;
+  if (value.is_structured()) {  // dump() goes as deep as the value does
+    text = value.is_array() ? cat("a list of ", value.size()) : cat("an object of ", value.size());
+    return text;
+  }
+  text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  return text.size() <= kMostShown ? text : text.substr(0, kMostShown) + "...";
+}
+
+const nlohmann::json& json_member(const nlohmann::json& object, const char* key) {
+  static const nlohmann::json kNull;
+  if (!object.is_object()) return kNull;
+  const auto found = object.find(key);
+  return found == object.end() ? kNull : *found;
+}
+
+std::string json_string(const nlohmann::json& object, const char* key) {
+  const nlohmann::json& value = json_member(object, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::optional<StoredValue> json_number(const nlohmann::json& value) {
+  if (value.is_number_unsigned()) return StoredValue{value.get<std::uint64_t>()};
+  if (value.is_number_integer()) return StoredValue{value.get<std::int64_t>()};
+  if (value.is_number_float()) return StoredValue{value.get<double>()};
+  if (value == "NaN") return StoredValue{std::numeric_limits<double>::quiet_NaN()};
+  return std::nullopt;
+}
+
+std::vector<std::int64_t> json_extents(const nlohmann::json& value, const char* name, std::int64_t least,
+                                       const std::string& where) {
+  const auto refuse = [&](const std::string& found) {
+    return input_error(where, cat(name, " is ", found, ", and must be a list of whole numbers from ", least,
+                                  " on, one for each of at most ", kMostAxes, " axes; the file is damaged"));
+  };
+  if (!value.is_array() || value.size() > kMostAxes) throw refuse(json_text(value));
+  std::vector<std::int64_t> extents;
+  for (const nlohmann::json& extent : value) {
+    const bool whole = extent.is_number_unsigned() || extent.is_number_integer();
+    if (!whole ||
+        (extent.is_number_unsigned() && extent.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max()) ||
+        extent.get<std::int64_t>() < least) {
+      throw refuse(cat("one with ", json_text(extent)));
+    }
+    extents.push_back(extent.get<std::int64_t>());
+  }
+  return extents;
+}
+
+}  // namespace weir

@@ -1,0 +1,107 @@
+#include "ingest/zarr/storage/chunk_geometry.h"
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::size_t kSpaceAxes = 3;
+/// What chunks can grow by on their way through codecs stays below 4 GiB too, which is what zlib counts.
+constexpr std::uint64_t kLargestChunk = (std::uint64_t{1} << 32U) - (std::uint64_t{1} << 26U);
+
+/// Of the last three of `elements`.
+Index3 last_axes(const std::vector<std::int64_t>& elements) {
+  const std::size_t n = elements.size();
+  return {elements[n - 1], elements[n - 2], elements[n - 3]};
+}
+
+Index3 divided(const Index3& a, const Index3& b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+Index3 times_each(const Index3& a, const Index3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+Index3 divided_up(const Index3& a, const Index3& b) {
+  return {ceil_div(a.x, b.x), ceil_div(a.y, b.y), ceil_div(a.z, b.z)};
+}
+
+void check_chunk_bytes(const std::vector<std::int64_t>& elements, std::size_t value_bytes, const std::string& where) {
+  std::uint64_t bytes = value_bytes;
+  for (const std::int64_t e : elements) {
+    if (static_cast<std::uint64_t>(e) > kLargestChunk / bytes) {
+      throw input_error(where, cat("its chunks have ", position_text(elements), " elements, more than ", kLargestChunk,
+                                   " bytes; write the array with smaller chunks"));
+    }
+    bytes *= static_cast<std::uint64_t>(e);
+  }
+}
+
+/// Chunks of `unit` in a shard of `chunk`; at most those that 63 bits count.
+std::uint64_t count_inner(const std::vector<std::int64_t>& chunk, const std::vector<std::int64_t>& unit,
+                          const std::string& where) {
+  std::uint64_t count = 1;
+  for (std::size_t axis = 0; axis < chunk.size(); ++axis) {
+    const auto along = static_cast<std::uint64_t>(chunk[axis] / unit[axis]);
+    if (along > kLargestChunk / count) {
+      throw input_error(where, cat("its shards of ", position_text(chunk), " elements hold more than ", kLargestChunk,
+                                   " chunks; write the array with smaller shards"));
+    }
+    count *= along;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::string position_text(const std::vector<std::int64_t>& position) {
+  std::string text;
+  for (const std::int64_t p : position) text += cat(text.empty() ? "" : ", ", p);
+  return text;
+}
+
+ChunkGeometry::ChunkGeometry(const ZarrArray& array, const std::vector<std::int64_t>& index, const std::string& where)
+    : chunk_(array.chunk), units_(array.unit()), index_(index), unit_shape_{array.unit(), scalar_bytes(array.type)} {
+  if (index.size() + kSpaceAxes != array.shape.size()) {
+    throw Error(ErrorKind::internal, cat(where, ": ", index.size(), " positions for ", array.shape.size(), " axes"));
+  }
+  check_chunk_bytes(units_, unit_shape_.value_bytes, where);
+  chunks_in_object_ = count_inner(chunk_, units_, where);
+  extent_ = last_axes(array.shape);
+  unit_ = last_axes(units_);
+  object_ = last_axes(chunk_);
+  objects_ = divided_up(extent_, object_);
+  std::size_t position = 0;
+  for (std::size_t axis = 0; axis < index_.size(); ++axis) {
+    position =
+        position * static_cast<std::size_t>(units_[axis]) + static_cast<std::size_t>(index_[axis] % units_[axis]);
+  }
+  first_byte_ = position * static_cast<std::size_t>(volume(unit_)) * unit_shape_.value_bytes;
+}
+
+std::vector<std::int64_t> ChunkGeometry::object_position(const Index3& object) const {
+  std::vector<std::int64_t> position;
+  for (std::size_t axis = 0; axis < index_.size(); ++axis) position.push_back(index_[axis] / chunk_[axis]);
+  position.insert(position.end(), {object.z, object.y, object.x});
+  return position;
+}
+
+Index3 ChunkGeometry::object_of(const Index3& chunk) const { return divided(times_each(chunk, unit_), object_); }
+
+ChunkPlace ChunkGeometry::place_of(const Index3& chunk) const {
+  ChunkPlace place;
+  place.object = object_position(object_of(chunk));
+  std::vector<std::int64_t> element = index_;
+  const Index3 first = times_each(chunk, unit_);
+  element.insert(element.end(), {first.z, first.y, first.x});
+  for (std::size_t axis = 0; axis < element.size(); ++axis) {
+    const std::int64_t along = element[axis] % chunk_[axis] / units_[axis];
+    place.inner = place.inner * static_cast<std::size_t>(chunk_[axis] / units_[axis]) + static_cast<std::size_t>(along);
+    place.corner.push_back(element[axis] - element[axis] % units_[axis]);
+  }
+  return place;
+}
+
+Box ChunkGeometry::chunks_of(const Index3& object) const {
+  const Index3 lo = times_each(object, object_);
+  const Index3 hi = min(lo + object_, extent_);
+  return {divided(lo, unit_), divided_up(hi, unit_)};
+}
+
+}  // namespace weir

@@ -1,0 +1,66 @@
+// Where the voxels of a volume lie in the chunks of a Zarr array.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "format/base/index.h"
+#include "ingest/zarr/codecs/codec_chain.h"
+#include "ingest/zarr/metadata/zarr_array.h"
+
+namespace weir {
+
+/// A chunk that is decoded alone: a whole object, or one in a shard.
+struct ChunkPlace {
+  std::vector<std::int64_t> object;  ///< position in the grid of stored objects, of each axis
+  std::size_t inner = 0;             ///< in the shard's index; 0 without shards
+  std::vector<std::int64_t> corner;  ///< its first element
+};
+
+/// The three last axes of an array, at one position on each of those before.
+class ChunkGeometry {
+ public:
+  /// `index` has a position for each axis before the last three, all inside. Throws Error(input), beginning with
+  /// `where`, where a chunk has more bytes than any should.
+  ChunkGeometry(const ZarrArray& array, const std::vector<std::int64_t>& index, const std::string& where);
+
+  const Index3& extent() const { return extent_; }
+  /// Voxels of what is decoded alone.
+  const Index3& unit() const { return unit_; }
+  /// Of it, all axes.
+  const ChunkShape& unit_shape() const { return unit_shape_; }
+  /// Byte of the volume's first voxel in a decoded chunk that is several thick along axes before the last three.
+  std::size_t first_byte() const { return first_byte_; }
+  /// Stored objects that the volume touches, along x, y, z.
+  const Index3& objects() const { return objects_; }
+  /// Chunks in a shard; 1 without shards.
+  std::uint64_t chunks_in_object() const { return chunks_in_object_; }
+
+  /// Of the chunk at `chunk` (chunk coordinates, in units).
+  ChunkPlace place_of(const Index3& chunk) const;
+  /// Which object it lies in, among objects().
+  Index3 object_of(const Index3& chunk) const;
+  /// The chunks (chunk coordinates, in units) of an object that have voxels of the volume.
+  Box chunks_of(const Index3& object) const;
+  /// The same as ChunkPlace::object.
+  std::vector<std::int64_t> object_position(const Index3& object) const;
+
+ private:
+  std::vector<std::int64_t> chunk_;  ///< elements of an object
+  std::vector<std::int64_t> units_;  ///< elements of what is decoded alone
+  std::vector<std::int64_t> index_;
+  ChunkShape unit_shape_;
+  Index3 extent_;
+  Index3 unit_;
+  Index3 object_;  ///< voxels of an object
+  Index3 objects_;
+  std::size_t first_byte_ = 0;
+  std::uint64_t chunks_in_object_ = 1;
+};
+
+/// "0, 64, 128".
+std::string position_text(const std::vector<std::int64_t>& position);
+
+}  // namespace weir

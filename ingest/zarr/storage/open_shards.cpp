@@ -1,0 +1,59 @@
+#include "ingest/zarr/storage/open_shards.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+constexpr std::uint64_t kIndexShare = 16;  // of --memory
+constexpr std::uint64_t kIndexCopies = 2;  // as it is stored, and its places
+
+}  // namespace
+
+OpenShards::OpenShards(const ZarrSharding& sharding, std::uint64_t chunks, std::uint64_t memory,
+                       const std::string& where)
+    : sharding_(sharding), index_bytes_(shard_index_bytes(sharding, chunks)) {
+  const std::uint64_t room = memory / kIndexShare;
+  const std::uint64_t one = kIndexCopies * index_bytes_;
+  if (one > room) {
+    throw usage_error(compose(where, ": the index of one of its shards of ", chunks, " chunks takes ",
+                              format_bytes(one), ", more than a sixteenth of ", option("memory", format_bytes(memory)),
+                              "; give at least ", (kIndexShare * one >> 20U) + 1, "MiB"));
+  }
+  most_ = static_cast<std::size_t>(std::min<std::uint64_t>(room / one, kMostOpenShards));
+}
+
+std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, const std::string& shown,
+                                            std::unique_ptr<ZarrObject> object) const {
+  if (object->size() < index_bytes_) {
+    throw input_error(shown, cat("has ", object->size(), " bytes, and the index of its shard alone takes ",
+                                 index_bytes_, "; the file is cut short or damaged"));
+  }
+  std::vector<std::byte> index(static_cast<std::size_t>(index_bytes_));
+  object->read(sharding_.index_first ? 0 : object->size() - index_bytes_, index);
+  auto shard = std::make_shared<OpenShard>();
+  shard->key = key;
+  shard->places = parse_shard_index(sharding_, index, object->size(), shown);
+  shard->object = std::move(object);
+  return shard;
+}
+
+std::shared_ptr<OpenShard> OpenShards::get(const std::string& key, const std::string& shown,
+                                           const std::function<std::unique_ptr<ZarrObject>()>& open) {
+  // One thread reads an index; those that want the same wait for it, and reading one takes little time.
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& shard) { return shard->key == key; });
+  if (found != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, found);
+    return kept_.front();
+  }
+  kept_.push_front(load(key, shown, open()));
+  if (kept_.size() > most_) kept_.pop_back();
+  return kept_.front();
+}
+
+}  // namespace weir

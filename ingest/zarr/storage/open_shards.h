@@ -1,0 +1,53 @@
+// Shards whose indices are kept while their chunks are read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "ingest/zarr/metadata/zarr_array.h"
+#include "ingest/zarr/storage/shard_index.h"
+#include "ingest/zarr/store/zarr_store.h"
+
+namespace weir {
+
+struct OpenShard {
+  std::string key;
+  std::unique_ptr<ZarrObject> object;
+  std::vector<ShardPlace> places;
+};
+
+/// Thread-safe.
+class OpenShards {
+ public:
+  /// Keeps those that were asked for last: as many as a sixteenth of `memory` bytes has room for, at most
+  /// kMostOpenShards. `chunks` lie in each. Throws Error(usage), beginning with `where`, where one index takes
+  /// more than that.
+  OpenShards(const ZarrSharding& sharding, std::uint64_t chunks, std::uint64_t memory, const std::string& where);
+
+  static constexpr std::size_t kMostOpenShards = 64;
+
+  std::uint64_t working_bytes() const { return most_ * index_bytes_ * 2; }
+
+  /// The shard at `key`, which open(key) opens where it is not kept. Throws what parse_shard_index throws, beginning
+  /// with `shown`, and Error(input) where the shard is shorter than its index.
+  std::shared_ptr<OpenShard> get(const std::string& key, const std::string& shown,
+                                 const std::function<std::unique_ptr<ZarrObject>()>& open);
+
+ private:
+  std::shared_ptr<OpenShard> load(const std::string& key, const std::string& shown,
+                                  std::unique_ptr<ZarrObject> object) const;
+
+  ZarrSharding sharding_;
+  std::uint64_t index_bytes_;
+  std::size_t most_;
+  std::mutex mutex_;
+  std::list<std::shared_ptr<OpenShard>> kept_;  ///< the one asked for last is first
+};
+
+}  // namespace weir

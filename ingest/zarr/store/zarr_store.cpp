@@ -1,0 +1,25 @@
+#include "ingest/zarr/store/zarr_store.h"
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/zarr/metadata/zarr_json.h"
+
+namespace weir {
+
+std::optional<std::string> ZarrStore::text(const std::string& key) {
+  const std::unique_ptr<ZarrObject> object = open(key);
+  if (!object) return std::nullopt;
+  if (object->size() > kMostMetadataBytes) {
+    throw input_error(shown(key), cat("has ", object->size(), " bytes, more than the ", kMostMetadataBytes,
+                                      " that metadata may have; the file is damaged"));
+  }
+  std::string text(static_cast<std::size_t>(object->size()), '\0');
+  object->read(0, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+std::string joined_key(std::string_view group, std::string_view name) {
+  return cat(group, group.empty() || name.empty() ? "" : "/", name);
+}
+
+}  // namespace weir

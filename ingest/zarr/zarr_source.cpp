@@ -1,0 +1,143 @@
+#include "ingest/zarr/zarr_source.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/chunks/chunk_boxes.h"
+#include "ingest/files/file_states.h"
+#include "ingest/files/input_directory.h"
+#include "ingest/source/extent.h"
+#include "ingest/zarr/array_choice.h"
+#include "ingest/zarr/storage/zarr_chunks.h"
+#include "ingest/zarr/store/open_store.h"
+
+namespace weir {
+namespace {
+
+/// Memory of open shards, of keys and of metadata, in bytes.
+constexpr std::uint64_t kZarrOwnBytes = std::uint64_t{2} << 20U;
+
+ScratchSize scratch_of(const ZarrArray& array, const ChunkGeometry& geometry) {
+  return scratch_size(array.values(), geometry.unit_shape().bytes());
+}
+
+ChunkedVolume volume_of(const ZarrArray& array, const ChunkGeometry& geometry, const SourceInfo& info,
+                        const std::string& where) {
+  ChunkedVolume volume;
+  volume.name = where;
+  volume.extent = geometry.extent();
+  volume.chunk = geometry.unit();
+  volume.type = array.type;
+  volume.big_endian = array.values().big_endian;
+  volume.mapping = info.mapping;
+  volume.fill = array.fill.value_or(std::vector<std::byte>(scalar_bytes(array.type)));
+  return volume;
+}
+
+class ZarrSource final : public VolumeSource {
+ public:
+  ZarrSource(std::unique_ptr<ZarrStore> store, const ChosenArray& chosen, const ChunkGeometry& geometry,
+             SourceInfo info, const SourceOptions& options)
+      : store_(std::move(store)),
+        info_(std::move(info)),
+        where_(store_->shown(chosen.node.key)),
+        scratch_(scratch_of(chosen.array, geometry), options.memory, where_),
+        chunks_({*store_, chosen.node.key, chosen.array.keys}, chosen.array, geometry, options.memory, options.cancel),
+        boxes_(volume_of(chosen.array, geometry, info_, where_), chunks_, scratch_) {
+    note_unstored(chosen.array, options);
+    note_files(chosen);
+  }
+
+  const SourceInfo& info() const override { return info_; }
+  AccessShape access() const override { return boxes_.access(); }
+  std::uint64_t working_bytes() const override { return scratch_.bytes() + chunks_.working_bytes() + kZarrOwnBytes; }
+  std::uint64_t bytes_read() const override { return chunks_.bytes_read(); }
+  ConversionLoss read(const Box& box, std::span<float> values) override { return boxes_.read(box, values); }
+
+ private:
+  void note_unstored(const ZarrArray& array, const SourceOptions& options) {
+    const UnstoredChunks unstored = chunks_.count_unstored();
+    if (unstored.count == 0) return;
+    const std::string count = cat(unstored.count, " of its ", unstored.all, unstored.all == 1 ? " chunk" : " chunks");
+    const char* const is = unstored.count == 1 ? " is" : " are";
+    if (options.missing_chunks == MissingChunks::error) {
+      throw input_error(unstored.first,
+                        compose("is not stored; ", count, is, " not, and with ", option("missing-chunks", "error"),
+                                " all must be; write it, or use ", option("missing-chunks", "fill")));
+    }
+    if (!array.fill) {
+      throw input_error(unstored.first, cat("is not stored; ", count, is,
+                                            " not, and fill_value is null: what they hold is not known; write all "
+                                            "chunks, or set the array's fill_value"));
+    }
+    info_.details.chunks_note = cat(count, is, " not stored and ", unstored.count == 1 ? "reads" : "read",
+                                    " as its fill value, ", array.fill_text);
+  }
+
+  void note_files(const ChosenArray& chosen) {
+    FileStates files;
+    const std::string document = store_->file_of(chosen.node.document);
+    files.add(document, chunks_.scan().digest);
+    const FileState& state = files.files().front();
+    const bool alone = document == info_.path;  // a zip file: its chunks lie in it
+    info_.file_bytes = alone ? state.bytes : state.bytes + chunks_.scan().bytes;
+    info_.mtime_ns = std::max(state.mtime_ns, chunks_.scan().mtime_ns);
+    info_.files_digest = alone ? std::string() : files.digest();
+    info_.files = files.files();
+  }
+
+  std::unique_ptr<ZarrStore> store_;
+  SourceInfo info_;
+  std::string where_;
+  ScratchPool scratch_;
+  ZarrChunks chunks_;
+  ChunkBoxes boxes_;
+};
+
+bool begins_as_zip(std::span<const std::byte> head) {
+  constexpr std::array kEntry{std::byte{'P'}, std::byte{'K'}, std::byte{3}, std::byte{4}};
+  constexpr std::array kEmpty{std::byte{'P'}, std::byte{'K'}, std::byte{5}, std::byte{6}};
+  const auto begins = [&](const auto& magic) {
+    return head.size() >= magic.size() && std::equal(magic.begin(), magic.end(), head.begin());
+  };
+  return begins(kEntry) || begins(kEmpty);
+}
+
+}  // namespace
+
+bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
+  const std::string name(path);
+  const auto directory_head = head_in_directory(name);
+  if (directory_head) return !is_plotfile_head(*directory_head);
+  if (is_head(path)) return !is_plotfile_head(path);
+  const bool raw = path.ends_with(".raw");
+  return !raw && begins_as_zip(head);
+}
+
+std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOptions& options) {
+  std::unique_ptr<ZarrStore> store = open_zarr_store(path, options.memory);
+  const ChosenArray chosen = choose_array(*store, path, options.dataset);
+  const std::string where = store->shown(chosen.node.key);
+  if (!chosen.meaning.obstacle.empty()) throw input_error(where, chosen.meaning.obstacle);
+  const auto index = checked_index(chosen.array, chosen.meaning, options.index, where);
+  SourceInfo info;
+  info.path = path;
+  info.format = "zarr";
+  info.dataset = chosen.node.key;
+  describe_volume(chosen.array, chosen.meaning, index, info);
+  options.complete(info.mapping);
+  checked_volume_bytes(info.extent, scalar_bytes(info.type), where);
+  const ChunkGeometry geometry(chosen.array, index, where);
+  return std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options);
+}
+
+std::vector<DatasetInfo> list_zarr(const std::string& path, const SourceOptions& options) {
+  const std::unique_ptr<ZarrStore> store = open_zarr_store(path, options.memory);
+  return list_arrays(*store, path);
+}
+
+}  // namespace weir

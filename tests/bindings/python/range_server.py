@@ -1,0 +1,86 @@
+"""A web server on loopback that answers requests for ranges, and notes them."""
+
+import http.server
+import re
+import threading
+
+
+class QuietServer(http.server.ThreadingHTTPServer):
+    def handle_error(self, request, client_address):
+        pass  # a client that does not want the rest
+
+
+class RangeServer:
+    """Serves `files`, {"/a.nvdb": bytes}. `asked` has (path, first byte, last byte) of each range that was sent.
+
+    ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses with
+    status 503 from now on. changed(path) makes another version of a file of it.
+    """
+
+    def __init__(self, files, ranges=True, tags=True):
+        self.files = dict(files)
+        self.ranges = ranges
+        self.tags = tags
+        self.failures = 0
+        self.forbidden = set()
+        self.versions = dict.fromkeys(files, 1)
+        self.asked = []
+        self.lock = threading.Lock()
+        self.server = QuietServer(("127.0.0.1", 0), self.handler())
+        self.thread = threading.Thread(target=self.server.serve_forever, daemon=True)
+        self.thread.start()
+
+    def url(self, path):
+        return f"http://127.0.0.1:{self.server.server_port}{path}"
+
+    def close(self):
+        self.server.shutdown()
+        self.server.server_close()
+        self.thread.join()
+
+    def changed(self, path, data):
+        self.files[path] = data
+        self.versions[path] += 1
+
+    def bytes_sent(self):
+        return sum(last - first + 1 for _, first, last in self.asked)
+
+    def handler(owner):
+        class Handler(http.server.BaseHTTPRequestHandler):
+            protocol_version = "HTTP/1.1"
+
+            def log_message(self, *arguments):
+                pass
+
+            def answer(self, status, body=b"", **headers):
+                self.send_response(status)
+                for name, value in headers.items():
+                    self.send_header(name.replace("_", "-"), value)
+                self.send_header("Content-Length", str(len(body)))
+                self.end_headers()
+                self.wfile.write(body)
+
+            def do_GET(self):
+                path = self.path.partition("?")[0]
+                with owner.lock:
+                    if owner.failures > 0:
+                        owner.failures -= 1
+                        return self.answer(503)
+                    if path in owner.forbidden:
+                        return self.answer(403)
+                    data = owner.files.get(path)
+                    if data is None:
+                        return self.answer(404)
+                    tag = f'"{owner.versions[path]}"'
+                    found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
+                    same = self.headers.get("If-Range", tag) == tag
+                    headers = {"ETag": tag} if owner.tags else {}
+                    if not found or not owner.ranges or not same:
+                        return self.answer(200, data, **headers)
+                    first, last = int(found[1]), min(int(found[2]), len(data) - 1)
+                    if first >= len(data):
+                        return self.answer(416)
+                    owner.asked.append((path, first, last))
+                self.answer(206, data[first : last + 1], Content_Range=f"bytes {first}-{last}/{len(data)}", **headers)
+
+        return Handler

@@ -1,0 +1,233 @@
+"""Files elsewhere: the same values as of the file here, in few requests, and a line where that cannot be."""
+
+import pathlib
+import pickle
+import tempfile
+import threading
+import unittest
+
+import numpy
+import weir
+from range_server import RangeServer
+from support import FolderTest, same
+
+
+def bumps(edge):
+    """Smooth, everywhere different."""
+    z, y, x = (numpy.arange(edge, dtype=numpy.float32) for _ in range(3))
+    wave = numpy.sin(z[:, None, None] * 0.05) * numpy.cos(y[None, :, None] * 0.04) + numpy.sin(x[None, None, :] * 0.06)
+    return (wave + 0.002 * numpy.random.default_rng(2).standard_normal((edge, edge, edge))).astype(numpy.float32)
+
+
+class Remote(FolderTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name) / "a.nvdb"
+        cls.values = bumps(264)
+        weir.convert(cls.values, cls.path, encoding="packed", rate=16, dataset="bumps")
+        cls.files = {"/run/a.nvdb": cls.path.read_bytes(), "/run/a.nvdb.json": cls.path.with_suffix(".nvdb.json").read_bytes()}
+        cls.here = weir.open(cls.path)
+
+    def served(self, path="/run/a.nvdb", files=None, **keywords):
+        server = RangeServer(self.files if files is None else files, **keywords)
+        self.addCleanup(server.close)
+        return server, server.url(path)
+
+    def test_has_the_values_of_the_file(self):
+        server, url = self.served()
+        with weir.open(url) as grid:
+            self.assertIsInstance(grid, weir.RemoteGrid)
+            self.assertEqual(repr(grid), f"<weir.Grid '{url}', 264 x 264 x 264, float32>")
+            self.assertEqual((grid.range, grid.spacing, grid.name), (self.here.range, self.here.spacing, "bumps"))
+            for roi in (numpy.s_[0:9, 100:140, 3:264], numpy.s_[120:136, 120:136, 120:136], numpy.s_[263:264, 0:1, 5:6]):
+                self.assertTrue(same(grid.to_numpy(roi), self.here.to_numpy(roi)), roi)
+            self.assertTrue(same(grid[::50, 7, ::-20], self.here[::50, 7, ::-20]))
+            for level in (1, 4, 9):
+                self.assertTrue(same(grid.to_numpy(level=level), self.here.to_numpy(level=level)), level)
+            self.assertTrue(same(grid.to_numpy(), self.here.to_numpy()))
+        with weir.open(url) as grid:
+            grid.to_numpy()
+            self.assertLess(grid.bytes_read, 1.01 * grid.bytes)
+
+    def test_samples_are_those_of_the_file(self):
+        _, url = self.served()
+        points = numpy.random.default_rng(4).uniform(-3, 268, (5000, 3))
+        edges = [[0, 0, 0], [264, 264, 264], [127.5, 128.5, 7.5], [128, 8, 263.9]]
+        for chosen in (points, edges, points[:1]):
+            for filter in ("trilinear", "nearest"):
+                with weir.open(url) as grid:
+                    self.assertTrue(same(grid.sample(chosen, filter), self.here.sample(chosen, filter)), filter)
+
+    def test_a_region_takes_six_requests_and_few_bytes(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        self.assertEqual(grid.requests, 2)
+        part = grid.to_numpy(numpy.s_[64:128, 64:128, 64:128])
+        self.assertTrue(same(part, self.here[64:128, 64:128, 64:128]))
+        self.assertLessEqual(len(server.asked), 6)
+        self.assertEqual(grid.requests, len(server.asked))
+        self.assertEqual(grid.bytes_read, server.bytes_sent())
+        blocks = self.here.bytes / 264**3 * 64**3
+        self.assertLess(server.bytes_sent(), 3 * blocks + 65536)
+        again = grid.to_numpy(numpy.s_[70:100, 64:128, 65:66])
+        self.assertTrue(same(again, self.here[70:100, 64:128, 65:66]))
+        self.assertLessEqual(len(server.asked), 6)
+
+    def test_certificate_macrocells_and_metadata(self):
+        server, url = self.served("/run/a.nvdb?key=1")
+        grid = weir.open(url)
+        self.assertEqual(grid.certificate, self.here.certificate)
+        self.assertEqual(grid.requests, 3)
+        self.assertEqual(grid.sidecar, self.here.sidecar)
+        self.assertEqual(grid.requests, 3)
+        self.assertTrue(same(grid.macrocells().max, self.here.macrocells().max))
+        del server.files["/run/a.nvdb.json"]
+        self.assertIsNone(weir.open(url).certificate)
+        server.forbidden.add("/run/a.nvdb.json")  # as stores answer that do not tell what is missing
+        self.assertIsNone(weir.open(url).sidecar)
+        server.forbidden.clear()
+        server.files["/run/a.nvdb.json"] = self.files["/run/a.nvdb.json"].replace(b'"bytes"', b'"bites"')
+        self.assertIn("a.nvdb.json?key=1", self.refused(weir.InputError, lambda: weir.open(url).sidecar))
+
+    def test_what_was_read_is_forgotten_above_the_cache(self):
+        server, url = self.served()
+        small = weir.open(url, cache="100KiB")
+        large = weir.open(url)
+        for grid in (small, large):
+            for z in (0, 130, 0, 130):
+                self.assertTrue(same(grid[z : z + 8, 0:100, 0:100], self.here[z : z + 8, 0:100, 0:100]))
+        self.assertGreater(small.bytes_read, 1.5 * large.bytes_read)
+        message = self.refused(weir.UsageError, weir.open, url, cache="much")
+        self.assertEqual(message, "cache is 'much', it must be a size as 67108864 or '256MiB'")
+
+    def test_threads_share_a_grid(self):
+        _, url = self.served()
+        grid = weir.open(url, cache=50000)
+        wrong = []
+
+        def look(first):
+            for z in range(first, 264, 60):
+                if not same(grid[z], self.here[z]):
+                    wrong.append(z)
+
+        threads = [threading.Thread(target=look, args=(first,)) for first in (0, 20, 40)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
+    def test_another_process_opens_it_again(self):
+        _, url = self.served()
+        copy = pickle.loads(pickle.dumps(weir.open(url, cache="1MiB")))
+        self.assertTrue(same(copy[5], self.here[5]))
+
+    def test_what_needs_all_of_the_file_says_so(self):
+        _, url = self.served()
+        grid = weir.open(url)
+        message = self.refused(weir.UsageError, grid.render)
+        self.assertEqual(message, f"{url}: render reads all of the file; copy it to this machine")
+        message = self.refused(weir.UsageError, grid.verify)
+        self.assertEqual(message, f"{url}: verify reads all of the file; copy it to this machine")
+        grid.close()
+        self.assertIn("is closed", self.refused(weir.UsageError, grid.to_numpy))
+
+    def test_only_packed_files(self):
+        weir.convert(self.values[:64, :64, :64], self.folder / "b.nvdb", encoding="float", rate=2)
+        _, url = self.served("/b.nvdb", {"/b.nvdb": (self.folder / "b.nvdb").read_bytes()})
+        message = self.refused(weir.InputError, weir.open, url)
+        self.assertEqual(
+            message,
+            f"{url}: is not packed (--encoding packed), and only packed files are read block by block; copy the file to "
+            "this machine to read it",
+        )
+
+    def test_servers_that_cannot(self):
+        server, url = self.served(ranges=False)
+        message = self.refused(weir.InputError, weir.open, url)
+        self.assertEqual(
+            message, f"{url}: its server sends whole files only (status 200); copy the file to this machine"
+        )
+        missing = server.url("/b.nvdb")
+        with self.assertRaises(FileNotFoundError) as raised:
+            weir.open(missing)
+        self.assertIsInstance(raised.exception, weir.InputError)
+        self.assertEqual(str(raised.exception), f"{missing}: its server says 404 Not Found; there is no such file")
+        server.close()
+        self.assertIn("cannot be read", self.refused(weir.IoError, weir.open, url))
+
+    def test_a_few_failures_are_tried_again(self):
+        server, url = self.served()
+        server.failures = 2
+        grid = weir.open(url)
+        server.failures = 2
+        self.assertTrue(same(grid[9], self.here[9]))
+
+    def test_a_file_that_changes_is_noticed(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        server.changed("/run/a.nvdb", bytes(len(self.files["/run/a.nvdb"])))
+        message = self.refused(weir.InputError, grid.to_numpy)
+        self.assertEqual(message, f"{url}: changed while it was read; open it again")
+
+    def test_damaged_and_cut_files(self):
+        data = self.files["/run/a.nvdb"]
+        _, url = self.served("/a.nvdb", {"/a.nvdb": data[: len(data) // 2]})
+        with self.assertRaises(weir.InputError) as raised:
+            weir.open(url).to_numpy()
+        self.assertRegex(str(raised.exception), "is it complete")
+        _, url = self.served("/a.nvdb", {"/a.nvdb": b"no such format" * 2000})
+        self.assertRegex(self.refused(weir.InputError, weir.open, url), "not a NanoVDB file")
+        many = bytearray(data)
+        many[4096 + 648 : 4096 + 652] = (1 << 31).to_bytes(4, "little")
+        _, url = self.served("/a.nvdb", {"/a.nvdb": bytes(many)})
+        self.assertIn("has 2147483648 records of blind data", self.refused(weir.InputError, weir.open, url))
+        random = numpy.random.default_rng(8)
+        opened = 0
+        for _ in range(12):
+            damaged = bytearray(data)
+            for at in random.integers(0, 20000, 3).tolist() + random.integers(0, len(data), 300).tolist():
+                damaged[at] = random.integers(256)
+            server, url = self.served("/a.nvdb", {"/a.nvdb": bytes(damaged)})
+            try:
+                weir.open(url).to_numpy(numpy.s_[60:200, 60:200, 60:200])
+                opened += 1
+            except (weir.InputError, weir.IoError) as error:
+                self.assertNotIn("\n", str(error))
+        self.assertLess(opened, 12)
+
+    def test_file_systems_of_fsspec(self):
+        try:
+            import fsspec
+        except ImportError:
+            self.skipTest("python3-fsspec is not installed")
+        memory = fsspec.filesystem("memory")
+        for path, data in self.files.items():
+            memory.pipe(path, data)
+        grid = weir.open("memory://run/a.nvdb")
+        self.assertTrue(same(grid[100:120, 5], self.here[100:120, 5]))
+        self.assertEqual(grid.certificate, self.here.certificate)
+        local = weir.open(f"file://{self.path}", storage_options={"auto_mkdir": False})
+        self.assertTrue(same(local[7], self.here[7]))
+        with self.assertRaises(FileNotFoundError) as raised:
+            weir.open("memory://run/b.nvdb")
+        self.assertEqual(str(raised.exception), "memory://run/b.nvdb: there is no such file")
+        self.assertIn("cannot be opened", self.refused(weir.UsageError, weir.open, "nonsense://a/b.nvdb"))
+        message = self.refused(weir.UsageError, weir.open, self.path, storage_options={"a": 1})
+        self.assertEqual(message, f"storage_options are for URLs, and '{self.path}' is a path")
+
+    def test_xarray_opens_a_url(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("python3-xarray is not installed")
+        server, url = self.served()
+        dataset = xarray.open_dataset(url, engine="weir")
+        self.assertTrue(same(dataset["bumps"][3, 4:9].values, self.here[3, 4:9]))
+        self.assertLess(server.bytes_sent(), self.here.bytes / 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,328 @@
+"""Grid.to_xarray and xarray.open_dataset(engine="weir"): coordinates and units as in the source, values on demand."""
+
+import pickle
+import unittest
+
+import numpy
+
+try:
+    import xarray
+except ImportError:
+    raise unittest.SkipTest("python3-xarray is missing") from None
+
+import weir
+from support import FolderTest, ramp, same
+
+
+class ToXarray(FolderTest):
+    def test_coordinates_are_the_centres_of_voxels(self):
+        values = ramp(12, 20, 28)
+        grid = self.lossless(values, spacing=(0.5, 1, 2), origin=(10, 20, -30), dataset="density")
+        array = grid.to_xarray()
+        self.assertEqual((array.name, array.dims, array.shape), ("density", ("z", "y", "x"), (28, 20, 12)))
+        self.assertEqual(array.dtype, numpy.float32)
+        numpy.testing.assert_array_equal(array.x, 10 + 0.5 * numpy.arange(12))
+        numpy.testing.assert_array_equal(array.y, 20 + numpy.arange(20.0))
+        numpy.testing.assert_array_equal(array.z, -30 + 2 * numpy.arange(28.0))
+        self.assertEqual(array.attrs, {"max_abs_error": 0.0})
+        self.assertTrue(same(array.values, values))
+        self.assertEqual(float(array.sel(z=-26, y=21, x=10.5)), values[2, 1, 1])
+        self.assertEqual(float(array.sel(z=-25.9, y=21.2, x=10.4, method="nearest")), values[2, 1, 1])
+
+    def test_a_region_stays_where_it_was(self):
+        values = ramp(12, 20, 28)
+        grid = self.lossless(values, roi=((3, 5, 7), (12, 20, 28)), spacing=(2, 2, 2), origin=(1, 1, 1))
+        array = grid.to_xarray()
+        self.assertEqual([float(array[axis][0]) for axis in "xyz"], [7, 11, 15])
+        self.assertTrue(same(array.values, values[7:, 5:, 3:]))
+
+    def test_values_are_decoded_when_they_are_used(self):
+        values = ramp(40, 50, 60)
+        grid = self.lossless(values)
+        asked = []
+
+        class Core:
+            def __getattr__(self, name):
+                return getattr(core, name)
+
+            def read(self, low, high, level):
+                asked.append((low, high, level))
+                return core.read(low, high, level)
+
+        core, grid._core = grid._core, Core()
+        array = grid.to_xarray()
+        part = array.isel(z=slice(8, 16)).sel(y=3)
+        self.assertIn("...", repr(array))
+        self.assertEqual(asked, [])
+        self.assertTrue(same(part.values, values[8:16, 3]))
+        self.assertEqual(asked, [((0, 3, 8), (40, 4, 16), 0)])
+        grid._core = core
+
+    def test_every_index_of_xarray(self):
+        values = ramp(12, 20, 28)
+        array = self.lossless(values).to_xarray()
+        for key in (
+            numpy.s_[3, ::-2, [1, 5, 2]],
+            numpy.s_[::9, :, -1],
+            numpy.s_[[0, 27, 3], 4:9, [11, 0]],
+            numpy.s_[values[:, 0, 0] > 50000],
+            numpy.s_[:, ::-3, :],
+            numpy.s_[5::-3, 9:1:-4, ::-40],
+            numpy.s_[[6, 11, -11], 5::-3, ::-1],
+            numpy.s_[[], ::-2, 3],
+        ):
+            with self.subTest(key):
+                wanted = values[numpy.ix_(*self.lists(key, values.shape))]
+                numpy.testing.assert_array_equal(array[key].values.reshape(wanted.shape), wanted)
+        places = xarray.DataArray([0, 5, 27], dims="point")
+        numpy.testing.assert_array_equal(array.isel(z=places, x=places % 12), values[[0, 5, 27], :, [0, 5, 3]])
+        numpy.testing.assert_array_equal(
+            array.isel(y=places % 20, x=places % 12, z=slice(20, 3, -4)),
+            numpy.moveaxis(values[20:3:-4, [0, 5, 7], [0, 5, 3]], 1, array.isel(y=places % 20).dims.index("point")),
+        )
+
+    def test_a_quantity_that_is_called_like_an_axis(self):
+        for given, name in (("/velocity/x", "velocity_x"), ("z", None), ("/z/y", "z_y")):
+            array = self.lossless(ramp(4, 5, 6), name=given.replace("/", "") + ".nvdb", dataset=given).to_xarray()
+            self.assertEqual((array.name, array.dims), (name, ("z", "y", "x")))
+
+    @staticmethod
+    def lists(key, shape):
+        parts = (key if isinstance(key, tuple) else (key,)) + (slice(None),) * 3
+        return [numpy.atleast_1d(numpy.arange(count)[part]) for part, count in zip(parts, shape)]
+
+    def test_levels_lie_in_the_middle_of_their_cubes(self):
+        grid = self.lossless(ramp(12, 21, 28), spacing=(0.5, 1, 2))
+        array = grid.to_xarray(level=2)
+        self.assertTrue(same(array.values, grid.to_numpy(level=2)))
+        numpy.testing.assert_array_equal(array.x, [0.75, 2.75, 4.75])
+        self.assertEqual(list(array.y.values), [1.5, 5.5, 9.5, 13.5, 17.5, 20])
+        self.assertTrue(same(array[::2, 1, ::-1].values, grid.to_numpy(level=2)[::2, 1, ::-1]))
+
+
+class Sidecars(FolderTest):
+    """What a cloud model's NetCDF file says."""
+
+    def setUp(self):
+        super().setUp()
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("python3-h5py is missing")
+        self.values = ramp(12, 20, 28)
+        self.heights = 50 * numpy.arange(1, 29) ** 1.5
+        with h5py.File(self.folder / "model.h5", "w") as file:
+            field = file.create_dataset("qc", data=self.values[None])
+            field.attrs["units"], field.attrs["long_name"] = "kg kg-1", "cloud water mixing ratio"
+            for axis, (name, values, units) in enumerate(
+                (
+                    ("time", [3600.0], "seconds since 2000-01-01 00:00:00"),
+                    ("height", self.heights, "m"),
+                    ("lat", 50 + 0.25 * numpy.arange(20), "degrees_north"),
+                    ("lon", 5 + 0.5 * numpy.arange(12), "degrees_east"),
+                )
+            ):
+                scale = file.create_dataset(name, data=numpy.asarray(values, float))
+                scale.attrs["units"] = units
+                scale.make_scale(name)
+                field.dims[axis].attach_scale(scale)
+        weir.convert(self.folder / "model.h5", self.folder / "a.nvdb", dataset="/qc", index=[0], lossless=True)
+
+    def test_names_units_time_and_uneven_heights(self):
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir") as dataset:
+            self.assertEqual(list(dataset.data_vars), ["qc"])
+            array = dataset["qc"]
+            self.assertEqual(array.dims, ("height", "lat", "lon"))
+            self.assertEqual(array.attrs["units"], "kg kg-1")
+            self.assertEqual(array.attrs["long_name"], "cloud water mixing ratio")
+            numpy.testing.assert_allclose(array.height, self.heights)
+            numpy.testing.assert_array_equal(array.lon, 5 + 0.5 * numpy.arange(12))
+            self.assertEqual([array[axis].units for axis in array.dims], ["m", "degrees_north", "degrees_east"])
+            self.assertEqual(array.time.values, numpy.datetime64("2000-01-01T01:00:00"))
+            self.assertEqual(float(array.sel(lat=51, lon=6, method="nearest")[3]), self.values[3, 4, 2])
+
+    def test_times_that_are_not_decoded(self):
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir", decode_times=False) as dataset:
+            self.assertEqual(float(dataset.time), 3600)
+            self.assertEqual(dataset.time.units, "seconds since 2000-01-01 00:00:00")
+
+    def test_steps_become_a_series(self):
+        with xarray.open_dataset(self.folder / "a.nvdb") as first:  # by the name's end
+            second = first.assign_coords(time=first.time + numpy.timedelta64(1, "h"))
+            series = xarray.concat([first, second], "time")
+            self.assertEqual(series.sizes["time"], 2)
+
+
+class FallingLatitudes(FolderTest):
+    """A reanalysis whose rows lie from north to south."""
+
+    def setUp(self):
+        super().setUp()
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("python3-h5py is missing")
+        self.latitudes = numpy.linspace(60, 30, 31)
+        self.levels = numpy.array([1000.0, 850, 500, 250, 100])
+        self.values = ramp(40, 31, 5)
+        with h5py.File(self.folder / "era5.h5", "w") as file:
+            field = file.create_dataset("t", data=self.values, chunks=(2, 7, 11), compression="gzip")
+            for axis, (name, places) in enumerate(
+                (("level", self.levels), ("latitude", self.latitudes), ("longitude", numpy.arange(40.0)))
+            ):
+                scale = file.create_dataset(name, data=places)
+                scale.make_scale(name)
+                field.dims[axis].attach_scale(scale)
+
+    def test_a_row_lies_at_its_latitude(self):
+        weir.convert(self.folder / "era5.h5", self.folder / "a.nvdb", lossless=True)
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir") as dataset:
+            array = dataset["t"]
+            numpy.testing.assert_array_equal(array.latitude, self.latitudes[::-1])
+            for row, latitude in enumerate(self.latitudes):
+                numpy.testing.assert_array_equal(array.sel(latitude=latitude), self.values[:, row])
+            for plane, level in enumerate(self.levels):
+                numpy.testing.assert_array_equal(array.sel(level=level), self.values[plane, ::-1])
+
+    def test_the_grid_and_a_region_have_rising_positions(self):
+        record = weir.convert(
+            self.folder / "era5.h5", self.folder / "a.nvdb", lossless=True, roi=((3, 2, 0), (40, 6, 5))
+        )
+        self.assertEqual(record["source"]["reversed_axes"], ["y"])
+        grid = weir.open(self.folder / "a.nvdb")
+        self.addCleanup(grid.close)
+        self.assertEqual((grid.origin[1], grid.spacing[1]), (30, 1))
+        array = grid.to_xarray()
+        self.assertEqual(list(array.latitude.values), [32, 33, 34, 35])
+        numpy.testing.assert_array_equal(array.sel(latitude=33), self.values[:, 27, 3:])
+
+
+class Convert(FolderTest):
+    """weir.convert of a DataArray."""
+
+    def array(self, **changes):
+        values = ramp(4, 5, 6)
+        fields = {
+            "dims": ("height", "lat", "lon"),
+            "coords": {
+                "height": ("height", [0.0, 10, 30, 60, 100, 150], {"units": "m", "axis": "Z"}),
+                "lat": ("lat", 50 - 0.5 * numpy.arange(5), {"units": "degrees_north"}),
+                "lon": ("lon", 7 + 0.25 * numpy.arange(4, dtype=numpy.float32), {"units": "degrees_east"}),
+                "time": numpy.datetime64("2000-01-02T12:00:00"),
+            },
+            "name": "qc",
+            "attrs": {"units": "kg/kg", "long_name": "cloud water"},
+        }
+        return xarray.DataArray(values, **{**fields, **changes})
+
+    def test_place_units_names_and_time_are_kept(self):
+        with self.assertLogs("weir") as logs:
+            record = weir.convert(self.array(), self.folder / "a.nvdb", lossless=True)
+        self.assertEqual(
+            [line.split(": ", 1)[1] for line in logs.output if "axis" in line],
+            [
+                "qc: axis z (height): irregular coordinates from 0 to 150, taken as indices, 1 apart; spacing sets "
+                "another distance"
+            ],
+        )
+        source = record["source"]
+        self.assertEqual(source["dataset"], "qc")
+        self.assertEqual((source["units"], source["long_name"]), ("kg/kg", "cloud water"))
+        self.assertEqual(source["axes"], ["lon", "lat", "height"])
+        self.assertEqual(source["axis_units"], ["degrees_east", "degrees_north", "m"])
+        self.assertEqual(source["time"], {"value": 946814400.0, "units": "seconds since 1970-01-01 00:00:00"})
+        self.assertEqual(record["grid"]["voxel_size"], [0.25, 0.5, 1.0])
+        self.assertEqual(record["grid"]["origin"], [7.0, 48.0, 0.0])
+        with weir.open(self.folder / "a.nvdb") as grid:
+            again = grid.to_xarray()
+            self.assertTrue(same(again.values, self.array().values[:, ::-1]))  # lat falls
+            xarray.testing.assert_equal(again.drop_vars("time").sortby("lat", ascending=False), self.array().drop_vars("time"))
+            self.assertEqual(again.time, self.array().time)
+
+    def test_axes_are_ordered_by_what_they_are(self):
+        values = ramp(4, 5, 6)
+        for dims in (("x", "y", "z"), ("lon", "lat", "level"), ("x", "depth", "y")):
+            by_name = {"x": 2, "lon": 2, "y": 1, "lat": 1}
+            array = xarray.DataArray(values.transpose([by_name.get(name, 0) for name in dims]), dims=dims)
+            self.assertTrue(same(self.lossless(array, overwrite=True).to_numpy(), values), dims)
+        array = xarray.DataArray(values, dims=("a", "b", "c"))
+        self.assertTrue(same(self.lossless(array, overwrite=True).to_numpy(), values), "as they are")
+
+    def test_keywords_come_first(self):
+        record = weir.convert(
+            self.array(), self.folder / "a.nvdb", spacing=(1, 2, 3), origin=(4, 5, 6), dataset="q", lossless=True
+        )
+        self.assertEqual(record["grid"]["voxel_size"], [1, 2, 3])
+        self.assertEqual(record["grid"]["origin"], [4, 5, 6])
+        self.assertEqual(record["source"]["dataset"], "q")
+
+    def test_axes_of_one_position_are_left_out_and_others_are_refused(self):
+        one = self.array().expand_dims("member")
+        self.assertTrue(same(self.lossless(one).to_numpy(), self.array().values[:, ::-1]))
+        two = xarray.concat([self.array()] * 2, "member")
+        self.assertEqual(
+            self.refused(weir.UsageError, weir.convert, two, self.folder / "b.nvdb"),
+            "source has the axes (member, height, lat, lon), it must have three; choose with source.isel(member=0)",
+        )
+        self.assertEqual(
+            self.refused(weir.UsageError, weir.convert, self.array()[0], self.folder / "b.nvdb"),
+            "source has the axes (lat, lon), it must have three",
+        )
+        self.assertEqual(
+            self.refused(TypeError, weir.convert, self.array().to_dataset(), self.folder / "b.nvdb"),
+            "source is a Dataset, it must be a path, a numpy array or an xarray.DataArray",
+        )
+
+    def test_the_accessor(self):
+        record = self.array().weir.convert(self.folder / "a.nvdb", lossless=True)
+        self.assertEqual(record["source"]["dataset"], "qc")
+        self.assertEqual(self.names(), ["a.nvdb", "a.nvdb.json"])
+
+
+class Engine(FolderTest):
+    def test_of_a_file_without_a_sidecar(self):
+        values = ramp(12, 20, 28)
+        self.lossless(values)
+        (self.folder / "a.nvdb.json").unlink()
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir") as dataset:
+            (name,) = dataset.data_vars
+            self.assertEqual(dataset[name].attrs, {})
+            self.assertTrue(same(dataset[name].values, values))
+
+    def test_a_closed_dataset_lets_go_of_its_file(self):
+        self.lossless(ramp(12, 20, 28))
+        dataset = xarray.open_dataset(self.folder / "a.nvdb", engine="weir")
+        (name,) = dataset.data_vars
+        dataset.close()
+        self.assertEqual(
+            self.refused(weir.UsageError, lambda: dataset[name].values),
+            "a.nvdb: is closed; open it again with weir.open",
+        )
+
+    def test_options_and_errors(self):
+        grid = self.lossless(ramp(16, 16, 16))
+        with xarray.open_dataset(grid.path, engine="weir", level=1) as dataset:
+            self.assertEqual(dict(dataset.sizes), {"z": 8, "y": 8, "x": 8})
+        with self.assertRaises(FileNotFoundError):
+            xarray.open_dataset(self.folder / "no.nvdb", engine="weir")
+
+    def test_it_is_pickled_as_its_path(self):
+        values = ramp(12, 20, 28)
+        array = pickle.loads(pickle.dumps(self.lossless(values).to_xarray()))
+        self.assertTrue(same(array.values, values))
+
+    def test_chunks_are_whole_blocks(self):
+        try:
+            import dask.array  # noqa: F401
+        except ImportError:
+            self.skipTest("python3-dask is missing")
+        values = ramp(12, 20, 300)
+        self.lossless(values)
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir", chunks={}) as dataset:
+            (name,) = dataset.data_vars
+            self.assertEqual(dataset[name].chunks, ((128, 128, 44), (20,), (12,)))
+            self.assertEqual(float(dataset[name].max()), values.max())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,157 @@
+// Ladders of the rungs that a window can choose: built so or left over of all rungs they are the same (near rungs are
+// always built for the window), and what they have is what a cut in the window chooses of all.
+#include "compressor/packed/ladder_window.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "compressor/leaf/leaf_summary.h"
+#include "compressor/packed/ladder_builder.h"
+
+namespace weir::ladder_window_test {
+namespace {
+
+// Waves, with noise, steps or far from zero, of many sizes.
+LeafValues block_of(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double scale = std::exp(8 * uniform(random));
+  const double noise = seed % 3 == 0 ? 0 : std::exp(-6 + 5 * uniform(random));
+  const double offset = seed % 4 == 0 ? 100 * uniform(random) : 0;
+  const bool whole = seed % 5 == 0;
+  const double kx = uniform(random), ky = uniform(random), kz = uniform(random);
+  LeafValues block;
+  for (unsigned i = 0; i < 512; ++i) {
+    double v = std::sin(kx * (i >> 6U) + ky * (i >> 3U & 7U) + kz * (i & 7U)) + noise * uniform(random) + offset;
+    if (seed % 7 == 0) v = v > 0.3 ? v : 0;
+    block[i] = static_cast<float>(whole ? std::nearbyint(20 * v) : scale * v);
+  }
+  return block;
+}
+
+bool same_rung(const PackedRung& a, const PackedRung& b) {
+  return a.bits == b.bits && a.error.value() == b.error.value();
+}
+
+struct Ladders {
+  LeafRow row;
+  PackedLadder all;
+  PackedLadder within;
+};
+
+Ladders ladders_of(const LeafValues& block, double key, NearRungs near) {
+  LadderAim aim;
+  aim.near_rungs = near == NearRungs::yes;
+  Ladders ladders;
+  ladders.row = summarize_leaf(block, 0);
+  ladders.all = LadderBuilder(aim).build(block, ladders.row, near);
+  aim.window = KeyWindow{key};
+  ladders.within = LadderBuilder(aim).build(block, ladders.row, near);
+  return ladders;
+}
+
+// Keys from those of the coarsest rungs to those of near ones.
+std::vector<double> keys_of(const LeafRow& row) {
+  std::vector<double> keys;
+  for (int octave = -4; octave < 40; octave += 2) keys.push_back(row.sse / 8 * std::ldexp(1.3, -octave));
+  return keys;
+}
+
+TEST(LadderWindow, WhatTheSurveyBuildsIsWhatIsLeftOfAllRungs) {
+  for (unsigned seed = 1; seed < 120; ++seed) {
+    const LeafValues block = block_of(seed);
+    for (const double key : keys_of(summarize_leaf(block, 0))) {
+      const Ladders ladders = ladders_of(block, key, NearRungs::no);
+      if (!(ladders.row.sse > 0)) continue;
+      const KeyWindow window{key};
+      const LadderRange of_all = range_within(window, ladders.all, ladders.row);
+      const LadderRange of_within = range_within(window, ladders.within, ladders.row);
+      ASSERT_EQ(of_within.rungs.first, of_all.rungs.first) << seed << ' ' << key;
+      ASSERT_EQ(of_within.rungs.end, of_all.rungs.end) << seed << ' ' << key;
+      for (std::size_t rung = 0; rung < PackedLadder::kMostRungs; ++rung) {
+        if (rung >= PackedLadder::kMeanRungs && !of_all.rungs.has(rung)) continue;
+        ASSERT_TRUE(same_rung(ladders.within.rungs[rung], ladders.all.rungs[rung])) << seed << ' ' << rung;
+      }
+      ASSERT_EQ(ladders.within.exact_bytes, ladders.all.exact_bytes);
+      ASSERT_EQ(ladders.within.first_step, ladders.all.first_step);
+    }
+  }
+}
+
+// Squared error plus key times bytes of the best of those rungs, or of the mean alone.
+template <typename Has>
+double least_cost(const PackedLadder& ladder, const LeafRow& row, double key, const Has& has) {
+  double least = row.sse + key;
+  for (std::size_t rung = PackedLadder::kMeanRungs; rung < ladder.count; ++rung) {
+    const auto point = ladder.point(rung);
+    if (point && has(rung)) least = std::min(least, point->share * row.sse + key * point->bytes);
+  }
+  return least;
+}
+
+TEST(LadderWindow, HoldsTheBestRungOfEachCutInIt) {
+  int worse = 0;
+  int cuts = 0;
+  double excess = 0;
+  for (unsigned seed = 1; seed < 200; ++seed) {
+    const LeafValues block = block_of(seed);
+    for (const double key : keys_of(summarize_leaf(block, 0))) {
+      const Ladders ladders = ladders_of(block, key, NearRungs::yes);
+      if (!(ladders.row.sse > 0)) continue;
+      const KeyWindow window{key};
+      const LadderRange range = range_within(window, ladders.all, ladders.row);
+      for (const double at : {window.low(), key, window.high()}) {
+        const double best = least_cost(ladders.all, ladders.row, at, [](std::size_t) { return true; });
+        const double held = least_cost(ladders.all, ladders.row, at, [&](std::size_t r) { return range.rungs.has(r); });
+        ++cuts;
+        worse += held > best * 1.0000001 ? 1 : 0;
+        excess += held / best - 1;
+      }
+    }
+  }
+  EXPECT_GT(cuts, 5000);
+  EXPECT_LE(worse, cuts / 100);  // some blocks on a lattice save more by the next rung but one than by the next
+  EXPECT_LT(excess / cuts, 0.001);
+}
+
+TEST(LadderWindow, NearRungsEndWhereTheyAreTooFine) {
+  int built = 0;
+  int all = 0;
+  for (unsigned seed = 1; seed < 200; ++seed) {
+    const LeafValues block = block_of(seed);
+    const LeafRow row = summarize_leaf(block, 0);
+    const Ladders ladders = ladders_of(block, row.sse / 8 * 0x1p-36, NearRungs::yes);
+    for (std::size_t rung = 0; rung < PackedLadder::kMostNear; ++rung) {
+      built += ladders.within.near_point(rung) ? 1 : 0;
+      all += ladders.all.near_point(rung) ? 1 : 0;
+      if (!ladders.within.near_point(rung) || !ladders.all.near_point(rung)) continue;
+      EXPECT_EQ(ladders.within.near_point(rung)->bytes, ladders.all.near_point(rung)->bytes);
+      EXPECT_EQ(ladders.within.near_point(rung)->share, ladders.all.near_point(rung)->share);
+    }
+  }
+  EXPECT_GT(built, 100);
+  EXPECT_LT(built, all / 2);
+}
+
+TEST(LadderWindow, TakesAFewRungsOfMany) {
+  int built = 0;
+  int all = 0;
+  for (unsigned seed = 1; seed < 200; ++seed) {
+    const LeafValues block = block_of(seed);
+    const LeafRow row = summarize_leaf(block, 0);
+    const Ladders ladders = ladders_of(block, row.sse / 8 * 0x1p-8, NearRungs::no);
+    for (std::size_t rung = PackedLadder::kMeanRungs; rung < PackedLadder::kMostRungs; ++rung) {
+      built += ladders.within.point(rung) ? 1 : 0;
+      all += ladders.all.point(rung) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(all, 200 * 8);
+  EXPECT_LT(built, all / 2);
+}
+
+}  // namespace
+}  // namespace weir::ladder_window_test

@@ -1,0 +1,92 @@
+// `weir watch --check` as a user who may not write everywhere.
+#include "daemon/config/check_access.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "format/base/text.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace weir::check_access_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CheckAccess : public testing::Test {
+ protected:
+  CheckAccess() {
+    for (const char* name : {"in", "out", "state"}) fs::create_directory(directory_ / name);
+    fs::permissions(directory_.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
+    configure();
+  }
+  void configure(const std::string& service = "state = 'state/weir.db'\n") const {
+    write_file(directory_ / "weir.toml",
+               cat("[service]\n", service, "[[watch]]\ndirectory = 'in'\noutput = 'out/deep'\n"));
+  }
+  /// As nobody, whom permissions stop, where the test runs as root, whom they do not.
+  CommandResult check() const {
+    std::vector<std::string> command{WEIR_COMMAND, "watch", "--check", directory_ / "weir.toml"};
+    if (::geteuid() == 0)
+      command.insert(command.begin(), {"setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
+    return run_command(command);
+  }
+  void allow(const char* name, bool allowed) const {
+    using fs::perms;
+    fs::permissions(directory_ / name, allowed ? perms::all : perms::owner_exec | perms::others_exec);
+  }
+  /// The message, between path and remedy, of a refusal of `path`.
+  void expect_refused(const std::string& path, const std::string& key, const std::string& what) const {
+    const CommandResult result = check();
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_TRUE(result.err.starts_with(cat("weir: ", path, ": ", key, " cannot be ", what, " by user "))) << result.err;
+    EXPECT_TRUE(
+        result.err.ends_with(cat(": Permission denied; give that user the permission (chown, chmod, setfacl), or "
+                                 "choose another ",
+                                 key, "\n")))
+        << result.err;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(CheckAccess, EverythingWritable_IsAccepted) {
+  allow("out", true);
+  allow("state", true);
+  const CommandResult result = check();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(fs::exists(directory_ / "out/deep")) << "nothing is changed";
+  EXPECT_FALSE(fs::exists(directory_ / "state/weir.db"));
+}
+
+TEST_F(CheckAccess, StateDirectoryNotWritable_IsRefused) {
+  allow("out", true);
+  allow("state", false);
+  expect_refused(directory_ / "state", "state", "written to");
+}
+
+TEST_F(CheckAccess, OutputNotWritable_IsRefused) {
+  allow("state", true);
+  allow("out", false);
+  expect_refused(directory_ / "out", "output", "written to");
+}
+
+TEST_F(CheckAccess, DirectoryNotReadable_IsRefused) {
+  allow("state", true);
+  allow("out", true);
+  allow("in", false);
+  expect_refused(directory_ / "in", "directory", "read");
+}
+
+TEST_F(CheckAccess, DirectoryOfTheStateMissing_IsRefused) {
+  allow("out", true);
+  configure("state = 'none/weir.db'\n");
+  const CommandResult result = check();
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_TRUE(result.err.ends_with(": No such file or directory; make it, or choose another state\n")) << result.err;
+}
+
+}  // namespace
+}  // namespace weir::check_access_test

@@ -1,0 +1,70 @@
+// Plotfiles of AMReX below a watched directory, with the real `weir watch`: each is one input, converted when all of it
+// is there, whichever of its files comes first.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "format/base/text.h"
+#include "tests/daemon/support/service_harness.h"
+#include "tests/support/plotfile_writer.h"
+
+namespace weir::watch_plotfiles_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// watch = "inotify" (which polls nothing) and watch = "poll" (which opens no inotify).
+class WatchPlotfiles : public testing::TestWithParam<const char*> {
+ protected:
+  static std::string keys() {
+    return cat("watch = \"", GetParam(), "\"\nrecursive = true\ndataset = \"Temp\"\nsettle = 0.3\nlossless = true\n");
+  }
+  static test::PlotfilePlan plan() {
+    test::PlotfilePlan plan;
+    plan.components = {"density", "Temp"};
+    plan.ratios = {{2, 2, 2}};
+    plan.boxes.push_back({{{4, 4, 4}, {12, 12, 12}}});
+    return plan;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(, WatchPlotfiles, testing::Values("inotify", "poll"),
+                         [](const auto& method) { return std::string(method.param); });
+
+TEST_P(WatchPlotfiles, HeaderWrittenFirst_IsWaitedForUntilTheLastLevelIsThere) {
+  ServiceHarness service("", keys());
+  const std::string all = service.path("elsewhere");
+  test::write_plotfile(all, plan());
+  service.start();
+  const std::string target = service.in("plt00042");
+  fs::create_directory(target);
+  for (const char* part : {"Header", "Level_0"}) fs::copy(all + '/' + part, target + '/' + part);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(service.logged(" start "), 0U);
+  EXPECT_EQ(service.count("discovered"), 1U);
+  fs::copy(all + "/Level_1", target + "/Level_1");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.difference("plt00042", "plt00042.nvdb", {"--dataset", "Temp", "--lossless"}), "");
+  EXPECT_EQ(service.logged(" start "), 1U);
+  EXPECT_EQ(service.leftovers(), std::vector<std::string>{});
+}
+
+TEST_P(WatchPlotfiles, RenamedDirectories_AreTakenAndCheckpointsAreNot) {
+  ServiceHarness service("", keys());
+  service.start();
+  test::write_plotfile(service.in("plt00001.temp"), plan());
+  test::PlotfilePlan checkpoint = plan();
+  checkpoint.type = "CheckPointVersion_1.0";
+  test::write_plotfile(service.in("chk00001"), checkpoint);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  EXPECT_EQ(service.logged("discovered"), 0U) << service.log();
+  fs::rename(service.in("plt00001.temp"), service.in("plt00001"));
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.difference("plt00001", "plt00001.nvdb", {"--dataset", "Temp", "--lossless"}), "");
+  EXPECT_EQ(service.logged("discovered"), 1U);
+}
+
+}  // namespace
+}  // namespace weir::watch_plotfiles_test

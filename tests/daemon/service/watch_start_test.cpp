@@ -1,0 +1,70 @@
+// What `weir watch` checks before it runs, and what its unit makes of the exit code.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "format/base/text.h"
+#include "tests/daemon/support/service_harness.h"
+
+namespace weir::watch_start_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+CommandResult check(const ServiceHarness& service, std::vector<std::string> launcher = {}) {
+  launcher.insert(launcher.end(), {WEIR_COMMAND, "watch", "--check", service.path("weir.toml")});
+  return run_command(launcher);
+}
+
+TEST(WatchStart, OutputThatCannotBeMade_EndsItAsCheckDoes) {
+  ServiceHarness service("", "output = \"file/out\"\n");
+  write_file(service.path("file"), "");
+  service.launch();
+  CommandResult end;
+  EXPECT_EQ(service.wait(&end), 5);
+  EXPECT_TRUE(end.err.starts_with(cat("weir: ", service.path("file"), ": output cannot be written to by user ")))
+      << end.err;
+  EXPECT_TRUE(end.err.ends_with(": Not a directory; check the file system, or choose another output\n")) << end.err;
+  const CommandResult checked = check(service);
+  EXPECT_EQ(checked.exit_code, 5);
+  EXPECT_EQ(checked.err, end.err);
+  EXPECT_FALSE(fs::exists(service.path("weir.db"))) << "nothing has begun";
+}
+
+TEST(WatchStart, DirectoryThatMayNotBeRead_EndsItAsCheckDoes) {
+  ServiceHarness service;
+  service.run_unprivileged();
+  fs::permissions(service.in(), fs::perms::none);
+  service.launch();
+  CommandResult end;
+  EXPECT_EQ(service.wait(&end), 5);
+  const std::string directory = service.in().substr(0, service.in().size() - 1);
+  EXPECT_TRUE(end.err.starts_with(cat("weir: ", directory, ": directory cannot be read by user "))) << end.err;
+  EXPECT_TRUE(end.err.ends_with(
+      ": Permission denied; give that user the permission (chown, chmod, setfacl), or choose another directory\n"))
+      << end.err;
+  fs::permissions(service.in(), fs::perms::all);
+}
+
+TEST(WatchStart, WrongConfiguration_EndsItWith3AsCheckDoes) {
+  ServiceHarness service("", "rate = \"much\"\n");
+  service.launch();
+  CommandResult end;
+  EXPECT_EQ(service.wait(&end), 3);
+  const CommandResult checked = check(service);
+  EXPECT_EQ(checked.exit_code, 3);
+  EXPECT_EQ(checked.err, end.err);
+  EXPECT_NE(end.err.find("rate is \"much\""), std::string::npos) << end.err;
+}
+
+// systemd looks at RestartPreventExitStatus for ExecStart alone: a check that failed before it began anew for ever.
+TEST(WatchStart, UnitStartsTheServiceAloneAndStaysDownAfter2And3) {
+  const std::string unit = read_file(WEIR_SOURCE_DIR "/daemon/weir@.service");
+  EXPECT_NE(unit.find("\nExecStart=/usr/bin/weir watch /etc/weir/%i.toml\n"), std::string::npos) << unit;
+  EXPECT_EQ(unit.find("\nExecStartPre="), std::string::npos) << unit;
+  EXPECT_NE(unit.find("\nRestart=on-failure\n"), std::string::npos) << unit;
+  EXPECT_NE(unit.find("\nRestartPreventExitStatus=2 3\n"), std::string::npos) << unit;
+}
+
+}  // namespace
+}  // namespace weir::watch_start_test

@@ -1,0 +1,23 @@
+#include "format/base/message.h"
+
+#include <gtest/gtest.h>
+
+namespace weir::message_test {
+namespace {
+
+TEST(Message, TextOfACommandLine_IsShownThereAlone) {
+  const Message line = compose("choose one with ", option("dataset"), ": ",
+                               CommandLineText{"weir convert a.nc --dataset '/a b'", "dataset /a b"}, " (2 x 3)");
+  EXPECT_EQ(line.text(), "choose one with --dataset: weir convert a.nc --dataset '/a b' (2 x 3)");
+  EXPECT_EQ(line.worded(key_wording), "choose one with dataset: dataset /a b (2 x 3)");
+}
+
+TEST(Message, Remark_IsTheSameLine) {
+  const Message line = compose("lossless in ", 5, " bytes");
+  EXPECT_FALSE(line.is_remark());
+  EXPECT_TRUE(line.as_remark().is_remark());
+  EXPECT_EQ(line.as_remark().text(), line.text());
+}
+
+}  // namespace
+}  // namespace weir::message_test

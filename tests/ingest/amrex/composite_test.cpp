@@ -1,0 +1,246 @@
+// The composited grid of generated plotfiles against a look at every box for every cell.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "ingest/source_registry.h"
+#include "tests/ingest/support/scratch.h"
+#include "tests/support/plotfile_writer.h"
+
+namespace weir::composite_test {
+namespace {
+
+using test::PlotfilePlan;
+
+/// A plotfile of three components on 1 to 4 levels, by its number.
+PlotfilePlan generated_plan(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto between = [&](std::int64_t lo, std::int64_t hi) {
+    return lo + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(hi - lo + 1));
+  };
+  PlotfilePlan plan;
+  plan.components = {"density", "x_velocity", "Temp"};
+  const Index3 lo{between(-9, 9), between(-9, 9), between(-9, 9)};
+  plan.domain = {lo, lo + Index3{between(3, 9), between(3, 9), between(3, 9)}};
+  plan.boxes = {test::random_boxes(plan.domain, between(3, 9), 100, seed)};
+  const std::vector<Index3> ratios{{2, 2, 2}, {4, 4, 4}, {2, 2, 1}, {1, 4, 2}, {3, 2, 2}};
+  const std::size_t levels = 1 + seed % 4;
+  for (std::size_t l = 1; l < levels && volume(plan.domain_of(l - 1).extent()) < 4'000; ++l) {
+    plan.ratios.push_back(ratios[random() % ratios.size()]);
+    std::vector<Box> boxes;
+    const int kept = static_cast<int>(between(10, 90));
+    plan.boxes.emplace_back();
+    boxes = test::random_boxes(plan.domain_of(l), between(4, 20), kept, seed + 1000 * l);
+    if (boxes.empty()) boxes = {{plan.domain_of(l).lo, plan.domain_of(l).lo + Index3{1, 1, 1}}};
+    plan.boxes.back() = std::move(boxes);
+  }
+  plan.single = random() % 2 == 0;
+  plan.big_endian = random() % 2 == 0;
+  plan.fabs_per_file = static_cast<std::size_t>(between(1, 7));
+  plan.version = static_cast<int>(between(1, 4));
+  return plan;
+}
+
+std::vector<float> expected_values(const PlotfilePlan& plan, std::size_t component, std::size_t level, const Box& box) {
+  std::vector<float> values;
+  const Index3 lo = plan.domain_of(level).lo;
+  for_each_index(box, [&](const Index3& i) {
+    values.push_back(static_cast<float>(test::composite_value(plan, component, level, lo + i)));
+  });
+  return values;
+}
+
+std::vector<float> read_box(VolumeSource& source, const Box& box) {
+  std::vector<float> values(static_cast<std::size_t>(box.voxels()), -1.0F);
+  source.read(box, values);
+  return values;
+}
+
+TEST(AmrexComposite, GeneratedPlotfiles_HaveTheValueOfTheFinestLevelInEachCell) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scratch scratch;
+    const PlotfilePlan plan = generated_plan(seed);
+    const std::string path = scratch.path("plt00042");
+    test::write_plotfile(path, plan);
+    std::mt19937_64 random(seed);
+    for (std::size_t level = 0; level < plan.levels(); ++level) {
+      const std::size_t component = random() % 3;
+      SourceOptions options;
+      options.dataset = plan.components[component];
+      options.level = static_cast<std::int64_t>(level);
+      const auto source = open_source(path, options);
+      ASSERT_EQ(source->info().extent, plan.domain_of(level).extent());
+      const Box domain = source->info().domain();
+      ASSERT_EQ(read_box(*source, domain), expected_values(plan, component, level, domain));
+      for (int i = 0; i < 5; ++i) {
+        Box box;
+        const auto range = [&](std::int64_t extent, std::int64_t& lo, std::int64_t& hi) {
+          lo = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(extent));
+          hi = lo + 1 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(extent - lo));
+        };
+        range(domain.hi.x, box.lo.x, box.hi.x);
+        range(domain.hi.y, box.lo.y, box.hi.y);
+        range(domain.hi.z, box.lo.z, box.hi.z);
+        ASSERT_EQ(read_box(*source, box), expected_values(plan, component, level, box));
+      }
+    }
+  }
+}
+
+/// The composite of linear values as its definition says it, a level at a time. With whole values and ratios of 2 and 4
+/// all sums are exact.
+class LinearOracle {
+ public:
+  LinearOracle(const PlotfilePlan& plan, std::size_t component) : plan_(plan), component_(component) {
+    for (std::size_t l = 0; l < plan.levels(); ++l) grids_.push_back(grid_of(l));
+  }
+  const std::vector<float>& values(std::size_t level) const { return grids_[level]; }
+
+ private:
+  std::vector<float> grid_of(std::size_t level) {
+    std::vector<float> grid;
+    const Box domain = plan_.domain_of(level);
+    const Box from_zero{{0, 0, 0}, domain.extent()};
+    for_each_index(from_zero, [&](const Index3& i) {
+      const Index3 cell = domain.lo + i;
+      const auto has = [&](const Box& box) { return box.contains(cell); };
+      const std::vector<Box>& boxes = plan_.boxes[level];
+      grid.push_back(std::any_of(boxes.begin(), boxes.end(), has)
+                         ? static_cast<float>(plan_.value(level, component_, cell))
+                         : interpolated(level, i));
+    });
+    return grid;
+  }
+
+  float interpolated(std::size_t level, const Index3& i) const {
+    const Index3 by = plan_.ratio(level - 1, level);
+    const Index3 e = plan_.domain_of(level - 1).extent();
+    const std::array<double, 3> at{position(i.x, by.x), position(i.y, by.y), position(i.z, by.z)};
+    double sum = 0;
+    for (std::int64_t corner = 0; corner < 8; ++corner) {
+      const Index3 side{corner % 2, corner / 2 % 2, corner / 4};
+      const auto weight = [](double p, std::int64_t s) {
+        const double second = p - std::floor(p);
+        return s == 1 ? second : 1 - second;
+      };
+      const auto cell = [](double p, std::int64_t s, std::int64_t extent) {
+        return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(p)) + s, 0, extent - 1);
+      };
+      const Index3 c{cell(at[0], side.x, e.x), cell(at[1], side.y, e.y), cell(at[2], side.z, e.z)};
+      sum += weight(at[0], side.x) * weight(at[1], side.y) * weight(at[2], side.z) *
+             static_cast<double>(grids_[level - 1][static_cast<std::size_t>(linear_index(c, e))]);
+    }
+    return static_cast<float>(sum);
+  }
+
+  static double position(std::int64_t i, std::int64_t by) {
+    return (static_cast<double>(i) + 0.5) / static_cast<double>(by) - 0.5;
+  }
+
+  const PlotfilePlan& plan_;
+  std::size_t component_;
+  std::vector<std::vector<float>> grids_;
+};
+
+TEST(AmrexComposite, LinearValues_AreTrilinearBetweenTheCentresOfCoarseCells) {
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scratch scratch;
+    PlotfilePlan plan = generated_plan(seed);
+    for (std::size_t i = 0; i < plan.ratios.size(); ++i) {
+      if (plan.ratios[i].x != 3) continue;
+      plan.ratios.resize(i);  // thirds are not exact
+      plan.boxes.resize(i + 1);
+      break;
+    }
+    plan.value = [](std::size_t level, std::size_t component, const Index3& cell) {
+      return static_cast<double>((cell.x * 7 + cell.y * 13 + cell.z * 29 + static_cast<std::int64_t>(level)) % 61) +
+             static_cast<double>(component);
+    };
+    const std::string path = scratch.path("plt00042");
+    test::write_plotfile(path, plan);
+    const LinearOracle oracle(plan, 1);
+    for (std::size_t level = 0; level < plan.levels(); ++level) {
+      SourceOptions options;
+      options.dataset = "x_velocity";
+      options.upsampling = Upsampling::linear;
+      options.level = static_cast<std::int64_t>(level);
+      const auto source = open_source(path, options);
+      const Box domain = source->info().domain();
+      ASSERT_EQ(read_box(*source, domain), oracle.values(level));
+      const Box inner{domain.hi - Index3{1, 2, 2}, domain.hi};
+      std::vector<float> expected;
+      for_each_index(inner, [&](const Index3& i) {
+        expected.push_back(oracle.values(level)[static_cast<std::size_t>(linear_index(i, domain.hi))]);
+      });
+      ASSERT_EQ(read_box(*source, inner), expected);
+    }
+  }
+}
+
+TEST(AmrexComposite, LinearBesideAValueThatIsNotFinite_TakesTheCellsOwn) {
+  const Scratch scratch;
+  PlotfilePlan plan;
+  plan.domain = {{0, 0, 0}, {4, 1, 1}};
+  plan.ratios = {{2, 1, 1}};
+  plan.boxes = {{plan.domain}, {{{0, 0, 0}, {1, 1, 1}}}};
+  plan.value = [](std::size_t level, std::size_t, const Index3& cell) {
+    return level == 0 && cell.x == 1 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(10 * cell.x + 1);
+  };
+  test::write_plotfile(scratch.path("plt"), plan);
+  SourceOptions options;
+  options.upsampling = Upsampling::linear;
+  const auto source = open_source(scratch.path("plt"), options);
+  const std::vector<float> values = read_box(*source, source->info().domain());
+  EXPECT_EQ(values[0], 1.0F);  // of level 1
+  EXPECT_EQ(values[1], 1.0F);
+  EXPECT_TRUE(std::isnan(values[2]) && std::isnan(values[3]));
+  EXPECT_EQ(values[4], 21.0F);
+  EXPECT_EQ((std::vector<float>{values[5], values[6], values[7]}), (std::vector<float>{23.5F, 28.5F, 31.0F}));
+}
+
+TEST(AmrexComposite, LossIsCountedOfTheVoxelsThatAreWritten) {
+  const Scratch scratch;
+  PlotfilePlan plan;
+  plan.domain = {{0, 0, 0}, {4, 4, 4}};
+  plan.ratios = {{2, 2, 2}};
+  plan.boxes = {{plan.domain}, {{{1, 0, 0}, {3, 2, 2}}}};  // begins in the middle of a coarse cell
+  plan.value = [](std::size_t, std::size_t, const Index3& cell) { return static_cast<double>(cell.x) + 0.1; };
+  test::write_plotfile(scratch.path("plt"), plan);
+  const auto source = open_source(scratch.path("plt"), {});
+  const Box domain = source->info().domain();
+  std::vector<float> values(static_cast<std::size_t>(domain.voxels()));
+  EXPECT_EQ(source->read(domain, values).inexact, 512U);
+  std::uint64_t in_parts = 0;
+  for (std::int64_t x = 0; x < 8; ++x) {
+    const Box slice{{x, 0, 0}, {x + 1, 8, 8}};
+    in_parts += source->read(slice, std::span(values).first(64)).inexact;
+  }
+  EXPECT_EQ(in_parts, 512U);
+}
+
+TEST(AmrexComposite, BoxesLargerThanAPiece_AreReadInParts) {
+  const Scratch scratch;
+  for (const Index3& extent : {Index3{150'000, 2, 2}, Index3{700, 400, 3}, Index3{2, 3, 70'000}}) {
+    PlotfilePlan plan;
+    plan.components = {"a", "b"};
+    plan.domain = {{0, 0, 0}, extent};
+    plan.boxes = {{plan.domain}};
+    const std::string path = scratch.path("plt" + std::to_string(extent.z));
+    test::write_plotfile(path, plan);
+    SourceOptions options;
+    options.dataset = "b";
+    const auto source = open_source(path, options);
+    ASSERT_EQ(read_box(*source, plan.domain), expected_values(plan, 1, 0, plan.domain));
+    const Box part{{extent.x / 3, 1, 1}, {extent.x - 1, 2, extent.z}};
+    if (!part.empty()) {
+      ASSERT_EQ(read_box(*source, part), expected_values(plan, 1, 0, part));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weir::composite_test

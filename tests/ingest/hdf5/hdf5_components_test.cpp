@@ -1,0 +1,138 @@
+// Arrays of vectors and tensors: which component is read, whatever the storage.
+#include "ingest/hdf5/hdf5_source.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
+
+namespace weir::hdf5_components_test {
+namespace {
+
+SourceOptions options_for(const std::string& dataset, const ComponentChoice& component,
+                          std::vector<std::int64_t> index = {}) {
+  SourceOptions options = dataset_options(dataset, std::move(index));
+  options.component = component;
+  return options;
+}
+
+class Hdf5Components : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Hdf5Components, EveryStorageGivesTheSameComponentsAndMagnitude) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", SHAPE + (3,))
+for c in range(3): expect("c%d" % c, v[..., c])
+expect("m", np.sqrt((v.astype("f8") ** 2)[..., 0] + (v.astype("f8") ** 2)[..., 1] + (v.astype("f8") ** 2)[..., 2]))
+raw = v.astype("<f4").tobytes()
+open("outside", "wb").write(raw)
+open("part1", "wb").write(raw[:700]); open("part2", "wb").write(raw[700:])
+with h5py.File("a.h5", "w") as f:
+    f["contiguous"] = v
+    f.create_dataset("big", data=v.astype(">f4"))
+    f.create_dataset("gzip", data=v, chunks=(2, 3, 4, 3), compression="gzip", shuffle=True)
+    f.create_dataset("planes", data=v, chunks=(1, 7, 9, 3), compression="gzip")
+    f.create_dataset("separate", data=v, chunks=(5, 7, 9, 1), compression="gzip")
+    f.create_dataset("szip", data=v, chunks=(2, 7, 9, 3), compression="szip")
+    f.create_dataset("external", SHAPE + (3,), "f4", external="outside")
+    f.create_dataset("spread", SHAPE + (3,), "f4", external=[("part1", 0, 700), ("part2", 0, h5py.h5f.UNLIMITED)])
+    layout = h5py.VirtualLayout(SHAPE + (3,), "f4")
+    for z in range(5): layout[z] = h5py.VirtualSource("a.h5", "gzip", SHAPE + (3,))[z]
+    f.create_virtual_dataset("virtual", layout)
+)");
+  for (const char* name :
+       {"contiguous", "big", "gzip", "planes", "separate", "szip", "external", "spread", "virtual"}) {
+    for (const std::int64_t c : {0, 1, 2}) {
+      expect_reads(scratch_, "a.h5", options_for(name, {false, c}), "c" + std::to_string(c));
+    }
+    expect_reads(scratch_, "a.h5", options_for(name, {true, 0}), "m");
+  }
+}
+
+TEST_F(Hdf5Components, LeadingAxesAreChosenByIndexBesides) {
+  write_by_h5py(scratch_, R"(
+v = values("f8", (4,) + SHAPE + (2,))
+expect("v", v[2, ..., 1])
+with h5py.File("a.h5", "w") as f:
+    f["contiguous"] = v
+    f.create_dataset("gzip", data=v, chunks=(3, 2, 3, 4, 2), compression="gzip")
+)");
+  expect_reads(scratch_, "a.h5", options_for("contiguous", {false, 1}, {2}), "v");
+  expect_reads(scratch_, "a.h5", options_for("gzip", {false, 1}, {2}), "v");
+}
+
+TEST_F(Hdf5Components, LeadingAxisOfComponentsIsChosenFromToo) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", (2, 3) + SHAPE)
+expect("c", v[1, 2])
+d = v[1].astype("f8")
+expect("m", np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
+with h5py.File("a.h5", "w") as f:
+    f["contiguous"] = v
+    f.create_dataset("gzip", data=v, chunks=(1, 2, 2, 3, 4), compression="gzip")
+    layout = h5py.VirtualLayout(v.shape, "f4")
+    for c in range(3): layout[:, c] = h5py.VirtualSource("a.h5", "gzip", v.shape)[:, c]
+    f.create_virtual_dataset("virtual", layout)
+)");
+  for (const char* name : {"contiguous", "gzip", "virtual"}) {
+    expect_reads(scratch_, "a.h5", options_for(name, {false, 2}, {1}), "c");
+    expect_reads(scratch_, "a.h5", options_for(name, {true, 0}, {1}), "m");
+  }
+}
+
+TEST_F(Hdf5Components, UnwrittenChunksHaveTheFillValuesMagnitude) {
+  write_by_h5py(scratch_, R"(
+v = np.full(SHAPE + (4,), 3.0, "f4"); v[0] = 1.0
+expect("m", np.sqrt((v.astype("f8") ** 2).sum(axis=3)))
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("v", SHAPE + (4,), "f4", chunks=(1, 7, 9, 4), fillvalue=3.0)
+    d[0] = v[0]
+)");
+  expect_reads(scratch_, "a.h5", options_for("v", {true, 0}), "m");
+}
+
+TEST_F(Hdf5Components, ListingSaysHowSureItIs) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4", (10, 11, 12, 3))
+    f["w"] = values("f4", (10, 11, 12, 6))
+    f["w"].dims[3].label = "component"
+    f["v"].attrs["spacing"] = [1.0, 2.0, 3.0]
+)");
+  const std::vector<DatasetInfo> listed = list_hdf5(scratch_.path("a.h5"), {});
+  ASSERT_EQ(listed.size(), 2U);
+  using Attributes = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(listed[0].components, 3);
+  EXPECT_EQ(listed[0].leading_axes, 0U);
+  EXPECT_EQ(listed[0].attributes,
+            (Attributes{{"components", "3 along the last axis, by its extent alone"}, {"spacing x,y,z", "1,2,3"}}));
+  EXPECT_EQ(listed[1].components, 6);
+  EXPECT_EQ(listed[1].attributes, (Attributes{{"axes", "10 x 11 x 12 x component=6"},
+                                              {"components", "6 along the last axis, by its name component"}}));
+  const auto source = open_source(scratch_.path("a.h5"), options_for("v", {true, 0}));
+  EXPECT_EQ(source->info().spacing, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(source->info().details.component, "magnitude");
+}
+
+TEST_F(Hdf5Components, OnlyFieldOfVectorsIsTheDefaultOfComponent) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", SHAPE + (3,))
+expect("v", v[..., 1])
+with h5py.File("a.h5", "w") as f:
+    f["scalar"] = values("f4")
+    f["v"] = v
+)");
+  expect_reads(scratch_, "a.h5", options_for("", {false, 1}), "v");
+  EXPECT_EQ(message_of_error(ErrorKind::usage,
+                             [&] {
+                               open_source(scratch_.path("a.h5"), options_for("scalar", {true, 0}));
+                             }),
+            scratch_.path("a.h5") +
+                ": /scalar: its axes are 5 x 7 x 9, none of them of components; leave "
+                "--component out");
+}
+
+}  // namespace
+}  // namespace weir::hdf5_components_test

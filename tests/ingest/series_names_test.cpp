@@ -1,0 +1,103 @@
+#include "ingest/series_names.h"
+
+#include "tests/ingest/support/scratch.h"
+#include "tests/support/plotfile_writer.h"
+
+namespace weir::series_names_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(SeriesNames, StepsMayNotShareAName) {
+  const std::vector<SeriesStep> steps{{"a/v.raw", "", {}, "v", ""}, {"b/v.raw", "", {}, "v", ""}};
+  const auto refusal = [&](const std::string& output) {
+    return message_of_error(ErrorKind::usage, [&] { series_outputs(steps, output); });
+  };
+  const std::string rest =
+      ": 2 volumes, and two of them (a/v.raw and b/v.raw) would have this name; give -o a directory, or a name with "
+      "{stem}, {dataset} or {step}";
+  EXPECT_EQ(refusal("out.nvdb"), "out.nvdb" + rest);
+  EXPECT_EQ(refusal("out/"), "out/v.nvdb" + rest);
+  EXPECT_EQ(series_outputs(steps, "").size(), 2U);
+  const std::vector<SeriesStep> volumes{{"c.nc", "/qc", {2}, "c", "2"}, {"c.nc", "/w", {2, 0}, "c", "2_0"}};
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(volumes, "c.nvdb"); }),
+            "c.nvdb: 2 volumes, and two of them (c.nc: /qc at 2 and c.nc: /w at 2,0) would have this name; give -o a "
+            "directory, or a name with {stem}, {dataset} or {step}");
+}
+
+TEST(SeriesNames, OfACall_SayWhatTellsItsVolumesOfAFileApart) {
+  const auto names = [](const std::vector<SeriesStep>& steps) {
+    return series_outputs(steps, "out/", {}, DefaultNames::of_call);
+  };
+  const auto of = [](const std::string& dataset, const std::string& step) {
+    return SeriesStep{"a.h5", dataset, {}, "a", step};
+  };
+  EXPECT_EQ(names({of("/rho", "")}), Names{"out/a.nvdb"});
+  EXPECT_EQ(names({of("/rho", "0"), of("/rho", "1")}), (Names{"out/a_0.nvdb", "out/a_1.nvdb"}));
+  EXPECT_EQ(names({of("/0/rho", "0"), of("/1/rho", "1")}), (Names{"out/a_0.nvdb", "out/a_1.nvdb"}));
+  EXPECT_EQ(names({of("/rho", ""), of("/fields/T", "")}), (Names{"out/a_rho.nvdb", "out/a_fields.T.nvdb"}));
+  EXPECT_EQ(names({of("/rho", "0"), of("/rho", "1"), of("/T", "0"), of("/T", "1")}),
+            (Names{"out/a_rho_0.nvdb", "out/a_rho_1.nvdb", "out/a_T_0.nvdb", "out/a_T_1.nvdb"}));
+  EXPECT_EQ(names({of("/rho", ""), {"b.h5", "/rho", {}, "b", ""}}), (Names{"out/a.nvdb", "out/b.nvdb"}))
+      << "another file's volumes have its stem";
+}
+
+TEST(SeriesNames, OutputNamesTakeStemDatasetAndStep) {
+  const SeriesStep step{"f.h5", "/fields/a b", {3}, "f", "03"};
+  EXPECT_EQ(step_name("{stem}-{dataset}-{step}{step}.nvdb", step), "f-fields.a b-0303.nvdb");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { step_name("{time}.nvdb", step); }),
+            "{time} in an output's name is not known; there are {stem}, {dataset} and {step}");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { step_name("a{stem", step); }),
+            "{stem in an output's name is not known; there are {stem}, {dataset} and {step}");
+}
+
+// Of a file that cannot be listed, or holds one volume.
+TEST(SeriesNames, OfAFileThatHoldsOneVolume_AreItsStem) {
+  const Scratch scratch;
+  scratch.write("a.raw", std::vector<std::byte>(4 * 3 * 2));
+  const std::string header = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 4 3 2 1\nencoding: raw\ndata file: a.raw\n";
+  const std::string path = scratch.write("a.nrrd", std::as_bytes(std::span(header)));
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{path, "", {}, "a", ""}}, "out/"), Names{"out/a.nvdb"});
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{path, "", {0}, "a", ""}}, "out/"), Names{"out/a.nvdb"})
+      << "an axis of one position leaves no choice";
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{scratch.path("none.h5"), "/rho", {}, "none", ""}}, "out/"),
+            Names{"out/none.nvdb"});
+}
+
+TEST(SeriesNames, OfAPositionChosen_HasItWithZerosBefore) {
+  const Scratch scratch;
+  scratch.write("a.raw", std::vector<std::byte>(4 * 3 * 2 * 5 * 12));
+  const std::string header =
+      "NRRD0004\ntype: uchar\ndimension: 5\nsizes: 4 3 2 5 12\nencoding: raw\ndata file: a.raw\n";
+  const std::string path = scratch.write("a.nrrd", std::as_bytes(std::span(header)));
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{path, "", {3, 4}, "a", ""}}, "out/"), Names{"out/a_03_4.nvdb"});
+}
+
+TEST(SeriesNames, OfALevelChosen_HaveIt) {
+  const Scratch scratch;
+  const std::string path = scratch.path("plt7");
+  test::PlotfilePlan plan;
+  plan.ratios = {{2, 2, 2}};
+  plan.boxes.push_back({Box{{0, 0, 0}, {8, 8, 8}}});
+  test::write_plotfile(path, plan);
+  const std::vector<SeriesStep> one{{path, "", {}, "plt7", ""}};
+  SourceOptions options;
+  EXPECT_EQ(series_outputs(one, "out/", options), Names{"out/plt7.nvdb"});
+  options.level = 0;
+  EXPECT_EQ(series_outputs(one, "out/", options), Names{"out/plt7_level0.nvdb"});
+}
+
+TEST(SeriesNames, OfAMagnitude_HaveItsComponents) {
+  const Scratch scratch;
+  const std::string path = scratch.path("plt7");
+  test::PlotfilePlan plan;
+  plan.components = {"u", "v", "w"};
+  test::write_plotfile(path, plan);
+  SourceOptions options;
+  options.magnitude = {"u", "v", "w"};
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{path, "", {}, "plt7", ""}}, "out/", options),
+            Names{"out/plt7_u_v_w_magnitude.nvdb"});
+}
+
+}  // namespace
+}  // namespace weir::series_names_test

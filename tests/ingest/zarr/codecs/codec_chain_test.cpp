@@ -1,0 +1,77 @@
+#include "ingest/zarr/codecs/codec_chain.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "ingest/zarr/codecs/library_codecs.h"
+#include "tests/ingest/support/scratch.h"
+
+namespace weir::codec_chain_test {
+namespace {
+
+std::vector<std::byte> decoded(const ZarrCodecs& codecs, const ChunkShape& shape, std::span<const std::byte> stored) {
+  const ScratchSize size = scratch_size(codecs, shape.bytes());
+  ChunkScratch scratch(size.buffer_bytes, size.two);
+  EXPECT_LE(stored.size(), size.buffer_bytes);
+  std::copy(stored.begin(), stored.end(), scratch.buffer.bytes().begin());
+  const auto bytes = decode_chunk(codecs, shape, stored.size(), scratch);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string refusal_of(const ZarrCodecs& codecs, const ChunkShape& shape, std::span<const std::byte> stored) {
+  return message_of_error(ErrorKind::input, [&] { decoded(codecs, shape, stored); });
+}
+
+std::vector<std::byte> zlib_of(std::size_t zeros) {
+  const std::vector<Bytef> bytes(zeros);
+  uLongf size = compressBound(zeros);
+  std::vector<std::byte> stream(size);
+  EXPECT_EQ(compress(reinterpret_cast<Bytef*>(stream.data()), &size, bytes.data(), zeros), Z_OK);
+  stream.resize(size);
+  return stream;
+}
+
+TEST(CodecChain, TransposedChunks_GetTheOrderOfTheArray) {
+  // Of shape (2, 3, 4), stored as (4, 2, 3): the value at (i, j, k) is 100 i + 10 j + k.
+  std::vector<std::byte> stored;
+  std::vector<std::byte> expected;
+  for (int k = 0; k < 4; ++k)
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 3; ++j) stored.push_back(static_cast<std::byte>(100 * i + 10 * j + k));
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 4; ++k) expected.push_back(static_cast<std::byte>(100 * i + 10 * j + k));
+  EXPECT_EQ(decoded({{2, 0, 1}, false, {}}, {{2, 3, 4}, 1}, stored), expected);
+}
+
+TEST(CodecChain, StreamsOfMoreOrFewerBytes_AreRefused) {
+  const ZarrCodecs zlib{{}, false, {ZarrPacker::zlib}};
+  const ChunkShape shape{{4, 4, 4}, 2};
+  EXPECT_EQ(decoded(zlib, shape, zlib_of(128)), std::vector<std::byte>(128));
+  EXPECT_EQ(refusal_of(zlib, shape, zlib_of(1000000)), "its deflate stream holds more than 128 bytes");
+  EXPECT_EQ(refusal_of(zlib, shape, zlib_of(127)), "holds 127 bytes, not 128");
+  const std::vector<std::byte> whole = zlib_of(128);
+  EXPECT_EQ(refusal_of(zlib, shape, std::span(whole).first(3)), "its deflate stream ends after 0 of 128 bytes");
+}
+
+TEST(CodecChain, BloscBlocksLargerThanTheirMemory_AreRefused) {
+  if (!has_library_codecs()) GTEST_SKIP() << "this build was left without libblosc and libzstd (WEIR_ZARR_CODECS)";
+  const ZarrCodecs blosc{{}, false, {ZarrPacker::blosc}};
+  const ChunkShape shape{{8, 1024, 1024}, 1};
+  EXPECT_LT(scratch_size(blosc, shape.bytes()).codec_bytes, std::size_t{13} << 20U);
+  // A header of 8 MiB in one block, and nothing behind it.
+  std::vector<std::byte> header(24);
+  header[0] = std::byte{2};
+  header[1] = header[3] = std::byte{1};
+  header[6] = header[10] = std::byte{0x80};
+  header[12] = std::byte{24};
+  EXPECT_EQ(refusal_of(blosc, shape, header),
+            "its blosc blocks have 8388608 bytes, more than the 4194304 that are decoded; write it with blocksize 0");
+  header[7] = std::byte{0x7F};
+  EXPECT_EQ(refusal_of(blosc, shape, header), "its blosc buffer holds 2139095040 bytes, more than 8388608");
+  EXPECT_EQ(refusal_of(blosc, shape, std::span(header).first(8)), "its 8 bytes are no whole blosc buffer");
+}
+
+}  // namespace
+}  // namespace weir::codec_chain_test

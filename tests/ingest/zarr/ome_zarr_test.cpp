@@ -1,0 +1,117 @@
+#include "ingest/zarr/zarr_source.h"
+#include "tests/ingest/zarr/support/zarr_files.h"
+
+namespace weir::ome_zarr_test {
+namespace {
+
+constexpr const char* kImage =
+    R"([{"axes":[{"name":"t","type":"time","unit":"second"},{"name":"c","type":"channel"},)"
+    R"({"name":"z","type":"space","unit":"micrometer"},{"name":"y","type":"space","unit":"micrometer"},)"
+    R"({"name":"x","type":"space","unit":"micrometer"}],"datasets":[)"
+    R"({"path":"0","coordinateTransformations":[{"type":"scale","scale":[1,1,0.5,0.25,0.25]},)"
+    R"({"type":"translation","translation":[0,0,3,2,1]}]},)"
+    R"({"path":"1","coordinateTransformations":[{"type":"scale","scale":[1,1,1,0.5,0.5]}]}],)"
+    R"("coordinateTransformations":[{"type":"scale","scale":[0.1,1,2,2,2]}]}])";
+
+/// Two levels of 2 times and 1 channel; version 0.4 in Zarr 2, version 0.5 in Zarr 3.
+void write_image(const ZarrFiles& files, bool v3) {
+  if (v3) {
+    files.write("zarr.json", cat(R"({"zarr_format":3,"node_type":"group","attributes":{"ome":{"version":"0.5",)",
+                                 R"("multiscales":)", kImage, "}}}"));
+    files.write("0/zarr.json", zarr_json("[2,1,2,2,2]", "[1,1,2,2,2]", R"([{"name":"bytes"}])", "uint8", "1"));
+    files.write("1/zarr.json", zarr_json("[2,1,1,1,1]", "[1,1,1,1,1]", R"([{"name":"bytes"}])", "uint8", "2"));
+  } else {
+    files.write(".zgroup", R"({"zarr_format":2})");
+    files.write(".zattrs", cat(R"({"multiscales":)", kImage, "}"));
+    files.write("0/.zarray", zarray("[2,1,2,2,2]", "[1,1,2,2,2]", "|u1", "1"));
+    files.write("1/.zarray", zarray("[2,1,1,1,1]", "[1,1,1,1,1]", "|u1", "2"));
+    // An image of its own, of labels.
+    files.write("labels/.zgroup", R"({"zarr_format":2})");
+    files.write("labels/cells/.zgroup", R"({"zarr_format":2})");
+    files.write("labels/cells/.zattrs", R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0"}]}]})");
+    files.write("labels/cells/0/.zarray", zarray("[1,1,1]", "[1,1,1]", "|u1", "3"));
+  }
+}
+
+TEST(OmeZarr, FinestLevelIsRead_WithItsSpacingOriginUnitsAndTime) {
+  for (const bool v3 : {false, true}) {
+    const ZarrFiles files;
+    write_image(files, v3);
+    SourceOptions options;
+    options.index = {1, 0};
+    const auto source = open_source(files.path(), options);
+    const SourceInfo& info = source->info();
+    EXPECT_EQ(info.dataset, "0");
+    EXPECT_EQ(info.extent, (Index3{2, 2, 2}));
+    EXPECT_EQ(info.spacing, (std::array{0.5, 0.5, 1.0}));
+    EXPECT_EQ(info.origin, (std::array{2.0, 4.0, 6.0}));
+    EXPECT_EQ(info.axis_labels, (std::array<std::string, 3>{"x", "y", "z"}));
+    EXPECT_EQ(info.details.axes[2].units, "micrometer");
+    ASSERT_TRUE(info.details.time);
+    EXPECT_EQ(info.details.time->value, 0.1);
+    EXPECT_EQ(info.details.time->units, "second");
+    EXPECT_EQ(ZarrFiles::read_all(*source), std::vector<float>(8, 1.0F));
+    options.index.clear();
+    options.index_choices = {*parse_axis_choice("t=-1")};
+    EXPECT_EQ(open_source(files.path(), options)->info().index, (std::vector<std::int64_t>{1, 0}));
+  }
+}
+
+TEST(OmeZarr, OtherLevelsAndLabels_AreReadByName) {
+  const ZarrFiles files;
+  write_image(files, false);
+  SourceOptions options;
+  options.dataset = "1";
+  options.index = {0, 0};
+  const auto source = open_source(files.path(), options);
+  EXPECT_EQ(source->info().spacing, (std::array{1.0, 1.0, 2.0}));
+  EXPECT_EQ(source->info().origin, (std::array{0.0, 0.0, 0.0}));
+  EXPECT_EQ(ZarrFiles::read_all(*source), (std::vector<float>{2}));
+  options.index.clear();
+  for (const char* const name : {"labels/cells", "labels/cells/0"}) {
+    options.dataset = name;
+    EXPECT_EQ(files.read(options), (std::vector<float>{3})) << name;
+  }
+}
+
+TEST(OmeZarr, Inspect_ListsLevelsWithAxesAndPlace) {
+  const ZarrFiles files;
+  write_image(files, true);
+  const std::vector<DatasetInfo> list = list_zarr(files.path(), {});
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].name, "0");
+  EXPECT_EQ(list[0].leading_axes, 2U);
+  EXPECT_EQ(list[0].axis_names, (std::vector<std::string>{"t", "c", "z", "y", "x"}));
+  const std::vector<std::pair<std::string, std::string>> attributes{{"axes", "t 2, c 1, z 2, y 2, x 2"},
+                                                                    {"fill value", "1"},
+                                                                    {"spacing x,y,z", "0.5,0.5,1"},
+                                                                    {"origin x,y,z", "2,4,6"},
+                                                                    {"unit of space", "micrometer"}};
+  EXPECT_EQ(list[0].attributes, attributes);
+}
+
+TEST(OmeZarr, PlanesOverTime_AreNoVolume) {
+  const ZarrFiles files;
+  files.write(".zgroup", R"({"zarr_format":2})");
+  files.write(".zattrs", R"({"multiscales":[{"axes":[{"name":"c","type":"channel"},{"name":"y","type":"space"},)"
+                         R"({"name":"x","type":"space"}],"datasets":[{"path":"0"}]}]})");
+  files.write("0/.zarray", zarray("[3,4,5]", "[3,4,5]"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0: 2 axes of space at its end (c 3, y 4, x 5); a volume has three");
+}
+
+TEST(OmeZarr, ScaleThatIsNoSpacing_IsRefused) {
+  const ZarrFiles files;
+  files.write(".zgroup", R"({"zarr_format":2})");
+  files.write(".zattrs", R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0","coordinateTransformations":)"
+                         R"([{"type":"scale","scale":[1,0,1]}]}]}]})");
+  files.write("0/.zarray", zarray("[1,1,1]", "[1,1,1]"));
+  const std::string message = files.message(ErrorKind::input);
+  EXPECT_NE(message.find("spacing"), std::string::npos) << message;
+  SourceOptions options;
+  options.spacing = {1, 1, 1};
+  EXPECT_EQ(files.read(options), (std::vector<float>{7}));
+}
+
+}  // namespace
+}  // namespace weir::ome_zarr_test

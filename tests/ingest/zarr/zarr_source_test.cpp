@@ -1,0 +1,228 @@
+#include "ingest/zarr/zarr_source.h"
+
+#include <numeric>
+
+#include "tests/ingest/zarr/support/zarr_files.h"
+
+namespace weir::zarr_source_test {
+namespace {
+
+constexpr const char* kGroup = R"({"zarr_format":3,"node_type":"group"})";
+
+std::vector<std::uint8_t> counted(std::size_t count, std::uint8_t first = 0) {
+  std::vector<std::uint8_t> values(count);
+  std::iota(values.begin(), values.end(), first);
+  return values;
+}
+
+TEST(ZarrSource, ChunksThatAreNotStored_ReadAsTheFillValueAndAreCounted) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[2,2,3]", "[2,2,2]"));
+  files.write_values("c/0/0/0", counted(8));
+  const auto source = open_source(files.path(), {});
+  EXPECT_EQ(ZarrFiles::read_all(*source), (std::vector<float>{0, 1, 7, 2, 3, 7, 4, 5, 7, 6, 7, 7}));
+  EXPECT_EQ(source->info().details.chunks_note, "1 of its 2 chunks is not stored and reads as its fill value, 7");
+  SourceOptions options;
+  options.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(files.message(ErrorKind::input, options),
+            "run.zarr/c/0/0/1: chunk at 0, 0, 2: is not stored; 1 of its 2 chunks is not, and with --missing-chunks "
+            "error all must be; write it, or use --missing-chunks fill");
+  files.write_values("c/0/0/1", counted(8, 100));
+  EXPECT_EQ(files.read(options), (std::vector<float>{0, 1, 100, 2, 3, 102, 4, 5, 104, 6, 7, 106}));
+}
+
+TEST(ZarrSource, FillValueNull_IsRefusedWhereAChunkIsNotStored) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,4]", "[1,1,2]", "|u1", "null"));
+  files.write_values("0.0.0", counted(2));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0.0.1: chunk at 0, 0, 2: is not stored; 1 of its 2 chunks is not, and fill_value is null: what "
+            "they hold is not known; write all chunks, or set the array's fill_value");
+  files.write_values("0.0.1", counted(2, 8));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 8, 9}));
+}
+
+TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]"));
+  files.write_values("c/0/0/0", counted(8));
+  files.write_values("c/0/0/1", counted(7));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/1: chunk at 0, 0, 2: holds 7 bytes, not 8; the file is damaged");
+  files.write_values("c/0/0/1", counted(9));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/1: chunk at 0, 0, 2: takes 9 bytes, and at most 8 can be right; the file is damaged");
+  files.write("c/0/0/1", "");
+  EXPECT_EQ(files.message(ErrorKind::input), "run.zarr/c/0/0/1: is empty (0 bytes)");
+  files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"crc32c"}])"));
+  files.write("c/0/0/0", std::string(12, '\0'));
+  files.write("c/0/0/1", std::string(12, '\0'));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk at 0, 0, 0: its crc32c is 00000000, its bytes give 8c28b28a; the file is damaged");
+  files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"gzip"}])"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk at 0, 0, 0: its deflate stream is damaged after 0 of 8 bytes (incorrect header "
+            "check); the file is damaged");
+}
+
+TEST(ZarrSource, ChunksThatChangeAfterOpening_AreRefused) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[1,1,4]", "[1,1,2]"));
+  files.write_values("c/0/0/0", counted(2));
+  files.write_values("c/0/0/1", counted(2));
+  const auto source = open_source(files.path(), {});
+  std::filesystem::remove(files.path("c/0/0/1"));
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { ZarrFiles::read_all(*source); }),
+            files.path("c/0/0/1") +
+                ": changed while it was read: it is not there any more; convert it again once nothing writes to it");
+}
+
+TEST(ZarrSource, ShardIndexThatPointsOutsideTheShard_IsRefused) {
+  const ZarrFiles files;
+  files.write(
+      "zarr.json",
+      zarr_json("[1,1,4]", "[1,1,4]",
+                R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,2],"codecs":[{"name":"bytes"}],)"
+                R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}]}}])"));
+  const auto shard = [&](std::vector<std::uint64_t> index) {
+    std::string bytes = "abcd";
+    bytes.append(reinterpret_cast<const char*>(index.data()), index.size() * sizeof(std::uint64_t));
+    files.write("c/0/0/0", bytes);
+  };
+  shard({2, 2, ~std::uint64_t{0}, ~std::uint64_t{0}});
+  EXPECT_EQ(files.read(), (std::vector<float>{'c', 'd', 7, 7}));
+  shard({0, 2, 35, 2});
+  EXPECT_EQ(
+      files.message(ErrorKind::input),
+      "run.zarr/c/0/0/0: chunk 1 of the shard is said to have 2 bytes at 35, and the shard has 36 bytes; the file "
+      "is damaged");
+  shard({0, 2, 0, 4});
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk at 0, 0, 2: takes 4 bytes, and at most 2 can be right; the file is damaged");
+  files.write("c/0/0/0", "abc");
+  EXPECT_EQ(
+      files.message(ErrorKind::input),
+      "run.zarr/c/0/0/0: has 3 bytes, and the index of its shard alone takes 32; the file is cut short or damaged");
+}
+
+TEST(ZarrSource, HostileSizes_AreRefusedBeforeMemoryIsTaken) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[100000,100000,100000]", "[65536,65536,1]"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr: its chunks have 65536, 65536, 1 elements, more than 4227858432 bytes; write the array with "
+            "smaller chunks");
+  files.write("zarr.json", zarr_json("[1000,1000,1000]", "[1000,1000,500]"));
+  EXPECT_EQ(files.message(ErrorKind::usage),
+            "run.zarr: decoding one of its chunks of 476.8 MiB takes 476.9 MiB, more than half of --memory 512.0 MiB; "
+            "give at least 954MiB");
+  files.write("zarr.json", zarr_json("[200000,200000,200000]", "[1,1,1]"));
+  EXPECT_EQ(files.message(ErrorKind::usage),
+            "run.zarr: has 200000 x 200000 x 200000 chunks, more than the 268435456 that can be kept track of with "
+            "--memory; give more, or write the array with larger chunks");
+  files.write(
+      "zarr.json",
+      zarr_json("[4096,4096,4096]", "[4096,4096,1024]",
+                R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[4,4,4],"codecs":[{"name":"bytes"}],)"
+                R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}]}}])"));
+  EXPECT_EQ(files.message(ErrorKind::usage),
+            "run.zarr: the index of one of its shards of 268435456 chunks takes 8.0 GiB, more than a sixteenth of "
+            "--memory 512.0 MiB; give at least 131073MiB");
+  files.write("zarr.json", zarr_json("[4,4,9223372036854775807]", "[1,1,1]"));
+  EXPECT_TRUE(files.message(ErrorKind::input).starts_with("run.zarr: ")) << files.message(ErrorKind::input);
+}
+
+TEST(ZarrSource, LeadingAxes_AreChosenByIndex) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[2,2,1,1,2]", "[2,1,1,1,2]", R"([{"name":"bytes"}])", "uint8", "7",
+                                     R"(,"dimension_names":["t","c",null,"y","x"])"));
+  files.write_values("c/0/0/0/0/0", counted(4));
+  files.write_values("c/0/1/0/0/0", counted(4, 10));
+  SourceOptions options;
+  options.index = {1, 1};
+  EXPECT_EQ(files.read(options), (std::vector<float>{12, 13}));
+  const auto source = open_source(files.path(), options);
+  EXPECT_EQ(source->info().axis_labels, (std::array<std::string, 3>{"x", "y", ""}));
+  EXPECT_EQ(source->info().index, (std::vector<std::int64_t>{1, 1}));
+  options.index = {1};
+  EXPECT_EQ(
+      files.message(ErrorKind::usage, options),
+      "run.zarr: its axes are t 2, c 2, 1, y 1, x 2, and --index has 1 position; give --index with 2 positions: t in "
+      "0..1, c in 0..1");
+  options.index = {0, 2};
+  EXPECT_EQ(
+      files.message(ErrorKind::usage, options),
+      "run.zarr: its axes are t 2, c 2, 1, y 1, x 2, and --index has 2; give --index with 2 positions: t in 0..1, c "
+      "in 0..1");
+  options.index.clear();
+  options.index_choices = {*parse_axis_choice("t=0"), *parse_axis_choice("c=-1")};
+  EXPECT_EQ(files.read(options), (std::vector<float>{10, 11}));
+}
+
+TEST(ZarrSource, SeveralArrays_AreNamedWithTheirCommands) {
+  const ZarrFiles files;
+  files.write("zarr.json", kGroup);
+  files.write("a/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
+  files.write("b/zarr.json", kGroup);
+  files.write("b/c/zarr.json", zarr_json("[1,1,1]", "[1,1,1]", R"([{"name":"bytes"}])", "uint8", "9"));
+  files.write("b/line/zarr.json", zarr_json("[4]", "[4]"));
+  EXPECT_EQ(files.message(ErrorKind::usage), "run.zarr: holds 2 volumes; choose one with --dataset: weir convert " +
+                                                 files.path() + " --dataset a; weir convert " + files.path() +
+                                                 " --dataset b/c");
+  SourceOptions options;
+  options.dataset = "/b/c";
+  EXPECT_EQ(files.read(options), (std::vector<float>{9}));
+  options.dataset = "d";
+  EXPECT_EQ(files.message(ErrorKind::input, options), "run.zarr: has no array 'd'; it has 'a', 'b/c', 'b/line'");
+  options.dataset = "b/../a";
+  EXPECT_EQ(files.message(ErrorKind::input, options), "run.zarr: has no array 'b/../a'; it has 'a', 'b/c', 'b/line'");
+  const std::vector<DatasetInfo> list = list_zarr(files.path(), {});
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[1].name, "b/c");
+  EXPECT_EQ(list[1].type, "uint8");
+  EXPECT_EQ(list[1].layout, "chunked 1 x 1 x 1");
+  EXPECT_EQ(list[2].obstacle, "1 axis (4); a volume has three");
+}
+
+TEST(ZarrSource, ArraysThatCannotBeRead_AreListedWithTheReason) {
+  const ZarrFiles files;
+  files.write(".zgroup", R"({"zarr_format":2})");
+  files.write("a/.zarray", zarray("[1,1,1]", "[1,1,1]", "<c8"));
+  files.write("b/.zarray", zarray("[1,1,1]", "[1,1,1]", "|u1", "300"));
+  const std::vector<DatasetInfo> list = list_zarr(files.path(), {});
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].type, "<c8");
+  EXPECT_EQ(list[0].obstacle, "its type is <c8; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64");
+  EXPECT_EQ(list[1].obstacle, "fill_value is 300, which is no uint8; the file is damaged");
+  EXPECT_EQ(
+      files.message(ErrorKind::input),
+      "run.zarr: none of its 2 arrays is a volume; the first is a: its type is <c8; a volume has integers of 8 to "
+      "64 bits or floats of 16, 32 or 64; weir inspect lists them");
+}
+
+TEST(ZarrSource, PathsOfItsParts_OpenTheSame) {
+  const ZarrFiles files;
+  files.write("zarr.json", kGroup);
+  files.write("a/zarr.json", zarr_json("[1,1,2]", "[1,1,2]"));
+  for (const std::string& path :
+       {files.path(), files.path() + "/", files.path("zarr.json"), files.path("a"), files.path("a/zarr.json")}) {
+    EXPECT_EQ(ZarrFiles::read_all(*open_source(path, {})), (std::vector<float>{7, 7})) << path;
+  }
+}
+
+TEST(ZarrSource, ScaleAndMissingValueOfXarray_AreApplied) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,3]", "[1,1,3]", "|u1", "255"));
+  files.write(".zattrs", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"scale_factor":0.5,"add_offset":-1,"missing_value":255,)"
+                         R"("units":"K","long_name":"temperature","valid_max":NaN})");
+  files.write_values("0.0.0", std::vector<std::uint8_t>{0, 4, 255});
+  const auto source = open_source(files.path(), {});
+  const std::vector<float> values = ZarrFiles::read_all(*source);
+  EXPECT_EQ(values[0], -1.0F);
+  EXPECT_EQ(values[1], 1.0F);
+  EXPECT_TRUE(is_missing(values[2]));
+  EXPECT_EQ(source->info().units, "K");
+  EXPECT_EQ(source->info().details.long_name, "temperature");
+}
+
+}  // namespace
+}  // namespace weir::zarr_source_test

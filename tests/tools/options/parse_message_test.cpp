@@ -1,0 +1,25 @@
+#include "tools/options/parse_message.h"
+
+#include <gtest/gtest.h>
+
+namespace weir::parse_message_test {
+namespace {
+
+const std::vector<std::string> kNames{"convert", "compare", "render", "verify", "--rate", "--roi"};
+
+TEST(NearestName, OneSlip_FindsTheName) {
+  for (const char* word : {"covnert", "convrt", "convertt", "conxert"})
+    EXPECT_EQ(nearest_name(word, kNames), "convert");
+}
+
+TEST(NearestName, OneSlipInThreeLetters_IsTheMost) {
+  EXPECT_EQ(nearest_name("rendxy", kNames), "render");
+  EXPECT_EQ(nearest_name("renxyz", kNames), "");
+  EXPECT_EQ(nearest_name("", kNames), "");
+  EXPECT_EQ(nearest_name("ls", kNames), "");
+}
+
+TEST(NearestName, OfSeveral_TakesTheFewestSlips) { EXPECT_EQ(nearest_name("--rote", kNames), "--rate"); }
+
+}  // namespace
+}  // namespace weir::parse_message_test

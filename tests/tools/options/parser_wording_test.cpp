@@ -1,0 +1,46 @@
+#include "tools/options/parser_wording.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/run_command.h"
+
+namespace weir::parser_wording_test {
+namespace {
+
+TEST(ParserWording, ATextOfAnotherForm_Stays) {
+  EXPECT_EQ(parser_wording("input is required"), "input is required");
+  EXPECT_EQ(parser_wording(""), "");
+}
+
+TEST(ParserWording, ManyChoices_AreListedAsWeirDoes) {
+  EXPECT_EQ(parser_wording("--progress: may be not in {auto,always,never}"),
+            "--progress is \"may be\", it must be auto, always or never");
+  EXPECT_EQ(parser_wording("--one: x not in {a}"), "--one is \"x\", it must be a");
+}
+
+// The parser's own words, of which another version may have others, are those that are known.
+TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
+  const auto refused = [](const std::vector<std::string>& words) {
+    const CommandResult result = run_weir(words);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_TRUE(result.err.ends_with("; see weir " + words[0] + " --help\n")) << result.err;
+    return result.err.substr(0, result.err.rfind("; see "));
+  };
+  EXPECT_EQ(refused({"retry", "abc"}), "weir: id is \"abc\", it must be a number");
+  EXPECT_EQ(refused({"flip", "a.png", "b.png", "--ppd", "many"}), "weir: --ppd is \"many\", it must be a number");
+  EXPECT_EQ(refused({"render", "a.nvdb", "-o", "a.png", "--spp"}), "weir: --spp needs a value, N");
+  EXPECT_EQ(refused({"convert", "a.raw", "--dataset"}), "weir: --dataset needs a value, NAME");
+  EXPECT_EQ(refused({"convert", "a.raw", "--rate", "3", "--rate", "4"}), "weir: --rate is given 2 times; give it once");
+  EXPECT_EQ(refused({"render", "a.nvdb", "-o", "a.png", "--volume", "both"}),
+            "weir: --volume is \"both\", it must be file or dense");
+  EXPECT_EQ(refused({"jobs", "--limit", "0"}), "weir: --limit is \"0\", it must be a number from 1 to 1000");
+  EXPECT_EQ(refused({"jobs", "--offset", "-1"}), "weir: --offset is \"-1\", it must be a number from 0 on");
+  EXPECT_EQ(refused({"convert", "a.raw", "--within", "no/where"}),
+            "weir: --within is \"no/where\", which does not exist; name a directory");
+  EXPECT_EQ(refused({"convert", "a.raw", "--again"}), "weir: --again needs --skip-done");
+}
+
+}  // namespace
+}  // namespace weir::parser_wording_test

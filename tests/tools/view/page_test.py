@@ -1,0 +1,348 @@
+"""page_test.py CASE DIRECTORY WEIR ARGUMENT...: one test of the page of `WEIR view ARGUMENT...` in headless Chromium.
+Screenshots go to WEIR_PAGE_SCREENSHOTS, where that is set. Exits with 0 where all holds."""
+
+import base64
+import math
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "daemon" / "page"))
+from webdriver import Browser  # noqa: E402
+
+case, directory, weir = sys.argv[1:4]
+arguments = sys.argv[4:]
+pictures = os.environ.get("WEIR_PAGE_SCREENSHOTS")
+
+
+def equal(found, expected):
+    assert found == expected, f"found {found!r}, expected {expected!r}"
+
+
+def picture(browser, name):
+    if pictures:
+        browser.screenshot(os.path.join(pictures, name + ".png"))
+
+
+class Server:
+    def __enter__(self):
+        self.process = subprocess.Popen([weir, "view", *arguments], stdout=subprocess.PIPE, text=True)
+        self.url = self.process.stdout.readline().strip()
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/", self.url), self.url
+        return self.url
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        equal(self.process.wait(20), 0)
+
+
+def watch_frames(browser):
+    """Keeps the headers of all pictures that are drawn in window.drawn."""
+    browser.script("""
+        window.drawn = [];
+        document.querySelector('#canvas').addEventListener('drawn', (event) => window.drawn.push(event.detail))""")
+
+
+def frames(browser):
+    return browser.script("return window.drawn")
+
+
+def converged(browser):
+    return browser.wait("the picture is done", lambda: (browser.text("#quality") or "").endswith(", done"), 60)
+
+
+def loaded(browser, url):
+    browser.open(url)
+    browser.wait("the page is filled", lambda: browser.visible("#main"))
+    converged(browser)
+
+
+def canvas_bytes(browser):
+    return browser.script("return document.querySelector('#canvas').toDataURL('image/png')")
+
+
+def pixels(browser):
+    """The canvas, a quarter as wide, as [r, g, b] of each pixel."""
+    return browser.script("""
+        const canvas = document.querySelector('#canvas');
+        return [...canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data]""")
+
+
+def drag(browser, selector, dx, dy, steps=8):
+    browser.script("""
+        const [selector, dx, dy, steps] = arguments;
+        const target = document.querySelector(selector);
+        const box = target.getBoundingClientRect();
+        const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
+        const send = (type, i) => target.dispatchEvent(new PointerEvent(type, {
+            bubbles: true, cancelable: true, pointerId: 1, pointerType: 'mouse', button: 0, buttons: 1,
+            clientX: x + dx * i / steps, clientY: y + dy * i / steps}));
+        target.setPointerCapture = document.querySelector('#frame').setPointerCapture = () => {};
+        for (const field of document.querySelectorAll('.curve-field')) field.setPointerCapture = () => {};
+        send('pointerdown', 0);
+        return new Promise((done) => {
+            let i = 0;
+            const next = () => {
+                if (++i > steps) { send('pointerup', steps); done(); return; }
+                send('pointermove', i);
+                setTimeout(next, 40);
+            };
+            next();
+        })""", selector, dx, dy, steps)
+
+
+def state(browser):
+    """The URL's parameters."""
+    browser.script("return new Promise(done => setTimeout(done, 500))")
+    text = browser.script("return location.hash.slice(1)")
+    return dict(part.split("=") for part in text.split("&") if part)
+
+
+def scene_of(browser):
+    """The scene that the page saves."""
+    return browser.script("""
+        return new Promise((done) => {
+            const made = URL.createObjectURL;
+            URL.createObjectURL = (blob) => { blob.text().then(done); return made(blob); };
+            document.querySelector('#save-scene').click();
+            URL.createObjectURL = made;
+        })""")
+
+
+def no_overflow(browser):
+    wide = browser.script("""
+        return [...document.querySelectorAll('body *')].filter(e => e.checkVisibility() && !e.closest('.frame, .handles'))
+            .filter(e => e.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
+            .map(e => e.tagName + '#' + e.id + '.' + e.className)""")
+    equal(wide, [])
+
+
+def turns_and_refines(browser, url):
+    loaded(browser, url)
+    equal(browser.text("#link"), "connected")
+    watch_frames(browser)
+    before = canvas_bytes(browser)
+    drag(browser, "#frame", 120, 40)
+    browser.wait("a moving picture", lambda: any(f["moving"] for f in frames(browser)))
+    converged(browser)
+    assert canvas_bytes(browser) != before, "the picture is the same"
+    drawn = frames(browser)
+    moving = [f for f in drawn if f["moving"]]
+    equal({f["format"] for f in moving}, {os.environ["WEIR_MOVING_FORMAT"]})
+    equal(drawn[-1]["format"], "png")
+    equal((drawn[-1]["samples"], drawn[-1]["of"]), (16, 16))
+    now = state(browser)
+    equal((now["az"], now["el"]), ("353", "34"))
+    # The link shows the same view.
+    seen = canvas_bytes(browser)
+    link = browser.script("return location.href")
+    browser.open("about:blank")
+    loaded(browser, link)
+    equal(state(browser), now)
+    same = canvas_bytes(browser)
+    equal(len(same) > 1000 and same == seen, True)
+    equal(browser.complaints(), [])
+
+
+def works_with_keys(browser, url):
+    loaded(browser, url)
+    browser.script("document.querySelector('#frame').focus()")
+    browser.press("LEFT", "UP", "+")
+    equal(state(browser), {"az": "30", "el": "25", "z": "1.15"})
+    browser.press("0")
+    equal(state(browser), {})
+    browser.press("4")
+    equal(state(browser), {"m": "mip"})
+    converged(browser)
+    browser.press("3")
+    equal(browser.visible("#iso-field"), True)
+    converged(browser)
+    focus = "const e = document.activeElement; return e.id || e.name || e.className"
+    seen = []
+    browser.script("document.activeElement.blur()")
+    for _ in range(60):
+        browser.press("TAB")
+        seen.append(browser.script(focus))
+        if seen[-1] not in ("", "frame"):
+            shown = browser.script("""const e = document.activeElement;
+                const marked = e.name === 'mode' ? e.nextElementSibling : e;
+                return getComputedStyle(marked).outlineStyle""")
+            equal((seen[-1], shown), (seen[-1], "solid" if seen[-1] else shown))
+        if seen[-1] == "show-command" or (len(seen) > 1 and seen[-1] == "frame"):
+            break
+    for wanted in ["frame", "mode", "undo", "handle", "colormap", "iso", "save-picture", "save-scene"]:
+        assert wanted in seen, f"{wanted} is not reached: {seen}"
+
+
+def edits_the_transfer_function(browser, url):
+    loaded(browser, url)
+    assert browser.script("return document.querySelector('.bars').getAttribute('d').length") > 100
+    before = canvas_bytes(browser)
+    points = browser.script("return document.querySelectorAll('.handle').length")
+    assert points >= 2, points
+    drag(browser, ".handle:last-child", -60, 50)
+    assert "o" in state(browser), state(browser)
+    converged(browser)
+    assert canvas_bytes(browser) != before, "the picture is the same"
+    # One more point by a click, away again by Delete; then undo of all.
+    drag(browser, ".curve-field", -20, -30, 2)
+    equal(browser.script("return document.querySelectorAll('.handle').length"), points + 1)
+    browser.press("DELETE")
+    equal(browser.script("return document.querySelectorAll('.handle').length"), points)
+    for _ in range(6):
+        browser.script("document.querySelector('#undo').click()")
+    equal(state(browser), {})
+    converged(browser)
+    equal(canvas_bytes(browser) == before, True)
+    browser.script("document.querySelector('#redo').click()")
+    assert "o" in state(browser), state(browser)
+
+
+def tells_values(browser, url):
+    loaded(browser, url)
+    browser.script("""
+        const frame = document.querySelector('#frame');
+        const box = frame.getBoundingClientRect();
+        frame.dispatchEvent(new PointerEvent('pointermove', {bubbles: true, pointerType: 'mouse', pointerId: 1,
+            clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}))""")
+    text = browser.wait("a value", lambda: browser.text("#value"))
+    assert re.match(r"-?[\d.e-]+ \u00b1 [\d.e-]+ at \d+, \d+, \d+", text), text
+
+
+def scrubs_a_series(browser, url):
+    loaded(browser, url)
+    equal(browser.text("#step-name"), "1 of 3: s_1.nvdb")
+    before = canvas_bytes(browser)
+    browser.script("""
+        const slider = document.querySelector('#step');
+        slider.value = 2;
+        slider.dispatchEvent(new Event('input'));
+        slider.dispatchEvent(new Event('change'))""")
+    equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
+    converged(browser)
+    browser.wait("its facts", lambda: browser.text("#file-name") == "s_3.nvdb")
+    assert canvas_bytes(browser) != before, "the picture is the same"
+    equal(state(browser), {"t": "2"})
+    browser.script("document.activeElement.blur()")
+    watch_frames(browser)
+    browser.press("SPACE")
+    browser.wait("it plays", lambda: len({f["step"] for f in frames(browser)}) == 3)
+    browser.press("SPACE")
+    picture(browser, "series")
+
+
+def compares_two_files(browser, url):
+    loaded(browser, url)
+    browser.click("#compare")
+    converged(browser)
+    equal(browser.text("#side-left"), "a.nvdb")
+    equal(browser.text("#side-right"), "b.nvdb")
+    whole = pixels(browser)
+    browser.script("document.querySelector('#divider').focus()")
+    browser.press(*["RIGHT"] * 25)
+    equal(state(browser), {"s": "1"})
+    converged(browser)
+    assert pixels(browser) != whole, "both sides show one file"
+    browser.press(*["LEFT"] * 25)
+    converged(browser)
+    picture(browser, "compare")
+
+
+def converts(browser, url):
+    loaded(browser, url)
+    browser.script("document.querySelector('#convert-panel').open = true")
+    command = browser.wait("the command", lambda: browser.text("#convert-command"))
+    assert command.startswith("weir convert ") and command.endswith(" --scene scene.toml"), command
+    equal(browser.visible("#run-convert"), False)
+
+
+def saved_scene_gives_the_same_picture(browser, url):
+    loaded(browser, url)
+    drag(browser, "#frame", 70, -20)
+    drag(browser, ".handle:last-child", -40, 30)
+    browser.script("""
+        const slider = document.querySelector('[aria-label="x from"]');
+        slider.value = 12;
+        slider.dispatchEvent(new Event('input'));
+        slider.dispatchEvent(new Event('change'))""")
+    state(browser)
+    converged(browser)
+    width, height = browser.script("const c = document.querySelector('#canvas'); return [c.width, c.height]")
+    seen = pixels(browser)
+    scene = os.path.join(directory, "scene.toml")
+    with open(scene, "w", encoding="utf-8") as file:
+        file.write(scene_of(browser))
+    command = browser.text("#render-command").split()
+    equal(command[command.index("--size") + 1], f"{width}x{height}")
+    image = os.path.join(directory, "scene.png")
+    subprocess.run([weir, "render", arguments[0], "-o", image, "--scene", scene, "--size", f"{width}x{height}", "--spp", "16",
+                    "--quiet", "--overwrite"], check=True)
+    browser.open("about:blank")
+    browser.open(url)  # a page of this origin may draw the picture
+
+    with open(image, "rb") as file:
+        data = base64.b64encode(file.read()).decode()
+    rendered = browser.script("""
+        const image = new Image();
+        const bytes = Uint8Array.from(atob(arguments[0]), (c) => c.charCodeAt(0));
+        image.src = URL.createObjectURL(new Blob([bytes], {type: 'image/png'}));
+        return image.decode().then(() => {
+            const canvas = new OffscreenCanvas(image.width, image.height);
+            const context = canvas.getContext('2d');
+            context.drawImage(image, 0, 0);
+            return [...context.getImageData(0, 0, image.width, image.height).data];
+        })""", data)
+    equal(len(rendered), len(seen))
+    difference = math.sqrt(sum((a - b) ** 2 for a, b in zip(rendered, seen)) / len(seen))
+    spread = max(seen[1::4]) - min(seen[1::4])
+    assert spread > 100, f"an empty picture: {spread}"
+    assert difference < 2.5, f"root mean square difference {difference:.2f} of 255"
+
+
+def fits_windows(browser, url):
+    for width, height in ((1440, 900), (800, 1000), (390, 844)):
+        browser.set_width(width, height)
+        loaded(browser, url)
+        no_overflow(browser)
+        equal(browser.script("return document.documentElement.scrollWidth"), width)
+        picture(browser, f"view-{width}")
+    small = browser.script("""
+        return [...document.querySelectorAll('button, select, .modes span')].filter(e => e.checkVisibility())
+            .filter(e => e.getBoundingClientRect().height < 43.5).map(e => e.id || e.innerText)""")
+    equal(small, [])
+    browser.prefer("dark")
+    browser.set_width(1440, 900)
+    loaded(browser, url + "#m=iso")
+    for panel in ("light-panel", "box-panel", "convert-panel"):
+        browser.script("document.getElementById(arguments[0]).open = true", panel)
+    browser.wait("the command", lambda: browser.text("#convert-command"))
+    no_overflow(browser)
+    picture(browser, "view-dark-iso")
+
+
+def asks_for_the_token(browser, url):
+    browser.open(url)
+    browser.wait("the login", lambda: browser.visible("#login"))
+    enter = lambda text: browser.script("""
+        document.querySelector('#token').value = arguments[0];
+        document.querySelector('#login button').click()""", text)
+    enter("wrong")
+    browser.wait("the refusal", lambda: "token" in (browser.text("#login-error") or ""))
+    enter("secret")
+    browser.wait("the page is filled", lambda: browser.visible("#main"))
+    converged(browser)
+
+
+def says_when_the_server_is_gone(browser, url):
+    loaded(browser, url)
+    server.process.send_signal(signal.SIGINT)
+    browser.wait("it says so", lambda: browser.text("#link") == "not connected")
+    browser.wait("and why", lambda: browser.text("#banner") == "The server does not answer; it may have ended.")
+
+
+server = Server()
+with server as address, Browser(1200, 900) as opened:
+    globals()[case](opened, address)

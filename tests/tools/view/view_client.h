@@ -1,0 +1,73 @@
+// One viewer without a browser: a WebSocket client that blocks, with a limit of time on each call.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/view/view_access.h"
+
+namespace weir {
+
+struct ClientHeaders {
+  std::string host = "127.0.0.1";
+  std::string origin{};  ///< empty: none
+  std::string protocols{kViewProtocol};
+  std::string target = "/ws";
+};
+
+struct ReceivedFrame {
+  nlohmann::json header;
+  std::string picture;
+};
+
+class ViewClient {
+ public:
+  /// Throws where the server refuses it.
+  explicit ViewClient(std::uint16_t port, const ClientHeaders& headers = {});
+
+  void send(const nlohmann::json& message) { send_text(message.dump()); }
+  void send_text(const std::string& text);
+  /// Of a 64 x 48 picture; `more` takes the place of members.
+  void show(std::int64_t id, bool moving, const nlohmann::json& more = {});
+  void taken(const ReceivedFrame& frame) { send({{"type", "shown"}, {"frame", frame.header["frame"]}}); }
+  /// The next picture; texts before it go to `texts`. None where none comes within `wait`.
+  std::optional<ReceivedFrame> frame(std::chrono::milliseconds wait = std::chrono::seconds(20));
+  /// The next text of that type, those of other types and pictures are thrown away.
+  std::optional<nlohmann::json> text(const std::string& type,
+                                     std::chrono::milliseconds wait = std::chrono::seconds(20));
+  /// Takes pictures until one of the view has `samples` a pixel; that one.
+  std::optional<ReceivedFrame> refined(std::int64_t view, int samples);
+  /// Whether the server ends the connection within `wait`.
+  bool ended(std::chrono::milliseconds wait = std::chrono::seconds(10));
+  /// The connection's own bytes, past the protocol.
+  boost::asio::ip::tcp::socket& raw() { return stream_.next_layer(); }
+
+  std::vector<nlohmann::json> texts;
+
+ private:
+  struct Message {
+    bool binary = false;
+    std::string bytes;
+  };
+  std::optional<Message> read(std::chrono::milliseconds wait);
+
+  boost::asio::io_context io_;
+  boost::beast::websocket::stream<boost::asio::ip::tcp::socket> stream_{io_};
+  bool broken_ = false;
+};
+
+/// What the server answers to a request for a WebSocket: "101", or the status and the body of its refusal.
+std::string upgrade_answer(std::uint16_t port, const ClientHeaders& headers);
+
+/// The status and body of GET `target`, over a connection of its own.
+std::pair<int, std::string> get(std::uint16_t port, const std::string& target, const ClientHeaders& headers = {},
+                                const std::string& authorization = "");
+
+}  // namespace weir

@@ -1,0 +1,95 @@
+// weir view from outside: its address, its end, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "format/base/text.h"
+#include "tests/tools/support/converted_volume.h"
+#include "tests/tools/view/view_client.h"
+
+namespace weir::view_command_test {
+namespace {
+
+class ViewCommandTest : public ConvertedVolume {
+ protected:
+  /// The port of a running command, from the address that it prints.
+  static std::uint16_t port_of(ChildProcess& child) {
+    for (int i = 0; i < 600 && child.out_so_far().find('\n') == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    const std::string address = child.out_so_far();
+    EXPECT_EQ(address.substr(0, 17), "http://127.0.0.1:") << child.err_so_far();
+    return address.size() < 18 ? std::uint16_t{0} : static_cast<std::uint16_t>(std::stoi(address.substr(17)));
+  }
+  void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& message) {
+    const CommandResult result = run_weir(arguments);
+    EXPECT_EQ(result.exit_code, code);
+    EXPECT_EQ(result.err, cat("weir: ", message, '\n'));
+    EXPECT_EQ(result.out, "");
+  }
+};
+
+TEST_F(ViewCommandTest, Signal_EndsItCleanly) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ChildProcess child({WEIR_COMMAND, "view", volume_});
+    const std::uint16_t port = port_of(child);
+    ASSERT_NE(port, 0);
+    ViewClient client(port);
+    client.show(1, false, {{"width", 1600}, {"height", 1200}, {"scene", "mode = \"path\"\n"}});
+    ASSERT_TRUE(client.frame());
+    child.send_signal(signal);
+    const CommandResult result = child.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+  }
+}
+
+TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
+  expect_refused({"view", volume_, "--against", directory_ / "v_40x30x20_float32.raw"}, 2,
+                 cat(directory_ / "v_40x30x20_float32.raw", ": is no NanoVDB file; convert it first: weir convert ",
+                     directory_ / "v_40x30x20_float32.raw"));
+  std::filesystem::create_directory(directory_ / "empty");
+  expect_refused({"view", directory_ / "empty"}, 3,
+                 cat(directory_ / "empty", ": holds no .nvdb file; weir convert makes them of what it holds"));
+  expect_refused({"view", volume_, "--listen", "0.0.0.0:0"}, 2,
+                 "--listen 0.0.0.0:0 can be reached from other machines, so it needs --token-file FILE; or listen on "
+                 "127.0.0.1");
+  write_file(directory_ / "broken.nvdb", std::string(5000, 'x'));
+  EXPECT_EQ(run_weir({"view", directory_ / "broken.nvdb"}).exit_code, 3);
+}
+
+TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
+  const std::string folder = directory_ / "work";
+  std::filesystem::create_directory(folder);
+  write_file(directory_ / "dump.bin", read_file(directory_ / "v_40x30x20_float32.raw"));
+  ChildProcess child({WEIR_COMMAND, "view", directory_ / "dump.bin", "--dims", "40,30,20", "--type", "float32",
+                      "--work-dir", folder, "--progress", "never"});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  EXPECT_EQ(nlohmann::json::parse(get(port, "/api/state").second)["preview_of"], directory_ / "dump.bin");
+  ViewClient client(port);
+  EXPECT_EQ(client.text("facts").value()["grid_type"], "packed");
+  client.show(1, true);
+  EXPECT_TRUE(client.frame());
+  EXPECT_EQ(list_directory(folder).size(), 3U) << "a directory, the file and its sidecar";
+  child.send_signal(SIGINT);
+  EXPECT_EQ(child.wait().exit_code, 0);
+  EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
+}
+
+TEST_F(ViewCommandTest, OptionOfASource_IsRefusedWithAFile) {
+  expect_refused({"view", volume_, "--dims", "1,2,3"}, 2,
+                 cat("--dims says how to read a source, and ", volume_, " is shown as it is; leave it out"));
+}
+
+TEST_F(ViewCommandTest, TokenThatEverybodyCanRead_IsRefused) {
+  const std::string token = directory_ / "token";
+  write_file(token, "secret\n");
+  std::filesystem::permissions(token, std::filesystem::perms(0644));
+  expect_refused({"view", volume_, "--token-file", token}, 3, cat(token, ": can be read by everybody; chmod o-r it"));
+}
+
+}  // namespace
+}  // namespace weir::view_command_test

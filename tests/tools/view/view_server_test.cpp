@@ -1,0 +1,398 @@
+// The server of weir view over loopback, with clients that are no browsers.
+#include "tools/view/view_server.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/write.hpp>
+#include <filesystem>
+#include <thread>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/tools/support/converted_volume.h"
+#include "tests/tools/view/served_view.h"
+#include "tests/tools/view/view_client.h"
+#include "tools/view/jpeg_picture.h"
+
+namespace weir::view_server_test {
+namespace {
+
+using Json = nlohmann::json;
+using std::chrono::milliseconds;
+
+class ViewServerTest : public ConvertedVolume {
+ protected:
+  /// What a client with these headers is answered.
+  static std::string answer_to(const ServedView& served, const ClientHeaders& headers) {
+    return upgrade_answer(served.port(), headers);
+  }
+  static std::string with_origin(const ServedView& served, const std::string& origin) {
+    return answer_to(served, {"127.0.0.1:1", origin});
+  }
+  static void wait_for_viewers(ServedView& served, std::size_t viewers) {
+    for (int i = 0; i < 200 && served.viewers() != viewers; ++i) std::this_thread::sleep_for(milliseconds(50));
+    EXPECT_EQ(served.viewers(), viewers);
+  }
+};
+
+TEST_F(ViewServerTest, MovingView_GetsJpeg_StillView_EndsAsPng) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  client.show(1, true);
+  const auto moving = client.frame();
+  ASSERT_TRUE(moving);
+  EXPECT_EQ(moving->header["view"], 1);
+  EXPECT_EQ(moving->header["moving"], true);
+  EXPECT_EQ(moving->header["format"], has_jpeg() ? "jpeg" : "png");
+  EXPECT_EQ(moving->picture.substr(0, 3), has_jpeg() ? "\xFF\xD8\xFF" : "\x89PN");
+  client.taken(*moving);
+  client.show(2, false);
+  const auto still = client.refined(2, 16);
+  ASSERT_TRUE(still);
+  EXPECT_EQ(still->header["format"], "png");
+  EXPECT_EQ(still->header["width"], 64);
+  EXPECT_EQ(still->header["height"], 48);
+  EXPECT_EQ(still->header["samples"], 16);
+  EXPECT_EQ(still->header["of"], 16);
+  EXPECT_EQ(still->picture.substr(0, 4), "\x89PNG");
+  EXPECT_FALSE(client.frame(milliseconds(300))) << "a converged picture is not drawn again";
+}
+
+TEST_F(ViewServerTest, PictureThatIsNotTaken_KeepsTheNextBack) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  client.show(1, true);
+  const auto first = client.frame();
+  ASSERT_TRUE(first);
+  for (int id = 2; id <= 20; ++id) client.show(id, true);
+  std::this_thread::sleep_for(milliseconds(300));
+  client.send({{"type", "probe"}, {"id", 5}, {"x", 0.5}, {"y", 0.5}});
+  ASSERT_TRUE(client.text("value"));  // what was sent before it has come
+  client.taken(*first);
+  const auto second = client.frame();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->header["view"], 20) << "the newest view alone is drawn";
+  EXPECT_EQ(second->header["frame"], 2);
+}
+
+TEST_F(ViewServerTest, SlowViewer_DelaysNoOther) {
+  ServedView served(volume_);
+  ViewClient slow(served.port());
+  slow.show(1, true);
+  ASSERT_TRUE(slow.frame());  // and it never says that it was taken
+  slow.show(2, true);
+  ViewClient quick(served.port());
+  for (int id = 1; id <= 10; ++id) {
+    quick.show(id, true);
+    const auto frame = quick.frame();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->header["view"], id);
+    quick.taken(*frame);
+  }
+}
+
+TEST_F(ViewServerTest, ViewersShareTheVolumeAndHaveViewsOfTheirOwn) {
+  ServedView served(volume_);
+  ViewClient one(served.port());
+  ViewClient two(served.port());
+  one.show(1, false, {{"width", 32}});
+  two.show(7, false, {{"width", 40}});
+  EXPECT_EQ(one.refined(1, 16).value().header["width"], 32);
+  EXPECT_EQ(two.refined(7, 16).value().header["width"], 40);
+}
+
+TEST_F(ViewServerTest, Facts_AreTheSidecars) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  const Json facts = client.text("facts").value();
+  EXPECT_EQ(facts["file"], "v.nvdb");
+  EXPECT_EQ(facts["bytes"], 450001);
+  EXPECT_EQ(facts["box"], Json::parse("[[0, 0, 0], [40, 30, 20]]"));
+  EXPECT_EQ(facts["certificate"]["rate"], sidecar().budget.rate);
+  EXPECT_EQ(facts["certificate"]["max_abs"], sidecar().error.max_abs);
+  EXPECT_EQ(facts["opacity"].size(), 33U);
+  const Json histogram = client.text("histogram").value();
+  std::uint64_t counted = 0;
+  for (const auto& count : histogram["counts"]) counted += count.get<std::uint64_t>();
+  EXPECT_EQ(counted, 40U * 30 * 20);
+}
+
+TEST_F(ViewServerTest, FileWithoutASidecar_HasItsHistogramCounted) {
+  std::filesystem::remove(sidecar_path(volume_));
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  EXPECT_TRUE(client.text("facts").value()["certificate"].is_null());
+  EXPECT_EQ(client.text("histogram").value()["counts"].size(), 256U);
+}
+
+TEST_F(ViewServerTest, Probe_TellsTheVoxelUnderThePoint) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  const std::string along_x = "mode = \"mip\"\n[camera]\nposition = [1000, 14, 9]\nlook_at = [0, 14, 9]\nzoom = 20\n";
+  client.show(1, false, {{"scene", along_x}});
+  client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}});
+  const Json answer = client.text("value").value();
+  ASSERT_EQ(answer["found"], true) << answer;
+  EXPECT_EQ(answer["id"], 3);
+  const NvdbFile file = open();
+  float most = 0;
+  for (std::int64_t x = 0; x < 40; ++x) most = std::max(most, file.grid().value({x, 14, 9}));
+  EXPECT_FLOAT_EQ(answer["value"].get<float>(), most);
+  client.send({{"type", "probe"}, {"id", 4}, {"x", 0}, {"y", 0}});
+  EXPECT_EQ(client.text("value").value()["found"], false);
+}
+
+TEST_F(ViewServerTest, WrongScene_IsSaidAndTheViewerGoesOn) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  client.show(1, true, {{"scene", "mode = \"dream\"\n"}});
+  EXPECT_EQ(client.text("error").value()["message"], "scene:1:8: mode is \"dream\", it must be path, dvr, iso or mip");
+  client.show(2, true, {{"scene", "[volume]\ncolormap = \"puce\"\n"}});
+  const Json error = client.text("error").value();
+  EXPECT_EQ(error["view"], 2);
+  EXPECT_NE(error["message"].get<std::string>().find("puce"), std::string::npos) << error;
+  client.show(3, true);
+  EXPECT_EQ(client.frame().value().header["view"], 3);
+}
+
+TEST_F(ViewServerTest, ForeignPages_AreRefused) {
+  ServedView served(volume_);
+  EXPECT_EQ(with_origin(served, "http://evil.example"),
+            "403 {\"error\":\"Origin http://evil.example is not 127.0.0.1:1; open this server's own page\"}\n");
+  EXPECT_EQ(with_origin(served, "null").substr(0, 3), "403");
+  EXPECT_EQ(with_origin(served, "http://127.0.0.1:2").substr(0, 3), "403");
+  EXPECT_EQ(with_origin(served, "http://127.0.0.1:1"), "101");
+  EXPECT_EQ(with_origin(served, ""), "101");
+  EXPECT_EQ(answer_to(served, {"evil.example", "http://evil.example"}).substr(0, 3), "421");
+  EXPECT_EQ(get(served.port(), "/api/state", {"evil.example"}).first, 421);
+  EXPECT_EQ(answer_to(served, {.target = "/api/state"}).substr(0, 3), "404");
+}
+
+TEST_F(ViewServerTest, Token_IsNeededForAllButThePage) {
+  ViewSettings settings;
+  settings.token = "se";
+  ServedView served(volume_, "", settings);
+  EXPECT_EQ(answer_to(served, {}).substr(0, 3), "401");
+  EXPECT_EQ(answer_to(served, {.protocols = "weir.view, weir.token.7365ff"}).substr(0, 3), "401");
+  EXPECT_EQ(answer_to(served, {.protocols = "weir.view, weir.token.7365"}), "101");
+  EXPECT_EQ(get(served.port(), "/api/state").first, 401);
+  EXPECT_EQ(get(served.port(), "/api/state", {}, "Bearer se").first, 200);
+  EXPECT_EQ(get(served.port(), "/").first, 200);
+  EXPECT_EQ(get(served.port(), "/page/view.js").first, 200);
+}
+
+TEST_F(ViewServerTest, AddressThatOthersReach_NeedsAToken) {
+  ViewSettings settings;
+  settings.address = {"0.0.0.0", 0};
+  const auto serve = [&] { ServedView served(volume_, "", settings); };
+  EXPECT_THROW(serve(), Error);
+  try {
+    serve();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_EQ(std::string(error.what()),
+              "--listen 0.0.0.0:0 can be reached from other machines, so it needs --token-file FILE; or listen on "
+              "127.0.0.1");
+  }
+}
+
+TEST_F(ViewServerTest, Paths_AreThePagesAlone) {
+  ServedView served(volume_);
+  EXPECT_EQ(get(served.port(), "/page/dom.js").first, 200) << "shared with the page of weir watch";
+  EXPECT_EQ(get(served.port(), "/page/..%2Fv.nvdb").first, 404);
+  EXPECT_EQ(get(served.port(), "/v.nvdb").first, 404);
+  EXPECT_EQ(get(served.port(), "/../v.nvdb").first, 404);
+  EXPECT_EQ(get(served.port(), "/ws").first, 426);
+  const Json state = Json::parse(get(served.port(), "/api/state").second);
+  EXPECT_EQ(state["steps"], Json::parse("[\"v.nvdb\"]"));
+  EXPECT_EQ(state["colormaps"]["gray"].front(), "#000000");
+  EXPECT_EQ(state["colormaps"]["gray"].back(), "#ffffff");
+}
+
+TEST_F(ViewServerTest, MessageThatIsTooLarge_EndsThatViewerAlone) {
+  ServedView served(volume_);
+  ViewClient other(served.port());
+  ViewClient client(served.port());
+  client.send_text(std::string(100'000, ' '));
+  EXPECT_TRUE(client.ended());
+  wait_for_viewers(served, 1);
+  other.show(1, true);
+  EXPECT_TRUE(other.frame());
+}
+
+TEST_F(ViewServerTest, TooManyMessages_EndThatViewerAlone) {
+  ViewSettings settings;
+  settings.sockets.burst = 20;
+  settings.sockets.messages_per_s = 1;
+  ServedView served(volume_, "", settings);
+  ViewClient other(served.port());
+  ViewClient client(served.port());
+  for (int i = 0; i < 40; ++i) client.send({{"type", "shown"}, {"frame", 0}});
+  EXPECT_TRUE(client.ended());
+  other.show(1, true);
+  EXPECT_TRUE(other.frame());
+}
+
+TEST_F(ViewServerTest, Garbage_EndsThatViewerAlone) {
+  ServedView served(volume_);
+  ViewClient other(served.port());
+  ViewClient client(served.port());
+  boost::asio::write(client.raw(), boost::asio::buffer(std::string(200, '\xFF')));
+  EXPECT_TRUE(client.ended());
+  ViewClient texts(served.port());
+  texts.send_text("{]");
+  EXPECT_EQ(texts.text("error").value()["message"], "message: must be a JSON object");
+  wait_for_viewers(served, 2);
+  other.show(1, true);
+  EXPECT_TRUE(other.frame());
+}
+
+TEST_F(ViewServerTest, ViewerThatIsGone_LeavesNothing) {
+  ServedView served(volume_);
+  {
+    ViewClient client(served.port());
+    client.show(1, false, {{"width", 800}, {"height", 600}, {"scene", "mode = \"path\"\n"}});
+    wait_for_viewers(served, 1);
+  }  // killed in the middle of a picture
+  wait_for_viewers(served, 0);
+  ViewClient next(served.port());
+  next.show(1, true);
+  EXPECT_TRUE(next.frame());
+}
+
+TEST_F(ViewServerTest, SilentViewer_IsLeft) {
+  ViewSettings settings;
+  settings.sockets.idle = milliseconds(400);
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());  // reads nothing, and so answers no ping
+  wait_for_viewers(served, 1);
+  wait_for_viewers(served, 0);
+}
+
+TEST_F(ViewServerTest, ViewerThatTakesNoPicture_IsLeft) {
+  ViewSettings settings;
+  settings.sockets.taking = milliseconds(300);
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());
+  client.show(1, true);
+  ASSERT_TRUE(client.frame());
+  EXPECT_TRUE(client.ended());
+}
+
+TEST_F(ViewServerTest, OneViewerTooMany_IsRefused) {
+  ViewSettings settings;
+  settings.viewers = 2;
+  ServedView served(volume_, "", settings);
+  ViewClient one(served.port());
+  ViewClient two(served.port());
+  wait_for_viewers(served, 2);
+  EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 viewers, as many as there may be; close one\"}\n");
+}
+
+TEST_F(ViewServerTest, Series_ShowsEachStep) {
+  const std::string second = directory_ / "v2.nvdb";
+  std::filesystem::copy(volume_, second);
+  std::filesystem::copy(sidecar_path(volume_), sidecar_path(second));
+  ServedView served(directory_.path().string());
+  ViewClient client(served.port());
+  EXPECT_EQ(Json::parse(get(served.port(), "/api/state").second)["steps"], Json::parse("[\"v.nvdb\", \"v2.nvdb\"]"));
+  client.show(1, true, {{"step", 1}});
+  EXPECT_EQ(client.frame().value().header["step"], 1);
+}
+
+TEST_F(ViewServerTest, Against_HasTwoPicturesAboveEachOther) {
+  ServedView served(volume_, volume_);
+  ViewClient client(served.port());
+  client.show(1, false, {{"against", true}});
+  const auto frame = client.refined(1, 16);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->header["layers"], 2);
+  EXPECT_EQ(frame->header["height"], 48);
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(frame->picture[i])); };
+  EXPECT_EQ(byte(22) << 8U | byte(23), 96U) << "the height that the PNG says";
+}
+
+TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  client.show(1, true);
+  Json request{{"type", "convert"}, {"id", 1}, {"scene", "mode = \"mip\"\n"}, {"rate", 4}, {"encoding", "packed"}};
+  client.send(request);
+  const Json shown = client.text("conversion").value();
+  EXPECT_EQ(shown["state"], "shown");
+  EXPECT_EQ(shown["command"],
+            cat("weir convert ", directory_ / "v_40x30x20_float32.raw", " --encoding packed --rate 4 -o ",
+                directory_ / "v_scene.nvdb", " --scene scene.toml"));
+  request["run"] = true;
+  client.send(request);
+  const Json failed = client.text("conversion").value();
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_EQ(failed["message"], "this server runs no conversion; start it with --allow-convert");
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
+}
+
+TEST_F(ViewServerTest, Convert_OfASourceThatIsAnother_IsRefused) {
+  const std::string source = directory_ / "v_40x30x20_float32.raw";
+  std::filesystem::resize_file(source, 100);
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
+  EXPECT_EQ(client.text("error").value()["message"],
+            cat(source, ": is not the source of ", volume_,
+                ", which had 96000 bytes; put it there, or convert it again from where it is"));
+}
+
+TEST_F(ViewServerTest, FileThatIsCut_IsSaidAndTheServerGoesOn) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  ASSERT_TRUE(client.text("histogram"));
+  client.show(1, true);
+  client.taken(client.frame().value());
+  std::filesystem::resize_file(volume_, 4096);
+  client.show(2, true);
+  EXPECT_NE(client.text("error").value()["message"].get<std::string>().find(volume_), std::string::npos);
+  client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}});
+  EXPECT_EQ(client.text("value").value()["found"], false);
+}
+
+TEST_F(ViewServerTest, Convert_MakesTheFileWhereAllowed) {
+  ViewSettings settings;
+  settings.allow_convert = true;
+  settings.program = WEIR_COMMAND;
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());
+  client.send({{"type", "convert"},
+               {"id", 1},
+               {"scene", "mode = \"dvr\"\n[volume]\nrange = [0, 250]\nopacity = [[0, 0], [1, 1]]\n"},
+               {"rate", 4},
+               {"encoding", "packed"},
+               {"run", true}});
+  EXPECT_EQ(client.text("conversion").value()["state"], "running");
+  const Json done = client.text("conversion").value();
+  EXPECT_EQ(done["state"], "done") << done;
+  EXPECT_EQ(done["message"], directory_ / "v_scene.nvdb");
+  EXPECT_TRUE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
+}
+
+TEST_F(ViewServerTest, PackedFileLargerThanTheMemory_OpensAndTurns) {
+  const std::string raw = directory_ / "n_128x128x128_float32.raw";
+  ASSERT_EQ(run_weir({"sample", "turbulence", "--dims", "128,128,128", "-o", raw}).exit_code, 0);
+  const std::string packed = directory_ / "n.nvdb";
+  ASSERT_EQ(run_weir({"convert", raw, "-o", packed, "--encoding", "packed", "--rate", "8"}).exit_code, 0);
+  VoxelMemory memory;
+  memory.ceiling = 2 << 20;  // all blocks decoded take 8 MiB
+  ServedView served(packed, "", {}, memory);
+  ViewClient client(served.port());
+  for (int id = 1; id <= 8; ++id) {
+    client.show(id, true, {{"scene", cat("mode = \"dvr\"\n[camera]\nazimuth = ", 10 * id, "\n")}});
+    const auto frame = client.frame();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->header["view"], id);
+    client.taken(*frame);
+  }
+  client.show(9, false);
+  EXPECT_TRUE(client.refined(9, 16));
+}
+
+}  // namespace
+}  // namespace weir::view_server_test

@@ -1,0 +1,146 @@
+// weir view: a page that shows a NanoVDB file, or a series, and turns it.
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/config/token_file.h"
+#include "daemon/jobs/worker_process.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tools/command.h"
+#include "tools/options/backend_choice.h"
+#include "tools/options/picture_options.h"
+#include "tools/options/table_options.h"
+#include "tools/report/progress.h"
+#include "tools/view/source_preview.h"
+#include "tools/view/view_server.h"
+
+namespace weir {
+namespace {
+
+struct ViewArguments {
+  std::string input;
+  std::string against;
+  std::string listen = "127.0.0.1:0";
+  std::string token_file;
+  std::uint64_t viewers = 8;
+  bool open = false;
+  bool allow_convert = false;
+  std::string work_dir;
+  GivenOptions backend;
+  GivenOptions source;
+  ProgressOptions progress;
+};
+
+constexpr std::uint64_t kMostViewers = 256;
+
+ViewSettings settings_of(const ViewArguments& arguments) {
+  ViewSettings settings;
+  settings.address = parse_listen_address(arguments.listen);
+  if (settings.address.is_unix()) {
+    throw Error(ErrorKind::usage, compose(option("listen", arguments.listen), " must be HOST:PORT, for a browser"));
+  }
+  if (!arguments.token_file.empty()) {
+    settings.token = read_token_file(arguments.token_file);
+    if (const std::string fault = token_fault(settings.token); !fault.empty()) {
+      throw input_error(arguments.token_file, fault);
+    }
+  }
+  settings.viewers = arguments.viewers;
+  settings.allow_convert = arguments.allow_convert;
+  settings.program = "/proc/self/exe";
+  settings.version = WEIR_VERSION;
+  return settings;
+}
+
+// A browser as the desktop has it; where there is none, the address is on stdout all the same.
+std::unique_ptr<WorkerProcess> open_browser(boost::asio::io_context& io, const std::string& address) {
+  return std::make_unique<WorkerProcess>(
+      io, WorkerCommand{"/usr/bin/xdg-open", {"xdg-open", address}, 0, IoClass::none}, [](std::string_view) {},
+      [address](const WorkerEnd& end) {
+        if (end.exit_code != 0) spdlog::warn("xdg-open found no browser; open {} yourself", address);
+      });
+}
+
+void view(const ViewArguments& arguments) {
+  ViewSettings settings = settings_of(arguments);
+  BackendChoice choice = read_backend_choice(arguments.backend);
+  std::optional<SourcePreview> preview;
+  if (is_source(arguments.input)) {
+    preview.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress);
+    settings.preview_of = arguments.input;
+  } else if (const std::string key = given_input_option(arguments.source); !key.empty()) {
+    throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
+                                                           " is shown as it is; leave it out")));
+  }
+  ViewedFiles files = find_viewed_files(preview ? preview->file() : arguments.input, arguments.against);
+  choice.memory.volumes = volumes_held(files);
+  const std::unique_ptr<Backend> backend = make_backend(choice);
+  if (!files.summary.difference.empty()) spdlog::warn("{}", files.summary.difference);
+
+  boost::asio::io_context io;
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  struct sigaction hang_up {};
+  if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN)
+    signals.add(SIGHUP);  // but for nohup
+  signals.async_wait([&](boost::system::error_code error, int) {
+    if (!error) io.stop();
+  });
+  const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a viewer's patience
+  ListenAddress address = settings.address;
+  ViewServer server(io, std::move(settings), std::move(files), *backend);
+  if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
+  address.port = server.port();
+  const std::string url = "http://" + address.text() + "/";
+  std::printf("%s\n", url.c_str());
+  std::fflush(stdout);
+  std::unique_ptr<WorkerProcess> browser;
+  if (arguments.open) browser = open_browser(io, url);
+  io.run();
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+  auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* command =
+      app.add_subcommand("view", "Serves a page that shows NanoVDB files, turned and coloured in a browser.");
+  command
+      ->add_option(
+          "input", arguments->input,
+          "a NanoVDB file, a pattern in quotes, 'steps_*.nvdb', or a directory of them; an input of convert is "
+          "shown through a quick packed conversion")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--against", arguments->against, "another file, or as many, to compare with")->type_name("FILE");
+  command->add_option("--listen", arguments->listen, "address of the page; port 0 takes a free one")
+      ->type_name("HOST:PORT")
+      ->capture_default_str();
+  command
+      ->add_option("--token-file", arguments->token_file,
+                   "file of a token that viewers must enter; needed where other machines can reach the address")
+      ->type_name("FILE");
+  command->add_option("--viewers", arguments->viewers, "that may look at a time")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint64_t{1}, kMostViewers))
+      ->capture_default_str();
+  command->add_flag("--open", arguments->open, "opens the page in a browser");
+  command->add_flag("--allow-convert", arguments->allow_convert,
+                    "lets viewers have the source converted for the scene they see, beside the file");
+  command->add_option("--work-dir", arguments->work_dir, "where that of an input of convert is kept until the end")
+      ->type_name("DIR");
+  add_backend_options(*command, arguments->backend);
+  add_input_options(*command, arguments->source);
+  add_progress_options(*command, arguments->progress);
+  add_log_level(*command);
+  command->callback([arguments] { view(*arguments); });
+}
+
+}  // namespace weir

@@ -1,0 +1,12 @@
+// What the parser of command lines, CLI11, says of a wrong value, in weir's words.
+#pragma once
+
+#include <string>
+
+namespace weir {
+
+/// "--spp: 1 required N missing" as "--spp needs a value, N"; "--volume: both not in {file,dense}" as "--volume is
+/// "both", it must be file or dense". One line; a text of any other form stays.
+std::string parser_wording(const std::string& text);
+
+}  // namespace weir

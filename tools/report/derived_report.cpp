@@ -1,0 +1,55 @@
+#include "tools/report/derived_report.h"
+
+#include "format/base/text.h"
+#include "tools/report/error_text.h"
+
+namespace weir {
+
+nlohmann::ordered_json derived_json(const DerivedErrors& errors) {
+  using Json = nlohmann::ordered_json;
+  Json quantiles;
+  for (std::size_t i = 0; i < errors.quantiles.size(); ++i) {
+    quantiles[cat(DerivedErrors::kShares[i])] = errors.quantiles[i];
+  }
+  const ErrorHistogram::Octaves& octaves = errors.octaves;
+  const GradientError& gradient = errors.gradient;
+  Json report;
+  report["quantiles"] = quantiles;
+  report["octaves"] = {{"zeros", octaves.zeros}, {"first", octaves.first}, {"counts", octaves.counts}};
+  report["gradient"] = {{"rms", gradient.rms},
+                        {"relative_rms", gradient.relative_rms ? Json(*gradient.relative_rms) : Json()},
+                        {"max_abs", gradient.max_abs},
+                        {"voxels", gradient.voxels},
+                        {"left_out", gradient.left_out}};
+  report["ssim"] = errors.similarity.mean ? Json(*errors.similarity.mean) : Json();
+  report["ssim_windows"] = errors.similarity.windows;
+  report["ssim_left_out"] = errors.similarity.left_out;
+  return report;
+}
+
+std::string derived_text(const DerivedErrors& errors, double range, const std::string& units) {
+  std::string text;
+  for (std::size_t i = 0; i < errors.quantiles.size(); ++i) {
+    text += cat(i == 0 ? "|error|    " : "\n           ", 100 * DerivedErrors::kShares[i], " % of voxels at most ",
+                largest_error_text(errors.quantiles[i], range, units));
+  }
+  const GradientError& gradient = errors.gradient;
+  text += "\ngradient   ";
+  if (gradient.relative_rms) text += cat("relative rms ", short_number(*gradient.relative_rms), ", ");
+  text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : " " + units, " per world unit");
+  if (gradient.left_out > 0) text += cat("; ", gradient.left_out, " voxels beside ones that are not finite left out");
+  text += "\nssim       ";
+  const Similarity& s = errors.similarity;
+  if (s.mean) {
+    text += short_number(*s.mean);
+  } else {
+    text += s.left_out > 0 ? "not defined: every window has a value that is not finite" : "not defined for one value";
+  }
+  if (s.mean && s.left_out > 0) {
+    text += cat("; ", s.left_out, " of ", s.windows + s.left_out,
+                " windows left out, which have values that are not finite");
+  }
+  return text + '\n';
+}
+
+}  // namespace weir

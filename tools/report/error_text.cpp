@@ -1,0 +1,28 @@
+#include "tools/report/error_text.h"
+
+#include "format/base/text.h"
+#include "format/sidecar/valid_voxels.h"
+#include "tools/report/printable.h"
+
+namespace weir {
+
+std::string largest_error_text(double max_abs, double range, const std::string& units) {
+  std::string text = short_number(max_abs);
+  if (!units.empty()) text += cat(' ', printable(units));
+  if (range > 0) text += cat(" (", short_number(100 * (max_abs / range)), " % of the range)");
+  return text;
+}
+
+std::string error_text(const Sidecar& sidecar, const Sidecar::CertifiedError& error) {
+  if (error.lossless) return lossless_text(sidecar);
+  return cat("PSNR ", error.psnr_db ? short_number(*error.psnr_db) + " dB" : "none", ", largest error ",
+             largest_error_text(error.max_abs, sidecar.value_range[1] - sidecar.value_range[0], sidecar.source.units));
+}
+
+std::string rounded_text(const Sidecar::ConversionLoss& loss) {
+  if (loss.inexact == 0) return "";
+  return cat(loss.inexact, loss.inexact == 1 ? " value" : " values", " rounded to float32, by up to ",
+             short_number(loss.max_abs_error));
+}
+
+}  // namespace weir

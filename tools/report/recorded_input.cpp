@@ -1,0 +1,88 @@
+#include "tools/report/recorded_input.h"
+
+#include <cstdint>
+
+#include "compressor/options/conversion_request.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/sidecar/sidecar.h"
+#include "ingest/source/extent.h"
+#include "ingest/source_registry.h"
+#include "tools/report/read_sidecar.h"
+
+namespace weir {
+namespace {
+
+/// Of this very volume; none where there is none to be read.
+std::optional<Sidecar> record_of(const NvdbFile& file) {
+  try {
+    return own_sidecar(file);
+  } catch (const Error&) {  // weir verify says what is wrong with it
+    return std::nullopt;
+  }
+}
+
+std::string index_text(const std::vector<std::int64_t>& index) {
+  std::string text;
+  for (const std::int64_t position : index) text += cat(text.empty() ? "" : ",", position);
+  return text;
+}
+
+}  // namespace
+
+std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
+                                SourceOptions& options) {
+  const std::optional<Sidecar> record = record_of(file);
+  if (!record) return {};
+  if (!options.stack && record->source.format != format_of(input).name) return {};
+  std::string taken;
+  const auto note = [&taken](const char* option, const std::string& text) {
+    taken += cat(taken.empty() ? "" : " ", option, ' ', text);
+  };
+  if (const auto said = record->weir.options.find("magnitude"); said != record->weir.options.end() &&
+                                                                options.dataset.empty() && options.magnitude.empty() &&
+                                                                !options.component && !options.stack) {
+    options.magnitude = split(said->second, ',');
+    note("--magnitude", said->second);
+  }
+  const bool same_dataset =
+      options.magnitude.empty() && (options.dataset.empty() || options.dataset == record->source.dataset ||
+                                    '/' + options.dataset == record->source.dataset);
+  if (options.dataset.empty() && options.magnitude.empty() && !record->source.dataset.empty()) {
+    options.dataset = record->source.dataset;
+    note("--dataset", options.dataset);
+  }
+  const bool same_place = same_dataset || !options.magnitude.empty();
+  if (same_place && options.index.empty() && options.index_choices.empty() && !record->source.index.empty()) {
+    options.index = record->source.index;
+    note("--index", index_text(options.index));
+  }
+  if (same_dataset && !options.component && !record->source.component.empty()) {
+    options.component = parse_component(record->source.component);
+    note("--component", record->source.component);
+  }
+  for (const char* const key : {"level", "upsample"}) {
+    const auto said = record->weir.options.find(key);
+    if (said == record->weir.options.end() || given.contains(key)) continue;
+    const SourceOptions as_said = read_conversion_request({{key, said->second}}).source;
+    if (as_said.level) options.level = as_said.level;
+    if (as_said.upsampling) options.upsampling = as_said.upsampling;
+    note(cat("--", key).c_str(), said->second);
+  }
+  const auto recorded = record->weir.options.find("missing");
+  if (!options.missing && recorded != record->weir.options.end()) {
+    options.missing = parse_stored_value(recorded->second);
+    note("--missing", recorded->second);
+  }
+  if (record->missing.policy == "keep" && record->missing.count > 0 && !given.contains("missing-policy")) {
+    options.keeps_missing = true;
+    note("--missing-policy", "keep");
+  }
+  if (!options.roi && (record->weir.options.contains("roi") || record->weir.options.contains("ghost"))) {
+    options.roi = record->grid.index_bbox;
+    note("--roi", box_text(record->grid.index_bbox));
+  }
+  return taken;
+}
+
+}  // namespace weir

@@ -1,0 +1,19 @@
+// What a sidecar says of how its source was read.
+#pragma once
+
+#include <string>
+
+#include "format/base/option_row.h"
+#include "format/nanovdb/nvdb_file.h"
+#include "ingest/source/source_options.h"
+
+namespace weir {
+
+/// Sets dataset, index, component, region, the value that stands for "no data" and whether such voxels are data in
+/// `options`, where they are not `given`, to those that the sidecar beside `file` records, if it is this file's own and
+/// of a source of the format of `input`; a sidecar that cannot be read says nothing. Returns what was set, as options,
+/// "--dataset /rho --index 3"; empty: nothing.
+std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
+                                SourceOptions& options);
+
+}  // namespace weir

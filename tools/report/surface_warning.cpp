@@ -1,0 +1,34 @@
+#include "tools/report/surface_warning.h"
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+std::string with_digits(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
+}
+
+}  // namespace
+
+std::string surface_warning(const Scene& scene, const MinMax& values) {
+  if (scene.mode != RenderMode::iso || !scene.volume.iso) return {};
+  const double iso = *scene.volume.iso;
+  const auto low = static_cast<double>(values.min);
+  const auto high = static_cast<double>(values.max);
+  if (iso >= low && iso <= high) return {};
+  const double passed = iso < low ? low : high;
+  constexpr int kAll = 17;  // tell any two doubles apart
+  int digits = 4;
+  while (digits < kAll && with_digits(iso, digits) == with_digits(passed, digits)) ++digits;
+  return cat("the iso value ", with_digits(iso, digits), " lies outside the values, ", with_digits(low, digits), " .. ",
+             with_digits(high, digits), ": the picture shows no surface");
+}
+
+}  // namespace weir

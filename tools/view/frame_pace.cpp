@@ -1,0 +1,42 @@
+#include "tools/view/frame_pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir {
+namespace {
+
+constexpr double kNewest = 0.4;       // share of the newest measurement
+constexpr double kStepsPerHalf = 4;   // sizes between one and half of it: a picture must not change size all the time
+constexpr double kLongestFrame = 10;  // seconds that count: a machine that slept says nothing
+
+}  // namespace
+
+FrameSize scaled(std::int32_t width, std::int32_t height, double share) {
+  const auto of = [&](std::int32_t edge) {
+    return std::max(1, static_cast<std::int32_t>(std::lround(static_cast<double>(edge) * share)));
+  };
+  return {of(width), of(height), 1};
+}
+
+FrameSize FramePace::next(std::int32_t width, std::int32_t height, int layers, int viewers) const {
+  const double full = static_cast<double>(width) * height * std::max(layers, 1);
+  const double affordable = kFrame_s / std::max(viewers, 1) / sample_s_;
+  const double share = std::sqrt(affordable / full);
+  if (share >= 1) {
+    FrameSize size{width, height, 1};
+    size.samples = static_cast<std::uint32_t>(std::clamp(affordable / full, 1.0, static_cast<double>(kMostSamples)));
+    return size;
+  }
+  const double stepped = std::exp2(std::floor(std::log2(share) * kStepsPerHalf) / kStepsPerHalf);
+  return scaled(width, height, std::max(stepped, kSmallest));
+}
+
+void FramePace::add(std::uint64_t samples, double seconds) {
+  if (samples == 0 || !(seconds > 0)) return;
+  const double measured = std::min(seconds, kLongestFrame) / static_cast<double>(samples);
+  // What became much dearer, as another mode, is believed at once: the next picture must not be late, too.
+  sample_s_ = measured > 3 * sample_s_ ? measured : sample_s_ + kNewest * (measured - sample_s_);
+}
+
+}  // namespace weir

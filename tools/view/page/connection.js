@@ -1,0 +1,68 @@
+// The WebSocket to the server: the newest view goes out, pictures and texts come in; after a break it comes back.
+
+const kAgain_ms = 1500;
+const encoder = new TextEncoder();
+
+const hex = (text) => [...encoder.encode(text)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+
+export class Connection {
+  /** `on`: opened(), closed(), message(object), picture(header, Blob), which returns a promise. */
+  constructor(on) {
+    this.on = on;
+    this.token = "";
+    this.socket = null;
+    this.view = null;      // that waits for the next frame of the screen
+    this.waiting = false;
+  }
+
+  open(token) {
+    this.token = token;
+    const protocols = ["weir.view"];
+    if (token) protocols.push(`weir.token.${hex(token)}`);
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const socket = new WebSocket(`${scheme}://${location.host}/ws`, protocols);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.addEventListener("open", () => this.on.opened());
+    socket.addEventListener("message", (event) => this.receive(socket, event.data));
+    socket.addEventListener("close", () => {
+      if (this.socket !== socket) return;
+      this.socket = null;
+      this.on.closed();
+    });
+  }
+
+  /** Tries again after a while, by `ask`, which calls open() where the server answers. */
+  retry(ask) {
+    setTimeout(ask, kAgain_ms);
+  }
+
+  send(message) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  /** Sends the view with the next frame of the screen, only the newest of those that come before it. */
+  show(view) {
+    this.view = view;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.send(this.view);
+    });
+  }
+
+  async receive(socket, data) {
+    if (typeof data === "string") {
+      this.on.message(JSON.parse(data));
+      return;
+    }
+    const length = new DataView(data).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+    try {
+      await this.on.picture(header, new Blob([new Uint8Array(data, 4 + length)], {type: `image/${header.format}`}));
+    } finally {
+      if (this.socket === socket) this.send({type: "shown", frame: header.frame});
+    }
+  }
+}

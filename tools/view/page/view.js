@@ -1,0 +1,411 @@
+// The page of weir view: puts the parts together. The look is one object (look.js); whatever changes it calls change().
+
+import {ApiError, get, set_token} from "/page/api.js";
+import {by_id, offer, set_text} from "/page/dom.js";
+import * as format from "/page/format.js";
+import * as camera from "./camera.js";
+import * as certificate from "./certificate.js";
+import {ClipBox, roi_text} from "./clip_box.js";
+import {Connection} from "./connection.js";
+import {Controls} from "./controls.js";
+import {Conversion} from "./conversion.js";
+import {History} from "./history.js";
+import {save} from "./keep.js";
+import * as looks from "./look.js";
+import {Steps} from "./steps.js";
+import {TransferEditor, simplified} from "./transfer_editor.js";
+import {Viewport} from "./viewport.js";
+
+const kStill_ms = 150;   // without a change, then the picture is refined
+const kProbe_ms = 80;
+const kHash_ms = 300;
+
+let server = null;       // /api/state
+let look = looks.from_hash(location.hash);
+let history = new History(look);
+let view_id = 0;
+let probe = {id: 0};      // the newest question for a value: id, step and side
+let still_timer, hash_timer, probe_timer;
+const files = new Map();  // "step side" -> {facts, histogram}
+
+const facts_of = (step, side) => files.get(`${step} ${side}`)?.facts ?? files.get(`0 ${side}`)?.facts;
+const facts = () => facts_of(look.step, 0);
+
+// ---- What goes out
+
+function picture_size() {
+  const ratio = Math.min(devicePixelRatio || 1, 2);
+  let [width, height] = [viewport.width * ratio, viewport.height * ratio];
+  const layers = look.split === null ? 1 : 2;
+  const too_many = Math.sqrt(width * height * layers / server.most_pixels);
+  if (too_many > 1) [width, height] = [width / too_many, height / too_many];
+  return [Math.max(1, Math.floor(width)), Math.max(1, Math.floor(height))];
+}
+
+function ask_picture(moving) {
+  if (!facts()) return;
+  const [width, height] = picture_size();
+  const view = {type: "view", id: ++view_id, scene: looks.to_scene(look, facts(), width / height), width, height,
+                step: look.step, moving};
+  if (look.split !== null) view.against = true;
+  set_text(by_id("quality"), "drawing");
+  connection.show(view);
+}
+
+/** What is under the pointer is another value; an answer that is on its way is of the one before. */
+function forget_value() {
+  clearTimeout(probe_timer);
+  probe = {id: probe.id + 1};
+  set_text(by_id("value"), "");
+}
+
+function ask_value(at) {
+  const [x, y] = [at.x, at.y].map((share) => Math.min(1, Math.max(0, share)));
+  probe = {id: probe.id + 1, step: look.step, side: look.split !== null && x > look.split ? 1 : 0};
+  connection.send({type: "probe", id: probe.id, x, y, side: probe.side});
+}
+
+/** The look is another: everything shows it, and the picture follows, at once and small, whole when it stands still. */
+function change(next, moving = true) {
+  look = next;
+  forget_value();
+  show_look();
+  ask_picture(moving);
+  clearTimeout(still_timer);
+  if (moving) still_timer = setTimeout(() => ask_picture(false), kStill_ms);
+  keep_soon();
+}
+
+function keep_soon() {
+  clearTimeout(hash_timer);
+  hash_timer = setTimeout(keep_in_url, kHash_ms);
+}
+
+function keep_in_url() {
+  const hash = looks.to_hash(look);
+  window.history.replaceState(null, "", hash ? `#${hash}` : location.pathname);
+}
+
+/** A change is over. */
+function done() {
+  history.mark(look);
+  show_undo();
+}
+
+// ---- What is shown
+
+function show_undo() {
+  by_id("undo").disabled = history.past.length === 0;
+  by_id("redo").disabled = history.future.length === 0;
+}
+
+function gradient() {
+  const chosen = look.colormap ?? {dvr: "viridis", mip: "gray"}[look.mode] ?? "white";
+  const colours = server.colormaps[chosen] ?? server.colormaps.gray;
+  return `linear-gradient(to right, ${colours.join(", ")})`;
+}
+
+/** The opacity of a look that has no points. */
+const curve_of = (shown) => shown.opacity.map((value, i) => [i / (shown.opacity.length - 1), value]);
+
+function show_transfer(shown) {
+  const range = look.range ?? shown.range;
+  const curve = curve_of(shown);
+  const histogram = (files.get(`${look.step} 0`) ?? files.get("0 0"))?.histogram;
+  editor.show(look.opacity, curve, range);
+  editor.show_histogram(histogram, range, look.log);
+  const iso = look.iso ?? looks.start_iso(shown);
+  editor.show_iso(look.mode === "iso" ? (iso - range[0]) / (range[1] - range[0] || 1) : null);
+  by_id("gradient").style.backgroundImage = gradient();
+  set_text(by_id("range-low"), format.number(range[0]));
+  set_text(by_id("range-high"), format.number(range[1]));
+  set_text(by_id("range-unit"), shown.title || "value");
+  by_id("log").checked = look.log;
+}
+
+function show_file(shown) {
+  set_text(by_id("file-name"), shown.file);
+  certificate.show_rows(by_id("certificate"), shown);
+  certificate.show_kinds(by_id("kinds"), shown.kinds);
+  const other = facts_of(look.step, 1);
+  by_id("against-facts").hidden = !other;
+  if (!other) return;
+  set_text(by_id("against-name"), other.file);
+  certificate.show_rows(by_id("against-certificate"), other);
+  set_text(by_id("side-left"), shown.file);
+  set_text(by_id("side-right"), other.file);
+}
+
+const limits = (shown) => shown.box[0].map((lo, i) => [lo, shown.box[1][i]]);
+
+function show_look() {
+  const shown = facts();
+  if (!shown) return;
+  for (const choice of document.querySelectorAll("input[name=mode]")) choice.checked = choice.value === look.mode;
+  by_id("iso-field").hidden = look.mode !== "iso";
+  by_id("density-field").hidden = look.mode === "iso" || look.mode === "mip";
+  by_id("shading-field").hidden = look.mode !== "dvr";
+  by_id("colormap").value = look.colormap ?? "";
+  show_transfer(shown);
+  controls.show(look, shown);
+  const box = looks.shown_box(look, shown);
+  clip_box.show(limits(shown), box);
+  set_text(by_id("roi"), `--roi ${roi_text(box ?? limits(shown))}`);
+  steps.show(look.step);
+  viewport.set_split(look.split);
+  by_id("compare").checked = look.split !== null;
+  for (const side of ["side-left", "side-right"]) by_id(side).hidden = look.split === null;
+  show_undo();
+  const [width, height] = picture_size();
+  set_text(by_id("render-command"),
+           `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
+}
+
+function show_quality(header) {
+  const bar = by_id("progress");
+  if (header.moving || header.samples === 0) {
+    bar.value = 0;
+    set_text(by_id("quality"), `${header.width} \u00d7 ${header.height}, ${header.moving ? "moving" : "refining"}`);
+    return;
+  }
+  bar.value = Math.log2(header.samples + 1) / Math.log2(header.of + 1);
+  if (header.view !== view_id) return;  // another one is on its way
+  const ready = header.samples >= header.of;
+  set_text(by_id("quality"), `${header.width} \u00d7 ${header.height}, ${header.samples} of ${header.of} samples a pixel` +
+                             `${ready ? ", done" : ""}`);
+}
+
+function show_banner(text) {
+  by_id("banner").hidden = !text;
+  set_text(by_id("banner"), text);
+}
+
+function show_link(text, kind) {
+  by_id("link").className = `badge ${kind}`;
+  set_text(by_id("link"), text);
+}
+
+// ---- What comes in
+
+function receive(message) {
+  if (message.type === "facts" || message.type === "histogram") {
+    const key = `${message.step} ${message.side}`;
+    const entry = files.get(key) ?? {};
+    if (message.type === "facts") entry.facts = message;
+    else entry.histogram = message;
+    files.set(key, entry);
+    const first = message.type === "facts" && key === "0 0" && view_id === 0;
+    show_look();
+    if (message.type === "facts" && facts()) show_file(facts());
+    if (first) ask_picture(false);
+  } else if (message.type === "value") {
+    if (message.id !== probe.id) return;
+    const at = facts_of(probe.step, probe.side);
+    if (at) set_text(by_id("value"), certificate.value_text(message, at));
+  } else if (message.type === "progress") {
+    if (message.what === "load") set_text(by_id("quality"), "loading the volume");
+    else set_text(by_id("quality"), `${Math.round(message.share * 100)} % of a pass`);
+  } else if (message.type === "error") {
+    show_banner(message.message);
+    if (message.view === view_id) steps.drawn(look.step);  // a series that plays goes on
+  } else if (message.type === "conversion") {
+    conversion.receive(message);
+  }
+}
+
+const viewport = new Viewport(by_id("frame"), by_id("canvas"), by_id("divider"), {
+  turn: (az, el) => change(camera.turned(look, az, el)),
+  zoom: (times) => change(camera.zoomed(look, times)),
+  pan: (x, y) => facts() && change(camera.panned(look, facts(), viewport.width / viewport.height, x, y)),
+  split: (share) => {  // both pictures are here
+    look = {...look, split: share};
+    viewport.set_split(share);
+    keep_soon();
+  },
+  point: (at) => {
+    clearTimeout(probe_timer);
+    if (at) probe_timer = setTimeout(() => ask_value(at), kProbe_ms);
+    else forget_value();
+  },
+});
+
+const connection = new Connection({
+  opened: () => {
+    show_link("connected", "good");
+    show_banner("");
+    if (facts()) ask_picture(false);
+  },
+  closed: () => {
+    show_link("not connected", "bad");
+    connection.retry(begin);
+  },
+  message: receive,
+  picture: async (header, blob) => {
+    await viewport.draw(header, blob);
+    show_quality(header);
+    if (header.view === view_id) show_banner("");
+    steps.drawn(header.step);
+  },
+});
+
+const editor = new TransferEditor(by_id("curve"), {
+  changed: (points) => change({...look, opacity: points}),
+  done,
+});
+const clip_box = new ClipBox(by_id("box"), {changed: (box) => change({...look, box}), done});
+const controls = new Controls({changed: (part) => change({...look, ...part}), done});
+const conversion = new Conversion({
+  scene: () => {
+    const shown = facts();
+    if (!shown) return null;
+    // What can be seen has to be said: the curve of a look that has no points.
+    return looks.to_scene({...look, opacity: look.opacity ?? simplified(curve_of(shown))}, shown, viewport.width / viewport.height);
+  },
+  send: (message) => connection.send(message),
+});
+let steps = {show: () => {}, drawn: () => {}, toggle: () => {}, by: () => {}};
+
+function set_mode(mode) {
+  change({...look, mode}, false);
+  done();
+}
+
+function undo(which) {
+  const before = look;
+  const next = history[which](look);
+  if (next !== before) change(next, false);
+}
+
+function listen() {
+  for (const choice of document.querySelectorAll("input[name=mode]")) {
+    choice.addEventListener("change", () => set_mode(choice.value));
+  }
+  const press = (id, action) => by_id(id).addEventListener("click", action);
+  press("reset-camera", () => change({...look, az: 35, el: 20, zoom: 1, at: null}, false));
+  press("undo", () => undo("undo"));
+  press("redo", () => undo("redo"));
+  const reset = (part) => () => {
+    change({...look, ...part}, false);
+    done();
+  };
+  press("reset-transfer", reset({opacity: null, range: null, colormap: null, density: null, iso: null}));
+  press("reset-light", reset({light: null, shading: null, exposure: null}));
+  press("reset-box", reset({box: null}));
+  by_id("log").addEventListener("change", () => change({...look, log: by_id("log").checked}, false));
+  by_id("colormap").addEventListener("change", () => reset({colormap: by_id("colormap").value || null})());
+  by_id("compare").addEventListener("change", () => {
+    change({...look, split: by_id("compare").checked ? look.split ?? 0.5 : null}, false);
+  });
+  const stem = () => facts()?.file.replace(/\.nvdb$/, "") ?? "volume";
+  press("save-picture", () => by_id("canvas").toBlob((blob) => save(`${stem()}.png`, blob)));
+  press("save-scene", () => {
+    const [width, height] = picture_size();
+    // Of a series the curve depends on all of its steps, which weir render of one file does not know.
+    const opacity = look.opacity ?? (server.steps.length > 1 ? curve_of(facts()) : null);
+    save("scene.toml", new Blob([looks.to_scene({...look, opacity}, facts(), width / height)], {type: "text/plain"}));
+  });
+  press("copy-link", async () => {
+    keep_in_url();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      set_text(by_id("keep-note"), "copied");
+    } catch {
+      set_text(by_id("keep-note"), location.href);
+    }
+  });
+  by_id("login").addEventListener("submit", (event) => {
+    event.preventDefault();
+    set_token(by_id("token").value);
+    by_id("token").value = "";
+    begin();
+  });
+  addEventListener("keydown", (event) => {
+    if (event.target.matches?.("input[type=text], input[type=password], input[type=number], select, textarea")) return;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      event.preventDefault();
+      undo(event.shiftKey ? "redo" : "undo");
+      return;
+    }
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.("button, summary, input")) return;
+    if (event.key >= "1" && event.key <= "4") set_mode(looks.kModes[Number(event.key) - 1]);
+    else if (event.key === "0") by_id("reset-camera").click();
+    else if (event.key === " ") steps.toggle();
+    else if (event.key === "[") steps.by(-1);
+    else if (event.key === "]") steps.by(1);
+    else return;
+    event.preventDefault();
+  });
+  addEventListener("hashchange", () => {
+    look = looks.from_hash(location.hash);
+    if (server) look = known(look);
+    history = new History(look);
+    change(look, false);
+  });
+  let resize_timer;
+  new ResizeObserver(() => {
+    clearTimeout(resize_timer);
+    resize_timer = setTimeout(() => ask_picture(false), kStill_ms);
+  }).observe(by_id("frame"));
+}
+
+/** The look without what the server does not have. */
+function known(wanted) {
+  return {
+    ...wanted,
+    colormap: wanted.colormap && server.colormaps[wanted.colormap] ? wanted.colormap : null,
+    step: wanted.step < server.steps.length ? wanted.step : 0,
+    split: server.against.length > 0 ? wanted.split : null,
+  };
+}
+
+function set_up() {
+  document.title = `${server.title} \u2013 weir view`;
+  set_text(by_id("title"), server.title);
+  set_text(by_id("version"), `weir ${server.version}, ${server.backend}.`);
+  by_id("preview").hidden = server.preview_of === null;
+  set_text(by_id("preview"), "preview");
+  by_id("preview").title = `A quick conversion of ${server.preview_of}`;
+  offer(by_id("colormap"), [["", "of the mode"], ...Object.keys(server.colormaps).map((name) => [name, name])]);
+  look = known(look);
+  by_id("compare-field").hidden = server.against.length === 0;
+  conversion.set_up(server.allow_convert);
+  if (!(steps instanceof Steps)) {
+    steps = new Steps({root: by_id("steps"), slider: by_id("step"), output: by_id("step-name"), play: by_id("play")},
+                      server.steps, (step, moving) => {
+                        change({...look, step}, moving);
+                        if (facts()) show_file(facts());
+                      });
+  }
+}
+
+async function begin() {
+  try {
+    server = await get("/api/state");
+  } catch (error) {
+    if (error instanceof ApiError && error.status === 401) {
+      by_id("login").hidden = false;
+      by_id("main").hidden = true;
+      set_text(by_id("login-error"), sessionStorage.getItem("weir-token") ? error.message : "");
+      show_link("token needed", "warn");
+      return;
+    }
+    show_link("not connected", "bad");
+    show_banner(error.status === 0 ? "The server does not answer; it may have ended." : error.message);
+    connection.retry(begin);
+    return;
+  }
+  by_id("login").hidden = true;
+  by_id("main").hidden = false;
+  show_banner("");
+  set_up();
+  if (server.viewers >= server.most_viewers) {
+    show_link("waiting", "warn");
+    show_banner(`${server.viewers} viewers look already, as many as may; this page waits for one to leave.`);
+    connection.retry(begin);
+    return;
+  }
+  connection.open(sessionStorage.getItem("weir-token") ?? "");
+}
+
+listen();
+begin();

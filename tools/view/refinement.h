@@ -1,0 +1,54 @@
+// A still picture on its way to a converged one: first small, then whole with more and more samples a pixel, each pass
+// with random numbers of its own, so that their mean is that of one picture with all samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "format/sidecar/scene.h"
+#include "gpu/image/image.h"
+#include "gpu/render/backend.h"
+#include "tools/view/frame_pace.h"
+
+namespace weir {
+
+/// Samples a pixel of a picture that is not refined any further.
+std::uint32_t converged_samples(RenderMode mode);
+
+struct RefinementPass {
+  FrameSize size;          ///< and samples of this pass
+  std::uint64_t seed = 0;  ///< of its random numbers
+  bool whole = false;      ///< of full size: it is added to those before
+  bool shown = false;      ///< a picture goes out after it
+};
+
+class Refinement {
+ public:
+  Refinement() = default;
+  /// Of `layers` pictures of `width` x `height`; the first pass is `first` times as wide, in (0, 1].
+  Refinement(std::int32_t width, std::int32_t height, int layers, double first, std::uint32_t samples);
+
+  /// None: it is converged.
+  std::optional<RefinementPass> next() const;
+  /// A pass is done; `layers` are its mean pictures, each of pass.size.
+  void add(const RefinementPass& pass, const std::vector<Image>& layers);
+
+  /// All layers above each other; the last small pass, or the mean of the whole ones.
+  Image picture() const;
+  std::uint32_t samples() const { return samples_; }  ///< of a pixel of the whole picture, so far
+  std::uint32_t of() const { return of_; }
+
+ private:
+  std::int32_t width_ = 1;
+  std::int32_t height_ = 1;
+  double share_ = 2;  ///< of the next pass; above 1: whole ones
+  std::uint32_t of_ = 0;
+  std::uint32_t samples_ = 0;
+  std::vector<Image> layers_;  ///< of a small pass as it is; sums of whole ones
+};
+
+/// Pictures of one width above each other.
+Image stacked(const std::vector<Image>& layers);
+
+}  // namespace weir

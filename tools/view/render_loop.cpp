@@ -1,0 +1,253 @@
+#include "tools/view/render_loop.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/seconds_since.h"
+#include "gpu/image/image_output.h"
+#include "tools/view/jpeg_picture.h"
+
+namespace weir {
+namespace {
+
+constexpr int kMovingQuality = 88;  // of JPEG
+constexpr int kSmallQuality = 90;   // of a still picture that is not whole yet
+// A pass that made room so often is drawn to its end: a viewer that always moves must not keep others from refining.
+constexpr int kMostGivenUp = 4;
+constexpr std::chrono::milliseconds kStillMoving{500};
+constexpr std::chrono::milliseconds kProgress{200};
+
+}  // namespace
+
+RenderLoop::RenderLoop(Backend& backend, VolumeShelf& shelf, RenderedSeries series, RenderEvents events)
+    : backend_(backend), shelf_(shelf), series_(std::move(series)), events_(std::move(events)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+RenderLoop::~RenderLoop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    cancel_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void RenderLoop::show(ViewerId id, ViewRequest view) {
+  {
+    const std::lock_guard lock(mutex_);
+    Viewer& viewer = viewers_[id];
+    const auto now = Clock::now();
+    if (view.moving) viewer.moved = now;
+    viewer.request = std::make_shared<const ViewRequest>(std::move(view));
+    viewer.fresh = true;
+    viewer.refinement.reset();
+    if (turn_ && !turn_->moving) {
+      const auto drawn = viewers_.find(turn_->viewer);
+      const bool patient = drawn != viewers_.end() && drawn->second.given_up < kMostGivenUp;
+      if (turn_->viewer == id || (viewer.request->moving && patient)) cancel_ = true;
+    }
+  }
+  changed_.notify_all();
+}
+
+void RenderLoop::taken(ViewerId id, std::int64_t frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = viewers_.find(id);
+    if (found == viewers_.end() || !found->second.under_way || found->second.frame != frame) return;
+    Viewer& viewer = found->second;
+    viewer.under_way = false;
+    if (viewer.samples > 0) viewer.pace.add(viewer.samples, seconds_since(viewer.started));
+  }
+  changed_.notify_all();
+}
+
+void RenderLoop::remove(ViewerId id) {
+  const std::lock_guard lock(mutex_);
+  viewers_.erase(id);
+  if (turn_ && turn_->viewer == id) cancel_ = true;
+}
+
+int RenderLoop::moving_viewers() const {
+  const auto now = Clock::now();
+  return static_cast<int>(std::count_if(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+    return entry.second.moved != Clock::time_point{} && now - entry.second.moved < kStillMoving;
+  }));
+}
+
+// Whose turn it is, and what to draw; none: nobody's. mutex_ is held.
+std::optional<RenderLoop::Turn> RenderLoop::next_turn() {
+  Viewer* chosen = nullptr;
+  ViewerId id = 0;
+  const auto rank = [](const Viewer& v) {
+    return std::tuple(v.fresh && v.request->moving ? 0 : (v.fresh ? 1 : 2), v.served);
+  };
+  for (auto& [key, viewer] : viewers_) {
+    if (viewer.under_way || !viewer.request) continue;
+    const bool refines = !viewer.request->moving && viewer.refinement && viewer.refinement->next();
+    if (!viewer.fresh && !refines) continue;
+    if (chosen != nullptr && rank(*chosen) <= rank(viewer)) continue;
+    chosen = &viewer;
+    id = key;
+  }
+  if (chosen == nullptr) return std::nullopt;
+  const ViewRequest& view = *chosen->request;
+  const int layers = view.against ? 2 : 1;
+  Turn turn{id, chosen->request, view.moving, {}, nullptr};
+  const FrameSize moving = chosen->pace.next(view.width, view.height, layers, std::max(moving_viewers(), 1));
+  if (view.moving) {
+    turn.size = moving;
+  } else {
+    if (!chosen->refinement) {
+      // What was just seen small need not be seen as small again.
+      const bool seen = chosen->drawn && chosen->drawn->scene_text == view.scene_text &&
+                        chosen->drawn->step == view.step && chosen->drawn->against == view.against;
+      const double share = static_cast<double>(moving.width) / view.width * (seen ? 2 : 1);
+      chosen->refinement =
+          std::make_shared<Refinement>(view.width, view.height, layers, share, converged_samples(view.scene.mode));
+    }
+    turn.refinement = chosen->refinement;
+  }
+  chosen->fresh = false;
+  return turn;
+}
+
+void RenderLoop::run() {
+  for (;;) {
+    std::optional<Turn> turn;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return ended_ || (turn = next_turn()); });
+      if (ended_) return;
+      turn_ = turn;
+      cancel_ = false;
+    }
+    bool done = false;
+    try {
+      draw(*turn);
+      done = true;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::interrupted) {
+        done = true;
+        if (turn->refinement) *turn->refinement = Refinement();  // nothing better would come of another pass
+        events_.failed(turn->viewer, turn->request->id, error.what());
+      }
+    } catch (const std::exception& error) {
+      done = true;
+      if (turn->refinement) *turn->refinement = Refinement();
+      events_.failed(turn->viewer, turn->request->id, error.what());
+    }
+    end_turn(*turn, done);
+  }
+}
+
+void RenderLoop::end_turn(const Turn& turn, bool done) {
+  const std::lock_guard lock(mutex_);
+  turn_.reset();
+  const auto found = viewers_.find(turn.viewer);
+  if (found == viewers_.end()) return;
+  found->second.served = Clock::now();
+  found->second.given_up = done ? 0 : found->second.given_up + 1;
+}
+
+std::string RenderLoop::file_of(const ViewRequest& view, int layer) const {
+  if (layer == 0) return series_.steps.at(view.step);
+  return series_.against.at(series_.against.size() == 1 ? 0 : view.step);
+}
+
+std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, std::uint64_t seed, ToneMapping& tone) {
+  const ViewRequest& view = *turn.request;
+  RenderOptions options;
+  options.width = size.width;
+  options.height = size.height;
+  options.seed = seed;
+  options.background = series_.background;
+  SampleOptions sampling;
+  sampling.samples = size.samples;
+  sampling.draft = turn.moving;
+  if (!turn.moving) sampling.cancel = &cancel_;
+  const int layers = view.against ? 2 : 1;
+  const double all = static_cast<double>(size.width) * size.height * size.samples * layers;
+  std::vector<Image> pictures;
+  Clock::time_point told = Clock::now();
+  for (int layer = 0; layer < layers; ++layer) {
+    const std::string file = file_of(view, layer);
+    if (!shelf_.has(file)) {
+      loaded_ = true;
+      events_.progress(turn.viewer, view.id, "load", 0);
+    }
+    const std::shared_ptr<LoadedVolume> volume = shelf_.get(file);
+    if (!turn.moving) {
+      sampling.progress = [&, layer](std::uint64_t done) {
+        if (Clock::now() - told < kProgress) return;
+        told = Clock::now();
+        events_.progress(turn.viewer, view.id, "render", (all / layers * layer + static_cast<double>(done)) / all);
+      };
+    }
+    Picture picture = backend_.render(*volume, view.scene, options, sampling);
+    tone = picture.tone;
+    pictures.push_back(std::move(picture.image));
+  }
+  if (view.step + 1 < series_.steps.size()) shelf_.prefetch(series_.steps[view.step + 1]);
+  return pictures;
+}
+
+void RenderLoop::draw(const Turn& turn) {
+  const ViewRequest& view = *turn.request;
+  const auto started = Clock::now();
+  loaded_ = false;
+  ToneMapping tone;
+  FrameHeader header;
+  header.view = view.id;
+  header.layers = view.against ? 2 : 1;
+  header.step = view.step;
+  header.moving = turn.moving;
+  header.of = converged_samples(view.scene.mode);
+  const auto samples_of = [&](const FrameSize& size) {
+    return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height) * size.samples *
+           static_cast<std::uint64_t>(header.layers);
+  };
+  if (turn.moving) {
+    const Image picture = stacked(render(turn, turn.size, 0, tone));
+    header.render_s = seconds_since(started);
+    header.samples = turn.size.samples;
+    return deliver(turn, header, picture, tone, started, loaded_ ? 0 : samples_of(turn.size));
+  }
+  const std::optional<RefinementPass> pass = turn.refinement->next();
+  if (!pass) return;
+  turn.refinement->add(*pass, render(turn, pass->size, pass->seed, tone));
+  header.render_s = seconds_since(started);
+  if (!pass->shown) return;
+  header.samples = turn.refinement->samples();
+  // A picture of all passes since the last one, as PNG, says nothing of those that move.
+  deliver(turn, header, turn.refinement->picture(), tone, started, 0);
+}
+
+void RenderLoop::deliver(const Turn& turn, FrameHeader header, const Image& picture, const ToneMapping& tone,
+                         Clock::time_point started, std::uint64_t samples) {
+  header.width = picture.width;
+  header.height = picture.height / header.layers;
+  const bool whole = !turn.moving && header.samples > 0;
+  header.format = whole || !has_jpeg() ? "png" : "jpeg";
+  std::vector<std::byte> bytes = header.format == "png"
+                                     ? encode_png(picture, tone)
+                                     : encode_jpeg(picture, tone, turn.moving ? kMovingQuality : kSmallQuality);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = viewers_.find(turn.viewer);
+    if (found == viewers_.end()) return;
+    Viewer& viewer = found->second;
+    header.frame = ++viewer.frame;
+    viewer.under_way = true;
+    viewer.drawn = turn.request;
+    viewer.started = started;
+    viewer.samples = samples;
+  }
+  events_.frame(turn.viewer, header, std::move(bytes));
+}
+
+}  // namespace weir

@@ -1,0 +1,24 @@
+// The conversion that keeps what a scene shows: `weir convert SOURCE --scene SCENE`, for people to read, or to be run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "format/sidecar/sidecar.h"
+#include "tools/view/view_message.h"
+
+namespace weir {
+
+struct SceneConversion {
+  std::vector<std::string> arguments;  ///< without the program; the last is the scene's path
+  std::string output;                  ///< path
+  std::string text;                    ///< the command for a shell, with the scene as "scene.toml", the last word
+};
+
+/// From `source`, of which `volume` is a preview, to "NAME_scene.nvdb" beside it; where that is empty, from the source
+/// that `sidecar` names, a relative path below the volume's directory, to a file beside the volume. It is read as the
+/// sidecar says. Throws Error(input) where that source is not there, or of another size.
+SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
+                                 const ConvertRequest& request);
+
+}  // namespace weir

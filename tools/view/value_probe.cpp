@@ -1,0 +1,117 @@
+#include "tools/view/value_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "gpu/math/narrow.h"
+#include "gpu/math/ray.h"
+#include "gpu/scene/scene_camera.h"
+#include "gpu/scene/scene_transfer.h"
+
+namespace weir {
+namespace {
+
+constexpr float kStep = 0.5F;              // in the shortest voxel edges
+constexpr float kMostProbeSteps = 20'000;  // along a ray
+constexpr double kStandardDensity = 200;   // as that of a picture whose scene gives none
+constexpr float kSeen = 1.0F / 512;        // share of a pixel's light below which nothing is seen
+
+// Voxels one after the other, most of them in the block of the one before.
+class NearbyVoxels {
+ public:
+  explicit NearbyVoxels(const NvdbGrid& grid) : grid_(grid) {}
+
+  float value(const Index3& i) {
+    const Index3 block = floor_div(i, kLeafDim);
+    if (!known_ || !(block == block_)) {
+      const GridBlock found = grid_.block_at(i);
+      grid_.decode_block(found, values_);
+      block_ = block;
+      known_ = true;
+    }
+    const Index3 at = i - block * kLeafDim;
+    return values_[static_cast<std::size_t>(at.x << 6 | at.y << 3 | at.z)];
+  }
+
+ private:
+  const NvdbGrid& grid_;
+  bool known_ = false;
+  Index3 block_;
+  std::array<float, 512> values_{};
+};
+
+Box shown_box(const NvdbGrid& grid, const Scene& scene) {
+  return scene.volume.region ? intersect(*scene.volume.region, grid.index_bbox()) : grid.index_bbox();
+}
+
+}  // namespace
+
+std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, float background, double aspect,
+                                       double x, double y) {
+  const GridFrame frame = frame_of(grid);
+  const Box box = shown_box(grid, scene);
+  if (box.empty()) return std::nullopt;
+  const Camera camera = make_camera(scene.camera, frame, std::array{box}, aspect);
+  const Float3 stretch = narrow(frame.stretch());
+  const Float3 direction = camera.direction(static_cast<float>(x), static_cast<float>(y));
+  Ray ray{camera.position, direction / stretch};
+  const float length = enter(ray, {narrow(Double3{static_cast<double>(box.lo.x - frame.domain.lo.x),
+                                                  static_cast<double>(box.lo.y - frame.domain.lo.y),
+                                                  static_cast<double>(box.lo.z - frame.domain.lo.z)}),
+                                   narrow(Double3{static_cast<double>(box.hi.x - frame.domain.lo.x),
+                                                  static_cast<double>(box.hi.y - frame.domain.lo.y),
+                                                  static_cast<double>(box.hi.z - frame.domain.lo.z)})});
+  if (!(length > 0)) return std::nullopt;
+
+  const MinMax range{grid.value_min(), grid.value_max()};
+  const TransferFunction transfer = make_transfer_function(scene.volume, range, background, "gray");
+  const Double3 size = frame.size();
+  const auto density =
+      static_cast<float>(scene.volume.density.value_or(kStandardDensity) / *std::max_element(size.begin(), size.end()));
+  const float iso = static_cast<float>(scene.volume.iso.value_or(0.5 * (transfer.low() + transfer.high())));
+  const float step = std::max(kStep, length / kMostProbeSteps);
+
+  NearbyVoxels voxels(grid);
+  std::optional<ProbedVoxel> best;
+  float most = 0;
+  float through = 1;
+  std::optional<bool> inside;
+  for (float t = 0.5F * step; t < length; t += step) {
+    const Float3 p = ray.at(t);
+    const Index3 at = min(max(frame.domain.lo + Index3{static_cast<std::int64_t>(std::floor(p.x)),
+                                                       static_cast<std::int64_t>(std::floor(p.y)),
+                                                       static_cast<std::int64_t>(std::floor(p.z))},
+                              box.lo),
+                          box.hi - Index3{1, 1, 1});
+    const float value = voxels.value(at);
+    if (!std::isfinite(value)) continue;
+    const auto take = [&] { best = ProbedVoxel{at, {}, value}; };
+    if (scene.mode == RenderMode::mip) {
+      if (!best || value > best->value) take();
+    } else if (scene.mode == RenderMode::iso) {
+      const bool above = value >= iso;
+      if (inside && *inside != above) {
+        take();
+        break;
+      }
+      inside = above;
+    } else {
+      const float absorbed = 1.0F - std::exp(-transfer.at(value).a * density * step);
+      if (through * absorbed > most) {
+        most = through * absorbed;
+        if (most > kSeen) take();
+      }
+      through *= 1.0F - absorbed;
+      if (through < kSeen) break;
+    }
+  }
+  if (!best) return best;
+  const std::array<double, 3> index{static_cast<double>(best->voxel.x), static_cast<double>(best->voxel.y),
+                                    static_cast<double>(best->voxel.z)};
+  for (std::size_t a = 0; a < 3; ++a) best->world[a] = frame.origin[a] + frame.voxel_size[a] * index[a];
+  return best;
+}
+
+}  // namespace weir

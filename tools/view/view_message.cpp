@@ -1,0 +1,126 @@
+#include "tools/view/view_message.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+[[noreturn]] void refuse_key(std::string_view key, std::string_view why) {
+  throw Error(ErrorKind::input, cat("message: ", key, " ", why));
+}
+
+const nlohmann::json& value_of(const nlohmann::json& message, const char* key) {
+  const auto found = message.find(key);
+  if (found == message.end()) refuse_key(key, "is missing");
+  return *found;
+}
+
+std::int64_t whole(const nlohmann::json& message, const char* key, std::int64_t low, std::int64_t high) {
+  const nlohmann::json& value = value_of(message, key);
+  if (!value.is_number_integer() || value.get<double>() < static_cast<double>(low) ||
+      value.get<double>() > static_cast<double>(high)) {
+    refuse_key(key, cat("must be a whole number from ", low, " to ", high));
+  }
+  return value.get<std::int64_t>();
+}
+
+double number(const nlohmann::json& message, const char* key, double low, double high) {
+  const nlohmann::json& value = value_of(message, key);
+  if (!value.is_number() || !(value.get<double>() >= low && value.get<double>() <= high)) {
+    refuse_key(key, cat("must be a number from ", low, " to ", high));
+  }
+  return value.get<double>();
+}
+
+bool flag(const nlohmann::json& message, const char* key) {
+  const auto found = message.find(key);
+  if (found == message.end()) return false;
+  if (!found->is_boolean()) refuse_key(key, "must be true or false");
+  return found->get<bool>();
+}
+
+std::string text(const nlohmann::json& message, const char* key) {
+  const nlohmann::json& value = value_of(message, key);
+  if (!value.is_string()) refuse_key(key, "must be a text");
+  return value.get<std::string>();
+}
+
+constexpr std::int64_t kMostId = std::int64_t{1} << 53;
+
+ProbeRequest read_probe(const nlohmann::json& message, bool against) {
+  ProbeRequest probe{whole(message, "id", 0, kMostId), number(message, "x", 0, 1), number(message, "y", 0, 1)};
+  if (message.contains("side")) probe.side = static_cast<int>(whole(message, "side", 0, against ? 1 : 0));
+  return probe;
+}
+
+ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool against) {
+  ViewRequest view;
+  view.id = whole(message, "id", 0, kMostId);
+  view.width = static_cast<std::int32_t>(whole(message, "width", 1, kLongestViewEdge));
+  view.height = static_cast<std::int32_t>(whole(message, "height", 1, kLongestViewEdge));
+  view.step = static_cast<std::size_t>(whole(message, "step", 0, static_cast<std::int64_t>(steps) - 1));
+  view.moving = flag(message, "moving");
+  view.against = flag(message, "against");
+  if (view.against && !against) refuse_key("against", "needs a second file; start weir view with --against");
+  if (std::int64_t{view.width} * view.height * (view.against ? 2 : 1) > kMostViewPixels) {
+    refuse_key("width",
+               cat("times height is more than ", kMostViewPixels, " pixels", view.against ? ", of two files" : ""));
+  }
+  view.scene_text = text(message, "scene");
+  view.scene = parse_scene(view.scene_text, "scene");
+  if (!view.scene.lighting.environment.empty()) refuse_key("scene", "names an environment; no page may open files");
+  if (view.scene.volume.max_bounces > kMostViewBounces) view.scene.volume.max_bounces = kMostViewBounces;
+  return view;
+}
+
+ConvertRequest read_convert(const nlohmann::json& message) {
+  ConvertRequest request;
+  request.id = whole(message, "id", 0, kMostId);
+  request.scene_text = text(message, "scene");
+  const Scene scene = parse_scene(request.scene_text, "scene");
+  if (!scene.lighting.environment.empty()) refuse_key("scene", "names an environment; no page may open files");
+  request.rate = number(message, "rate", 1, 1e6);
+  request.encoding = text(message, "encoding");
+  if (request.encoding != "packed" && request.encoding != "auto") refuse_key("encoding", "must be packed or auto");
+  request.run = flag(message, "run");
+  return request;
+}
+
+}  // namespace
+
+ClientMessage parse_client_message(std::string_view text_of_message, std::size_t steps, bool against) {
+  const nlohmann::json message = nlohmann::json::parse(text_of_message, nullptr, false);
+  if (!message.is_object()) throw Error(ErrorKind::input, "message: must be a JSON object");
+  const std::string type = text(message, "type");
+  if (type == "view") return read_view(message, steps, against);
+  if (type == "shown") return ShownMessage{whole(message, "frame", 0, kMostId)};
+  if (type == "probe") return read_probe(message, against);
+  if (type == "convert") return read_convert(message);
+  refuse_key("type", "must be view, shown, probe or convert");
+}
+
+std::string frame_message(const FrameHeader& header, std::span<const std::byte> picture) {
+  const std::string json =
+      nlohmann::ordered_json{{"type", "frame"},         {"frame", header.frame},     {"view", header.view},
+                             {"format", header.format}, {"width", header.width},     {"height", header.height},
+                             {"layers", header.layers}, {"samples", header.samples}, {"of", header.of},
+                             {"step", header.step},     {"moving", header.moving},   {"render_s", header.render_s}}
+          .dump();
+  std::string message;
+  message.reserve(4 + json.size() + picture.size());
+  for (std::size_t i = 0; i < 4; ++i) message += static_cast<char>(json.size() >> (8 * i) & 0xFF);
+  message += json;
+  message.append(reinterpret_cast<const char*>(picture.data()), picture.size());
+  return message;
+}
+
+std::string error_message(std::int64_t view, std::string_view message) {
+  return nlohmann::ordered_json{{"type", "error"}, {"view", view}, {"message", message}}.dump(
+      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace weir

@@ -1,0 +1,317 @@
+#include "tools/view/view_server.h"
+
+#include <boost/asio/post.hpp>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
+
+#include "daemon/http/page_response.h"
+#include "daemon/http/request_target.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "tools/report/read_sidecar.h"
+#include "tools/view/file_identity.h"
+#include "tools/view/jpeg_picture.h"
+#include "tools/view/value_probe.h"
+#include "tools/view/view_access.h"
+#include "tools/view/view_page.h"
+#include "tools/view/volume_facts.h"
+
+namespace weir {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace websocket = boost::beast::websocket;
+
+std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+AccessRules rules_of(const ViewSettings& settings) {
+  const bool loopback = is_loopback(settings.address.host);
+  if (!loopback && settings.token.empty()) {
+    throw Error(ErrorKind::usage,
+                compose(option("listen", settings.address.text()), " can be reached from other machines, so it needs ",
+                        option("token-file", "FILE"), "; or listen on 127.0.0.1"));
+  }
+  return {settings.token, loopback};
+}
+
+Json names_of(const std::vector<std::string>& paths) {
+  Json names = Json::array();
+  for (const std::string& path : paths) names.push_back(path.substr(path.rfind('/') + 1));
+  return names;
+}
+
+RenderedSeries rendered_series_of(const ViewedFiles& files) {
+  // As weir render has it where there is one file: that file's own.
+  return {files.steps, files.against, files.steps.size() > 1 ? files.summary.background : std::nullopt};
+}
+
+bool is_page_file(const RequestTarget& target) {
+  return target.path.empty() || (target.path.size() == 2 && target.path[0] == "page");
+}
+
+}  // namespace
+
+std::size_t volumes_held(const ViewedFiles& files) {
+  const std::size_t steps = files.steps.size() > 1 ? 2 : 1;  // that is seen, and the next
+  return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
+}
+
+ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, ViewedFiles files, Backend& backend)
+    : io_(io),
+      settings_(std::move(settings)),
+      files_(std::move(files)),
+      rules_(rules_of(settings_)),
+      backend_(backend),
+      shelf_(backend, volumes_held(files_)),
+      converter_(io, settings_.program) {
+  state_text_ = line({{"title", files_.title},
+                      {"version", settings_.version},
+                      {"steps", names_of(files_.steps)},
+                      {"against", names_of(files_.against)},
+                      {"preview_of", settings_.preview_of.empty() ? Json() : Json(settings_.preview_of)},
+                      {"allow_convert", settings_.allow_convert},
+                      {"backend", backend.name()},
+                      {"most_pixels", kMostViewPixels},
+                      {"most_viewers", settings_.viewers},
+                      {"colormaps", colormap_facts()}});
+  loop_.emplace(backend_, shelf_, rendered_series_of(files_), render_events());
+  http_ = std::make_unique<HttpServer>(
+      io_, settings_.address, settings_.http, [this](const HttpRequest& request) { return answer(request); },
+      SocketHandler{[this](const HttpRequest& request) { return refuse_viewer(request); },
+                    [this](ViewerSocket::Socket socket, const UpgradeRequest& request) {
+                      add_viewer(std::move(socket), request);
+                    }});
+}
+
+ViewServer::~ViewServer() {
+  ended_ = true;
+  alive_.reset();
+  http_.reset();
+  for (auto& [id, viewer] : viewers_) viewer.socket->close_now();
+  loop_.reset();
+  side_.stop();
+  side_.join();
+}
+
+HttpResponse ViewServer::answer(const HttpRequest& request) const {
+  HttpResponse response = route(request);
+  add_page_headers(response, socket_sources(request.host));
+  return response;
+}
+
+HttpResponse ViewServer::route(const HttpRequest& request) const {
+  const auto target = parse_target(request.target);
+  const bool page = target && is_page_file(*target);
+  if (auto refused = refuse(rules_, request, page)) return *std::move(refused);
+  if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
+  if (request.method != "GET" && request.method != "HEAD") {
+    return error_response(405, cat(request.method, " is not for ", request.target, "; use GET"));
+  }
+  if (page) {
+    const std::string name = target->path.empty() ? "index.html" : target->path[1];
+    return page_response({view_page_files(), page_files()}, name);
+  }
+  if (target->path == std::vector<std::string>{"api", "state"}) {
+    Json state = Json::parse(state_text_);
+    state["viewers"] = viewers_.size();
+    return {200, "application/json", line(state) + "\n", {}};
+  }
+  if (target->path == std::vector<std::string>{"ws"}) return error_response(426, "/ws is a WebSocket");
+  return error_response(404, cat("there is nothing at ", request.target));
+}
+
+std::optional<HttpResponse> ViewServer::refuse_viewer(const HttpRequest& request) const {
+  if (auto refused = refuse_socket(rules_, with_offered_token(request))) return refused;
+  const auto target = parse_target(request.target);
+  if (!target || target->path != std::vector<std::string>{"ws"}) {
+    return error_response(404, cat("there is no WebSocket at ", request.target));
+  }
+  if (viewers_.size() >= settings_.viewers) {
+    return error_response(503, cat("there are ", viewers_.size(), " viewers, as many as there may be; close one"));
+  }
+  return std::nullopt;
+}
+
+void ViewServer::add_viewer(ViewerSocket::Socket socket, const UpgradeRequest& request) {
+  const ViewerId id = ++last_id_;
+  const auto offered = request[boost::beast::http::field::sec_websocket_protocol];
+  const bool known = offers_protocol({offered.data(), offered.size()}, kViewProtocol);
+  auto viewer =
+      std::make_shared<ViewerSocket>(std::move(socket), settings_.sockets,
+                                     ViewerSocket::Events{[this, id] {
+                                                            viewers_[id].wanted = 0;
+                                                            tell_facts(id, viewers_[id]);
+                                                          },
+                                                          [this, id](std::string_view text) { receive(id, text); },
+                                                          [this, id](std::string_view) { remove_viewer(id); }});
+  viewers_[id].socket = viewer;
+  viewer->accept(request, known ? std::string(kViewProtocol) : "");
+}
+
+void ViewServer::remove_viewer(ViewerId id) {
+  loop_->remove(id);
+  viewers_.erase(id);
+}
+
+void ViewServer::send(ViewerId id, std::string text) {
+  const auto found = viewers_.find(id);
+  if (found != viewers_.end()) found->second.socket->send_text(std::move(text));
+}
+
+void ViewServer::receive(ViewerId id, std::string_view text) {
+  const auto found = viewers_.find(id);
+  if (found == viewers_.end()) return;
+  try {
+    std::visit([&](auto&& message) { handle(id, found->second, std::forward<decltype(message)>(message)); },
+               parse_client_message(text, files_.steps.size(), !files_.against.empty()));
+  } catch (const std::exception& error) {
+    send(id, error_message(0, error.what()));
+  }
+}
+
+void ViewServer::handle(ViewerId id, Viewer& viewer, ViewRequest view) {
+  viewer.view = std::make_shared<const ViewRequest>(view);
+  if (viewer.told != view.step || viewer.told_of != file_identity(file_of(view.step, 0))) {
+    viewer.wanted = view.step;
+    tell_facts(id, viewer);
+  }
+  loop_->show(id, std::move(view));
+}
+
+void ViewServer::handle(ViewerId id, Viewer& viewer, const ShownMessage& shown) {
+  viewer.socket->taken();
+  loop_->taken(id, shown.frame);
+}
+
+void ViewServer::handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe) {
+  viewer.probe = probe;
+  if (!viewer.probing) answer_probe(id, viewer);
+}
+
+const std::string& ViewServer::file_of(std::size_t step, int side) const {
+  if (side == 0) return files_.steps.at(step);
+  return files_.against.at(files_.against.size() == 1 ? 0 : step);
+}
+
+MinMax ViewServer::range() const { return files_.summary.range.value_or(MinMax{0, 1}); }
+float ViewServer::background() const { return files_.summary.background.value_or(range().min); }
+
+// One step at a time: a series that is scrubbed through asks for the newest alone.
+void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
+  if (!viewer.wanted || viewer.telling) return;
+  const std::size_t step = *std::exchange(viewer.wanted, std::nullopt);
+  viewer.told = step;
+  viewer.told_of = file_identity(file_of(step, 0));
+  viewer.telling = true;
+  boost::asio::post(side_, [this, id, step, alive = std::weak_ptr(alive_)] {
+    const auto tell = [&](const std::string& text) {
+      boost::asio::post(io_, [this, id, alive, text] {
+        if (alive.lock()) send(id, text);
+      });
+    };
+    for (const int side : files_.against.empty() ? std::vector{0} : std::vector{0, 1}) {
+      const std::string& path = file_of(step, side);
+      const auto answer = [&](const char* type, const auto& make) {
+        tell(facts_cache_.get(cat(type, ' ', step, ' ', side, ' ', file_identity(path)), [&] {
+          Json facts{{"type", type}, {"step", step}, {"side", side}};
+          facts.update(make(*open_files_.get(path)));
+          return line(facts);
+        }));
+      };
+      try {
+        answer("facts", [&](const NvdbFile& file) { return volume_facts(file, range(), background()); });
+        answer("histogram", [&](const NvdbFile& file) { return histogram_facts(file, ended_); });
+      } catch (const std::exception& error) {
+        if (!ended_) tell(error_message(0, error.what()));
+      }
+    }
+    boost::asio::post(io_, [this, id, alive] {
+      if (!alive.lock()) return;
+      const auto found = viewers_.find(id);
+      if (found == viewers_.end()) return;
+      found->second.telling = false;
+      tell_facts(id, found->second);
+    });
+  });
+}
+
+void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
+  if (!viewer.probe || !viewer.view) return;
+  const ProbeRequest probe = *std::exchange(viewer.probe, std::nullopt);
+  viewer.probing = true;
+  boost::asio::post(side_, [this, id, probe, view = viewer.view, alive = std::weak_ptr(alive_)] {
+    Json answer{{"type", "value"}, {"id", probe.id}, {"found", false}};
+    try {
+      const auto file = open_files_.get(file_of(view->step, probe.side));
+      const double aspect = static_cast<double>(view->width) / view->height;
+      if (const auto found = probe_voxel(file->grid(), view->scene, background(), aspect, probe.x, probe.y)) {
+        answer["found"] = true;
+        answer["value"] = found->value;
+        answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};
+        answer["world"] = found->world;
+        if (view->against) {
+          const auto other = open_files_.get(file_of(view->step, 1 - probe.side));
+          answer["against"] = other->grid().value(found->voxel);
+        }
+      }
+    } catch (const std::exception& error) {
+      answer["message"] = error.what();
+    }
+    boost::asio::post(io_, [this, id, alive, text = line(answer)] {
+      if (!alive.lock()) return;
+      const auto found = viewers_.find(id);
+      if (found == viewers_.end()) return;
+      const auto socket = found->second.socket;
+      found->second.probing = false;
+      answer_probe(id, found->second);
+      socket->send_text(text);  // last: a viewer that reads nothing is gone after it
+    });
+  });
+}
+
+void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
+  const std::string& volume = file_of(viewer.view ? viewer.view->step : 0, 0);
+  const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
+  if (!sidecar) {
+    throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
+  }
+  const SceneConversion conversion = scene_conversion(volume, settings_.preview_of, *sidecar, request);
+  const Json reply{{"type", "conversion"}, {"id", request.id}, {"command", conversion.text}};
+  const auto tell = [this, id, reply](const std::string& state, const std::string& message) {
+    Json told = reply;
+    told["state"] = state;
+    told["message"] = message;
+    send(id, line(told));
+  };
+  if (!request.run) return tell("shown", "");
+  if (!settings_.allow_convert) return tell("failed", "this server runs no conversion; start it with --allow-convert");
+  converter_.start(conversion, request.scene_text, [tell](const std::string& output, const std::string& message) {
+    tell(message.empty() ? "done" : "failed", message.empty() ? output : message);
+  });
+  tell("running", "");
+}
+
+RenderEvents ViewServer::render_events() {
+  const auto alive = std::weak_ptr(alive_);
+  return {[this, alive](ViewerId id, const FrameHeader& header, const std::vector<std::byte>& picture) {
+            boost::asio::post(io_, [this, alive, id, message = frame_message(header, picture)]() mutable {
+              if (!alive.lock()) return;
+              const auto found = viewers_.find(id);
+              if (found != viewers_.end()) found->second.socket->send_picture(std::move(message));
+            });
+          },
+          [this, alive](ViewerId id, std::int64_t view, std::string_view what, double share) {
+            const Json message{{"type", "progress"}, {"view", view}, {"what", what}, {"share", share}};
+            boost::asio::post(io_, [this, alive, id, text = line(message)] {
+              if (alive.lock()) send(id, text);
+            });
+          },
+          [this, alive](ViewerId id, std::int64_t view, const std::string& message) {
+            boost::asio::post(io_, [this, alive, id, text = error_message(view, message)] {
+              if (alive.lock()) send(id, text);
+            });
+          }};
+}
+
+}  // namespace weir

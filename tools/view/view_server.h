@@ -1,0 +1,107 @@
+// `weir view` as a server: the page at /, what it asks of it at /api/state, and a WebSocket for each viewer at /ws. The
+// volumes, the thread that renders and those that look values up are shared by all viewers. Lives on the io_context's
+// thread.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "daemon/config/listen_address.h"
+#include "daemon/http/access.h"
+#include "daemon/http/http_server.h"
+#include "gpu/render/backend.h"
+#include "tools/view/kept_texts.h"
+#include "tools/view/open_files.h"
+#include "tools/view/render_loop.h"
+#include "tools/view/scene_converter.h"
+#include "tools/view/viewed_files.h"
+#include "tools/view/viewer_socket.h"
+
+namespace weir {
+
+struct ViewSettings {
+  ListenAddress address{"127.0.0.1", 0};
+  std::string token;            ///< that every viewer must bring; empty: none, loopback only
+  std::size_t viewers = 8;      ///< at once
+  bool allow_convert = false;   ///< a viewer may have the source converted
+  std::string program;          ///< path of weir, for that
+  std::string version;          ///< of weir, shown on the page
+  std::string preview_of = {};  ///< the source that the file was made from for this, shown on the page; empty: none
+  HttpLimits http = {};
+  ViewerLimits sockets = {};
+};
+
+/// How many volumes are held at a time: VoxelMemory::volumes.
+std::size_t volumes_held(const ViewedFiles& files);
+
+class ViewServer {
+ public:
+  /// Listens from here on. `backend` must outlive the server. Throws Error(usage) for an address that others can reach
+  /// without a token, Error(io) where it cannot be had.
+  ViewServer(boost::asio::io_context& io, ViewSettings settings, ViewedFiles files, Backend& backend);
+  /// Waits for the pass and the look-up that are under way.
+  ~ViewServer();
+  ViewServer(const ViewServer&) = delete;
+  ViewServer& operator=(const ViewServer&) = delete;
+
+  std::uint16_t port() const { return http_->port(); }
+  std::size_t viewers() const { return viewers_.size(); }
+
+ private:
+  struct Viewer {
+    std::shared_ptr<ViewerSocket> socket;
+    std::shared_ptr<const ViewRequest> view;
+    std::optional<ProbeRequest> probe;  // that waits until the one under way is answered
+    bool probing = false;
+    std::optional<std::size_t> told;    // the step whose facts it has, or gets
+    std::string told_of;                // file_identity of its file
+    std::optional<std::size_t> wanted;  // the step whose facts it gets next
+    bool telling = false;
+  };
+
+  HttpResponse answer(const HttpRequest& request) const;
+  HttpResponse route(const HttpRequest& request) const;
+  std::optional<HttpResponse> refuse_viewer(const HttpRequest& request) const;
+  void add_viewer(ViewerSocket::Socket socket, const UpgradeRequest& request);
+  void remove_viewer(ViewerId id);
+  void receive(ViewerId id, std::string_view text);
+  void handle(ViewerId id, Viewer& viewer, ViewRequest view);
+  void handle(ViewerId id, Viewer& viewer, const ShownMessage& shown);
+  void handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe);
+  void handle(ViewerId id, Viewer& viewer, const ConvertRequest& request);
+  void tell_facts(ViewerId id, Viewer& viewer);
+  void answer_probe(ViewerId id, Viewer& viewer);
+  void send(ViewerId id, std::string text);
+  RenderEvents render_events();
+  const std::string& file_of(std::size_t step, int side) const;
+  MinMax range() const;
+  float background() const;
+
+  boost::asio::io_context& io_;
+  const ViewSettings settings_;
+  const ViewedFiles files_;
+  const AccessRules rules_;
+  std::string state_text_;  // of /api/state, but for what changes
+  Backend& backend_;
+  std::map<ViewerId, Viewer> viewers_;
+  ViewerId last_id_ = 0;
+  std::atomic<bool> ended_{false};
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // what other threads post is dropped with it
+  OpenFiles open_files_;
+  KeptTexts facts_cache_;
+  VolumeShelf shelf_;
+  std::optional<RenderLoop> loop_;
+  SceneConverter converter_;
+  boost::asio::thread_pool side_{2};  // looks values up, counts histograms
+  std::unique_ptr<HttpServer> http_;
+};
+
+}  // namespace weir

@@ -1,0 +1,131 @@
+#include "tools/view/volume_facts.h"
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/layout/nvdb_type.h"
+#include "gpu/image/colormap.h"
+#include "gpu/scene/scene_transfer.h"
+#include "ingest/source/convert_command.h"
+#include "tools/report/error_text.h"
+#include "tools/report/packed_census.h"
+#include "tools/report/quantity_title.h"
+#include "tools/report/read_sidecar.h"
+#include "tools/report/tree_census.h"
+#include "tools/report/volume_title.h"
+
+namespace weir {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kOpacities = 33;  // of the curve where a scene gives none
+
+Json index_json(const Index3& i) { return {i.x, i.y, i.z}; }
+
+// Blocks by kind, those that there are: [["transform", 1234], ...].
+Json kinds_of(const NvdbGrid& grid, const std::optional<Sidecar>& sidecar) {
+  Json kinds = Json::array();
+  const auto add = [&](const std::string& name, std::uint64_t blocks) {
+    if (blocks > 0) kinds.push_back({name, blocks});
+  };
+  if (grid.packed() != nullptr) {
+    const PackedCensus census = take_packed_census(*grid.packed());
+    for (const PackedKind kind : {PackedKind::transform, PackedKind::lattice, PackedKind::raw, PackedKind::mean}) {
+      add(packed_kind_name(kind), census.blocks[static_cast<std::size_t>(kind)]);
+    }
+    add("constant", census.none);
+  } else if (sidecar) {
+    constexpr std::array kNames{"1 bit", "2 bits", "4 bits", "8 bits", "16 bits", "float32"};
+    for (std::size_t i = 0; i < kNames.size(); ++i) add(kNames.at(i), sidecar->selection.bits.at(i));
+    add("one value", sidecar->selection.leaves_total - sidecar->selection.leaves_kept);
+  } else {
+    add("leaves", grid.node_counts()[0]);
+    add("tiles", grid.tile_counts()[0]);
+  }
+  return kinds;
+}
+
+Json certificate_of(const Sidecar& s) {
+  return {{"source", volume_title(s.source)},
+          {"units", s.source.units},
+          {"time", s.source.time ? Json(cat(short_number(s.source.time->value), ' ', s.source.time->units)) : Json()},
+          {"rate", s.budget.rate},
+          {"dense_bytes", s.budget.dense_float32_bytes},
+          {"lossless", s.error.lossless},
+          {"psnr_db", s.error.psnr_db ? Json(*s.error.psnr_db) : Json()},
+          {"rmse", s.error.rmse},
+          {"max_abs", s.error.max_abs},
+          {"text", error_text(s, s.error)}};
+}
+
+std::string hex_colour(const Float3& linear) {
+  std::string text = "#";
+  for (const float channel : {linear.x, linear.y, linear.z}) {
+    text += hex(static_cast<std::uint64_t>(std::lround(srgb_from_linear(channel) * 255.0F)), 2);
+  }
+  return text;
+}
+
+}  // namespace
+
+Json volume_facts(const NvdbFile& file, MinMax range, float background) {
+  const NvdbGrid& grid = file.grid();
+  const std::optional<Sidecar> sidecar = own_sidecar(file);
+  const TransferFunction transfer = make_transfer_function({}, range, background, "gray");
+  Json opacity = Json::array();
+  for (std::size_t i = 0; i < kOpacities; ++i) {
+    const std::size_t at = i * (transfer.table().size() - 1) / (kOpacities - 1);
+    opacity.push_back(transfer.table()[at].a);
+  }
+  const Box box = grid.index_bbox();
+  const std::string name = std::filesystem::path(file.path()).filename().string();
+  return {{"file", name},
+          {"word", shell_word(name.starts_with('-') ? "./" + name : name)},
+          {"bytes", file.bytes().size()},
+          {"title", quantity_title(file)},
+          {"grid_type", grid.packed() != nullptr ? "packed" : grid_type_name(grid.type())},
+          {"box", {index_json(box.lo), index_json(box.hi)}},
+          {"voxel_size", grid.voxel_size()},
+          {"origin", grid.world_origin()},
+          {"range", {range.min, range.max}},
+          {"values", {grid.value_min(), grid.value_max()}},
+          {"background", background},
+          {"opacity", opacity},
+          {"kinds", kinds_of(grid, sidecar)},
+          {"certificate", sidecar ? certificate_of(*sidecar) : Json()}};
+}
+
+Json histogram_facts(const NvdbFile& file, const std::atomic<bool>& cancel) {
+  const NvdbGrid& grid = file.grid();
+  Sidecar::Histogram histogram{grid.value_min(), grid.value_max(), {}};
+  if (const auto sidecar = own_sidecar(file)) {
+    histogram = sidecar->histogram;
+  } else if (std::isfinite(histogram.min) && std::isfinite(histogram.max) && histogram.min < histogram.max) {
+    histogram.counts = count_values(grid, grid.value_min(), grid.value_max(), kViewBins, [&](std::uint64_t) {
+      if (cancel) throw Error(ErrorKind::interrupted, "interrupted");
+    });
+  }
+  // Neighbours become one bin until there are few enough.
+  std::vector<std::uint64_t>& counts = histogram.counts;
+  while (counts.size() > kViewBins && counts.size() % 2 == 0) {
+    for (std::size_t i = 0; i < counts.size() / 2; ++i) counts[i] = counts[2 * i] + counts[2 * i + 1];
+    counts.resize(counts.size() / 2);
+  }
+  return {{"min", histogram.min}, {"max", histogram.max}, {"counts", counts}};
+}
+
+Json colormap_facts() {
+  Json maps;
+  for (const std::string_view name : colormap_names()) {
+    Json colours = Json::array();
+    for (const Float3& colour : colormap(name, kMapColours)) colours.push_back(hex_colour(colour));
+    maps[std::string(name)] = colours;
+  }
+  return maps;
+}
+
+}  // namespace weir
