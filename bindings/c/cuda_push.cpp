@@ -3,13 +3,20 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "bindings/c/open_push.h"
 #include "bindings/c/status.h"
 #include "bindings/c/weir_cuda.h"
+#include "compressor/push/resident_source.h"
 #include "format/base/scalar_type.h"
+#include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/push/device_slabs.h"
+#include "gpu/cuda/push/resident_planes.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/packed/coder_choice.h"
 #include "ingest/values/array_source.h"
 
 using namespace weir;
@@ -17,8 +24,26 @@ using namespace weir::c;
 
 namespace {
 
-/// Slabs of a device on their way to `volume`.
-class SlabsInFlight : public PushInFlight {
+// Values that were expected do not come: that ends the push.
+template <typename Call>
+void ending_with_failures(PushedVolume& volume, const Call& call) {
+  try {
+    call();
+  } catch (...) {
+    volume.fail(error_in_flight());
+    throw;
+  }
+}
+
+/// Slabs of a device.
+class DeviceInFlight : public PushInFlight {
+ public:
+  virtual void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) = 0;
+  using PushInFlight::add;
+};
+
+/// On their way to `volume`.
+class SlabsInFlight : public DeviceInFlight {
  public:
   SlabsInFlight(PushedVolume& volume, std::uint64_t device_bytes)
       : volume_(volume),
@@ -27,51 +52,125 @@ class SlabsInFlight : public PushInFlight {
                  volume_.fill(z0, nz, values, packed_stride(volume_.info().extent, volume_.info().type));
                }) {}
 
-  void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) {
+  void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) override {
     slabs_.check(values);
     volume_.expect(z0, nz);
-    ending_with_failures([&] { slabs_.add(z0, nz, values, stream); });
+    ending_with_failures(volume_, [&] { slabs_.add(z0, nz, values, stream); });
   }
 
   void finish() override {
-    ending_with_failures([&] { slabs_.finish(); });
+    ending_with_failures(volume_, [&] { slabs_.finish(); });
   }
 
  private:
-  // Values that were expected do not come: that ends the push.
-  template <typename Call>
-  void ending_with_failures(const Call& call) {
-    try {
-      call();
-    } catch (...) {
-      volume_.fail(error_in_flight());
-      throw;
-    }
-  }
-
   PushedVolume& volume_;
   DeviceSlabs slabs_;
 };
 
+// All of a volume on its device, where it is surveyed and encoded.
+class ResidentInFlight : public DeviceInFlight {
+ public:
+  /// Of slabs that are copied.
+  explicit ResidentInFlight(weir_push& push) : push_(push), planes_(std::in_place, push.volume->info().extent) {}
+  /// Of `values` of the current device, which stay as they are.
+  ResidentInFlight(weir_push& push, const float* values) : push_(push), given_(values) {
+    check_cuda(cudaGetDevice(&device_), "asking for the current device");
+    push.volume->expect(0, push.volume->info().extent.z);
+  }
+
+  void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) override {
+    check_slab(values, planes_->device());
+    push_.volume->expect(z0, nz);
+    ending_with_failures(*push_.volume, [&] { planes_->add(z0, nz, values, stream); });
+  }
+
+  bool add(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) override {
+    required(data, "data");
+    push_.volume->expect(z0, nz);
+    const SourceInfo& info = push_.volume->info();
+    DenseArray array;
+    array.data = data;
+    array.extent = {info.extent.x, info.extent.y, nz};
+    array.stride = stride;
+    ending_with_failures(*push_.volume, [&] {
+      const std::unique_ptr<VolumeSource> slab = open_array(array);
+      std::vector<float> plane(static_cast<std::size_t>(info.extent.x * info.extent.y));
+      for (std::int64_t z = 0; z < nz; ++z) {
+        slab->read({{0, 0, z}, {info.extent.x, info.extent.y, z + 1}}, plane);
+        planes_->add(z0 + z, 1, plane.data());
+      }
+    });
+    return true;
+  }
+
+  void finish() override {
+    ending_with_failures(*push_.volume, [&] {
+      if (planes_) planes_->finish();
+      if (whole_) return;
+      const SourceInfo& info = push_.volume->info();
+      whole_ = open_resident(
+          make_resident_volume(planes_ ? planes_->device() : device_, planes_ ? planes_->values() : given_,
+                               info.domain(), say_device_failure(push_.notice)),
+          info);
+    });
+  }
+
+  VolumeSource* whole() override { return whole_.get(); }
+
+ private:
+  weir_push& push_;
+  std::optional<ResidentPlanes> planes_;
+  const float* given_ = nullptr;
+  int device_ = 0;
+  std::unique_ptr<VolumeSource> whole_;
+};
+
+// Whether a device that has the volume can survey and encode it: one was chosen for that, and float32 is what it takes.
+bool may_be_resident(const weir_push& push) {
+  const SourceInfo& info = push.volume->info();
+  return push.coder && !push.filled && info.type == ScalarType::float32 && info.values_as_stored() &&
+         !info.mapping.marks_missing();
+}
+
 // Slabs of several threads may be the first.
-SlabsInFlight& in_flight(weir_push& push) {
+DeviceInFlight& in_flight(weir_push& push) {
   const std::lock_guard lock(push.mutex);
-  if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, push.device_memory);
-  return static_cast<SlabsInFlight&>(*push.in_flight);
+  if (!push.in_flight) {
+    const SourceInfo& info = push.volume->info();
+    const auto bytes = static_cast<std::uint64_t>(volume(info.extent)) * sizeof(float);
+    if (may_be_resident(push) && push.device_memory >= bytes) {
+      push.in_flight = std::make_unique<ResidentInFlight>(push);
+    } else {
+      push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, push.device_memory);
+    }
+  }
+  return static_cast<DeviceInFlight&>(*push.in_flight);
 }
 
 void push_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* data, const std::int64_t* stride,
                cudaStream_t stream) {
-  PushedVolume& volume = *push.volume;
   required(data, "data");
-  const SourceInfo& info = volume.info();
-  const std::array<std::int64_t, 3> strides = slab_stride(volume, stride);
+  const SourceInfo& info = push.volume->info();
+  const std::array<std::int64_t, 3> strides = slab_stride(*push.volume, stride);
   if (is_device_memory(data)) {
     in_flight(push).add(z0, nz, {static_cast<const std::byte*>(data), strides, scalar_bytes(info.type)}, stream);
     return;
   }
   if (device_count() > 0) check_cuda(cudaStreamSynchronize(stream), "work before a slab");
-  volume.slab(z0, nz, data, strides);
+  push_host_slab(push, z0, nz, data, strides);
+}
+
+// Where all of a volume lies on the device as it has to: its values are taken from there.
+bool take_in_place(weir_push& push, const void* data, const std::int64_t* stride, cudaStream_t stream) {
+  if (data == nullptr || !may_be_resident(push) || !is_device_memory(data)) return false;
+  const DeviceValues values{static_cast<const std::byte*>(data), slab_stride(*push.volume, stride), sizeof(float)};
+  if (!without_gaps(values, push.volume->info().extent)) return false;
+  int device = 0;
+  check_cuda(cudaGetDevice(&device), "asking for the current device");
+  check_slab(values, device);
+  check_cuda(cudaStreamSynchronize(stream), "work before a volume");
+  push.in_flight = std::make_unique<ResidentInFlight>(push, reinterpret_cast<const float*>(data));
+  return true;
 }
 
 }  // namespace
@@ -94,7 +193,8 @@ weir_status weir_convert_device(const weir_volume* volume, const void* data, con
                                 const weir_convert_options* options, const char* output, weir_error* error) {
   return guarded(error, [&] {
     const std::unique_ptr<weir_push> push = begin_push(volume, options, output);
-    push_slab(*push, 0, push->volume->info().extent.z, data, stride, static_cast<cudaStream_t>(stream));
+    auto* const on = static_cast<cudaStream_t>(stream);
+    if (!take_in_place(*push, data, stride, on)) push_slab(*push, 0, push->volume->info().extent.z, data, stride, on);
     end_push(*push);
   });
 }

@@ -20,8 +20,15 @@ class PushInFlight {
   PushInFlight(const PushInFlight&) = delete;
   PushInFlight& operator=(const PushInFlight&) = delete;
 
+  /// Takes planes [z0, z0 + nz) of the host, as PushedVolume::slab; false where that is for the volume to do.
+  virtual bool add(std::int64_t /*z0*/, std::int64_t /*nz*/, const void* /*data*/,
+                   const std::array<std::int64_t, 3>& /*stride*/) {
+    return false;
+  }
   /// Waits until they have arrived. Throws what ended the push.
   virtual void finish() = 0;
+  /// After that: where all values are, if the volume was not filled with them; else null.
+  virtual VolumeSource* whole() { return nullptr; }
 };
 
 /// A push that has begun. Throws Error.
@@ -30,6 +37,10 @@ std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_conv
 
 /// The `stride` that a slab was given, or, where that is null, that of values without gaps.
 std::array<std::int64_t, 3> slab_stride(const PushedVolume& volume, const std::int64_t* stride);
+
+/// Takes planes of the host. Throws Error.
+void push_host_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* data,
+                    const std::array<std::int64_t, 3>& stride);
 
 /// Waits for what is in flight, and writes the file. Throws Error.
 void end_push(weir_push& push);
@@ -41,10 +52,12 @@ struct weir_push {
   explicit weir_push(const weir_convert_options& given) : callbacks(given), files(weir::make_posix_file_system()) {}
 
   weir::c::Callbacks callbacks;
+  weir::Notice notice;
   std::unique_ptr<weir::FileSystem> files;
   std::unique_ptr<weir::BlockCoder> coder;
   std::unique_ptr<weir::PushedVolume> volume;
   std::mutex mutex;                                  // of the rest
   std::uint64_t device_memory = 0;                   // bytes that slabs of a device may wait in
+  bool filled = false;                               // some planes have come from the host
   std::unique_ptr<weir::c::PushInFlight> in_flight;  // none before the first slab of a device
 };

@@ -22,6 +22,7 @@ std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_conv
   made->coder =
       choose_coder(conversion.backend, conversion.encoding == Encoding::packed, conversion.memory, control.notice);
   control.coder = made->coder.get();
+  made->notice = control.notice;
   made->volume = std::make_unique<PushedVolume>(std::move(info), conversion, control, *made->files);
   return made;
 }
@@ -31,9 +32,21 @@ std::array<std::int64_t, 3> slab_stride(const PushedVolume& volume, const std::i
   return {stride[0], stride[1], stride[2]};
 }
 
+void push_host_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* data,
+                    const std::array<std::int64_t, 3>& stride) {
+  PushInFlight* in_flight = nullptr;
+  {
+    const std::lock_guard lock(push.mutex);
+    in_flight = push.in_flight.get();
+    if (in_flight == nullptr) push.filled = true;
+  }
+  if (in_flight == nullptr || !in_flight->add(z0, nz, data, stride)) push.volume->slab(z0, nz, data, stride);
+}
+
 void end_push(weir_push& push) {
   if (push.in_flight) push.in_flight->finish();
-  push.volume->end();
+  VolumeSource* const whole = push.in_flight ? push.in_flight->whole() : nullptr;
+  whole != nullptr ? push.volume->end(*whole) : push.volume->end();
 }
 
 }  // namespace weir::c
@@ -48,10 +61,8 @@ weir_status weir_push_begin(const weir_volume* volume, const weir_convert_option
 
 weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* data, const int64_t stride[3],
                            weir_error* error) {
-  return guarded(error, [&] {
-    PushedVolume& volume = *required(push, "push")->volume;
-    volume.slab(z0, nz, data, slab_stride(volume, stride));
-  });
+  return guarded(error,
+                 [&] { push_host_slab(*required(push, "push"), z0, nz, data, slab_stride(*push->volume, stride)); });
 }
 
 weir_status weir_push_end(weir_push* push, weir_error* error) {

@@ -47,9 +47,14 @@ WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t 
                                            const int64_t stride[3], void* stream, weir_error* error);
 /* Before the first slab of a device: up to `bytes` of its memory, a plane's or more, may hold slabs until they have
  * crossed the bus, in a stream of the lowest priority. A call then waits only while that is full. The memory is taken
- * with the first slab, and given back by weir_push_free. */
+ * with the first slab, and given back by weir_push_free.
+ * Where that is enough for the whole volume, of WEIR_FLOAT32 without missing values, and the device does the work
+ * (options->encoding packed, and options->backend WEIR_BACKEND_CUDA, or automatic with options->memory of 1 GiB or
+ * more), its values stay there: weir_push_end surveys and encodes them on that device, which takes 1.2 GB more of its
+ * memory, and only streams and figures cross the bus. The file has the same bytes. */
 WEIR_API weir_status weir_push_device_memory(weir_push* push, uint64_t bytes, weir_error* error);
-/* weir_convert for values on the device, after the work queued in `stream`: begins a push, takes one slab and ends. */
+/* weir_convert for values on the device, after the work queued in `stream`: begins a push, takes one slab and ends.
+ * Where the device does the work (weir_push_device_memory) and values have no gaps, they are coded where they are. */
 WEIR_API weir_status weir_convert_device(const weir_volume* volume, const void* data, const int64_t stride[3],
                                          void* stream, const weir_convert_options* options, const char* output,
                                          weir_error* error);

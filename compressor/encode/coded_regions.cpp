@@ -18,16 +18,29 @@ std::optional<CodedStream> CodedRegion::find(const Index3& leaf) const {
   if (ask == kNone || !made_) return std::nullopt;
   const auto i = static_cast<std::size_t>(ask);
   if (made_->made[i] == 0) return std::nullopt;
-  return CodedStream{made_->bytes.subspan(asks_[i].offset, asks_[i].bytes), made_->decoded.subspan(512 * i, 512)};
+  const std::span<const std::byte> bytes = made_->bytes.subspan(asks_[i].offset, asks_[i].bytes);
+  if (!made_->records.empty()) return CodedStream{bytes, {}, &made_->records[i]};
+  return CodedStream{bytes, made_->decoded.subspan(512 * i, 512), nullptr};
 }
 
 CodedBatch::CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,
-                       LoadedBlocks& blocks) {
+                       LoadedBlocks& blocks, Blocks which)
+    : which_(which) {
   for (const std::int64_t region : regions) {
     add(target, leaf_box, region);
     if (asks_.size() + kRegionBlocks > kMostBlocks) break;
   }
   if (!asks_.empty()) pending_ = blocks.encode(asks_, target.packed->constants);
+}
+
+CodedBatch::CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::int64_t region) : which_(Blocks::none) {
+  add(target, leaf_box, region);
+}
+
+bool CodedBatch::asks_for(const EncodeTarget& target, const Index3& leaf) const {
+  if (which_ != Blocks::resident) return which_ == Blocks::loaded;
+  const NodeLattice& leaves = target.tree.leaves;
+  return leaves.voxels(leaf) == leaves.node_box(leaf) && !(target.packed->rule.preview && is_corner(leaves, leaf));
 }
 
 void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64_t region) {
@@ -40,7 +53,7 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
     const Index3 leaf = box.lo + index_at(i, box.extent());
     const std::size_t position = target.tree.mask_position(leaf);
     const std::int16_t step = streams.plan().steps[position];
-    if (!streams.kept(position) || step < kLeastStep || step > kMostStep) continue;
+    if (!streams.kept(position) || step < kLeastStep || step > kMostStep || !asks_for(target, leaf)) continue;
     const std::uint32_t offset = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
     coded.set(leaf, asks_.size());
     asks_.push_back({streams.plan().region.means,

@@ -15,10 +15,12 @@
 
 namespace weir {
 
-/// One block's: as many bytes as planned, and what they decode to, in the order of a leaf.
+/// One block's: as many bytes as planned, and what they decode to, in the order of a leaf; of a resident one its record
+/// instead.
 struct CodedStream {
   std::span<const std::byte> bytes;
   std::span<const float> decoded;
+  const MadeRecord* record;
 };
 
 /// Of one region, as far as it lies in a box.
@@ -48,10 +50,15 @@ class CodedRegion {
 /// Regions of a box whose streams are written together. Neither copied nor moved.
 class CodedBatch {
  public:
+  /// Which blocks are asked for: none, all that are transformed, or, of resident ones, those that lie wholly in the
+  /// volume and are no corners of a preview.
+  enum class Blocks { none, loaded, resident };
   /// Begins with some of `regions`, which have kept leaves in `leaf_box`, whose values are `blocks`; both must outlive
   /// the object.
   CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,
-             LoadedBlocks& blocks);
+             LoadedBlocks& blocks, Blocks which = Blocks::loaded);
+  /// Of one region, of which nothing is asked.
+  CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::int64_t region);
   CodedBatch(const CodedBatch&) = delete;
   CodedBatch& operator=(const CodedBatch&) = delete;
 
@@ -71,7 +78,9 @@ class CodedBatch {
 
  private:
   void add(const EncodeTarget& target, const Box& leaf_box, std::int64_t region);
+  bool asks_for(const EncodeTarget& target, const Index3& leaf) const;
 
+  Blocks which_;
   std::vector<StreamAsk> asks_;
   std::vector<Region> regions_;
   std::optional<MadeStreams> made_;

@@ -12,6 +12,7 @@
 #include "compressor/encode/coded_regions.h"
 #include "compressor/encode/leaf_encoder.h"
 #include "compressor/encode/packed_encoder.h"
+#include "compressor/encode/resident_encode.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
 
@@ -133,6 +134,9 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
 
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
                    const StreamOptions& options, Reading reading, BoxSet* done, const Pauses& pauses) {
+  if (source.resident() != nullptr && target.packed != nullptr && target.rows.team().alone() && done == nullptr) {
+    return encode_resident(*source.resident(), source, target, options);
+  }
   const TreeRegions& tree = target.tree;
   BoxSet nothing;
   BoxSet& known = done == nullptr ? nothing : *done;

@@ -47,6 +47,11 @@ struct EncodeTarget {
   const PackedTarget* packed = nullptr;  ///< where blocks are packed; then `type` and `fit` mean nothing
 };
 
+/// Whether a leaf is the first or the last of a volume: a preview keeps these two as they are.
+inline bool is_corner(const NodeLattice& leaves, const Index3& leaf) {
+  return leaf == Index3{0, 0, 0} || leaf == leaves.count - Index3{1, 1, 1};
+}
+
 /// Where the kept blocks of a region lie.
 struct RegionPlaces {
   std::optional<LeafPlaces> leaves;

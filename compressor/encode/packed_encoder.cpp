@@ -24,7 +24,7 @@
 namespace weir {
 namespace {
 
-class PackedEncoder final : public LayerEncoder {
+class PackedEncoder final : public PackedLayerEncoder {
  public:
   explicit PackedEncoder(const EncodeTarget& target)
       : target_(target), packed_(*target.packed), records_(target.records) {
@@ -33,27 +33,40 @@ class PackedEncoder final : public LayerEncoder {
 
   void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
                  const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) override {
-    const StreamPlaces& places = *of_region.streams;
-    const TreeRegions& tree = target_.tree;
-    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
-    const std::uint64_t chunk = target_.layout.packed_data + packed_chunks_offset() + region.first_byte;
-    const Box box = intersect(tree.leaf_box(region_index), leaf_box);
-    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-        const Index3 leaf{x, y, z};
-        const std::size_t position = tree.mask_position(leaf);
-        if (!places.kept(position)) continue;
-        surveyed.check(leaf, block.values, block.voxels);
-        add_ends(chunk, places, position);
-        const std::optional<CodedStream> known = coded == nullptr ? std::nullopt : coded->find(leaf);
-        if (known) {
-          take_stream(block, leaf, chunk + places.offset(position), *known);
-        } else {
-          add_stream(block, leaf, chunk + places.offset(position), places, position);
-        }
-        records_.add(region.first_leaf + places.ordinal(position), decoded_, node_, inside_, loss());
+    const Box box = intersect(target_.tree.leaf_box(region_index), leaf_box);
+    for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
+      surveyed.check(leaf, block.values, block.voxels);
+      begin_leaf(leaf);
+      gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
+      const std::optional<CodedStream> known = coded == nullptr ? std::nullopt : coded->find(leaf);
+      if (known) {
+        replaced_ = false;
+        std::copy(known->decoded.begin(), known->decoded.end(), decoded_.begin());
+        append(place.offset, known->bytes);
+        if (packed_.rule.preview) write_corner(leaf);
+      } else {
+        add_stream(leaf, place);
       }
-    }
+      records_.add(place.ordinal, decoded_, node_, inside_, loss());
+    });
+  }
+
+  void add_layer(std::int64_t region_index, const RegionPlaces& of_region, const SurveyedLeaves& surveyed,
+                 std::int64_t x, const CodedRegion& coded, const LeftLeaves& left) override {
+    const Box box = target_.tree.leaf_box(region_index);
+    for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
+      if (const std::optional<CodedStream> known = coded.find(leaf)) {
+        surveyed.check(leaf, known->record->source);
+        append(place.offset, known->bytes);
+        return records_.add(place.ordinal, known->record->record);
+      }
+      begin_leaf(leaf);
+      std::copy_n(left.find(leaf), source_.size(), source_.begin());
+      LeafValues own;
+      surveyed.check(leaf, leaf_digest(in_domain_values(source_.data(), node_, inside_, own)));
+      add_stream(leaf, place);
+      records_.add(place.ordinal, decoded_, node_, inside_, loss());
+    });
   }
 
   void finish() override {
@@ -84,37 +97,54 @@ class PackedEncoder final : public LayerEncoder {
     append(chunk + places.base(group), std::span(ends).first(2 * count));
   }
 
-  void gather(const Block& block, const Index3& leaf) {
+  // Where a kept leaf goes.
+  struct KeptPlace {
+    const StreamPlaces& places;
+    std::size_t position;
+    std::uint64_t offset;   // of its stream, in the file
+    std::uint64_t ordinal;  // of its record
+  };
+
+  // Calls visit(leaf, place) for the kept leaves of layer `x` of a region, as far as they lie in `box`, each behind its
+  // end.
+  template <typename Visit>
+  void for_each_kept(std::int64_t region_index, const StreamPlaces& places, const Box& box, std::int64_t x,
+                     const Visit& visit) {
+    const TreeRegions& tree = target_.tree;
+    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
+    const std::uint64_t chunk = target_.layout.packed_data + packed_chunks_offset() + region.first_byte;
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+        const Index3 leaf{x, y, z};
+        const std::size_t position = tree.mask_position(leaf);
+        if (!places.kept(position)) continue;
+        add_ends(chunk, places, position);
+        visit(leaf, {places, position, chunk + places.offset(position), region.first_leaf + places.ordinal(position)});
+      }
+    }
+  }
+
+  void begin_leaf(const Index3& leaf) {
     node_ = target_.tree.leaves.node_box(leaf);
     inside_ = target_.tree.leaves.voxels(leaf);
-    gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
   }
 
-  // Of finite values, which a coder has encoded.
-  void take_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const CodedStream& known) {
-    gather(block, leaf);
-    replaced_ = false;
-    std::copy(known.decoded.begin(), known.decoded.end(), decoded_.begin());
-    append(offset, known.bytes);
-    if (packed_.rule.preview) write_corner(leaf);
-  }
-
-  void add_stream(const Block& block, const Index3& leaf, std::uint64_t offset, const StreamPlaces& places,
-                  std::size_t position) {
-    gather(block, leaf);
+  // Of the leaf's source.
+  void add_stream(const Index3& leaf, const KeptPlace& place) {
+    const StreamPlaces& places = place.places;
     values_ = source_;
     replaced_ = target_.fill.non_finite != NonFinitePolicy::keep && !all_finite(source_);
     if (replaced_) {
       for (float& v : values_) v = std::isfinite(v) ? v : target_.fill.background;
     }
     extend_outside(node_, inside_, values_);
-    const std::span<std::byte> stream = std::span(stream_).first(places.bytes(position));
-    write_stream(places.plan(), position, stream);
+    const std::span<std::byte> stream = std::span(stream_).first(places.bytes(place.position));
+    write_stream(places.plan(), place.position, stream);
     if (!decode_block(packed_.constants, places.plan().region.means, stream.data(),
                       static_cast<std::uint32_t>(stream.size()), decoded_.data())) {
       fail(leaf, "does not decode");
     }
-    append(offset, stream);
+    append(place.offset, stream);
     if (packed_.rule.preview) write_corner(leaf);
   }
 
@@ -146,8 +176,7 @@ class PackedEncoder final : public LayerEncoder {
   }
 
   void write_corner(const Index3& leaf) {
-    const Index3 last = target_.tree.leaves.count - Index3{1, 1, 1};
-    if (leaf != Index3{0, 0, 0} && leaf != last) return;
+    if (!is_corner(target_.tree.leaves, leaf)) return;
     std::array<std::byte, nvdb::kFloatLeafBytes> image{};
     encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
     const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
@@ -212,7 +241,7 @@ class PackedEncoder final : public LayerEncoder {
 
 }  // namespace
 
-std::unique_ptr<LayerEncoder> make_packed_encoder(const EncodeTarget& target) {
+std::unique_ptr<PackedLayerEncoder> make_packed_encoder(const EncodeTarget& target) {
   return std::make_unique<PackedEncoder>(target);
 }
 

@@ -16,6 +16,14 @@ void RecordBatch::add(std::uint64_t ordinal, const LeafValues& decoded, const Bo
   if (held_.size() >= kHeldRecords) flush();
 }
 
+void RecordBatch::add(std::uint64_t ordinal, const LeafRecord& record) {
+  compute();
+  if (ordinal != first_ + held_.size()) flush();
+  if (held_.empty()) first_ = ordinal;
+  held_.push_back(record);
+  if (held_.size() >= kHeldRecords) flush();
+}
+
 void RecordBatch::flush() {
   compute();
   if (held_.empty()) return;
@@ -24,6 +32,7 @@ void RecordBatch::flush() {
 }
 
 void RecordBatch::compute() {
+  if (count_ == 0) return;
   std::array<NodeStatistics, kLeafBatch> statistics;
   full_leaf_statistics({values_.data(), count_}, {nodes_.data(), count_}, std::span(statistics).first(count_));
   for (std::size_t i = 0; i < count_; ++i) {

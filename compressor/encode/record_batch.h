@@ -25,6 +25,8 @@ class RecordBatch {
   explicit RecordBatch(RecordStore& records) : records_(records) {}
 
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside, const LeafLoss& loss);
+  /// One that is known already.
+  void add(std::uint64_t ordinal, const LeafRecord& record);
   /// Writes what is still held.
   void flush();
 

@@ -5,21 +5,11 @@
 #include <array>
 #include <cstdint>
 
-#include "format/io/digest.h"
+#include "format/leaf/block_summary.h"
 
 namespace weir {
 
-struct LeafRow {
-  float min = 0;  ///< of the finite in-domain values; 0 where there is none
-  float max = 0;
-  float mean = 0;            ///< of the finite values, rounded to float; their value where uniform
-  float sample = 0;          ///< one in-domain value, chosen by a hash of the leaf index; NaN if that one is not finite
-  float residual = 0;        ///< sum of (value - mean) over the finite values
-  std::uint16_t finite = 0;  ///< finite in-domain values, 0..512
-  std::uint16_t same_bits : 1 = 0;  ///< see uniform()
-  std::uint16_t zeros : 15 = 0;     ///< finite in-domain values equal to 0
-  double sse = 0;                   ///< sum of (value - mean)^2 over the finite values
-  Digest digest;                    ///< of the in-domain float32 values, x fastest
+struct LeafRow : BlockSummary {
   /// Squared error at 1, 2 and 4 bits a voxel, estimated, in parts of `sse`; 1 where it was not looked at.
   std::array<float, 3> quantised{1, 1, 1};
   /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the values without loss; 0: more, or not looked at.
@@ -27,8 +17,6 @@ struct LeafRow {
   /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at.
   std::uint16_t at_ends = 0;
 
-  /// The finite values, one at least, all have the same bits: those of `mean`.
-  bool uniform() const { return same_bits != 0; }
   /// Sum over the finite values of (value - fill)^2; exact up to double rounding.
   double sse_about(float fill) const {
     const double shift = static_cast<double>(mean) - static_cast<double>(fill);

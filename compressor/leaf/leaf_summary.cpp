@@ -210,13 +210,4 @@ void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
   }
 }
 
-std::size_t sample_position(std::int64_t index, std::size_t count) {
-  // SplitMix64 (Steele et al. 2014), its high bits scaled to the range.
-  std::uint64_t h = static_cast<std::uint64_t>(index) + 0x9E3779B97F4A7C15ULL;
-  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
-  h ^= h >> 31U;
-  return static_cast<std::size_t>((h >> 32U) * count >> 32U);
-}
-
 }  // namespace weir

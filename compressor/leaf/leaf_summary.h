@@ -32,8 +32,4 @@ ValueRange leaf_range(std::span<const float> values);
 /// in-domain values, row.finite of them, `all` that there are no others.
 void summarize_widths(std::span<const float> values, bool all, LeafRow& row);
 
-/// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in
-/// the data can hide from it.
-std::size_t sample_position(std::int64_t index, std::size_t count);
-
 }  // namespace weir

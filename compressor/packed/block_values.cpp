@@ -44,4 +44,26 @@ void block_values(std::span<const float> values, const Box& node, const Box& ins
   extend_outside(node, inside, block);
 }
 
+std::span<const float> in_domain_values(const float* block, const Box& node, const Box& inside, LeafValues& values) {
+  const Index3 lo = inside.lo - node.lo;
+  const Index3 hi = inside.hi - node.lo;
+  std::size_t count = 0;
+  for (std::int64_t z = lo.z; z < hi.z; ++z) {
+    for (std::int64_t y = lo.y; y < hi.y; ++y) {
+      for (std::int64_t x = lo.x; x < hi.x; ++x) values[count++] = block[x << 6 | y << 3 | z];
+    }
+  }
+  return std::span(values).first(count);
+}
+
+void read_block(VolumeSource& source, const NodeLattice& leaves, const Index3& leaf, float* block) {
+  const Box inside = leaves.voxels(leaf);
+  LeafValues values;
+  LeafValues ordered;
+  const auto count = static_cast<std::size_t>(inside.voxels());
+  source.read(inside, std::span(values).first(count));
+  block_values(std::span(values).first(count), leaves.node_box(leaf), inside, ordered);
+  std::copy(ordered.begin(), ordered.end(), block);
+}
+
 }  // namespace weir

@@ -5,12 +5,20 @@
 
 #include "format/base/index.h"
 #include "format/leaf/leaf_codec.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 
 /// From the in-domain values of a block, x fastest, to the order of a leaf (z fastest); the others as by
 /// extend_outside. `inside` lies in the block's box `node`.
 void block_values(std::span<const float> values, const Box& node, const Box& inside, LeafValues& block);
+
+/// The other way round: the in-domain values of a block, x fastest, in `values`.
+std::span<const float> in_domain_values(const float* block, const Box& node, const Box& inside, LeafValues& values);
+
+/// Reads all values of one block out of its source, in the order of a leaf; those outside the volume as by
+/// extend_outside. Throws as VolumeSource::read.
+void read_block(VolumeSource& source, const NodeLattice& leaves, const Index3& leaf, float* block);
 
 /// Gives voxels outside `inside` the value of the nearest one inside: the smoothest way to go on that needs no bounds.
 void extend_outside(const Box& node, const Box& inside, LeafValues& block);

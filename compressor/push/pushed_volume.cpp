@@ -137,14 +137,14 @@ class PushedVolume::State {
 
   void fail(const Error& error) { intake_->fail(error); }
 
-  Sidecar end() {
+  Sidecar end(VolumeSource* whole) {
     const auto started = std::chrono::steady_clock::now();
     check_going_on();
-    begin_end();
+    begin_end(whole != nullptr);
     intake_->finish();
     const Release release{files_};
     try {
-      return convert(started);
+      return whole != nullptr ? convert_whole(*whole) : convert(started);
     } catch (const Error& error) {
       const std::lock_guard lock(mutex_);
       failure_ = error;
@@ -261,9 +261,10 @@ class PushedVolume::State {
     }
   }
 
-  void begin_end() {
+  void begin_end(bool whole) {
     const std::lock_guard lock(mutex_);
     if (ended_) throw has_ended();
+    if (whole && expected_planes_ == info_.extent.z) expected_planes_ = 0;
     const std::vector<PlaneRange> missing = given_.missing(info_.extent.z);
     if (!missing.empty()) {
       throw Error(ErrorKind::usage, cat(info_.path, ": ", planes_text(missing), " of ", info_.extent.z,
@@ -292,6 +293,15 @@ class PushedVolume::State {
     const Survey survey = files_->survey->result(files_->survey->tally());
     return convert_surveyed({*source, options_, control_, files_->output, files_->work, nullptr, seen_},
                             plan_reading(*source, memory_), survey, *files_->stores, started);
+  }
+
+  Sidecar convert_whole(VolumeSource& whole) {
+    floats_.clear();
+    // Nothing was surveyed or spooled: their room goes to the conversion's own.
+    files_->survey.reset();
+    files_->spool.reset();
+    files_->stores.reset();
+    return convert_into(files_->output, files_->work, whole, options_, control_, no_team());
   }
 
   SourceInfo info_;
@@ -336,6 +346,8 @@ void PushedVolume::fail(const Error& error) { state_->fail(error); }
 
 const SourceInfo& PushedVolume::info() const { return state_->info(); }
 
-Sidecar PushedVolume::end() { return state_->end(); }
+Sidecar PushedVolume::end() { return state_->end(nullptr); }
+
+Sidecar PushedVolume::end(VolumeSource& whole) { return state_->end(&whole); }
 
 }  // namespace weir

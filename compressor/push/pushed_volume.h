@@ -51,7 +51,8 @@ class PushedVolume {
   void slab(std::int64_t z0, std::int64_t nz, const void* data);
 
   /// The same in two steps, for values that arrive later. `expect` checks and takes the planes, as slab does without
-  /// data; `fill` gives the values of planes that were expected, in any number of calls, each plane once.
+  /// data; `fill` gives the values of planes that were expected, in any number of calls, each plane once, or all of
+  /// them come with `end`.
   void expect(std::int64_t z0, std::int64_t nz);
   void fill(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride);
   /// Ends the push with `error`, unless it has ended already: values that were expected will not come. That is then the
@@ -66,6 +67,8 @@ class PushedVolume {
   /// which can still be given, and where slabs are still being taken or expected. Any other Error is final, as for
   /// slab, and of the output nothing is left.
   Sidecar end();
+  /// The same of a volume whose planes were all expected and none of them filled: `whole` has their values.
+  Sidecar end(VolumeSource& whole);
 
  private:
   class State;

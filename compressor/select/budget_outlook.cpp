@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "compressor/leaf/bounds.h"
 #include "compressor/packed/block_sample.h"
 #include "compressor/select/preview.h"
 #include "compressor/select/step_keys.h"
+#include "format/leaf/bounds.h"
 #include "format/nanovdb/macrocells.h"
 
 namespace weir {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "compressor/leaf/bounds.h"
 #include "compressor/leaf/leaf_quantiser.h"
+#include "format/leaf/bounds.h"
 #include "format/packed/block_decode.h"
 
 namespace weir {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "compressor/leaf/bounds.h"
 #include "compressor/select/region_rows.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 namespace {

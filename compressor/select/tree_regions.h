@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "compressor/leaf/bounds.h"
 #include "compressor/leaf/certificate.h"
 #include "compressor/leaf/fill.h"
 #include "format/base/index.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

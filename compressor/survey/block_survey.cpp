@@ -52,6 +52,7 @@ class BlockSurvey::Leaves {
         widths_(survey.widths_),
         aim_(survey.ladders_),
         sample_(survey.sample_),
+        counting_(survey.counting_),
         has_missing_(survey.has_missing_),
         block_(block),
         leaf_box_(leaf_box),
@@ -158,6 +159,7 @@ class BlockSurvey::Leaves {
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
     tally.min = std::min(tally.min, row.min);
     tally.max = std::max(tally.max, row.max);
+    if (counting_ == Counting::elsewhere) return;
     if (table_.size > 0) {
       const auto offset = static_cast<float>(table_.offset);
       if (row.uniform()) {
@@ -204,6 +206,7 @@ class BlockSurvey::Leaves {
   bool widths_;
   const std::optional<LadderAim>& aim_;
   const BlockSample& sample_;
+  Counting counting_;
   bool has_missing_;
   const Block& block_;
   const Box& leaf_box_;
@@ -213,12 +216,13 @@ class BlockSurvey::Leaves {
 };
 
 BlockSurvey::BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
-                         const std::optional<LadderAim>& ladders)
+                         const std::optional<LadderAim>& ladders, Counting counting)
     : rows_(rows),
       faces_(faces),
       widths_(widths),
       ladders_(ladders),
       sample_(rows.leaves()),
+      counting_(counting),
       has_missing_(info.mapping.marks_missing()),
       trace_(trace),
       table_(value_table(info)),
@@ -267,6 +271,66 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   if (faces_ != nullptr) faces_->write_box(leaf_box, block_faces);
   if (ladders_) rows_.ladders()->write_box(leaf_box, block_ladders);
   tallies_.local().loss.add(block.loss);
+}
+
+bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::size_t at) {
+  const BlockSummary& summary = found.summaries[at];
+  const Index3 leaf = leaves.leaf(at);
+  if (summary.finite < kLeafVoxels || rows_.leaves().voxels(leaf).voxels() < kLeafVoxels) return false;
+  LeafRow& row = leaves.rows[at];
+  row = {};
+  static_cast<BlockSummary&>(row) = summary;
+  Tally& tally = tallies_.local();
+  if (row.uniform()) {
+    leaves.ladders[at] = LadderBuilder::uniform();
+  } else {
+    if (ladders_->near_for(sample_.has(leaf)) == NearRungs::yes) return false;
+    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*ladders_);
+    const std::size_t costs = found.costs.size() / found.figures.size();
+    const auto ladder = tally.ladders->build_from(found.figures[at], found.costs.subspan(costs * at, costs), row);
+    if (!ladder) return false;
+    leaves.ladders[at] = *ladder;
+  }
+  tally.finite += row.finite;
+  tally.min = std::min(tally.min, row.min);
+  tally.max = std::max(tally.max, row.max);
+  return true;
+}
+
+void BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves) {
+  std::vector<std::uint8_t> taken(leaves.rows.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, taken.size(), 64), [&](const auto& range) {
+    const TraceSpan span(trace_, "survey");
+    for (std::size_t at = range.begin(); at < range.end(); ++at) taken[at] = take(found, leaves, at) ? 1 : 0;
+  });
+  for (std::size_t at = 0; at < taken.size(); ++at) {
+    if (taken[at] == 0) leaves.left.push_back(static_cast<std::uint32_t>(at));
+  }
+}
+
+void BlockSurvey::survey_left(FoundLeaves& leaves, std::uint32_t at, const float* block) {
+  const NodeLattice& lattice = rows_.leaves();
+  const Index3 leaf = leaves.leaf(at);
+  const Box leaf_box{leaf, leaf + Index3{1, 1, 1}};
+  const Box inside = lattice.voxels(leaf);
+  LeafValues own;
+  const Block alone{0, inside, in_domain_values(block, lattice.node_box(leaf), inside, own), {}};
+  const Leaves one(*this, alone, leaf_box, {&leaves.rows[at], 1}, {}, {&leaves.ladders[at], 1});
+  one.run(0, 1, tallies_.local());
+}
+
+void BlockSurvey::write(const FoundLeaves& leaves) {
+  const Box& box = leaves.leaf_box;
+  constexpr std::int64_t kRows = 8;
+  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(box.lo.y, box.hi.y, kRows), [&](const auto& range) {
+      const TraceSpan span(trace_, "write");
+      const Box part{{box.lo.x, range.begin(), z}, {box.hi.x, range.end(), z + 1}};
+      const auto at = static_cast<std::size_t>(linear_index(part.lo - box.lo, box.extent()));
+      rows_.write_box(part, std::span(leaves.rows).subspan(at));
+      rows_.ladders()->write_box(part, std::span(leaves.ladders).subspan(at));
+    });
+  }
 }
 
 SurveyTally BlockSurvey::tally() const {

@@ -5,8 +5,10 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "compressor/leaf/leaf_summary.h"
 #include "compressor/packed/block_sample.h"
@@ -25,15 +27,42 @@ namespace weir {
 /// Thread-safe but for tally().
 class BlockSurvey {
  public:
+  /// Who counts the values of a volume: the survey, as they come, or who has them all (add_counts()).
+  enum class Counting { here, elsewhere };
   /// `rows` and, where not null, `faces` get what is kept of each leaf; all must outlive the object. `widths` and
   /// `ladders` as for survey_volume.
   BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
-              const std::optional<LadderAim>& ladders = std::nullopt);
+              const std::optional<LadderAim>& ladders = std::nullopt, Counting counting = Counting::here);
 
   /// Who surveys the leaves of a block: the calling thread, or TBB's workers too.
   enum class Sharing { alone, shared };
   /// Surveys all leaves of `leaf_box` (lattice positions), whose in-domain voxels are those of `block`. Each leaf once.
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
+
+  /// The leaves of a box whose blocks a device has: take() fills what it can by what was found of them, and lists the
+  /// others, positions in the box, each of which is then surveyed by its 512 values in the order of a leaf, in any
+  /// order and by several threads; write() keeps all. Values are not counted: add_counts() does that.
+  struct FoundLeaves {
+    /// Of that box; what was there is overwritten.
+    void begin(const Box& box) {
+      leaf_box = box;
+      rows.resize(static_cast<std::size_t>(box.voxels()));
+      ladders.resize(rows.size());
+      left.clear();
+    }
+    Index3 leaf(std::size_t at) const {
+      return leaf_box.lo + index_at(static_cast<std::int64_t>(at), leaf_box.extent());
+    }
+    Box leaf_box;
+    std::vector<LeafRow> rows;
+    std::vector<PackedLadder> ladders;
+    std::vector<std::uint32_t> left;
+  };
+  void take(const SurveyedBlocks& found, FoundLeaves& leaves);
+  void survey_left(FoundLeaves& leaves, std::uint32_t at, const float* block);
+  void write(const FoundLeaves& leaves);
+  /// Takes the counts of all finite values of a volume whose blocks a device has.
+  void add_counts(const RangeHistogram& histogram) { tallies_.local().histogram.merge(histogram); }
 
   /// Of all blocks so far; no add may be in progress.
   SurveyTally tally() const;
@@ -57,6 +86,8 @@ class BlockSurvey {
     std::unique_ptr<LadderBuilder> ladders;  // made where first needed
   };
   class Leaves;
+  // Whether what was found of a leaf is enough.
+  bool take(const SurveyedBlocks& found, FoundLeaves& leaves, std::size_t at);
   static ValueTable value_table(const SourceInfo& info);
 
   RowStore& rows_;
@@ -64,6 +95,7 @@ class BlockSurvey {
   bool widths_;
   std::optional<LadderAim> ladders_;
   BlockSample sample_;
+  Counting counting_;
   bool has_missing_;  // some values of the source stand for "no data"
   Trace* trace_;
   ValueTable table_;

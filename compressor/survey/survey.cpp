@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compressor/survey/checkpoint.h"
+#include "compressor/survey/resident_survey.h"
 #include "compressor/survey/row_pieces.h"
 #include "compressor/team/region_share.h"
 #include "format/io/digest.h"
@@ -32,11 +33,22 @@ void merge_tallies(SurveyTally& tally, Team& team) {
   tally = parse_tally(text_of(part));
 }
 
+// Whether a device that has the volume looks at it: at the rungs of packed blocks, which no journal keeps.
+bool surveys_resident(VolumeSource& source, const RowStore& rows, bool widths, const LeafStore<LeafFaces>* faces,
+                      const SurveyState* state, const std::optional<LadderAim>& ladders) {
+  return source.resident() != nullptr && rows.team().alone() && !widths && faces == nullptr && ladders &&
+         ladders->has_rungs() && !ladders->lattice && (state == nullptr || state->done.empty());
+}
+
 }  // namespace
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
                      const Pauses& pauses, const std::optional<LadderAim>& ladders) {
+  if (surveys_resident(source, rows, widths, faces, state, ladders)) {
+    const BlockSurvey survey(source.info(), rows, nullptr, false, options.trace, ladders);
+    return survey.result(survey_resident(*source.resident(), source, rows, *ladders, options));
+  }
   BlockSurvey survey(source.info(), rows, faces, widths, options.trace, ladders);
   SurveyState from_nothing;
   SurveyState& known = state == nullptr ? from_nothing : *state;

@@ -38,8 +38,12 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
       }
     }
   }
+  check(leaf, leaf_digest({own.data(), static_cast<std::size_t>(volume(extent))}));
+}
+
+void SurveyedLeaves::check(const Index3& leaf, const Digest& digest) const {
   const Digest& surveyed = digests_[static_cast<std::size_t>(linear_index(leaf - leaf_box_.lo, leaf_box_.extent()))];
-  if (leaf_digest({own.data(), static_cast<std::size_t>(volume(extent))}) != surveyed) fail(inside);
+  if (digest != surveyed) fail(leaves_.voxels(leaf));
 }
 
 void SurveyedLeaves::fail(const Box& inside) const {

@@ -21,6 +21,8 @@ class SurveyedLeaves {
   /// Throws Error(input) where the in-domain values of `leaf` (a lattice position in the box) are not those that were
   /// surveyed. `values`, x fastest, are those over `voxels`, which hold the leaf's. Costs about 0.2 us.
   void check(const Index3& leaf, std::span<const float> values, const Box& voxels) const;
+  /// The same by the digest of its in-domain values.
+  void check(const Index3& leaf, const Digest& digest) const;
 
  private:
   [[noreturn]] void fail(const Box& inside) const;

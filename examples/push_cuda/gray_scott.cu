@@ -1,7 +1,7 @@
 // gray_scott_cuda EDGE STEPS EVERY DIRECTORY [DEVICE_BYTES]: two substances that react and diffuse (Gray and Scott,
 // 1984) in EDGE^3 voxels on a device. Of every EVERY-th step the second one's concentration becomes
 // DIRECTORY/v_NNNN.nvdb, from the buffer it was computed into, while the next steps run. DEVICE_BYTES of the device's
-// memory, if given, hold what has not crossed the bus. Prints how long steps take while none is saved, and while one
+// memory, if given, hold what is being saved: where all of a step fits, it is coded there and does not cross the bus. Prints how long steps take while none is saved, and while one
 // is.
 #include <weir_cuda.h>
 
@@ -70,6 +70,7 @@ weir_push* begin_push(const std::string& output, int n, uint64_t device_bytes) {
   options.encoding = WEIR_ENCODING_PACKED;
   options.budget_kind = WEIR_BUDGET_PSNR;  // as few bytes as keep 70 dB of a volume that is mostly empty
   options.budget = 70;
+  options.memory = 2ULL << 30U;  // from 1 GiB on the device surveys and encodes
   options.overwrite = 1;
   weir_push* push = nullptr;
   weir_error error;

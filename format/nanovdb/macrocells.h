@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "format/base/index.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 
@@ -29,11 +30,6 @@ std::string macrocell_name(const MacrocellName& shape);
 /// Inverse; nullopt where the text is not such a name, cell is no multiple of 8 in [8, 4096] or
 /// apron is not in [0, 8].
 std::optional<MacrocellName> parse_macrocell_name(std::string_view text);
-
-struct MinMax {
-  float min;
-  float max;
-};
 
 /// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
 /// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).

@@ -1,6 +1,6 @@
-// Where many packed blocks are looked at and encoded at a time: a device. What it gives has the bits that
-// TransformBlock gives; what it leaves is for its caller to do. Made by who has a device; the conversion knows this
-// interface alone.
+// Where many packed blocks are looked at and encoded at a time: a device. What it gives has the bits that the host
+// gives; what it leaves is for its caller to do. Made by who has a device; the conversion knows these interfaces alone:
+// BlockCoder for values of the host, ResidentVolume for values that are on the device already.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "format/base/index.h"
+#include "format/io/digest.h"
+#include "format/leaf/block_summary.h"
+#include "format/leaf/leaf_record.h"
 #include "format/packed/block_constants.h"
 #include "format/packed/block_steps.h"
 
@@ -62,13 +66,23 @@ struct StreamAsk {
 struct SurveyedBlocks {
   std::span<const BlockFigures> figures;
   std::span<const RungCost> costs;
+  /// Of resident blocks alone, of each that lies wholly in the volume and whose values are all finite; of one whose
+  /// values are not, `finite` alone.
+  std::span<const BlockSummary> summaries;
+};
+
+/// Of a stream that was written: what the nodes above it need, and the digest of its block's values.
+struct MadeRecord {
+  LeafRecord record;
+  Digest source;
 };
 
 /// Streams and what they decode to, by ask.
 struct MadeStreams {
-  std::span<const std::byte> bytes;    ///< of all, one after the other
-  std::span<const float> decoded;      ///< 512 of each, in the order of a leaf
-  std::span<const std::uint8_t> made;  ///< 0: the caller has to encode it
+  std::span<const std::byte> bytes;     ///< of all, one after the other
+  std::span<const float> decoded;       ///< 512 of each, in the order of a leaf; none of resident blocks
+  std::span<const std::uint8_t> made;   ///< 0: the caller has to encode it
+  std::span<const MadeRecord> records;  ///< of resident blocks alone
 };
 
 /// Streams that are being written.
@@ -115,6 +129,41 @@ class BlockCoder {
   virtual std::unique_ptr<LoadedBlocks> load(std::span<const float> values, const Box& voxels, const Box& blocks) = 0;
 
   /// What it takes of the process's memory while it works, at most, in bytes.
+  virtual std::uint64_t host_bytes() const = 0;
+};
+
+/// Blocks of a resident volume.
+class ResidentBlocks : public LoadedBlocks {
+ public:
+  /// The values of some of them, 512 of each in the order of a leaf; outside the volume those of the nearest voxel
+  /// inside. They stay until the next call. Nullopt where that has failed.
+  virtual std::optional<std::span<const float>> values(std::span<const std::uint32_t> blocks) = 0;
+};
+
+/// A volume of float32 values, x fastest and without gaps, that lies where blocks are looked at: only what becomes of
+/// them crosses the host's memory. Any threads may use it at once.
+class ResidentVolume {
+ public:
+  ResidentVolume() = default;
+  virtual ~ResidentVolume() = default;
+  ResidentVolume(const ResidentVolume&) = delete;
+  ResidentVolume& operator=(const ResidentVolume&) = delete;
+
+  /// Its voxels, in index space.
+  virtual const Box& voxels() const = 0;
+  /// The blocks of a box, multiples of 8 long; every stream asked for must be of one that lies wholly in the volume.
+  /// Null where it has failed, has no room, or has most_open() of them: the caller reads the values then.
+  virtual std::unique_ptr<ResidentBlocks> open(const Box& blocks) = 0;
+  virtual std::size_t most_open() const = 0;
+
+  /// How many of its finite values v have floor(v * 2^-exponent) - base = i, by i < bins, which all of them have.
+  /// Nullopt where that has failed.
+  virtual std::optional<std::vector<std::uint64_t>> count(int exponent, double base, std::size_t bins) = 0;
+
+  /// Values over a box inside it, x fastest. Throws Error(io).
+  virtual void read(const Box& box, std::span<float> values) = 0;
+
+  /// What it takes of the process's memory, at most, in bytes.
   virtual std::uint64_t host_bytes() const = 0;
 };
 

@@ -19,6 +19,14 @@ namespace weir {
 /// A device's driver takes some hundred MiB of the process: nobody who gives less memory gets one unasked.
 inline constexpr std::uint64_t kLeastMemoryOfDevice = std::uint64_t{1} << 30U;
 
+/// Says what a device has failed at, after which the CPU does its work.
+inline std::function<void(const Error&)> say_device_failure(const Notice& notice) {
+  return [notice](const Error& error) {
+    if (notice)
+      notice(cat("the CUDA device has failed (", error.what(), "); the CPU does its work, to the same bytes"));
+  };
+}
+
 /// Of a conversion whose blocks are `packed`, or may be no such ones, under a ceiling of `memory` bytes; null: the CPU.
 /// What fails later, and with CoderChoice::automatic before, is said to `notice`, once: the CPU goes on. Throws
 /// Error(usage) for CoderChoice::cuda where blocks are not packed, or this build or this machine has no device, and
@@ -32,10 +40,7 @@ inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed,
                                           " alone; give that, or use ", option("backend", "auto")));
   }
 #ifdef WEIR_HAVE_CUDA
-  const auto failed = [notice](const Error& error) {
-    if (notice)
-      notice(cat("the CUDA device has failed (", error.what(), "); the CPU does its work, to the same bytes"));
-  };
+  const auto failed = say_device_failure(notice);
   if (choice == CoderChoice::cuda) return make_device_coder(0, failed);
   if (device_count() == 0) return nullptr;
   try {

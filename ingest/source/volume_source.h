@@ -18,6 +18,8 @@
 
 namespace weir {
 
+class ResidentVolume;
+
 /// What a source knows about its volume without reading it.
 struct SourceInfo {
   std::string path;
@@ -90,6 +92,10 @@ class VolumeSource {
   /// The same as read, by the calling thread alone and without asking again whether the bytes are in
   /// memory: for callers that in_memory() told so.
   virtual ConversionLoss read_alone(const Box& box, std::span<float> values) { return read(box, values); }
+
+  /// The same values where a device has them (format/packed/block_coder.h); null where none has. Lives as long as the
+  /// source.
+  virtual ResidentVolume* resident() { return nullptr; }
 
   /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
   virtual std::uint64_t working_bytes() const { return 0; }

@@ -12,6 +12,10 @@
 
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
+#include "gpu/cuda/encode/device_blocks.h"
+#include "gpu/cuda/encode/record_steps.h"
+#include "gpu/cuda/encode/resident_volume.h"
+#include "gpu/cuda/encode/summary_steps.h"
 #include "tests/cuda/support/device_reads.h"
 #include "tests/support/block_volumes.h"
 
@@ -146,6 +150,129 @@ TEST(DeviceCoder, StreamsAndDecodedValuesAreThoseOfTheHost) {
     }
   }
   EXPECT_GT(compared, 3000U);
+}
+
+// The steps' results on the host, which tests/fake_coder/ compares with the CPU's own code.
+TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost) {
+  WEIR_NEEDS_DEVICE();
+  using namespace encode_detail;
+  const DigestTables tables;
+  std::size_t summarized = 0;
+  std::size_t recorded = 0;
+  for (const test::BlockVolume& volume : test::block_volumes()) {
+    SCOPED_TRACE(volume.name);
+    const Blocks blocks(volume);
+    const DeviceArray<float> on_device(volume.values);
+    const auto resident = make_resident_volume(0, on_device.data(), blocks.voxels, expect_no_failure);
+    const auto opened = resident->open(blocks.blocks);
+    ASSERT_NE(opened, nullptr);
+    const std::int64_t count = weir::volume(blocks.count());
+
+    std::vector<std::uint32_t> wanted;
+    for (std::int64_t b = count - 1; b >= 0; b -= 3) wanted.push_back(static_cast<std::uint32_t>(b));
+    const auto values = opened->values(wanted);
+    ASSERT_TRUE(values);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const Values expected = blocks.of(wanted[i]);
+      ASSERT_EQ(std::memcmp(expected.data(), values->data() + 512 * i, sizeof expected), 0) << wanted[i];
+    }
+
+    const std::optional<BlockBox> placed = block_box(blocks.voxels, blocks.blocks);
+    ASSERT_TRUE(placed);
+    BlockBox box = *placed;
+    box.values = volume.values.data();
+    const Index3 first = {floor_div(blocks.blocks.lo.x, 8), floor_div(blocks.blocks.lo.y, 8),
+                          floor_div(blocks.blocks.lo.z, 8)};
+    const NodeLattice lattice = make_lattice(blocks.voxels, 8);
+    const BlockPlace place{{first.x - lattice.first.x, first.y - lattice.first.y, first.z - lattice.first.z},
+                           {lattice.count.x, lattice.count.y},
+                           {static_cast<std::uint32_t>(first.x % 2), static_cast<std::uint32_t>(first.y % 2),
+                            static_cast<std::uint32_t>(first.z % 2)}};
+    opened->begin_survey({});
+    const auto surveyed = opened->end_survey();
+    ASSERT_TRUE(surveyed);
+    std::vector<BlockSummary> expected(static_cast<std::size_t>(count));
+    SummaryStage stage;
+    for (std::uint32_t b = 0; b < count; ++b) {
+      summarize_block(HostWarp{}, {box, place, &tables, expected.data()}, tables, b, stage);
+      const BlockSummary& found = surveyed->summaries[b];
+      ASSERT_EQ(found.finite, expected[b].finite) << b;
+      if (found.finite < 512) continue;
+      ASSERT_EQ(std::memcmp(&found, &expected[b], sizeof found), 0) << b;
+      ++summarized;
+    }
+
+    TransformBlock transform;
+    std::vector<StreamAsk> asks;
+    std::uint32_t offset = 0;
+    BlockConstants constants;
+    constants.minimum = *std::min_element(volume.values.begin(), volume.values.end());
+    constants.maximum = *std::max_element(volume.values.begin(), volume.values.end());
+    constants.below_one = kBelowOne;
+    constants.below_more = kBelowMore;
+    constants.tables = built_in_tables();
+    constants.coarsest = kMostStep;
+    for (std::int64_t b = 0; b < count; ++b) {
+      const Values own = blocks.of(b);
+      if (!all_finite(own) || !transform.set(own) || !(transform.largest() > 0)) continue;
+      const std::int32_t step = rung_step(first_rung_step(transform.largest()), 9);
+      const MeanRange means{transform.mean(), transform.mean()};
+      if (step < kLeastStep || step > kMostStep || mean_bits(means, step) == kNoMeanBits) continue;
+      const TransformBlock::Cost cost = transform.cost(step);
+      if (cost.bits > 8 * 2040) continue;
+      const auto bytes = static_cast<std::uint16_t>(stream_bytes(cost.bits, mean_bits(means, step)));
+      asks.push_back({means, static_cast<std::uint32_t>(b), offset, bytes, static_cast<std::int16_t>(step)});
+      offset += bytes;
+      constants.coarsest = std::min<std::int32_t>(constants.coarsest, step);
+    }
+    std::erase_if(asks, [&](const StreamAsk& ask) { return ask.step > constants.coarsest + 63; });
+    if (asks.empty()) continue;
+    const auto pending = opened->encode(asks, constants);
+    ASSERT_NE(pending, nullptr);
+    const auto made = pending->wait();
+    ASSERT_TRUE(made);
+    for (std::size_t i = 0; i < asks.size(); ++i) {
+      if (made->made[i] == 0) continue;
+      Values decoded;
+      ASSERT_TRUE(
+          decode_block(constants, asks[i].means, made->bytes.data() + asks[i].offset, asks[i].bytes, decoded.data()));
+      MadeRecord record;
+      const RecordCall call{box, place, &tables, &asks[i], 1, decoded.data(), &record};
+      StatisticsTile tile;
+      RecordStage record_stage;
+      add_statistics(HostWarp{}, call, 0, tile);
+      make_record(HostWarp{}, call, tables, 0, record_stage);
+      ASSERT_EQ(std::memcmp(&record, &made->records[i], sizeof record), 0) << asks[i].block;
+      ++recorded;
+    }
+  }
+  EXPECT_GT(summarized, 300U);
+  EXPECT_GT(recorded, 200U);
+}
+
+TEST(ResidentVolume, CountsEveryFiniteValueAndReadsAnyBox) {
+  WEIR_NEEDS_DEVICE();
+  const Box voxels{{-3, 0, 9}, {60, 41, 40}};
+  std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 7 < 5 ? 0.0F : static_cast<float>(i % 1000) / 8;
+  values[5] = std::nanf("");
+  const DeviceArray<float> on_device(values);
+  const auto resident = make_resident_volume(0, on_device.data(), voxels, expect_no_failure);
+  const auto counts = resident->count(-2, 0.0, 500);
+  ASSERT_TRUE(counts);
+  std::vector<std::uint64_t> expected(500);
+  for (const float v : values) {
+    if (std::isfinite(v)) ++expected[static_cast<std::size_t>(std::floor(v * 4))];
+  }
+  EXPECT_EQ(*counts, expected);
+  const Box box{{2, 7, 11}, {33, 30, 29}};
+  std::vector<float> read(static_cast<std::size_t>(box.voxels()));
+  resident->read(box, read);
+  for (std::int64_t i = 0; i < box.voxels(); ++i) {
+    const Index3 voxel = box.lo + index_at(i, box.extent());
+    ASSERT_EQ(read[static_cast<std::size_t>(i)],
+              values[static_cast<std::size_t>(linear_index(voxel - voxels.lo, voxels.extent()))]);
+  }
 }
 
 }  // namespace

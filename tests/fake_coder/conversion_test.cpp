@@ -2,10 +2,7 @@
 // and where the device fails the CPU goes on.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,9 +14,8 @@
 #include "gpu/cuda/encode/device_coder.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/values/array_source.h"
-#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/hard_cases.h"
-#include "tests/compressor/support/memory_volume.h"
+#include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/message_of_error.h"
 
@@ -28,61 +24,6 @@ namespace {
 
 using test::FakeRuntime;
 using test::MemoryVolume;
-
-double waves(const Index3& i, int octaves) {
-  const auto x = static_cast<double>(i.x), y = static_cast<double>(i.y), z = static_cast<double>(i.z);
-  double sum = 0;
-  double size = 1;
-  for (int o = 1; o <= octaves; ++o, size *= 0.5) {
-    const double f = 0.03 * std::pow(1.9, o);
-    sum += size * std::sin(f * x + 1.3 * o) * std::cos(f * y - 0.7 * o) * std::sin(f * (z + 0.31 * x) + o);
-  }
-  return sum;
-}
-
-// No axis is a multiple of 8 long, nor begins at one.
-constexpr Box kOdd{{-3, 5, 130}, {98, 66, 181}};
-
-MemoryVolume cloud(const Box& domain = kOdd) {
-  return {domain, [](const Index3& i) { return static_cast<float>(std::max(0.0, waves(i, 5) - 0.15)); }};
-}
-MemoryVolume turbulence(const Box& domain = kOdd) {
-  return {domain, [](const Index3& i) { return static_cast<float>(40 * waves(i, 7)); }};
-}
-
-struct Result {
-  std::vector<std::byte> file;
-  std::vector<std::string> notices;
-  Sidecar sidecar;
-};
-
-Result convert_by(BlockCoder* coder, VolumeSource& volume, ConversionOptions options) {
-  test::CrashFileSystem files;
-  options.output = "out.nvdb";
-  options.encoding = Encoding::packed;
-  options.memory = std::uint64_t{4} << 30U;
-  if (options.threads == 0) options.threads = 2;
-  Result result;
-  ConversionControl control;
-  control.notice = [&](const Message& line) { result.notices.push_back(line.text()); };
-  control.coder = coder;
-  result.sidecar = convert_volume(volume, options, control, files);
-  result.file = files.content("out.nvdb");
-  return result;
-}
-
-ConversionOptions with(const Budget& budget) {
-  ConversionOptions options;
-  options.budget = budget;
-  return options;
-}
-Budget budget_of(Budget::Kind kind, double value) {
-  Budget budget;
-  budget.kind = kind;
-  budget.rate = kind == Budget::Kind::rate ? value : budget.rate;
-  budget.target = value;
-  return budget;
-}
 
 class FakeCoder : public testing::Test {
  protected:
@@ -97,26 +38,8 @@ class FakeCoder : public testing::Test {
 };
 
 TEST_F(FakeCoder, FilesHaveTheBytesOfTheCpuWhateverTheBudgetAndTheThreads) {
-  struct Case {
-    std::string name;
-    Budget budget;
-    bool by_device;  // some of it
-  };
-  Budget size;
-  size.kind = Budget::Kind::size;
-  size.bytes = 200'003;
-  Budget lossless;
-  lossless.kind = Budget::Kind::lossless;
-  const std::vector<Case> cases{{"rate 4", budget_of(Budget::Kind::rate, 4), true},
-                                {"rate 9", budget_of(Budget::Kind::rate, 9), true},
-                                {"size", size, true},
-                                {"psnr 45", budget_of(Budget::Kind::psnr, 45), true},
-                                {"psnr 80", budget_of(Budget::Kind::psnr, 80), true},
-                                {"default", Budget{}, true},
-                                {"max-error", budget_of(Budget::Kind::max_error, 0.01), true},
-                                {"lossless", lossless, false}};
   const std::unique_ptr<BlockCoder> device = coder();
-  for (const Case& c : cases) {
+  for (const NamedBudget& c : budgets()) {
     for (const bool smooth : {true, false}) {
       SCOPED_TRACE(c.name + (smooth ? ", cloud" : ", turbulence"));
       MemoryVolume volume = smooth ? cloud() : turbulence();
@@ -132,7 +55,7 @@ TEST_F(FakeCoder, FilesHaveTheBytesOfTheCpuWhateverTheBudgetAndTheThreads) {
         EXPECT_EQ(result.sidecar.error.max_abs, expected.sidecar.error.max_abs);
         EXPECT_EQ(result.sidecar.error.psnr_db, expected.sidecar.error.psnr_db);
         EXPECT_EQ(result.notices, expected.notices);
-        if (c.by_device) {
+        if (c.name != "lossless") {  // some of it is by the device
           EXPECT_GT(runtime().calls("cudaHostAlloc") + runtime().calls("cudaMemcpyAsync"), before);
         }
       }

@@ -1,6 +1,8 @@
 // In place of the kernels that survey and encode packed blocks: their steps, a block after the other.
 #include "gpu/cuda/encode/launch.h"
+#include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
+#include "gpu/cuda/encode/summary_steps.h"
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
@@ -20,6 +22,37 @@ void launch_encode(const EncodeCall& call, cudaStream_t /*stream*/) {
     code_block(encode_detail::HostWarp{}, call, *call.tables, i, stage);
     put_words(call, *call.codes, i);
     put_bytes(encode_detail::HostWarp{}, call, i);
+  }
+}
+
+void launch_records(const RecordCall& call, cudaStream_t /*stream*/) {
+  encode_detail::StatisticsTile tile;
+  encode_detail::RecordStage stage;
+  for (std::uint32_t i = 0; i < call.count; i += encode_detail::kLanes) {
+    add_statistics(encode_detail::HostWarp{}, call, i, tile);
+  }
+  for (std::uint32_t i = 0; i < call.count; ++i) {
+    make_record(encode_detail::HostWarp{}, call, *call.tables, i, stage);
+  }
+}
+
+void launch_summaries(const SummaryCall& call, cudaStream_t /*stream*/) {
+  encode_detail::SummaryStage stage;
+  for (std::uint32_t b = 0; b < call.box.count(); ++b) {
+    summarize_block(encode_detail::HostWarp{}, call, *call.tables, b, stage);
+  }
+}
+
+void launch_values(const ValuesCall& call, cudaStream_t /*stream*/) {
+  float stage[kStageWords];
+  for (std::uint32_t i = 0; i < call.count; ++i) copy_block(encode_detail::HostWarp{}, call, i, stage);
+}
+
+void launch_count(const CountCall& call, cudaStream_t /*stream*/) {
+  check_cuda(cudaStreamSynchronize(nullptr), "counting values on the device");
+  for (std::uint64_t i = 0; i < call.count; ++i) {
+    const std::uint32_t bin = bin_of_value(call, call.values[i]);
+    if (bin < call.bins) ++call.counts[bin];
   }
 }
 

@@ -117,6 +117,19 @@ cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaM
   std::memcpy(to, from, bytes);
   return cudaSuccess;
 }
+cudaError_t cudaMemcpy3DAsync(const cudaMemcpy3DParms* parts, cudaStream_t) {
+  WEIR_ENTER("cudaMemcpy3DAsync");
+  const auto row = [](const cudaPitchedPtr& all, const cudaPos& first, std::size_t y, std::size_t z) {
+    return static_cast<char*>(all.ptr) + first.x + all.pitch * (first.y + y + all.ysize * (first.z + z));
+  };
+  for (std::size_t z = 0; z < parts->extent.depth; ++z) {
+    for (std::size_t y = 0; y < parts->extent.height; ++y) {
+      std::memcpy(row(parts->dstPtr, parts->dstPos, y, z), row(parts->srcPtr, parts->srcPos, y, z),
+                  parts->extent.width);
+    }
+  }
+  return cudaSuccess;
+}
 cudaError_t cudaMemset(void* memory, int value, std::size_t bytes) {
   WEIR_ENTER("cudaMemset");
   std::memset(memory, value, bytes);

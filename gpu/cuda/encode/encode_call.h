@@ -10,6 +10,8 @@
 
 namespace weir {
 
+struct DigestTables;
+
 /// Values on the device, x fastest, and the blocks that they are the values of.
 struct BlockBox {
   const float* values = nullptr;
@@ -19,6 +21,51 @@ struct BlockBox {
 
   WEIR_HOST_DEVICE std::uint32_t count() const { return blocks[0] * blocks[1] * blocks[2]; }
 };
+
+/// Where the blocks of a box lie among those of their volume.
+struct BlockPlace {
+  std::int64_t first[3] = {};   ///< position of the first one
+  std::int64_t across[2] = {};  ///< blocks of the volume along x and y
+  std::uint32_t odd[3] = {};    ///< whether the first one's place among all of index space is, along each axis
+
+  /// By position in the box, of the volume, x fastest.
+  WEIR_HOST_DEVICE std::int64_t linear(const BlockBox& box, std::uint32_t block) const {
+    const std::uint32_t column = block % (box.blocks[0] * box.blocks[1]);
+    const std::int64_t x = first[0] + column % box.blocks[0];
+    const std::int64_t y = first[1] + column / box.blocks[0];
+    const std::int64_t z = first[2] + block / (box.blocks[0] * box.blocks[1]);
+    return x + across[0] * (y + across[1] * z);
+  }
+};
+
+/// What summarises blocks.
+struct SummaryCall {
+  BlockBox box;
+  BlockPlace place;
+  const DigestTables* tables = nullptr;
+  BlockSummary* summaries = nullptr;  ///< of each block
+};
+
+/// What copies the values of blocks.
+struct ValuesCall {
+  BlockBox box;
+  const std::uint32_t* blocks = nullptr;
+  std::uint32_t count = 0;  ///< of these
+  float* values = nullptr;  ///< 512 of each, in the order of a leaf
+};
+
+/// What counts values in bins.
+struct CountCall {
+  const float* values = nullptr;
+  std::uint64_t count = 0;
+  double scale = 0;  ///< of a value
+  double base = 0;   ///< of the first bin
+  std::uint32_t bins = 0;
+  unsigned long long* counts = nullptr;
+};
+
+/// Most bins of a CountCall.
+inline constexpr std::uint32_t kMostCountedBins = 1024;
 
 /// What a survey works on.
 struct SurveyCall {
@@ -59,6 +106,17 @@ struct EncodeCall {
   std::uint8_t* made = nullptr;
 
   WEIR_HOST_DEVICE std::size_t words_at(std::uint32_t i) const { return asks[i].offset / 2 + std::size_t{i}; }
+};
+
+/// What makes records of streams that were written.
+struct RecordCall {
+  BlockBox box;
+  BlockPlace place;
+  const DigestTables* tables = nullptr;
+  const StreamAsk* asks = nullptr;
+  std::uint32_t count = 0;         ///< of asks; the rest is by ask
+  const float* decoded = nullptr;  ///< 512 of each
+  MadeRecord* records = nullptr;
 };
 
 }  // namespace weir

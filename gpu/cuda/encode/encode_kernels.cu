@@ -2,7 +2,9 @@
 #include <cstdint>
 
 #include "gpu/cuda/encode/launch.h"
+#include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
+#include "gpu/cuda/encode/summary_steps.h"
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
@@ -15,6 +17,7 @@ constexpr unsigned kThreads = kWarps * kLanes;
 constexpr unsigned kSurveyGroups = 4;  // a multiprocessor, at least
 constexpr unsigned kCodeGroups = 5;
 constexpr unsigned kWordThreads = 128;
+constexpr unsigned kStatisticsWarps = 4;
 constexpr std::uint32_t kMostGroups = 132 * 16;  // so many fill every device; each of their warps takes several blocks
 
 // All of a group's threads.
@@ -63,6 +66,67 @@ __global__ void __launch_bounds__(kThreads) put_all_bytes(EncodeCall call) {
   }
 }
 
+__global__ void __launch_bounds__(kThreads) summarize_blocks(SummaryCall call) {
+  __shared__ DigestTables tables;
+  __shared__ SummaryStage stages[kWarps];
+  load_tables(tables, call.tables);
+  const unsigned warp = threadIdx.x / kLanes;
+  const std::uint32_t count = call.box.count();
+  for (std::uint32_t b = blockIdx.x * kWarps + warp; b < count; b += gridDim.x * kWarps) {
+    summarize_block(DeviceWarp{}, call, tables, b, stages[warp]);
+    __syncwarp();
+  }
+}
+
+__global__ void __launch_bounds__(kThreads) copy_blocks(ValuesCall call) {
+  __shared__ float stages[kWarps][kStageWords];
+  const unsigned warp = threadIdx.x / kLanes;
+  for (std::uint32_t i = blockIdx.x * kWarps + warp; i < call.count; i += gridDim.x * kWarps) {
+    copy_block(DeviceWarp{}, call, i, stages[warp]);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads) count_values(CountCall call) {
+  __shared__ std::uint32_t counts[kMostCountedBins];
+  for (unsigned i = threadIdx.x; i < call.bins; i += blockDim.x) counts[i] = 0;
+  __syncthreads();
+  const std::uint64_t step = std::uint64_t{gridDim.x} * blockDim.x;
+  for (std::uint64_t first = std::uint64_t{blockIdx.x} * blockDim.x; first < call.count; first += step) {
+    const std::uint64_t i = first + threadIdx.x;
+    const std::uint32_t bin = i < call.count ? bin_of_value(call, call.values[i]) : kMostCountedBins;
+    // Of empty space all lanes have one bin.
+    if (__all_sync(~0U, bin == __shfl_sync(~0U, bin, 0))) {
+      if (threadIdx.x % kLanes == 0 && bin < kMostCountedBins) atomicAdd(&counts[bin], kLanes);
+    } else if (bin < kMostCountedBins) {
+      atomicAdd(&counts[bin], 1U);
+    }
+  }
+  __syncthreads();
+  for (unsigned i = threadIdx.x; i < call.bins; i += blockDim.x) {
+    if (counts[i] != 0) atomicAdd(&call.counts[i], static_cast<unsigned long long>(counts[i]));
+  }
+}
+
+__global__ void __launch_bounds__(kStatisticsWarps* kLanes) add_all_statistics(RecordCall call) {
+  __shared__ StatisticsTile tiles[kStatisticsWarps];
+  const unsigned warp = threadIdx.x / kLanes;
+  const std::uint32_t step = gridDim.x * kStatisticsWarps * kLanes;
+  for (std::uint32_t first = (blockIdx.x * kStatisticsWarps + warp) * kLanes; first < call.count; first += step) {
+    add_statistics(DeviceWarp{}, call, first, tiles[warp]);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads) make_records(RecordCall call) {
+  __shared__ DigestTables tables;
+  __shared__ RecordStage stages[kWarps];
+  load_tables(tables, call.tables);
+  const unsigned warp = threadIdx.x / kLanes;
+  for (std::uint32_t i = blockIdx.x * kWarps + warp; i < call.count; i += gridDim.x * kWarps) {
+    make_record(DeviceWarp{}, call, tables, i, stages[warp]);
+    __syncwarp();
+  }
+}
+
 unsigned groups_for(std::uint32_t count, unsigned each) {
   return std::clamp((count + each - 1) / each, 1U, kMostGroups);
 }
@@ -80,6 +144,28 @@ void launch_encode(const EncodeCall& call, cudaStream_t stream) {
   put_all_words<<<groups_for(call.count, kWordThreads), kWordThreads, 0, stream>>>(call);
   put_all_bytes<<<groups, kThreads, 0, stream>>>(call);
   check_cuda(cudaGetLastError(), "encoding blocks on the device");
+}
+
+void launch_records(const RecordCall& call, cudaStream_t stream) {
+  constexpr unsigned kAsks = kStatisticsWarps * kLanes;
+  add_all_statistics<<<groups_for(call.count, kAsks), kAsks, 0, stream>>>(call);
+  make_records<<<groups_for(call.count, kWarps), kThreads, 0, stream>>>(call);
+  check_cuda(cudaGetLastError(), "encoding blocks on the device");
+}
+
+void launch_summaries(const SummaryCall& call, cudaStream_t stream) {
+  summarize_blocks<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
+  check_cuda(cudaGetLastError(), "surveying blocks on the device");
+}
+
+void launch_values(const ValuesCall& call, cudaStream_t stream) {
+  copy_blocks<<<groups_for(call.count, kWarps), kThreads, 0, stream>>>(call);
+  check_cuda(cudaGetLastError(), "copying blocks from the device");
+}
+
+void launch_count(const CountCall& call, cudaStream_t stream) {
+  count_values<<<kMostGroups, kThreads, 0, stream>>>(call);
+  check_cuda(cudaGetLastError(), "counting values on the device");
 }
 
 }  // namespace weir

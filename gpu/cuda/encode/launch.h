@@ -14,4 +14,16 @@ void launch_survey(const SurveyCall& call, cudaStream_t stream);
 /// code_block(), put_words() and put_bytes() of each ask.
 void launch_encode(const EncodeCall& call, cudaStream_t stream);
 
+/// add_statistics() and make_record() of each ask, whose streams were written before.
+void launch_records(const RecordCall& call, cudaStream_t stream);
+
+/// summarize_block() of each block of the box.
+void launch_summaries(const SummaryCall& call, cudaStream_t stream);
+
+/// copy_block() of each block that is wanted.
+void launch_values(const ValuesCall& call, cudaStream_t stream);
+
+/// Adds each value to the count of bin_of_value().
+void launch_count(const CountCall& call, cudaStream_t stream);
+
 }  // namespace weir

@@ -1,6 +1,8 @@
 // Memory of a device and page-locked memory that calls use one after the other, and grow where one needs more.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -35,15 +37,19 @@ class GrowingArray {
 
 class GrowingPinned {
  public:
+  /// Pages are locked a few MiB a millisecond: seldom, then.
+  static constexpr std::size_t kLeastPinned = std::size_t{1} << 21U;
+
   /// As GrowingArray::at_least.
   std::byte* at_least(std::size_t bytes) {
     if (bytes > bytes_) {
       memory_.reset();
       bytes_ = 0;
       std::string refusal;
-      memory_ = PinnedMemory::make(bytes + bytes / 4, refusal);
+      const std::size_t wanted = std::max(kLeastPinned, std::bit_ceil(bytes));
+      memory_ = PinnedMemory::make(wanted, refusal);
       if (!memory_) throw Error(ErrorKind::io, refusal);
-      bytes_ = bytes + bytes / 4;
+      bytes_ = wanted;
     }
     return memory_->data();
   }

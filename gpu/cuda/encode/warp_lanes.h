@@ -57,6 +57,21 @@ class HostWarp {
       for (unsigned lane = 0; lane < kGroup; ++lane) sums(group + lane) = sum;
     }
   }
+  /// Sums over the lanes of the same place in each group.
+  void add_across_groups(Own<std::uint64_t>& own) const {
+    for (unsigned at = 0; at < kGroup; ++at) {
+      std::uint64_t sum = 0;
+      for (unsigned lane = at; lane < kLanes; lane += kGroup) sum += own(lane);
+      for (unsigned lane = at; lane < kLanes; lane += kGroup) own(lane) = sum;
+    }
+  }
+  /// The sum over the first 16 lanes: each with that 8 further on, then 4, 2 and 1.
+  double add_pairwise(Own<double>& own) const {
+    for (unsigned away = kLanes / 4; away > 0; away /= 2) {
+      for (unsigned lane = 0; lane < away; ++lane) own(lane) += own(lane + away);
+    }
+    return own(0);
+  }
   /// What the lanes before have together; the sum of all is returned.
   std::uint32_t add_before(Own<std::uint32_t>& own) const {
     std::uint32_t sum = 0;
@@ -111,6 +126,14 @@ class DeviceWarp {
     WEIR_UNROLL
     for (unsigned from = 0; from < kGroup; ++from) sum += static_cast<double>(__shfl_sync(~0U, own(0), from, kGroup));
     sums(0) = sum;
+  }
+  __device__ void add_across_groups(Own<std::uint64_t>& own) const {
+    for (unsigned away = kGroup; away < kLanes; away *= 2) own(0) += __shfl_xor_sync(~0U, own(0), away);
+  }
+  __device__ double add_pairwise(Own<double>& own) const {
+    double sum = own(0);
+    for (unsigned away = kLanes / 4; away > 0; away /= 2) sum += __shfl_xor_sync(~0U, sum, away);
+    return __shfl_sync(~0U, sum, 0);
   }
   __device__ std::uint32_t add_before(Own<std::uint32_t>& own) const {
     std::uint32_t sum = own(0);

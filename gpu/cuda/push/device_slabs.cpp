@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::string_view kCopying = "copying a slab from the device";
 
+}  // namespace
+
 bool without_gaps(const DeviceValues& values, const Index3& extent) {
   const auto bytes = static_cast<std::int64_t>(values.value_bytes);
   return values.stride[0] == bytes && values.stride[1] == bytes * extent.x &&
          values.stride[2] == bytes * extent.x * extent.y;
 }
-
-}  // namespace
 
 bool is_device_memory(const void* address) {
   if (device_count() == 0) return false;
@@ -77,15 +77,15 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
   }
 }
 
-void DeviceSlabs::check(const DeviceValues& values) const {
+void check_slab(const DeviceValues& values, int device) {
   int current = 0;
   check_cuda(cudaGetDevice(&current), "asking for the current device");
-  if (current != device_) {
-    throw Error(ErrorKind::usage, cat("device ", current, " is current, and the first slab came from device ", device_,
+  if (current != device) {
+    throw Error(ErrorKind::usage, cat("device ", current, " is current, and the first slab came from device ", device,
                                       "; make that one current"));
   }
-  const auto bytes = static_cast<std::int64_t>(value_bytes_);
-  const bool aligned = reinterpret_cast<std::uintptr_t>(values.first) % value_bytes_ == 0 &&
+  const auto bytes = static_cast<std::int64_t>(values.value_bytes);
+  const bool aligned = reinterpret_cast<std::uintptr_t>(values.first) % values.value_bytes == 0 &&
                        std::ranges::all_of(values.stride, [&](std::int64_t s) { return s % bytes == 0; });
   if (!aligned) {
     throw Error(ErrorKind::usage,

@@ -31,6 +31,13 @@ namespace weir {
 /// there is no device. Throws Error(io).
 bool is_device_memory(const void* address);
 
+/// Whether they are planes of `extent` values, x fastest and without gaps.
+bool without_gaps(const DeviceValues& values, const Index3& extent);
+
+/// Throws Error(usage) where the address or a stride is no multiple of the value's bytes, or another device than
+/// `device`, which the first slab came from, is current.
+void check_slab(const DeviceValues& values, int device);
+
 class DeviceSlabs {
  public:
   /// Takes planes [z0, z0 + nz), x fastest, without gaps. Called by one thread, whose exception ends the object's work.
@@ -50,9 +57,8 @@ class DeviceSlabs {
   DeviceSlabs(const DeviceSlabs&) = delete;
   DeviceSlabs& operator=(const DeviceSlabs&) = delete;
 
-  /// Throws Error(usage) where the address or a stride is no multiple of the value's bytes, or another device is
-  /// current.
-  void check(const DeviceValues& values) const;
+  /// check_slab() for its device.
+  void check(const DeviceValues& values) const { check_slab(values, device_); }
 
   /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, behind the work in `stream`. Waits
   /// while no slot is free. Work that is queued in `stream` afterwards may change the values. Any threads may call.

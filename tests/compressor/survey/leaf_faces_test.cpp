@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "compressor/leaf/bounds.h"
+#include "format/leaf/bounds.h"
 
 namespace weir::leaf_faces_test {
 namespace {

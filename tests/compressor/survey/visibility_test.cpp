@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "compressor/leaf/bounds.h"
 #include "format/base/error.h"
+#include "format/leaf/bounds.h"
 
 namespace weir::visibility_test {
 namespace {

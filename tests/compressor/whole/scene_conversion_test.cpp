@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "compressor/conversion.h"
-#include "compressor/leaf/bounds.h"
 #include "compressor/leaf/certificate.h"
 #include "compressor/survey/visibility.h"
 #include "format/base/error.h"
+#include "format/leaf/bounds.h"
 #include "format/nanovdb/read_box.h"
 #include "format/sidecar/scene_opacity.h"
 #include "tests/compressor/support/converted.h"

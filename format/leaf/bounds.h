@@ -3,9 +3,12 @@
 
 #include <limits>
 
-#include "format/nanovdb/nvdb_grid.h"
-
 namespace weir {
+
+struct MinMax {
+  float min;
+  float max;
+};
 
 /// Bounds of nothing: any value widens them.
 inline constexpr MinMax kNoBounds{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};

@@ -1,0 +1,44 @@
+// The values of those kept leaves of a region that a device has left to the host.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "format/base/index.h"
+#include "format/leaf/leaf_codec.h"
+
+namespace weir {
+
+class LeftLeaves {
+ public:
+  /// In a box of lattice positions.
+  explicit LeftLeaves(const Box& box) : box_(box), place_(static_cast<std::size_t>(box.voxels()), kNone) {}
+
+  void add(const Index3& leaf) {
+    place_[at(leaf)] = static_cast<std::int32_t>(leaves_.size());
+    leaves_.push_back(leaf);
+  }
+  const std::vector<Index3>& leaves() const { return leaves_; }
+
+  /// All of them, one after the other, each in the order of a leaf, outside the volume those of the nearest voxel
+  /// inside.
+  std::vector<float>& values() { return values_; }
+  /// Of one that was added.
+  const float* find(const Index3& leaf) const {
+    return values_.data() + static_cast<std::size_t>(place_[at(leaf)]) * kLeafVoxels;
+  }
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  std::size_t at(const Index3& leaf) const {
+    return static_cast<std::size_t>(linear_index(leaf - box_.lo, box_.extent()));
+  }
+
+  Box box_;
+  std::vector<std::int32_t> place_;
+  std::vector<Index3> leaves_;
+  std::vector<float> values_;
+};
+
+}  // namespace weir

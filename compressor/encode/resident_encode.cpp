@@ -1,0 +1,149 @@
+#include "compressor/encode/resident_encode.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "compressor/encode/coded_regions.h"
+#include "compressor/encode/left_leaves.h"
+#include "compressor/encode/packed_encoder.h"
+#include "compressor/packed/block_values.h"
+#include "compressor/survey/surveyed_leaves.h"
+#include "format/base/error.h"
+
+namespace weir {
+namespace {
+
+class ResidentEncode {
+ public:
+  ResidentEncode(ResidentVolume& resident, VolumeSource& source, const EncodeTarget& target,
+                 const StreamOptions& options)
+      : resident_(resident), source_(source), target_(target), options_(options), encoders_([&target] {
+          return make_packed_encoder(target);
+        }) {}
+
+  void run() {
+    std::vector<std::int64_t> regions;
+    for (std::size_t i = 0; i < target_.tree.regions.size(); ++i) {
+      if (target_.tree.regions[i].leaves > 0) regions.push_back(static_cast<std::int64_t>(i));
+    }
+    // The device works on one group while another one is written.
+    const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
+    std::vector<std::unique_ptr<Part>> next = begin(regions, 0, at_once);
+    for (std::size_t first = 0; first < regions.size(); first += at_once) {
+      if (options_.cancel != nullptr && *options_.cancel) throw Error(ErrorKind::interrupted, "interrupted");
+      const std::vector<std::unique_ptr<Part>> group = std::move(next);
+      next = begin(regions, first + at_once, at_once);
+      end(group);
+    }
+  }
+
+ private:
+  // A region that the device works on.
+  struct Part {
+    std::int64_t region;
+    Box box;                                 // its leaves
+    std::unique_ptr<ResidentBlocks> blocks;  // null: the host does all of it
+    std::unique_ptr<CodedBatch> batch;
+    LeftLeaves left;
+    std::optional<SurveyedLeaves> surveyed;
+  };
+
+  std::vector<std::unique_ptr<Part>> begin(const std::vector<std::int64_t>& regions, std::size_t first,
+                                           std::size_t count) {
+    std::vector<std::unique_ptr<Part>> parts(first < regions.size() ? std::min(count, regions.size() - first) : 0);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+      const TraceSpan span(target_.trace, "ask");
+      const std::int64_t region = regions[first + i];
+      const NodeLattice& leaves = target_.tree.leaves;
+      const Box box = target_.tree.leaf_box(region);
+      parts[i] = std::make_unique<Part>(Part{region, box, nullptr, nullptr, LeftLeaves(box), std::nullopt});
+      Part& part = *parts[i];
+      part.blocks = resident_.open({leaves.node_box(box.lo).lo, leaves.node_box(box.hi - Index3{1, 1, 1}).hi});
+      if (part.blocks) {
+        part.batch = std::make_unique<CodedBatch>(target_, box, std::span(&part.region, 1), *part.blocks,
+                                                  CodedBatch::Blocks::resident);
+      }
+      part.surveyed.emplace(target_.rows, box, source_.info());
+    });
+    return parts;
+  }
+
+  void end(const std::vector<std::unique_ptr<Part>>& parts) {
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) { take(*parts[i]); });
+    std::vector<std::pair<std::size_t, std::int64_t>> layers;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      for (std::int64_t x = parts[i]->box.lo.x; x < parts[i]->box.hi.x; ++x) layers.emplace_back(i, x);
+    }
+    tbb::parallel_for(std::size_t{0}, layers.size(), [&](std::size_t i) {
+      const TraceSpan span(target_.trace, "encode");
+      const Part& part = *parts[layers[i].first];
+      PackedLayerEncoder& encoder = *encoders_.local();
+      encoder.add_layer(part.region, places_of(part), *part.surveyed, layers[i].second, coded_of(part), part.left);
+      encoder.finish();
+    });
+    for (const std::unique_ptr<Part>& part : parts) {
+      const NodeLattice& leaves = target_.tree.leaves;
+      done_ += intersect({leaves.node_box(part->box.lo).lo, leaves.node_box(part->box.hi - Index3{1, 1, 1}).hi},
+                         leaves.domain)
+                   .voxels();
+    }
+    if (options_.progress) options_.progress(done_, target_.tree.leaves.domain.voxels());
+  }
+
+  const RegionPlaces& places_of(const Part& part) const { return part.batch->regions().front().places; }
+  const CodedRegion& coded_of(const Part& part) const { return part.batch->regions().front().coded; }
+
+  // Waits for its streams, and gets the values of what the device has left.
+  void take(Part& part) {
+    if (part.batch) {
+      part.batch->wait();
+    } else {
+      part.batch = std::make_unique<CodedBatch>(target_, part.box, part.region);
+    }
+    const StreamPlaces& places = *places_of(part).streams;
+    for (std::int64_t i = 0; i < part.box.voxels(); ++i) {
+      const Index3 leaf = part.box.lo + index_at(i, part.box.extent());
+      if (places.kept(target_.tree.mask_position(leaf)) && !coded_of(part).find(leaf)) part.left.add(leaf);
+    }
+    const std::vector<Index3>& left = part.left.leaves();
+    if (left.empty()) return;
+    part.left.values().resize(kLeafVoxels * left.size());
+    float* to = part.left.values().data();
+    if (part.blocks) {
+      std::vector<std::uint32_t> numbers;
+      for (const Index3& leaf : left) {
+        numbers.push_back(static_cast<std::uint32_t>(linear_index(leaf - part.box.lo, part.box.extent())));
+      }
+      if (const auto values = part.blocks->values(numbers)) {
+        std::copy(values->begin(), values->end(), to);
+        return;
+      }
+    }
+    for (const Index3& leaf : left) {
+      read_block(source_, target_.tree.leaves, leaf, to);
+      to += kLeafVoxels;
+    }
+  }
+
+  ResidentVolume& resident_;
+  VolumeSource& source_;
+  const EncodeTarget& target_;
+  const StreamOptions& options_;
+  tbb::enumerable_thread_specific<std::unique_ptr<PackedLayerEncoder>> encoders_;
+  std::int64_t done_ = 0;
+};
+
+}  // namespace
+
+void encode_resident(ResidentVolume& resident, VolumeSource& source, const EncodeTarget& target,
+                     const StreamOptions& options) {
+  ResidentEncode(resident, source, target, options).run();
+}
+
+}  // namespace weir

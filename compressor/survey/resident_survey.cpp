@@ -1,0 +1,194 @@
+#include "compressor/survey/resident_survey.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "compressor/packed/block_values.h"
+#include "format/base/error.h"
+
+namespace weir {
+namespace {
+
+// Blocks that the device looks at together, in rows along x: what it finds of them is at most 5 MiB.
+constexpr std::int64_t kMostBlocks = 4096;
+
+// Boxes of lattice positions that cover all of it: rows, or parts of one.
+std::vector<Box> leaf_boxes(const Index3& count) {
+  const Index3 most{std::min(count.x, kMostBlocks), std::clamp<std::int64_t>(kMostBlocks / count.x, 1, count.y), 1};
+  std::vector<Box> boxes;
+  for (std::int64_t z = 0; z < count.z; ++z) {
+    for (std::int64_t y = 0; y < count.y; y += most.y) {
+      for (std::int64_t x = 0; x < count.x; x += most.x) {
+        const Index3 lo{x, y, z};
+        boxes.push_back({lo, min(lo + most, count)});
+      }
+    }
+  }
+  return boxes;
+}
+
+class ResidentSurvey {
+ public:
+  ResidentSurvey(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                 const StreamOptions& options)
+      : resident_(resident),
+        source_(source),
+        leaves_(rows.leaves()),
+        ask_(ladders.rung_ask()),
+        options_(options),
+        survey_(source.info(), rows, nullptr, false, options.trace, ladders, BlockSurvey::Counting::elsewhere) {}
+
+  SurveyTally run() {
+    const std::vector<Box> boxes = leaf_boxes(leaves_.count);
+    // The device works on one group while the host takes what it has found of another.
+    const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
+    std::vector<Begun> group(at_once);
+    std::vector<Begun> next(at_once);
+    begin(boxes, 0, next);
+    for (std::size_t first = 0; first < boxes.size(); first += at_once) {
+      check_cancel();
+      group.swap(next);
+      begin(boxes, first + at_once, next);
+      end(group);
+    }
+    count();
+    return survey_.tally();
+  }
+
+ private:
+  // A box that the device works on, and what is kept of it. Used again, for the memory that it has.
+  struct Begun {
+    bool used = false;
+    BlockSurvey::FoundLeaves leaves{};
+    std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read
+    std::span<const float> left{};             // values of the leaves that are left
+    std::vector<float> read{};                 // where the device does not give them
+  };
+
+  void check_cancel() const {
+    if (options_.cancel != nullptr && *options_.cancel) throw Error(ErrorKind::interrupted, "interrupted");
+  }
+
+  // Boxes from `first` on, as many as the group takes.
+  void begin(const std::vector<Box>& boxes, std::size_t first, std::vector<Begun>& group) {
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      Begun& begun = group[i];
+      begun.used = first + i < boxes.size();
+      begun.blocks.reset();
+      if (!begun.used) continue;
+      const Box& box = boxes[first + i];
+      begun.leaves.begin(box);
+      begun.blocks = resident_.open({leaves_.node_box(box.lo).lo, leaves_.node_box(box.hi - Index3{1, 1, 1}).hi});
+      if (begun.blocks) begun.blocks->begin_survey(ask_);
+    }
+  }
+
+  void end(std::vector<Begun>& group) {
+    std::vector<std::pair<std::size_t, std::size_t>> left;  // box of the group, number among those it leaves
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      Begun& begun = group[i];
+      if (!begun.used) continue;
+      const std::optional<SurveyedBlocks> found = begun.blocks ? begun.blocks->end_survey() : std::nullopt;
+      if (!found) {
+        begun.blocks.reset();
+        survey_read(begun.leaves.leaf_box);
+        continue;
+      }
+      survey_.take(*found, begun.leaves);
+      for (std::size_t k = 0; k < begun.leaves.left.size(); ++k) left.emplace_back(i, k);
+    }
+    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) { get_left(group[i]); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
+      const TraceSpan span(options_.trace, "survey");
+      for (std::size_t n = range.begin(); n < range.end(); ++n) {
+        Begun& begun = group[left[n].first];
+        const std::size_t k = left[n].second;
+        survey_.survey_left(begun.leaves, begun.leaves.left[k], begun.left.data() + kLeafVoxels * k);
+      }
+    });
+    for (const Begun& begun : group) {
+      if (!begun.used) continue;
+      if (begun.blocks) survey_.write(begun.leaves);
+      done_ += voxels_of(begun.leaves.leaf_box).voxels();
+    }
+    if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
+  }
+
+  void get_left(Begun& begun) {
+    const std::vector<std::uint32_t>& left = begun.leaves.left;
+    if (!begun.blocks || left.empty()) return;
+    const TraceSpan span(options_.trace, "read", kLeafVoxels * sizeof(float) * left.size());
+    if (const auto values = begun.blocks->values(left)) {
+      begun.left = *values;
+      return;
+    }
+    begun.read.resize(kLeafVoxels * left.size());
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      read_block(source_, leaves_, begun.leaves.leaf(left[k]), &begun.read[kLeafVoxels * k]);
+    }
+    begun.left = begun.read;
+  }
+
+  void survey_read(const Box& leaf_box) {
+    const Box voxels = voxels_of(leaf_box);
+    std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
+    const ConversionLoss loss = source_.read(voxels, values);
+    survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
+  }
+
+  // By the bins that the volume's range has in the end.
+  void count() {
+    const SurveyTally tally = survey_.tally();
+    if (tally.finite == 0) return;
+    RangeHistogram range;
+    range.add(tally.min, 1);
+    range.add(tally.max, 1);
+    const std::size_t bins = range.counts().size();
+    if (const auto counts = resident_.count(range.exponent(), range.base(), bins)) {
+      survey_.add_counts(RangeHistogram::restored(range.exponent(), range.base(), *counts));
+      return;
+    }
+    std::vector<std::uint64_t> counts(bins);
+    std::vector<float> values;
+    for (const Box& leaf_box : leaf_boxes(leaves_.count)) {
+      check_cancel();
+      const Box voxels = voxels_of(leaf_box);
+      values.resize(static_cast<std::size_t>(voxels.voxels()));
+      source_.read(voxels, values);
+      for (const float v : values) {
+        if (std::isfinite(v)) ++counts[range.bin_of(v)];
+      }
+    }
+    survey_.add_counts(RangeHistogram::restored(range.exponent(), range.base(), counts));
+  }
+
+  Box voxels_of(const Box& leaf_box) const {
+    return intersect({leaves_.node_box(leaf_box.lo).lo, leaves_.node_box(leaf_box.hi - Index3{1, 1, 1}).hi},
+                     leaves_.domain);
+  }
+
+  ResidentVolume& resident_;
+  VolumeSource& source_;
+  const NodeLattice& leaves_;
+  const RungAsk ask_;
+  const StreamOptions& options_;
+  BlockSurvey survey_;
+  std::int64_t done_ = 0;
+};
+
+}  // namespace
+
+SurveyTally survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                            const StreamOptions& options) {
+  return ResidentSurvey(resident, source, rows, ladders, options).run();
+}
+
+}  // namespace weir

@@ -1,0 +1,38 @@
+// What a survey finds of the values of one 8^3 block as they are. For host and device.
+#pragma once
+
+#include <cstdint>
+
+#include "format/base/host_device.h"
+#include "format/io/digest.h"
+
+namespace weir {
+
+struct BlockSummary {
+  float min = 0;  ///< of the finite in-domain values; 0 where there is none
+  float max = 0;
+  float mean = 0;            ///< of the finite values, rounded to float; their value where uniform
+  float sample = 0;          ///< one in-domain value, chosen by a hash of the leaf index; NaN if that one is not finite
+  float residual = 0;        ///< sum of (value - mean) over the finite values
+  std::uint16_t finite = 0;  ///< finite in-domain values, 0..512
+  std::uint16_t same_bits : 1 = 0;  ///< see uniform()
+  std::uint16_t zeros : 15 = 0;     ///< finite in-domain values equal to 0
+  double sse = 0;                   ///< sum of (value - mean)^2 over the finite values
+  Digest digest;                    ///< of the in-domain float32 values, x fastest
+
+  /// The finite values, one at least, all have the same bits: those of `mean`.
+  bool uniform() const { return same_bits != 0; }
+};
+static_assert(sizeof(BlockSummary) == 48);
+
+/// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in the data can hide
+/// from it (SplitMix64, Steele et al. 2014, its high bits scaled to the range).
+WEIR_HOST_DEVICE inline std::size_t sample_position(std::int64_t index, std::size_t count) {
+  std::uint64_t h = static_cast<std::uint64_t>(index) + 0x9E3779B97F4A7C15ULL;
+  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
+  h ^= h >> 31U;
+  return static_cast<std::size_t>((h >> 32U) * count >> 32U);
+}
+
+}  // namespace weir

@@ -1,0 +1,27 @@
+// What encoding records of each kept leaf for the nodes above it: its statistics in double, and the bounds of its outer
+// layers, which reach into the aprons of neighbouring macrocells; and what decoding it has changed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "format/leaf/bounds.h"
+
+namespace weir {
+
+struct LeafRecord {
+  double mean = 0;
+  double m2 = 0;
+  MinMax bounds = kNoBounds;  ///< of the active values, NaN left out
+  /// Bounds of the layer that faces out of the leaf's macrocell: entry d - 1, bit 0 of d for the x side,
+  /// bit 1 for y, bit 2 for z. A leaf of an even coordinate faces down, of an odd one up.
+  std::array<MinMax, 7> outward{kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds};
+  // Of a quantised leaf, decoded, over the finite in-domain values.
+  double squared_error = 0;
+  double max_abs = 0;
+  std::uint32_t exact = 1;       ///< 0: some voxel reads other bits than it should
+  std::uint32_t zeros_lost = 0;  ///< zeros that read another value
+};
+static_assert(sizeof(LeafRecord) == 104, "records are spilled as they are");
+
+}  // namespace weir

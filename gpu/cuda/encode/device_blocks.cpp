@@ -1,0 +1,193 @@
+#include "gpu/cuda/encode/device_blocks.h"
+
+#include <limits>
+#include <utility>
+
+#include "gpu/cuda/encode/launch.h"
+
+namespace weir {
+namespace {
+
+template <class T>
+void copy_back(std::span<T> to, const T* from, cudaStream_t stream, const char* what) {
+  check_cuda(cudaMemcpyAsync(to.data(), from, to.size_bytes(), cudaMemcpyDeviceToHost, stream), what);
+}
+
+// Parts of one piece of memory, one after the other, each where its type may lie.
+class Parts {
+ public:
+  template <class T>
+  static std::size_t bytes(std::size_t count) {
+    return (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+  }
+  explicit Parts(std::byte* memory) : next_(memory) {}
+  template <class T>
+  std::span<T> next(std::size_t count) {
+    T* const first = reinterpret_cast<T*>(next_);
+    next_ += bytes<T>(count);
+    return {first, count};
+  }
+
+ private:
+  static constexpr std::size_t kAlignment = 16;
+  std::byte* next_;
+};
+
+class DeviceStreams final : public PendingStreams {
+ public:
+  /// `place` of resident blocks, whose decoded values stay on the device.
+  DeviceStreams(std::shared_ptr<CoderState> coder, const BlockBox& box, const std::optional<BlockPlace>& place,
+                std::span<const StreamAsk> asks, const BlockConstants& constants)
+      : coder_(std::move(coder)), memory_(coder_->streams, coder_->streams.take()) {
+    const std::size_t count = asks.size();
+    const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
+    EncodeCall call;
+    call.box = box;
+    call.constants = constants;
+    call.constants.tables = nullptr;
+    call.tables = coder_->costs.data();
+    call.codes = coder_->codes.data();
+    StreamAsk* const asked = memory_->asks.at_least(count);
+    call.asks = asked;
+    call.count = static_cast<std::uint32_t>(count);
+    call.states = memory_->states.at_least(count);
+    call.coded = memory_->coded.at_least(512 * count);
+    call.words = memory_->words.at_least(bytes / 2 + count + 1);
+    call.decoded = memory_->decoded.at_least(512 * count);
+    call.out = memory_->out.at_least(bytes);
+    call.made = memory_->made.at_least(count);
+    const std::size_t of_host = place ? 0 : 512 * count;  // decoded values
+    const std::size_t recorded = place ? count : 0;
+    Parts parts(memory_->pinned.at_least(Parts::bytes<float>(of_host) + Parts::bytes<MadeRecord>(recorded) +
+                                         Parts::bytes<std::uint8_t>(count) + Parts::bytes<std::byte>(bytes)));
+    const auto decoded = parts.next<float>(of_host);
+    const auto records = parts.next<MadeRecord>(recorded);
+    const auto made = parts.next<std::uint8_t>(count);
+    const auto streams = parts.next<std::byte>(bytes);
+    const cudaStream_t stream = memory_->stream.get();
+    check_cuda(cudaMemcpyAsync(asked, asks.data(), asks.size_bytes(), cudaMemcpyHostToDevice, stream),
+               "copying to the device");
+    launch_encode(call, stream);
+    const char* const what = "encoding on the device";
+    if (place) {
+      MadeRecord* const found = memory_->records.at_least(count);
+      launch_records({box, *place, coder_->digests.data(), asked, call.count, call.decoded, found}, stream);
+      copy_back(records, found, stream, what);
+    } else {
+      copy_back(decoded, call.decoded, stream, what);
+    }
+    copy_back(made, call.made, stream, what);
+    copy_back(streams, call.out, stream, what);
+    found_ = {streams, decoded, made, records};
+  }
+
+  std::optional<MadeStreams> wait() override {
+    return coder_->attempt([&]() -> std::optional<MadeStreams> {
+      check_cuda(cudaStreamSynchronize(memory_->stream.get()), "encoding on the device");
+      return found_;
+    });
+  }
+
+ private:
+  std::shared_ptr<CoderState> coder_;
+  Lent<StreamMemory> memory_;
+  MadeStreams found_;
+};
+
+}  // namespace
+
+std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
+  BlockBox box;
+  const Index3 extent = voxels.extent();
+  const Index3 corner = blocks.lo - voxels.lo;
+  const Index3 count = blocks.extent();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max() / 8;
+  const std::int64_t all[3][3] = {
+      {extent.x, corner.x, count.x}, {extent.y, corner.y, count.y}, {extent.z, corner.z, count.z}};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (all[axis][0] > kMost || all[axis][2] > kMost) return std::nullopt;
+    box.extent[axis] = static_cast<std::int32_t>(all[axis][0]);
+    box.corner[axis] = static_cast<std::int32_t>(all[axis][1]);
+    box.blocks[axis] = static_cast<std::uint32_t>(all[axis][2] / kLeafDim);
+  }
+  return box;
+}
+
+DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory,
+                           std::span<const float> values, const BlockBox& box)
+    : coder_(std::move(coder)), memory_(coder_->boxes, std::move(memory)), box_(box) {
+  float* const to = memory_->values.at_least(values.size());
+  box_.values = to;
+  const cudaStream_t stream = memory_->stream.get();
+  check_cuda(cudaMemcpyAsync(to, values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream),
+             "copying to the device");
+  // Other streams read them, and the caller may change them.
+  check_cuda(cudaStreamSynchronize(stream), "copying to the device");
+}
+
+DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
+                           const BlockPlace& place)
+    : coder_(std::move(coder)), memory_(coder_->boxes, std::move(memory)), box_(box), place_(place) {}
+
+void DeviceBlocks::begin_survey(const RungAsk& ask) {
+  begun_ = coder_->attempt([&]() -> std::optional<SurveyedBlocks> {
+    const std::size_t count = box_.count();
+    SurveyCall call;
+    call.box = box_;
+    call.tables = coder_->costs.data();
+    call.ask = ask;
+    call.most = ask.most();
+    call.figures = memory_->figures.at_least(count);
+    call.costs = memory_->costs.at_least(call.most * count);
+    const std::size_t summarized = place_ ? count : 0;
+    Parts parts(memory_->pinned.at_least(Parts::bytes<BlockFigures>(count) + Parts::bytes<RungCost>(call.most * count) +
+                                         Parts::bytes<BlockSummary>(summarized)));
+    const auto figures = parts.next<BlockFigures>(count);
+    const auto costs = parts.next<RungCost>(call.most * count);
+    const auto summaries = parts.next<BlockSummary>(summarized);
+    const cudaStream_t stream = memory_->stream.get();
+    const char* const what = "surveying on the device";
+    launch_survey(call, stream);
+    copy_back(figures, call.figures, stream, what);
+    copy_back(costs, call.costs, stream, what);
+    if (place_) {
+      BlockSummary* const found = memory_->summaries.at_least(count);
+      launch_summaries({box_, *place_, coder_->digests.data(), found}, stream);
+      copy_back(summaries, found, stream, what);
+    }
+    return SurveyedBlocks{figures, costs, summaries};
+  });
+}
+
+std::optional<SurveyedBlocks> DeviceBlocks::end_survey() {
+  if (!begun_) return std::nullopt;
+  return coder_->attempt([&]() -> std::optional<SurveyedBlocks> {
+    check_cuda(cudaStreamSynchronize(memory_->stream.get()), "surveying on the device");
+    return begun_;
+  });
+}
+
+std::unique_ptr<PendingStreams> DeviceBlocks::encode(std::span<const StreamAsk> asks, const BlockConstants& constants) {
+  return coder_->attempt([&]() -> std::unique_ptr<PendingStreams> {
+    return std::make_unique<DeviceStreams>(coder_, box_, place_, asks, constants);
+  });
+}
+
+std::optional<std::span<const float>> DeviceBlocks::values(std::span<const std::uint32_t> blocks) {
+  return coder_->attempt([&]() -> std::optional<std::span<const float>> {
+    const char* const what = "copying blocks from the device";
+    const cudaStream_t stream = memory_->stream.get();
+    std::uint32_t* const wanted = memory_->wanted.at_least(blocks.size());
+    check_cuda(cudaMemcpyAsync(wanted, blocks.data(), blocks.size_bytes(), cudaMemcpyHostToDevice, stream), what);
+    float* const found = memory_->values.at_least(512 * blocks.size());
+    launch_values({box_, wanted, static_cast<std::uint32_t>(blocks.size()), found}, stream);
+    const std::span<float> values(
+        reinterpret_cast<float*>(memory_->wanted_values.at_least(512 * blocks.size() * sizeof(float))),
+        512 * blocks.size());
+    copy_back(values, found, stream, what);
+    check_cuda(cudaStreamSynchronize(stream), what);
+    return values;
+  });
+}
+
+}  // namespace weir

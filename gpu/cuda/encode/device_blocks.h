@@ -1,0 +1,42 @@
+// The blocks of a box, on a device: what is found of them, and their streams (format/packed/block_coder.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "format/base/index.h"
+#include "format/packed/block_coder.h"
+#include "gpu/cuda/encode/coder_state.h"
+#include "gpu/cuda/encode/encode_call.h"
+
+namespace weir {
+
+/// Where a box of blocks lies in one of voxels; nullopt where the device's whole numbers are too short.
+std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks);
+
+class DeviceBlocks final : public ResidentBlocks {
+ public:
+  /// `memory` is one of coder->boxes. `values` of the host are copied to the device. Throws Error(io).
+  DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, std::span<const float> values,
+               const BlockBox& box);
+  /// Of a box whose values are there already, at that place of their volume.
+  DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
+               const BlockPlace& place);
+
+  void begin_survey(const RungAsk& ask) override;
+  std::optional<SurveyedBlocks> end_survey() override;
+  std::unique_ptr<PendingStreams> encode(std::span<const StreamAsk> asks, const BlockConstants& constants) override;
+  std::optional<std::span<const float>> values(std::span<const std::uint32_t> blocks) override;
+
+ private:
+  std::shared_ptr<CoderState> coder_;
+  Lent<BoxMemory> memory_;
+  BlockBox box_;
+  std::optional<BlockPlace> place_;  // where they are resident
+  std::optional<SurveyedBlocks> begun_;
+};
+
+}  // namespace weir

@@ -1,0 +1,98 @@
+#include "gpu/cuda/encode/resident_volume.h"
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gpu/cuda/encode/coder_state.h"
+#include "gpu/cuda/encode/device_blocks.h"
+#include "gpu/cuda/encode/launch.h"
+
+namespace weir {
+namespace {
+
+// Boxes that are worked on at once.
+constexpr std::size_t kMostOpen = 8;
+// Of each, at most: what a survey finds of 4,096 blocks, or their streams, and the values of as many that the host asks
+// for.
+constexpr std::uint64_t kOpenHostBytes = std::uint64_t{40} << 20U;
+
+class DeviceVolume final : public ResidentVolume {
+ public:
+  DeviceVolume(int device, const float* values, const Box& voxels, std::function<void(const Error&)> failed)
+      : state_(std::make_shared<CoderState>(device, kMostOpen, std::move(failed))), values_(values), voxels_(voxels) {}
+
+  const Box& voxels() const override { return voxels_; }
+
+  std::unique_ptr<ResidentBlocks> open(const Box& blocks) override {
+    std::optional<BlockBox> box = block_box(voxels_, blocks);
+    if (!box) return nullptr;
+    box->values = values_;
+    return state_->attempt([&]() -> std::unique_ptr<ResidentBlocks> {
+      std::unique_ptr<BoxMemory> memory = state_->boxes.take();
+      if (!memory) return nullptr;
+      return std::make_unique<DeviceBlocks>(state_, std::move(memory), *box, place_of(blocks));
+    });
+  }
+
+  std::size_t most_open() const override { return kMostOpen; }
+
+  std::optional<std::vector<std::uint64_t>> count(int exponent, double base, std::size_t bins) override {
+    if (bins > kMostCountedBins) return std::nullopt;
+    return state_->attempt([&]() -> std::optional<std::vector<std::uint64_t>> {
+      const std::vector<unsigned long long> none(bins);
+      const DeviceArray<unsigned long long> counts(none);
+      launch_count({values_, static_cast<std::uint64_t>(voxels_.voxels()), std::ldexp(1.0, -exponent), base,
+                    static_cast<std::uint32_t>(bins), counts.data()},
+                   cudaStreamPerThread);
+      const std::vector<unsigned long long> found = counts.download();
+      return std::vector<std::uint64_t>(found.begin(), found.end());
+    });
+  }
+
+  void read(const Box& box, std::span<float> values) override {
+    const char* const what = "copying values from the device";
+    check_cuda(cudaSetDevice(state_->device), "choosing the device");
+    const Index3 extent = voxels_.extent();
+    const Index3 from = box.lo - voxels_.lo;
+    const Index3 size = box.extent();
+    const auto count = [](std::int64_t n) { return static_cast<std::size_t>(n); };
+    cudaMemcpy3DParms parts{};
+    parts.srcPtr = {const_cast<float*>(values_), count(extent.x) * sizeof(float), count(extent.x), count(extent.y)};
+    parts.srcPos = {count(from.x) * sizeof(float), count(from.y), count(from.z)};
+    parts.dstPtr = {values.data(), count(size.x) * sizeof(float), count(size.x), count(size.y)};
+    parts.extent = {count(size.x) * sizeof(float), count(size.y), count(size.z)};
+    parts.kind = cudaMemcpyDeviceToHost;
+    check_cuda(cudaMemcpy3DAsync(&parts, cudaStreamPerThread), what);
+    check_cuda(cudaStreamSynchronize(cudaStreamPerThread), what);
+  }
+
+  std::uint64_t host_bytes() const override { return kMostOpen * kOpenHostBytes; }
+
+ private:
+  BlockPlace place_of(const Box& blocks) const {
+    const Index3 corner{floor_div(blocks.lo.x, kLeafDim), floor_div(blocks.lo.y, kLeafDim),
+                        floor_div(blocks.lo.z, kLeafDim)};
+    const NodeLattice lattice = make_lattice(voxels_, kLeafDim);
+    const Index3 first = corner - lattice.first;
+    const auto odd = [](std::int64_t v) { return v % 2 != 0 ? 1U : 0U; };
+    return {
+        {first.x, first.y, first.z}, {lattice.count.x, lattice.count.y}, {odd(corner.x), odd(corner.y), odd(corner.z)}};
+  }
+
+  std::shared_ptr<CoderState> state_;
+  const float* values_;
+  Box voxels_;
+};
+
+}  // namespace
+
+std::unique_ptr<ResidentVolume> make_resident_volume(int device, const float* values, const Box& voxels,
+                                                     std::function<void(const Error&)> failed) {
+  use_device(device);
+  return std::make_unique<DeviceVolume>(device, values, voxels, std::move(failed));
+}
+
+}  // namespace weir

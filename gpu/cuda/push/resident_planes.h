@@ -1,0 +1,49 @@
+// A volume of float32 values on a device, made of slabs that lie on it: each is copied in its caller's stream, at the
+// device's own speed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+
+#include "format/base/index.h"
+#include "gpu/cuda/load/copy_event.h"
+#include "gpu/cuda/push/gather_planes.h"
+#include "gpu/cuda/runtime/device_array.h"
+
+namespace weir {
+
+class ResidentPlanes {
+ public:
+  /// Takes memory of the current device for `extent` values. Throws Error(io).
+  explicit ResidentPlanes(const Index3& extent);
+  /// Waits for copies in progress.
+  ~ResidentPlanes();
+  ResidentPlanes(const ResidentPlanes&) = delete;
+  ResidentPlanes& operator=(const ResidentPlanes&) = delete;
+
+  /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, in `stream`. Work that is queued there
+  /// afterwards may change the values. Any threads may call. Throws Error(usage) as check_slab(), and Error(io).
+  void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream);
+  /// The same of planes of the host, without gaps; they are there when the call returns.
+  void add(std::int64_t z0, std::int64_t nz, const float* values);
+
+  /// Waits for all copies. Throws Error(io).
+  void finish();
+
+  int device() const { return device_; }
+  const float* values() const { return values_.data(); }
+
+ private:
+  std::size_t voxels(std::int64_t planes) const { return static_cast<std::size_t>(extent_.x * extent_.y * planes); }
+
+  Index3 extent_;
+  int device_ = 0;
+  DeviceArray<float> values_;
+  std::mutex mutex_;  // of the rest
+  std::deque<CopyEvent> copied_;
+};
+
+}  // namespace weir

@@ -1,0 +1,185 @@
+// Conversions of volumes that lie on a device, on the pretended one: the bytes are those of the same values in the
+// host's memory, which the values do not come to; where the device fails they are read.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compressor/push/pushed_volume.h"
+#include "compressor/push/resident_source.h"
+#include "format/base/error.h"
+#include "gpu/cuda/encode/resident_volume.h"
+#include "tests/compressor/support/hard_cases.h"
+#include "tests/fake_coder/support.h"
+#include "tests/fake_cuda/fake_runtime.h"
+#include "tests/support/message_of_error.h"
+
+namespace weir::fake_coder_test {
+namespace {
+
+using test::FakeRuntime;
+using test::MemoryVolume;
+
+// What it is refused with; empty where it is not.
+template <typename Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+class Resident : public testing::Test {
+ protected:
+  Resident() { runtime().reset(); }
+  ~Resident() override { runtime().reset(); }
+
+  static FakeRuntime& runtime() { return FakeRuntime::instance(); }
+
+  static void no_failure(const Error& error) { ADD_FAILURE() << error.what(); }
+
+  // `volume` must outlive it.
+  static std::unique_ptr<VolumeSource> on_device(MemoryVolume& volume,
+                                                 std::function<void(const Error&)> failed = no_failure) {
+    return open_resident(make_resident_volume(0, volume.values().data(), volume.info().domain(), std::move(failed)),
+                         volume.info());
+  }
+};
+
+TEST_F(Resident, FilesHaveTheBytesOfTheHostWhateverTheBudgetAndTheThreads) {
+  for (const NamedBudget& c : budgets()) {
+    for (const bool smooth : {true, false}) {
+      SCOPED_TRACE(c.name + (smooth ? ", cloud" : ", turbulence"));
+      MemoryVolume volume = smooth ? cloud() : turbulence();
+      ConversionOptions options = with(c.budget);
+      options.resume = Resume::off;
+      options.preview = c.name == "default" ? Preview::on : Preview::off;
+      const Result expected = convert_by(nullptr, volume, options);
+      for (const std::size_t threads : {1U, 3U}) {
+        options.threads = threads;
+        const std::unique_ptr<VolumeSource> source = on_device(volume);
+        const Result result = convert_by(nullptr, *source, options);
+        EXPECT_EQ(result.file == expected.file, true) << "with " << threads << " threads";
+        EXPECT_EQ(result.sidecar.source.digest, expected.sidecar.source.digest);
+        EXPECT_EQ(result.sidecar.error.max_abs, expected.sidecar.error.max_abs);
+        EXPECT_EQ(result.sidecar.error.psnr_db, expected.sidecar.error.psnr_db);
+        EXPECT_EQ(result.notices, expected.notices);
+      }
+    }
+  }
+}
+
+// So many blocks that a sample of them is looked at first, which is read, as is what finds the background of a volume
+// of that size. Then nothing is.
+TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
+  for (const bool smooth : {true, false}) {
+    SCOPED_TRACE(smooth);
+    const Box domain{{0, 0, 0}, {272, 208, 160}};
+    MemoryVolume volume = smooth ? cloud(domain) : turbulence(domain);
+    ConversionOptions options = with(budget_of(Budget::Kind::rate, smooth ? 6.0 : 25.0));
+    options.resume = Resume::off;
+    options.background = 0.0F;
+    const Result expected = convert_by(nullptr, volume, options);
+    const std::unique_ptr<VolumeSource> source = on_device(volume);
+    const Result result = convert_by(nullptr, *source, options);
+    EXPECT_EQ(result.file == expected.file, true);
+    EXPECT_LT(source->bytes_read(), volume.values().size_bytes() / 8);
+  }
+}
+
+TEST_F(Resident, HardCasesHaveTheBytesOfTheHost) {
+  for (const test::HardCase& c : test::hard_cases()) {
+    SCOPED_TRACE(c.name);
+    MemoryVolume volume = c.make();
+    for (const NonFinitePolicy policy : test::policies_of(volume)) {
+      for (const Budget& budget : {Budget{}, budget_of(Budget::Kind::rate, 6)}) {
+        ConversionOptions options = with(budget);
+        options.non_finite = policy;
+        options.resume = Resume::off;
+        Result expected;
+        const std::string refusal = message_of([&] { expected = convert_by(nullptr, volume, options); });
+        const std::unique_ptr<VolumeSource> source = on_device(volume);
+        Result result;
+        EXPECT_EQ(message_of([&] { result = convert_by(nullptr, *source, options); }), refusal);
+        EXPECT_EQ(result.file == expected.file, true);
+      }
+    }
+  }
+}
+
+TEST_F(Resident, WhereTheDeviceHasNoRoomTheHostDoesItsWorkAndSaysItOnce) {
+  MemoryVolume volume = turbulence();
+  ConversionOptions options = with(budget_of(Budget::Kind::rate, 8));
+  options.resume = Resume::off;
+  const Result expected = convert_by(nullptr, volume, options);
+  for (const char* function : {"cudaMallocAsync", "cudaHostAlloc"}) {
+    int failures = 0;
+    for (const int nth : {0, 1, 3, 6, 9, 12}) {
+      SCOPED_TRACE(std::string(function) + ", call " + std::to_string(nth));
+      runtime().reset();
+      std::vector<std::string> said;
+      const std::unique_ptr<VolumeSource> source =
+          on_device(volume, [&](const Error& error) { said.emplace_back(error.what()); });
+      runtime().fail(function, nth, cudaErrorMemoryAllocation);
+      const Result result = convert_by(nullptr, *source, options);
+      EXPECT_EQ(result.file == expected.file, true);
+      ASSERT_LE(said.size(), 1U);
+      if (said.empty()) continue;
+      ++failures;
+      EXPECT_NE(said[0].find("cudaErrorMemoryAllocation"), std::string::npos) << said[0];
+    }
+    EXPECT_GE(failures, 2) << function;
+  }
+}
+
+TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
+  MemoryVolume volume = turbulence();
+  for (const int nth : {0, 2, 5}) {
+    SCOPED_TRACE(nth);
+    runtime().reset();
+    std::vector<std::string> said;
+    const std::unique_ptr<VolumeSource> source =
+        on_device(volume, [&](const Error& error) { said.emplace_back(error.what()); });
+    runtime().fail("cudaStreamSynchronize", nth, cudaErrorIllegalAddress, true);
+    ConversionOptions options = with(budget_of(Budget::Kind::rate, 8));
+    options.resume = Resume::off;
+    options.output = "out.nvdb";
+    options.encoding = Encoding::packed;
+    options.memory = std::uint64_t{4} << 30U;
+    test::CrashFileSystem files;
+    const std::string message = message_of_error(ErrorKind::io, [&] { convert_volume(*source, options, {}, files); });
+    EXPECT_NE(message.find("cudaErrorIllegalAddress"), std::string::npos) << message;
+    EXPECT_TRUE(files.names().empty());
+    EXPECT_LE(said.size(), 1U);
+  }
+}
+
+// As a push on a device does it: all planes are expected, and come with the end.
+TEST_F(Resident, APushEndsWithAVolumeOnTheDevice) {
+  MemoryVolume volume = cloud({{0, 0, 0}, {61, 40, 33}});
+  ConversionOptions options = with(budget_of(Budget::Kind::rate, 7));
+  options.resume = Resume::off;
+  const Result expected = convert_by(nullptr, volume, options);
+  const std::unique_ptr<VolumeSource> whole = on_device(volume);
+  test::CrashFileSystem files;
+  options.output = "out.nvdb";
+  options.encoding = Encoding::packed;
+  options.memory = std::uint64_t{1} << 30U;
+  PushedVolume pushed(volume.info(), options, {}, files, 1);
+  pushed.expect(0, 20);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { pushed.end(*whole); }),
+            "memory: planes 20 to 32 of 33 never came; give the rest first");
+  pushed.expect(20, 13);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { pushed.end(); }),
+            "memory: 33 planes are still expected; end once their values have come");
+  pushed.end(*whole);
+  EXPECT_EQ(files.content("out.nvdb") == expected.file, true);
+  EXPECT_EQ(files.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
+}
+
+}  // namespace
+}  // namespace weir::fake_coder_test
