@@ -1,8 +1,8 @@
 // gray_scott_cuda EDGE STEPS EVERY DIRECTORY [DEVICE_BYTES]: two substances that react and diffuse (Gray and Scott,
 // 1984) in EDGE^3 voxels on a device. Of every EVERY-th step the second one's concentration becomes
 // DIRECTORY/v_NNNN.nvdb, from the buffer it was computed into, while the next steps run. DEVICE_BYTES of the device's
-// memory, if given, hold what is being saved: where all of a step fits, it is coded there and does not cross the bus. Prints how long steps take while none is saved, and while one
-// is.
+// memory, if given, hold what is being saved: where all of a step fits, it is coded there and does not cross the bus.
+// Prints how long steps take while none is saved, and while one is.
 #include <weir_cuda.h>
 
 #include <chrono>
