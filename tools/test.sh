@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # The checks, in three sizes:
-#   tools/test.sh          the tests of the release build, but four that take minutes.
+#   tools/test.sh          the tests of the release build, but some that take long.
 #   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled; the format of C++, the shell
-#                          scripts and the structure of the sources checked; the tests of the libraries and the daemon (but
-#                          heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where threads run,
-#                          with ThreadSanitizer; a short run of each fuzzer. The tests of the readers and the command once
-#                          more of a build without HDF5, OpenVDB and all else that is optional.
-#   tools/test.sh --full   besides, those that take minutes, the heavy ones and those of the command with the sanitizers,
-#                          the property tests over a thousand volumes, Zarr against npm's zarrita, and clang-tidy.
+#                          scripts and the structure of the sources checked; the tests of the formats, the readers and the
+#                          daemon (but heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where
+#                          threads run, with ThreadSanitizer; a short run of each fuzzer. The tests of the command once more
+#                          of a build without HDF5, OpenVDB and all else that is optional.
+#   tools/test.sh --full   besides, those that take long, and all tests with the sanitizers, the property tests over a
+#                          thousand volumes, Zarr against npm's zarrita, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
 # N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
