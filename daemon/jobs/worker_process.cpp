@@ -262,6 +262,17 @@ std::uint64_t WorkerProcess::resident_bytes() const {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
+std::uint64_t WorkerProcess::anonymous_bytes() const {
+  std::ifstream status(cat("/proc/", running_->pid(), "/status"));
+  for (std::string line; std::getline(status, line);) {
+    std::istringstream fields(line);
+    std::string name;
+    std::uint64_t kib = 0;
+    if (fields >> name >> kib && name == "RssAnon:") return kib << 10U;
+  }
+  return 0;
+}
+
 // What stands in /proc/PID/stat behind the name, which may hold any character.
 std::string WorkerProcess::status_fields() const {
   std::ifstream file(cat("/proc/", running_->pid(), "/stat"));
