@@ -146,9 +146,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     }
     watch(log_pipe_, &Running::take_log);
     watch(announce_pipe_, &Running::take_announcement);
-    exit_.async_wait(asio::posix::stream_descriptor::wait_read, [self = shared_from_this()](error_code error) {
-      if (!error) self->finish();
-    });
+    await_end();
   }
 
   void stop(std::chrono::milliseconds grace) {
@@ -203,11 +201,24 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (announced_.size() > kMostLineBytes) announced_.clear();
   }
 
+  void await_end() {
+    exit_.async_wait(asio::posix::stream_descriptor::wait_read, [self = shared_from_this()](error_code error) {
+      if (!error) self->finish();
+    });
+  }
+
+  // A wait may end although nothing happened: Asio's reactor uses the state of a descriptor that was closed for the
+  // next one, with an event of the old one that may still be in its queue. To wait for the child here would stop the
+  // daemon.
   void finish() {
     if (pid_ <= 0) return;  // destroyed meanwhile
     int status = 0;
-    while (::waitpid(std::exchange(pid_, -1), &status, 0) < 0 && errno == EINTR) {
-    }
+    pid_t reaped = 0;
+    do {
+      reaped = ::waitpid(pid_, &status, WNOHANG);
+    } while (reaped < 0 && errno == EINTR);
+    if (reaped == 0) return await_end();
+    pid_ = -1;
     read(log_pipe_, &Running::take_log);
     read(announce_pipe_, &Running::take_announcement);
     close();
