@@ -51,15 +51,18 @@ Service::Service(Load load, std::string program, std::string version)
       notifier_(ServiceNotifier::from_environment()),
       store_(config_.service.state),
       state_{std::move(version), config_.path, false, 0, 0, config_.service.jobs},
-      runner_(io_, store_, log_, std::move(program),
+      runner_(io_, store_, log_, program,
               [this](const Job& job) {
                 for (const auto& tree : trees_) {
                   if (tree->config().label == job.watch) tree->look_again(job.source);
                 }
               }),
-      control_(io_, turns_, store_, runner_, trees_, state_),
+      viewer_(io_, log_, std::move(program)),
+      control_(io_, turns_, store_, runner_, trees_, viewer_, state_),
       history_(io_, turns_, store_, log_),
-      server_(io_, server_settings(config_.service), control_),
+      server_(
+          io_, server_settings(config_.service), control_,
+          [this](Relay::Client client, const UpgradeRequest& request) { viewer_.relay(std::move(client), request); }),
       signals_(io_, SIGTERM, SIGINT, SIGHUP),
       watchdog_timer_(io_),
       checkpoint_timer_(io_) {
@@ -116,6 +119,7 @@ void Service::run() {
     log_.error("state-file-fault", {{"reason", error.what()}});
   }
   runner_.configure(config_);
+  viewer_.configure(config_.service);
   runner_.resume_thumbnails();
   watch_trees();
   history_.keep(config_.service.history_days);
@@ -168,6 +172,7 @@ void Service::reload() {
     ++state_.reloads;
     clean(config_, milliseconds(0));
     runner_.configure(config_);
+    viewer_.configure(config_.service);
     watch_trees();
     history_.keep(config_.service.history_days);
     runner_.wake();
@@ -189,6 +194,7 @@ void Service::shut_down() {
   const double grace_s = config_.service.grace_s;
   log_.info("stop", {{"running", runner_.running().size()}, {"grace_s", grace_s}});
   notifier_.send("STOPPING=1");
+  viewer_.end();
   runner_.shut_down(milliseconds(static_cast<std::int64_t>(grace_s * 1000)), [this] { io_.stop(); });
 }
 

@@ -20,6 +20,7 @@
 #include "daemon/service_control.h"
 #include "daemon/store/disk_turns.h"
 #include "daemon/store/job_store.h"
+#include "daemon/viewer/job_viewer.h"
 #include "daemon/watched_tree.h"
 
 namespace weir {
@@ -56,6 +57,7 @@ class Service {
   ServiceState state_;
   JobRunner runner_;
   WatchedTrees trees_;
+  JobViewer viewer_;
   ServiceControl control_;
   JobHistory history_;
   ControlServer server_;

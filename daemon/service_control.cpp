@@ -46,11 +46,12 @@ JobView view_of(const Job& job) {
 }  // namespace
 
 ServiceControl::ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
-                               const WatchedTrees& trees, const ServiceState& state)
+                               const WatchedTrees& trees, JobViewer& viewer, const ServiceState& state)
     : turns_(turns),
       store_(store),
       runner_(runner),
       trees_(trees),
+      viewer_(viewer),
       state_(state),
       started_at_(seconds_of(JobStore::wall_clock_ms())),
       retry_timer_(io) {}
@@ -222,6 +223,7 @@ StatusView ServiceControl::status() {
   for (const auto& tree : trees_) view.watches.push_back(watch(*tree, counts));
   add_rates(view);
   view.disks = disks();
+  view.viewer = viewer_.view();
   return view;
 }
 
@@ -273,6 +275,22 @@ Readiness ServiceControl::readiness() {
     if (!status.up) return {false, cat(tree->config().label, ": ", status.reason)};
   }
   return {true, ""};
+}
+
+ViewChange ServiceControl::view(std::int64_t id, std::size_t output, bool force) {
+  const std::optional<Job> job = store_.job(id);
+  if (!job) return ViewChange::no_such_job;
+  if (job->state != JobState::done) return ViewChange::wrong_state;
+  if (output >= job->result.outputs.size()) return ViewChange::no_such_output;
+  switch (viewer_.open(job->result.outputs[output].path, force)) {
+    case JobViewer::Opened::off:
+      return ViewChange::off;
+    case JobViewer::Opened::taken:
+      return ViewChange::taken;
+    case JobViewer::Opened::made:
+      break;
+  }
+  return ViewChange::made;
 }
 
 std::optional<std::string> ServiceControl::thumbnail_path(std::int64_t id, std::size_t output) {

@@ -14,6 +14,7 @@
 #include "daemon/jobs/job_runner.h"
 #include "daemon/store/disk_turns.h"
 #include "daemon/store/job_store.h"
+#include "daemon/viewer/job_viewer.h"
 #include "daemon/watched_tree.h"
 
 namespace weir {
@@ -34,7 +35,7 @@ class ServiceControl final : public Control {
  public:
   /// All must outlive the object.
   ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
-                 const WatchedTrees& trees, const ServiceState& state);
+                 const WatchedTrees& trees, JobViewer& viewer, const ServiceState& state);
 
   JobPage jobs(const JobQuery& query) override;
   ProblemPage problems(std::size_t limit) override;
@@ -48,6 +49,8 @@ class ServiceControl final : public Control {
   MetricsView metrics() override;
   Readiness readiness() override;
   std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) override;
+  ViewerView viewer() override { return viewer_.view(); }
+  ViewChange view(std::int64_t job, std::size_t output, bool force) override;
 
  private:
   void retry_some();
@@ -62,6 +65,7 @@ class ServiceControl final : public Control {
   JobStore& store_;
   JobRunner& runner_;
   const WatchedTrees& trees_;
+  JobViewer& viewer_;
   const ServiceState& state_;
   double started_at_;
   std::deque<JobStore::Problem> to_retry_;

@@ -132,6 +132,19 @@ void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& 
   }
 }
 
+void read_viewer_memory(ConfigReader& reader, ServiceConfig& service) {
+  if (reader.toml.find("viewer_memory") == nullptr) {
+    service.viewer_memory = standard_viewer_memory(service, kLeastMemory);
+    return;
+  }
+  reader.read_bytes("viewer_memory", service.viewer_memory);
+  if (service.viewer_memory != 0 && service.viewer_memory < kLeastViewerMemory) {
+    reader.refuse("viewer_memory",
+                  cat("viewer_memory is ", format_bytes(service.viewer_memory), ", it must be at least ",
+                      format_bytes(kLeastViewerMemory), ", or 0 for no viewer"));
+  }
+}
+
 // systemd gives a service a directory to write to; that of its configuration, /etc/weir, is none.
 std::string standard_state(const std::string& path) {
   const char* const given = std::getenv("STATE_DIRECTORY");  // several have a colon between them
@@ -149,6 +162,7 @@ ServiceConfig read_service(const toml::table& table, const std::string& path) {
   read_control_socket(reader, service);
   reader.read_bytes("memory", service.memory);
   reader.toml.read("jobs", service.jobs, {1, 1024});
+  read_viewer_memory(reader, service);
   reader.toml.read("threads", service.threads, {0, 4096});
   reader.toml.read("nice", service.nice, {0, 19});
   reader.choose("io_class", service.io_class, kIoClasses);
@@ -163,10 +177,13 @@ ServiceConfig read_service(const toml::table& table, const std::string& path) {
   reader.toml.finish();
   if (job_memory(service) < kLeastMemory) {
     const toml::node* place = table.get("memory") != nullptr ? table.get("memory") : table.get("jobs");
-    const std::uint64_t least = kDaemonMemory + static_cast<std::uint64_t>(service.jobs) * kLeastMemory;
-    reader.toml.fail(place != nullptr ? *place : table, cat("memory is ", format_bytes(service.memory),
-                                                            ", too little for the daemon and jobs = ", service.jobs,
-                                                            "; it must be at least ", format_bytes(least)));
+    const std::uint64_t least =
+        kDaemonMemory + service.viewer_memory + static_cast<std::uint64_t>(service.jobs) * kLeastMemory;
+    const std::string viewer =
+        service.viewer_memory == 0 ? "" : cat(", viewer_memory = ", format_bytes(service.viewer_memory));
+    reader.toml.fail(place != nullptr ? *place : table,
+                     cat("memory is ", format_bytes(service.memory), ", too little for the daemon", viewer,
+                         " and jobs = ", service.jobs, "; it must be at least ", format_bytes(least)));
   }
   std::set<std::string> files{service.state};
   for (const std::string* file : {&service.log_file, &service.port_file, &service.control_socket}) {

@@ -1,8 +1,10 @@
 #include "daemon/config/token_file.h"
 
+#include <sys/random.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -28,6 +30,16 @@ std::string token_fault(std::string_view token) {
   if (token.empty()) return "the token is empty; openssl rand -hex 32 makes one";
   const bool fits_a_header = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; });
   return fits_a_header ? "" : "the token must be ASCII without spaces; openssl rand -hex 32 makes one";
+}
+
+std::string make_token() {
+  std::array<unsigned char, 32> random{};
+  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
+    throw io_error("a token", "get random bytes for it", errno);
+  }
+  std::string token;
+  for (const unsigned char byte : random) token += hex(byte, 2);
+  return token;
 }
 
 }  // namespace weir

@@ -13,4 +13,7 @@ std::string read_token_file(const std::string& path);
 /// Why `token` cannot be one, with the remedy; empty where it can.
 std::string token_fault(std::string_view token);
 
+/// A new one that nobody can guess: 256 random bits in hex. Throws Error(io) where the system gives none.
+std::string make_token();
+
 }  // namespace weir

@@ -178,6 +178,43 @@ HttpResponse retry(const Call& call) {
   return change(call, [&](std::int64_t id) { return call.control.retry(id, force != call.target.query.end()); });
 }
 
+HttpResponse viewer(const Call& call) { return ok(to_json(call.control.viewer())); }
+
+// The page of the viewer, at that file.
+std::string view_address(const std::string& path) {
+  return cat("/view/#f=", percent_encode(path.substr(path.rfind('/') + 1)));
+}
+
+HttpResponse view(const Call& call) {
+  std::size_t output = 0;
+  const auto force = call.target.query.find("force");
+  if (!read_count(call.target, "output", kMaxJobsPerPage, output) ||
+      (force != call.target.query.end() && force->second != "1")) {
+    return error_response(400, "give output=N, the place of an output from 0 on, and force=1, or leave them out");
+  }
+  const auto id = job_id(call);
+  const auto job = id ? call.control.job(*id) : std::nullopt;
+  if (!job) return no_such_job(call.target.path[2]);
+  const ViewChange change = call.control.view(*id, output, force != call.target.query.end());
+  OrderedJson json = to_json(call.control.viewer());
+  switch (change) {
+    case ViewChange::made:
+      json["url"] = view_address(job->outputs.at(output).path);
+      return ok(json);
+    case ViewChange::wrong_state:
+      return error_response(409, cat("job ", *id, " is ", job_state_name(job->state), ": nothing to view"));
+    case ViewChange::off:
+      return error_response(409, json["reason"]);
+    case ViewChange::taken:
+      return error_response(423, cat("somebody looks at ", json["file"].get<std::string>(),
+                                     "; wait until that page is closed, or take the viewer with force=1"));
+    case ViewChange::no_such_job:
+    case ViewChange::no_such_output:
+      break;
+  }
+  return error_response(404, cat("job ", *id, " has no output ", output));
+}
+
 HttpResponse cancel(const Call& call) {
   return change(call, [&](std::int64_t id) { return call.control.cancel(id); });
 }
@@ -214,6 +251,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/problems", false, problems},
     Route{"GET", "/api/jobs/*", false, job},
     Route{"GET", "/api/jobs/*/thumbnails/*", false, thumbnail},
+    Route{"GET", "/api/viewer", false, viewer},
+    Route{"POST", "/api/jobs/*/view", false, view},
     Route{"POST", "/api/jobs/*/retry", false, retry},
     Route{"POST", "/api/jobs/*/cancel", false, cancel},
     Route{"POST", "/api/retry-failed", false, retry_failed},

@@ -126,7 +126,17 @@ OrderedJson to_json(const StatusView& status) {
           {"queue_ends_in_s", or_null(status.queue_ends_in_s)},
           {"disks", array_of(status.disks)},
           {"running", array_of(status.running)},
-          {"watches", array_of(status.watches)}};
+          {"watches", array_of(status.watches)},
+          {"viewer", to_json(status.viewer)}};
+}
+
+OrderedJson to_json(const ViewerView& viewer) {
+  return {{"state", kViewerStateNames.at(static_cast<std::size_t>(viewer.state))},
+          {"reason", viewer.reason},
+          {"file", viewer.file},
+          {"connections", viewer.connections},
+          {"rss_bytes", viewer.rss_bytes},
+          {"memory_bytes", viewer.memory_bytes}};
 }
 
 OrderedJson to_json(const ProblemPage& page) { return {{"total", page.total}, {"groups", array_of(page.groups)}}; }

@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/jobs/seconds_histogram.h"
@@ -125,6 +126,25 @@ struct RateView {
   double bytes_per_s = 0;  ///< of sources
 };
 
+enum class ViewerState {
+  off,       ///< the configuration wants none
+  none,      ///< none runs
+  starting,  ///< the process runs and does not answer yet
+  ready,
+  failed  ///< it did not start, or has ended by itself
+};
+inline constexpr std::array<std::string_view, 5> kViewerStateNames{"off", "none", "starting", "ready", "failed"};
+
+/// The viewer of outputs, `weir view` behind /view/.
+struct ViewerView {
+  ViewerState state = ViewerState::none;
+  std::string reason;              ///< why it is off, or failed; else empty
+  std::string file;                ///< the output that it was started with; else empty
+  std::uint64_t connections = 0;   ///< of browsers
+  std::uint64_t rss_bytes = 0;     ///< of its process now
+  std::uint64_t memory_bytes = 0;  ///< that it may take; 0: off
+};
+
 struct StatusView {
   std::string version;
   std::string config;      ///< path
@@ -145,6 +165,7 @@ struct StatusView {
   std::vector<DiskView> disks;
   std::vector<RunningView> running;
   std::vector<WatchView> watches;  ///< in the order of the configuration
+  ViewerView viewer;
 };
 
 /// What /metrics needs beyond StatusView. Counters are since start.
@@ -165,6 +186,16 @@ enum class JobChange {
   made,
   no_such_job,
   wrong_state  ///< retry of one that is waiting or running; cancel of one that is over
+};
+
+/// What became of a request for a viewer.
+enum class ViewChange {
+  made,  ///< it runs or is being started, or could not be: ViewerView says so
+  no_such_job,
+  no_such_output,
+  wrong_state,  ///< the job is not done
+  off,
+  taken  ///< somebody looks at another series
 };
 
 class Control {
@@ -194,6 +225,10 @@ class Control {
   /// The PNG of a job's output, by its place in JobView::outputs; none where there is no such thumbnail. The path
   /// comes from what the service itself recorded, never from a client.
   virtual std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) = 0;
+  virtual ViewerView viewer() = 0;
+  /// Has a viewer of the series of a done job's output, by its place in JobView::outputs. `force`: also where somebody
+  /// looks at another series, which ends then.
+  virtual ViewChange view(std::int64_t job, std::size_t output, bool force) = 0;
 };
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 #include "daemon/http/control_server.h"
 
 #include "daemon/http/api.h"
+#include "daemon/http/view_requests.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 
@@ -27,12 +28,20 @@ HttpHandler answer_with(Control& control, const AccessRules& rules) {
   return [api = Api(control, rules)](const HttpRequest& request) { return api.answer(request); };
 }
 
+SocketHandler view_with(Control& control, const AccessRules& rules, const ControlServer::Take& view) {
+  return {[&control, rules](const HttpRequest& request) { return refuse_view(rules, request, control.viewer()); }, view,
+          is_view_request};
+}
+
 }  // namespace
 
-ControlServer::ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control)
-    : http_(io, settings.address, settings.limits, answer_with(control, rules_of(settings))) {
+ControlServer::ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control,
+                             const Take& view)
+    : http_(io, settings.address, settings.limits, answer_with(control, rules_of(settings)),
+            view_with(control, rules_of(settings), view)) {
   if (settings.control_socket.empty()) return;
-  control_socket_.emplace(io, control_address(settings), settings.limits, answer_with(control, rules_of_socket()));
+  control_socket_.emplace(io, control_address(settings), settings.limits, answer_with(control, rules_of_socket()),
+                          view_with(control, rules_of_socket(), view));
 }
 
 }  // namespace weir

@@ -23,9 +23,13 @@ struct ControlServerSettings {
 
 class ControlServer {
  public:
-  /// Listens from here on. `control` must outlive the server. Throws Error(usage) for an address that others can
-  /// reach without a token, Error(io) where an address cannot be had.
-  ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control);
+  using Take = decltype(SocketHandler::take);
+
+  /// Listens from here on. `control` must outlive the server. `view` has the connections of requests below /view/,
+  /// while control.viewer() is ready. Throws Error(usage) for an address that others can reach without a token,
+  /// Error(io) where an address cannot be had.
+  ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control,
+                const Take& view = nullptr);
 
   std::uint16_t port() const { return http_.port(); }
 

@@ -18,6 +18,7 @@ struct HttpRequest {
   bool marked = false;        ///< a header X-Weir is there, which no foreign web page can send
   std::string origin{};       ///< header Origin: the web page that asks; empty where none says so
   std::string protocols{};    ///< header Sec-WebSocket-Protocol
+  bool upgrade = false;       ///< it asks for a WebSocket
   std::string body;
 };
 

@@ -17,7 +17,7 @@ namespace weir {
 
 class HttpServer {
  public:
-  /// Listens from here on, as ListeningSocket says. A request for a WebSocket goes to `sockets`, where that is given.
+  /// Listens from here on, as ListeningSocket says. Connections that `sockets` wants go there.
   HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler,
              SocketHandler sockets = {});
   /// Closes everything; no call of `handler` comes afterwards.

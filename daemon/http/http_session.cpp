@@ -150,7 +150,8 @@ void HttpSession::answer() {
   request.protocols = text_of(message[http::field::sec_websocket_protocol]);
   request.body = message.body();
   const bool keep_alive = message.keep_alive();
-  if (sockets_.take && boost::beast::websocket::is_upgrade(message)) {
+  request.upgrade = boost::beast::websocket::is_upgrade(message);
+  if (sockets_.take && (sockets_.wants ? sockets_.wants(request) : request.upgrade)) {
     try {
       if (auto refused = sockets_.refuse(request)) return respond(*std::move(refused), keep_alive);
     } catch (const std::exception& error) {
@@ -180,7 +181,7 @@ void HttpSession::hand_over() {
   try {
     sockets_.take(std::move(socket), std::move(request));
   } catch (const std::exception& error) {  // the connection is gone with what took it
-    spdlog::error("http: WebSocket: {}", error.what());
+    spdlog::error("http: handed over: {}", error.what());
   }
 }
 

@@ -5,13 +5,13 @@
 #include <boost/asio/post.hpp>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
+#include "daemon/jobs/worker_reason.h"
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -26,22 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr int kInput = static_cast<int>(ErrorKind::input);
 constexpr int kIo = static_cast<int>(ErrorKind::io);
-constexpr int kSignal = 128;  ///< and the signal's number: WorkerEnd::exit_code
-
-// The line that `weir` ends with where it fails, without its name; a signal leaves none.
-std::string reason_of(std::string_view step, const WorkerEnd& end) {
-  constexpr std::string_view kBegin = "weir: ";
-  if (end.exit_code > kSignal && end.exit_code != static_cast<int>(ErrorKind::interrupted)) {
-    const int signal = end.exit_code - kSignal;
-    return cat(step, " was ended by signal ", signal, " (", ::strsignal(signal), ')',
-               signal == SIGKILL ? "; the system may have been out of memory" : "");
-  }
-  std::string reason;
-  for (const std::string& line : split(end.log, '\n')) {
-    if (line.starts_with(kBegin)) reason = line.substr(kBegin.size());
-  }
-  return reason.empty() ? cat(step, " ended with exit code ", end.exit_code, " and no message") : reason;
-}
 
 // Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
 bool says_disk_full(const std::string& reason) {
@@ -202,7 +186,7 @@ void ConversionJob::converted(const WorkerEnd& end) {
   if (end.exit_code == 0 && outputs_.empty()) {
     fail(static_cast<int>(ErrorKind::internal), "convert ended well and announced no output");
   } else if (end.exit_code != 0) {
-    fail(end.exit_code, failed_.empty() ? reason_of(step_, end) : failed_);
+    fail(end.exit_code, failed_.empty() ? worker_reason(step_, end) : failed_);
   } else if (const auto now = identify(task_.source); now && *now != task_.identity) {
     this->end(TaskEnd::source_changed);
   } else {
@@ -225,7 +209,7 @@ void ConversionJob::verified(const WorkerEnd& end) {
     verify_next();
     return;
   }
-  const std::string reason = reason_of(step_, end);
+  const std::string reason = worker_reason(step_, end);
   const std::string& output = outputs_[next_].job.path;
   if (end.exit_code != kInput || stopping_) {
     fail(end.exit_code, reason);
@@ -289,11 +273,11 @@ void ConversionJob::render_next() {
 
 void ConversionJob::rendered(const WorkerEnd& end) {
   if (stopping_) {
-    fail(end.exit_code, reason_of(step_, end));
+    fail(end.exit_code, worker_reason(step_, end));
     return;
   }
   JobOutput& output = outputs_[next_].job;
-  if (end.exit_code > kSignal &&
+  if (end.exit_code > kSignalExit &&
       !std::exchange(render_killed_, true)) {  // by somebody, or for want of memory: once more
     render_next();
     return;
@@ -302,7 +286,7 @@ void ConversionJob::rendered(const WorkerEnd& end) {
   if (end.exit_code == 0) {
     output.thumbnail = thumbnail_path_of(output.path);
   } else {
-    report_.notices.push_back(cat("no thumbnail: ", reason_of(step_, end)));
+    report_.notices.push_back(cat("no thumbnail: ", worker_reason(step_, end)));
   }
   ++next_;
   render_next();

@@ -146,9 +146,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     }
     watch(log_pipe_, &Running::take_log);
     watch(announce_pipe_, &Running::take_announcement);
-    exit_.async_wait(asio::posix::stream_descriptor::wait_read, [self = shared_from_this()](error_code error) {
-      if (!error) self->finish();
-    });
+    await_end();
   }
 
   void stop(std::chrono::milliseconds grace) {
@@ -203,11 +201,24 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (announced_.size() > kMostLineBytes) announced_.clear();
   }
 
+  void await_end() {
+    exit_.async_wait(asio::posix::stream_descriptor::wait_read, [self = shared_from_this()](error_code error) {
+      if (!error) self->finish();
+    });
+  }
+
+  // A wait may end although nothing happened: Asio's reactor uses the state of a descriptor that was closed for the
+  // next one, with an event of the old one that may still be in its queue. To wait for the child here would stop the
+  // daemon.
   void finish() {
     if (pid_ <= 0) return;  // destroyed meanwhile
     int status = 0;
-    while (::waitpid(std::exchange(pid_, -1), &status, 0) < 0 && errno == EINTR) {
-    }
+    pid_t reaped = 0;
+    do {
+      reaped = ::waitpid(pid_, &status, WNOHANG);
+    } while (reaped < 0 && errno == EINTR);
+    if (reaped == 0) return await_end();
+    pid_ = -1;
     read(log_pipe_, &Running::take_log);
     read(announce_pipe_, &Running::take_announcement);
     close();
@@ -260,6 +271,17 @@ std::uint64_t WorkerProcess::resident_bytes() const {
   std::uint64_t resident = 0;
   statm >> size >> resident;
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t WorkerProcess::anonymous_bytes() const {
+  std::ifstream status(cat("/proc/", running_->pid(), "/status"));
+  for (std::string line; std::getline(status, line);) {
+    std::istringstream fields(line);
+    std::string name;
+    std::uint64_t kib = 0;
+    if (fields >> name >> kib && name == "RssAnon:") return kib << 10U;
+  }
+  return 0;
 }
 
 // What stands in /proc/PID/stat behind the name, which may hold any character.

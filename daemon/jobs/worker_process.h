@@ -54,6 +54,8 @@ class WorkerProcess {
   void stop(std::chrono::milliseconds grace);
   /// Bytes resident now; 0 where it has just ended.
   std::uint64_t resident_bytes() const;
+  /// Of those what is no page of a file, which the system can take back; 0 likewise.
+  std::uint64_t anonymous_bytes() const;
   /// Grows while the process, all its threads counted, computes, reads or writes.
   std::uint64_t activity() const;
   /// As ps says it: 'R' runs, 'S' sleeps, 'D' waits for a device, 'T' was stopped by a signal; 0 where it has just

@@ -4,6 +4,7 @@ import {get, post} from "./api.js";
 import {path_with_copy} from "./copy.js";
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
+import {view_button} from "./viewer.js";
 
 const dialog = by_id("job");
 let shown = 0;  // id
@@ -18,8 +19,14 @@ function facts_of(job) {
   if (job.exit_code !== null) facts.push(["Exit code", String(job.exit_code)]);
   if (job.seconds !== null) facts.push(["Time taken", format.seconds(job.seconds)]);
   if (job.peak_rss_bytes > 0) facts.push(["Peak memory", format.bytes(job.peak_rss_bytes)]);
-  for (const output of job.outputs) {
-    facts.push(["Result", path_with_copy(output.path, "result")], ["Figures", format.output_facts(output).join(", ")]);
+  for (const [index, output] of job.outputs.entries()) {
+    const path = path_with_copy(output.path, "result");
+    if (job.state === "done") {
+      const view = view_button(() => ({job, output, index}));
+      view.addEventListener("click", () => dialog.close());
+      path.append(view);
+    }
+    facts.push(["Result", path], ["Figures", format.output_facts(output).join(", ")]);
   }
   return facts;
 }

@@ -11,6 +11,7 @@ import {show_not_taken, show_queue, show_running} from "./lists.js";
 import {refresh_problems} from "./problems.js";
 import {show_results} from "./results.js";
 import {offer_watches, refresh_series} from "./series.js";
+import {offer_viewer} from "./viewer.js";
 import {show_watches} from "./watches.js";
 
 const kRound_ms = 2000;
@@ -68,6 +69,7 @@ function show_status(status) {
   show_watches(status.watches);
   offer_watches(status.watches);
   offer_watch_filter(status.watches);
+  offer_viewer(status.viewer);
 }
 
 function show_failure(error) {

@@ -4,6 +4,7 @@ import {thumbnail} from "./api.js";
 import {path_with_copy, show_path} from "./copy.js";
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
+import {open_viewer} from "./viewer.js";
 
 const dialog = by_id("picture");
 const result_path = path_with_copy("", "result");
@@ -69,4 +70,9 @@ by_id("picture-paths").append(element("dt", "", "Result"), element("dd", "", res
 dialog.addEventListener("keydown", go_by_key);
 by_id("picture-previous").addEventListener("click", () => go_to(place - 1));
 by_id("picture-next").addEventListener("click", () => go_to(place + 1));
+by_id("picture-view").addEventListener("click", () => {
+  const {job, output, index} = entries[place];
+  dialog.close();
+  open_viewer(job.id, index, output.path);
+});
 by_id("picture-close").addEventListener("click", () => dialog.close());

@@ -5,6 +5,7 @@ import {button, by_id, element, part, set_text, show_items} from "./dom.js";
 import * as format from "./format.js";
 import {card_name_button} from "./names.js";
 import {open_pictures} from "./picture_dialog.js";
+import {view_button} from "./viewer.js";
 
 const kEmptyResults = "Nothing has been converted yet. What is finished shows up here.";
 
@@ -34,7 +35,7 @@ function make_card(result, open) {
   return element("li", "card", frame,
                  element("div", "text", card_name_button(output.path, () => open(job.id)),
                          element("span", "fact", `${format.bytes(output.bytes)}, ${format.rate(output)}`),
-                         element("span", "quality"), element("span", "when quiet")));
+                         element("span", "quality"), element("span", "when quiet"), view_button(() => result)));
 }
 
 function update_card(child, {job, output}) {

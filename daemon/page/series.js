@@ -6,6 +6,7 @@ import {by_id, element, offer, set_text} from "./dom.js";
 import * as format from "./format.js";
 import {open_pictures} from "./picture_dialog.js";
 import {mark_step, prepare_plots, show_plots} from "./plots.js";
+import {open_viewer} from "./viewer.js";
 
 const kPageLength = 200;
 const kLongest = 5000;  // jobs; of more, the latest
@@ -165,6 +166,10 @@ export function offer_watches(watches) {
 prepare_plots(go_to);
 picture.addEventListener("click", enlarge);
 slider.addEventListener("input", show_frame);
+by_id("series-view").addEventListener("click", () => {
+  const frame = frames[Number(slider.value)];
+  if (frame) open_viewer(frame.job.id, frame.index, frame.output.path);
+});
 play_button.addEventListener("click", () => (player ? stop() : play()));
 field_choice.addEventListener("change", () => {
   stop();

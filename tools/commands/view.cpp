@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -31,8 +32,11 @@ struct ViewArguments {
   std::string listen = "127.0.0.1:0";
   std::string token_file;
   std::uint64_t viewers = 8;
+  std::int64_t pixels = kMostViewPixels;
   bool open = false;
   bool allow_convert = false;
+  bool series = false;
+  bool for_program = false;
   std::string work_dir;
   GivenOptions backend;
   GivenOptions source;
@@ -40,6 +44,7 @@ struct ViewArguments {
 };
 
 constexpr std::uint64_t kMostViewers = 256;
+constexpr std::int64_t kLeastViewPixels = 10'000;
 
 ViewSettings settings_of(const ViewArguments& arguments) {
   ViewSettings settings;
@@ -53,7 +58,20 @@ ViewSettings settings_of(const ViewArguments& arguments) {
       throw input_error(arguments.token_file, fault);
     }
   }
+  if (arguments.for_program) {
+    if (arguments.progress.descriptor < 0) {
+      throw Error(ErrorKind::usage, compose(option("private"), " tells its token to ", option("progress-fd", "N"),
+                                            " alone; give that, too"));
+    }
+    if (!settings.token.empty()) {
+      throw Error(ErrorKind::usage,
+                  compose(option("private"), " makes a token of its own; leave ", option("token-file"), " out"));
+    }
+    settings.token = make_token();
+    settings.any_host = true;
+  }
   settings.viewers = arguments.viewers;
+  settings.pixels = arguments.pixels;
   settings.allow_convert = arguments.allow_convert;
   settings.program = "/proc/self/exe";
   settings.version = WEIR_VERSION;
@@ -80,7 +98,12 @@ void view(const ViewArguments& arguments) {
     throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
                                                            " is shown as it is; leave it out")));
   }
-  ViewedFiles files = find_viewed_files(preview ? preview->file() : arguments.input, arguments.against);
+  if (preview && arguments.series) {
+    throw Error(ErrorKind::usage, compose(option("series"), cat(" is of a NanoVDB file, and ", arguments.input,
+                                                                " is converted to be seen; leave it out")));
+  }
+  ViewedFiles files =
+      find_viewed_files({preview ? preview->file() : arguments.input, arguments.series}, arguments.against);
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
   if (!files.summary.difference.empty()) spdlog::warn("{}", files.summary.difference);
@@ -95,12 +118,16 @@ void view(const ViewArguments& arguments) {
   });
   const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a viewer's patience
   ListenAddress address = settings.address;
+  const std::string token = arguments.for_program ? settings.token : "";
   ViewServer server(io, std::move(settings), std::move(files), *backend);
   if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
   address.port = server.port();
   const std::string url = "http://" + address.text() + "/";
   std::printf("%s\n", url.c_str());
   std::fflush(stdout);
+  nlohmann::ordered_json told{{"address", address.text()}};
+  if (!token.empty()) told["token"] = token;
+  announce(arguments.progress, told.dump());
   std::unique_ptr<WorkerProcess> browser;
   if (arguments.open) browser = open_browser(io, url);
   io.run();
@@ -131,9 +158,18 @@ void add_view(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1}, kMostViewers))
       ->capture_default_str();
+  command
+      ->add_option("--pixels", arguments->pixels, "of a picture, at most; the sums of each viewer's take 12 bytes each")
+      ->type_name("N")
+      ->check(CLI::Range(kLeastViewPixels, kMostViewPixels))
+      ->capture_default_str();
+  command->add_flag("--series", arguments->series,
+                    "with the files beside it whose names differ from its own in numbers alone, as steps");
   command->add_flag("--open", arguments->open, "opens the page in a browser");
   command->add_flag("--allow-convert", arguments->allow_convert,
                     "lets viewers have the source converted for the scene they see, beside the file");
+  command->add_flag("--private", arguments->for_program,
+                    "makes a token, told with the address to --progress-fd alone: for a program that stands before it");
   command->add_option("--work-dir", arguments->work_dir, "where that of an input of convert is kept until the end")
       ->type_name("DIR");
   add_backend_options(*command, arguments->backend);

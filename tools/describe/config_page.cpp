@@ -23,7 +23,11 @@ constexpr ConfigKey kConfigKeys[] = {
     {"service", "port_file", "none", "the port that was bound is written there"},
     {"service", "token", "none", "bearer token that requests for data must send"},
     {"service", "token_file", "none", "file with the token, not readable by everybody"},
-    {"service", "memory", "\"1GiB\"", "of the service, 64 MiB, and all jobs together"},
+    {"service", "memory", "\"1GiB\"", "of the service, 64 MiB, all jobs and the viewer together"},
+    {"service", "viewer_memory", "an eighth of memory",
+     "of it for the viewer of results, from 128 MiB on; 0: there is none. By default at most 512 MiB, and 0 where "
+     "memory is "
+     "below 1 GiB or the jobs would get too little"},
     {"service", "jobs", "1", "conversions at once"},
     {"service", "threads", "0", "of each job; 0: all of the machine's that the memory holds"},
     {"service", "nice", "0", "of the jobs, 0 to 19"},

@@ -30,6 +30,7 @@ void describe(std::ostream& out, const ServiceConfig& service) {
   say(out, "memory",
       cat(format_bytes(service.memory), ", ", format_bytes(job_memory(service)), " for each of ", service.jobs,
           service.jobs == 1 ? " job" : " jobs"));
+  say(out, "viewer", service.viewer_memory == 0 ? "none" : cat(format_bytes(service.viewer_memory), " of it"));
   say(out, "jobs",
       cat(service.threads == 0 ? "all" : std::to_string(service.threads), " threads each, nice ", service.nice,
           ", I/O class ", io_class_name(service.io_class)));

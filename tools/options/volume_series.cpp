@@ -41,25 +41,27 @@ std::vector<std::string> expand_volumes(std::span<const std::string> inputs) {
   return files;
 }
 
+void add_to_summary(SeriesSummary& summary, const std::string& path) {
+  const NvdbFile file(path);
+  const NvdbGrid& grid = file.grid();
+  if (!summary.box) {
+    summary.box = grid.index_bbox();
+    summary.first = described(file);
+  } else if (summary.difference.empty() && !(grid.index_bbox() == *summary.box)) {
+    summary.difference = cat(summary.first, ", ", described(file));
+  }
+  if (!summary.background && std::isfinite(grid.background())) summary.background = grid.background();
+  const MinMax range{grid.value_min(), grid.value_max()};
+  if (!std::isfinite(range.min) || !std::isfinite(range.max) || range.min > range.max) return;
+  const MinMax known = summary.range.value_or(range);
+  summary.range = MinMax{std::min(known.min, range.min), std::max(known.max, range.max)};
+}
+
 SeriesSummary summarise_series(std::span<const std::string> files) {
   SeriesSummary summary;
-  std::optional<Box> box;
-  std::string first;
   for (const std::string& path : files) {
     try {
-      const NvdbFile file(path);
-      const NvdbGrid& grid = file.grid();
-      if (!box) {
-        box = grid.index_bbox();
-        first = described(file);
-      } else if (summary.difference.empty() && !(grid.index_bbox() == *box)) {
-        summary.difference = cat(first, ", ", described(file));
-      }
-      if (!summary.background && std::isfinite(grid.background())) summary.background = grid.background();
-      const MinMax range{grid.value_min(), grid.value_max()};
-      if (!std::isfinite(range.min) || !std::isfinite(range.max) || range.min > range.max) continue;
-      const MinMax known = summary.range.value_or(range);
-      summary.range = MinMax{std::min(known.min, range.min), std::max(known.max, range.max)};
+      add_to_summary(summary, path);
     } catch (const Error&) {  // said when its turn comes
     }
   }

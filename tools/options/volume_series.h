@@ -19,7 +19,12 @@ struct SeriesSummary {
   std::optional<float> background;  ///< of the first file that has a finite one
   /// "a.nvdb has 64 x 64 x 64 voxels, b.nvdb 32 x 64 x 64": the first two whose index boxes differ; empty: none.
   std::string difference;
+  std::string first{};       ///< the first file, in the words of `difference`
+  std::optional<Box> box{};  ///< its index box
 };
+
+/// Adds a file's head to it. Throws as NvdbFile where it cannot be read, and changes nothing then.
+void add_to_summary(SeriesSummary& summary, const std::string& path);
 
 /// Reads the heads of all files. Those that cannot be read are left out: they are errors when their turn comes.
 SeriesSummary summarise_series(std::span<const std::string> files);

@@ -155,7 +155,7 @@ void RenderLoop::end_turn(const Turn& turn, bool done) {
 }
 
 std::string RenderLoop::file_of(const ViewRequest& view, int layer) const {
-  if (layer == 0) return series_.steps.at(view.step);
+  if (layer == 0) return series_.steps.path(view.step);
   return series_.against.at(series_.against.size() == 1 ? 0 : view.step);
 }
 
@@ -192,7 +192,7 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
     tone = picture.tone;
     pictures.push_back(std::move(picture.image));
   }
-  if (view.step + 1 < series_.steps.size()) shelf_.prefetch(series_.steps[view.step + 1]);
+  if (const auto next = series_.steps.after(view.step)) shelf_.prefetch(series_.steps.path(*next));
   return pictures;
 }
 

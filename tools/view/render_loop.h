@@ -19,6 +19,7 @@
 #include "gpu/render/backend.h"
 #include "tools/view/frame_pace.h"
 #include "tools/view/refinement.h"
+#include "tools/view/steps/step_list.h"
 #include "tools/view/view_message.h"
 #include "tools/view/volume_shelf.h"
 
@@ -28,7 +29,7 @@ using ViewerId = std::int64_t;
 
 /// What is rendered: the files of each step, and what all pictures have in common.
 struct RenderedSeries {
-  std::vector<std::string> steps;
+  const StepList& steps;             ///< outlives the loop
   std::vector<std::string> against;  ///< none, one for all steps, or one for each
   std::optional<float> background;   ///< of all steps of a series
 };

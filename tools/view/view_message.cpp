@@ -57,7 +57,7 @@ ProbeRequest read_probe(const nlohmann::json& message, bool against) {
   return probe;
 }
 
-ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool against) {
+ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool against, std::int64_t pixels) {
   ViewRequest view;
   view.id = whole(message, "id", 0, kMostId);
   view.width = static_cast<std::int32_t>(whole(message, "width", 1, kLongestViewEdge));
@@ -66,9 +66,8 @@ ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool aga
   view.moving = flag(message, "moving");
   view.against = flag(message, "against");
   if (view.against && !against) refuse_key("against", "needs a second file; start weir view with --against");
-  if (std::int64_t{view.width} * view.height * (view.against ? 2 : 1) > kMostViewPixels) {
-    refuse_key("width",
-               cat("times height is more than ", kMostViewPixels, " pixels", view.against ? ", of two files" : ""));
+  if (std::int64_t{view.width} * view.height * (view.against ? 2 : 1) > pixels) {
+    refuse_key("width", cat("times height is more than ", pixels, " pixels", view.against ? ", of two files" : ""));
   }
   view.scene_text = text(message, "scene");
   view.scene = parse_scene(view.scene_text, "scene");
@@ -92,11 +91,12 @@ ConvertRequest read_convert(const nlohmann::json& message) {
 
 }  // namespace
 
-ClientMessage parse_client_message(std::string_view text_of_message, std::size_t steps, bool against) {
+ClientMessage parse_client_message(std::string_view text_of_message, std::size_t steps, bool against,
+                                   std::int64_t pixels) {
   const nlohmann::json message = nlohmann::json::parse(text_of_message, nullptr, false);
   if (!message.is_object()) throw Error(ErrorKind::input, "message: must be a JSON object");
   const std::string type = text(message, "type");
-  if (type == "view") return read_view(message, steps, against);
+  if (type == "view") return read_view(message, steps, against, pixels);
   if (type == "shown") return ShownMessage{whole(message, "frame", 0, kMostId)};
   if (type == "probe") return read_probe(message, against);
   if (type == "convert") return read_convert(message);

@@ -55,9 +55,10 @@ struct ConvertRequest {
 
 using ClientMessage = std::variant<ViewRequest, ShownMessage, ProbeRequest, ConvertRequest>;
 
-/// Throws Error(input) saying what is wrong with the message, the key first. A scene that names a file (an environment)
-/// is refused: only the command line names files.
-ClientMessage parse_client_message(std::string_view text, std::size_t steps, bool against);
+/// `pixels`: of a picture, at most. Throws Error(input) saying what is wrong with the message, the key first. A scene
+/// that names a file (an environment) is refused: only the command line names files.
+ClientMessage parse_client_message(std::string_view text, std::size_t steps, bool against,
+                                   std::int64_t pixels = kMostViewPixels);
 
 /// What comes with a picture.
 struct FrameHeader {

@@ -1,12 +1,15 @@
 #include "tools/view/view_server.h"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
 
+#include "compressor/select/file_size.h"
 #include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"
+#include "daemon/http/socket_token.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "tools/report/read_sidecar.h"
@@ -32,7 +35,7 @@ AccessRules rules_of(const ViewSettings& settings) {
                 compose(option("listen", settings.address.text()), " can be reached from other machines, so it needs ",
                         option("token-file", "FILE"), "; or listen on 127.0.0.1"));
   }
-  return {settings.token, loopback};
+  return {settings.token, loopback && !settings.any_host};
 }
 
 Json names_of(const std::vector<std::string>& paths) {
@@ -41,9 +44,10 @@ Json names_of(const std::vector<std::string>& paths) {
   return names;
 }
 
-RenderedSeries rendered_series_of(const ViewedFiles& files) {
+RenderedSeries rendered_series_of(const StepList& steps, const ViewedFiles& files) {
   // As weir render has it where there is one file: that file's own.
-  return {files.steps, files.against, files.steps.size() > 1 ? files.summary.background : std::nullopt};
+  const bool series = files.steps.size() > 1 || files.grow;
+  return {steps, files.against, series ? files.summary.background : std::nullopt};
 }
 
 bool is_page_file(const RequestTarget& target) {
@@ -53,7 +57,7 @@ bool is_page_file(const RequestTarget& target) {
 }  // namespace
 
 std::size_t volumes_held(const ViewedFiles& files) {
-  const std::size_t steps = files.steps.size() > 1 ? 2 : 1;  // that is seen, and the next
+  const std::size_t steps = files.steps.size() > 1 || files.grow ? 2 : 1;  // that is seen, and the next
   return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
 }
 
@@ -61,21 +65,32 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
     : io_(io),
       settings_(std::move(settings)),
       files_(std::move(files)),
+      steps_(files_.steps),
       rules_(rules_of(settings_)),
       backend_(backend),
       shelf_(backend, volumes_held(files_)),
       converter_(io, settings_.program) {
   state_text_ = line({{"title", files_.title},
                       {"version", settings_.version},
-                      {"steps", names_of(files_.steps)},
+                      {"grows", files_.grow},
                       {"against", names_of(files_.against)},
                       {"preview_of", settings_.preview_of.empty() ? Json() : Json(settings_.preview_of)},
                       {"allow_convert", settings_.allow_convert},
                       {"backend", backend.name()},
-                      {"most_pixels", kMostViewPixels},
+                      {"most_pixels", settings_.pixels},
                       {"most_viewers", settings_.viewers},
                       {"colormaps", colormap_facts()}});
-  loop_.emplace(backend_, shelf_, rendered_series_of(files_), render_events());
+  histograms_.emplace(
+      io_,
+      [this](const HistogramQuestion& question, const std::atomic<bool>& cancel) {
+        return count_histogram(question, cancel);
+      },
+      [this](ViewerId id, const std::string& text) { send(id, text); });
+  loop_.emplace(backend_, shelf_, rendered_series_of(steps_, files_), render_events());
+  if (files_.grow) {
+    step_watch_.emplace(io_, side_, steps_, files_, settings_.look_again,
+                        [this](const SeriesSummary& summary) { tell_steps(summary); });
+  }
   http_ = std::make_unique<HttpServer>(
       io_, settings_.address, settings_.http, [this](const HttpRequest& request) { return answer(request); },
       SocketHandler{[this](const HttpRequest& request) { return refuse_viewer(request); },
@@ -85,8 +100,9 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
 }
 
 ViewServer::~ViewServer() {
-  ended_ = true;
   alive_.reset();
+  histograms_.reset();
+  step_watch_.reset();
   http_.reset();
   for (auto& [id, viewer] : viewers_) viewer.socket->close_now();
   loop_.reset();
@@ -114,6 +130,8 @@ HttpResponse ViewServer::route(const HttpRequest& request) const {
   }
   if (target->path == std::vector<std::string>{"api", "state"}) {
     Json state = Json::parse(state_text_);
+    state["steps"] = names_of(steps_.paths());
+    state["order"] = steps_.order();
     state["viewers"] = viewers_.size();
     return {200, "application/json", line(state) + "\n", {}};
   }
@@ -140,7 +158,7 @@ void ViewServer::add_viewer(ViewerSocket::Socket socket, const UpgradeRequest& r
   auto viewer =
       std::make_shared<ViewerSocket>(std::move(socket), settings_.sockets,
                                      ViewerSocket::Events{[this, id] {
-                                                            viewers_[id].wanted = 0;
+                                                            viewers_[id].wanted = first_step();
                                                             tell_facts(id, viewers_[id]);
                                                           },
                                                           [this, id](std::string_view text) { receive(id, text); },
@@ -151,6 +169,7 @@ void ViewServer::add_viewer(ViewerSocket::Socket socket, const UpgradeRequest& r
 
 void ViewServer::remove_viewer(ViewerId id) {
   loop_->remove(id);
+  histograms_->forget(id);
   viewers_.erase(id);
 }
 
@@ -164,7 +183,7 @@ void ViewServer::receive(ViewerId id, std::string_view text) {
   if (found == viewers_.end()) return;
   try {
     std::visit([&](auto&& message) { handle(id, found->second, std::forward<decltype(message)>(message)); },
-               parse_client_message(text, files_.steps.size(), !files_.against.empty()));
+               parse_client_message(text, steps_.count(), !files_.against.empty(), settings_.pixels));
   } catch (const std::exception& error) {
     send(id, error_message(0, error.what()));
   }
@@ -189,13 +208,34 @@ void ViewServer::handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe) 
   if (!viewer.probing) answer_probe(id, viewer);
 }
 
-const std::string& ViewServer::file_of(std::size_t step, int side) const {
-  if (side == 0) return files_.steps.at(step);
+std::string ViewServer::file_of(std::size_t step, int side) const {
+  if (side == 0) return steps_.path(step);
   return files_.against.at(files_.against.size() == 1 ? 0 : step);
 }
 
-MinMax ViewServer::range() const { return files_.summary.range.value_or(MinMax{0, 1}); }
-float ViewServer::background() const { return files_.summary.background.value_or(range().min); }
+// The first number, that of the file which was named, where that is still there.
+std::size_t ViewServer::first_step() const {
+  const std::vector<std::size_t> order = steps_.order();  // never empty
+  return *std::min_element(order.begin(), order.end());
+}
+
+SeenValues ViewServer::seen_values() const {
+  const MinMax range = files_.summary.range.value_or(MinMax{0, 1});
+  return {range, files_.summary.background.value_or(range.min)};
+}
+
+// All have the steps before all have values from a wider range: what a page knows of a file is of the range it had
+// then.
+void ViewServer::tell_steps(const SeriesSummary& summary) {
+  files_.summary = summary;
+  const SeenValues values = seen_values();
+  Json told{{"type", "steps"}, {"steps", names_of(steps_.paths())}, {"order", steps_.order()}};
+  told.update(values_facts(values));
+  const std::string text = line(told);
+  std::vector<ViewerId> ids;  // one that reads nothing is gone after a text too many
+  for (const auto& [id, viewer] : viewers_) ids.push_back(id);
+  for (const ViewerId id : ids) send(id, text);
+}
 
 // One step at a time: a series that is scrubbed through asks for the newest alone.
 void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
@@ -204,48 +244,60 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   viewer.told = step;
   viewer.told_of = file_identity(file_of(step, 0));
   viewer.telling = true;
-  boost::asio::post(side_, [this, id, step, alive = std::weak_ptr(alive_)] {
-    const auto tell = [&](const std::string& text) {
-      boost::asio::post(io_, [this, id, alive, text] {
-        if (alive.lock()) send(id, text);
-      });
-    };
-    for (const int side : files_.against.empty() ? std::vector{0} : std::vector{0, 1}) {
-      const std::string& path = file_of(step, side);
-      const auto answer = [&](const char* type, const auto& make) {
-        tell(facts_cache_.get(cat(type, ' ', step, ' ', side, ' ', file_identity(path)), [&] {
-          Json facts{{"type", type}, {"step", step}, {"side", side}};
-          facts.update(make(*open_files_.get(path)));
+  boost::asio::post(side_, [this, id, step, values = seen_values(), alive = std::weak_ptr(alive_)] {
+    std::vector<std::string> texts;
+    for (const int side : sides()) {
+      const std::string path = file_of(step, side);
+      try {
+        const std::string key = cat(step, ' ', side, ' ', values.range.min, ' ', values.range.max, ' ');
+        texts.push_back(facts_cache_.get(key + file_identity(path), [&] {
+          Json facts{{"type", "facts"}, {"step", step}, {"side", side}};
+          facts.update(volume_facts(*open_files_.get(path), values));
           return line(facts);
         }));
-      };
-      try {
-        answer("facts", [&](const NvdbFile& file) { return volume_facts(file, range(), background()); });
-        answer("histogram", [&](const NvdbFile& file) { return histogram_facts(file, ended_); });
       } catch (const std::exception& error) {
-        if (!ended_) tell(error_message(0, error.what()));
+        texts.push_back(error_message(0, error.what()));
       }
     }
-    boost::asio::post(io_, [this, id, alive] {
-      if (!alive.lock()) return;
-      const auto found = viewers_.find(id);
-      if (found == viewers_.end()) return;
-      found->second.telling = false;
-      tell_facts(id, found->second);
+    boost::asio::post(io_, [this, id, step, values, texts, alive] {
+      if (alive.lock()) tell_facts(id, step, values, texts);
     });
   });
 }
+
+// The facts of a step, made with `values`, are there; a histogram may take longer.
+void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& values,
+                            const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) send(id, text);
+  for (const int side : sides()) histograms_->ask(id, {step, side, file_of(step, side)});
+  const auto found = viewers_.find(id);
+  if (found == viewers_.end()) return histograms_->forget(id);
+  const MinMax now = seen_values().range;
+  const bool older = now.min != values.range.min || now.max != values.range.max;  // a wider one was told meanwhile
+  if (older && !found->second.wanted) found->second.wanted = step;
+  found->second.telling = false;
+  tell_facts(id, found->second);
+}
+
+std::string ViewServer::count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel) {
+  Json histogram{{"type", "histogram"}, {"step", question.step}, {"side", question.side}};
+  histogram.update(histogram_facts(*open_files_.get(question.path), cancel));
+  return line(histogram);
+}
+
+std::vector<int> ViewServer::sides() const { return files_.against.empty() ? std::vector{0} : std::vector{0, 1}; }
 
 void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
   if (!viewer.probe || !viewer.view) return;
   const ProbeRequest probe = *std::exchange(viewer.probe, std::nullopt);
   viewer.probing = true;
-  boost::asio::post(side_, [this, id, probe, view = viewer.view, alive = std::weak_ptr(alive_)] {
+  boost::asio::post(side_, [this, id, probe, view = viewer.view, background = seen_values().background,
+                            alive = std::weak_ptr(alive_)] {
     Json answer{{"type", "value"}, {"id", probe.id}, {"found", false}};
     try {
       const auto file = open_files_.get(file_of(view->step, probe.side));
       const double aspect = static_cast<double>(view->width) / view->height;
-      if (const auto found = probe_voxel(file->grid(), view->scene, background(), aspect, probe.x, probe.y)) {
+      if (const auto found = probe_voxel(file->grid(), view->scene, background, aspect, probe.x, probe.y)) {
         answer["found"] = true;
         answer["value"] = found->value;
         answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};
@@ -271,13 +323,16 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
 }
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
-  const std::string& volume = file_of(viewer.view ? viewer.view->step : 0, 0);
+  const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
   const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
   if (!sidecar) {
     throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
   }
   const SceneConversion conversion = scene_conversion(volume, settings_.preview_of, *sidecar, request);
-  const Json reply{{"type", "conversion"}, {"id", request.id}, {"command", conversion.text}};
+  const Json reply{{"type", "conversion"},
+                   {"id", request.id},
+                   {"command", conversion.text},
+                   {"bytes", bytes_at_rate(sidecar->budget.dense_float32_bytes, request.rate)}};
   const auto tell = [this, id, reply](const std::string& state, const std::string& message) {
     Json told = reply;
     told["state"] = state;

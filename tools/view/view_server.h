@@ -6,6 +6,7 @@
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -18,23 +19,30 @@
 #include "daemon/http/access.h"
 #include "daemon/http/http_server.h"
 #include "gpu/render/backend.h"
+#include "tools/view/histogram_counts.h"
 #include "tools/view/kept_texts.h"
 #include "tools/view/open_files.h"
 #include "tools/view/render_loop.h"
 #include "tools/view/scene_converter.h"
-#include "tools/view/viewed_files.h"
+#include "tools/view/steps/step_list.h"
+#include "tools/view/steps/step_watch.h"
+#include "tools/view/steps/viewed_files.h"
 #include "tools/view/viewer_socket.h"
+#include "tools/view/volume_facts.h"
 
 namespace weir {
 
 struct ViewSettings {
   ListenAddress address{"127.0.0.1", 0};
-  std::string token;            ///< that every viewer must bring; empty: none, loopback only
-  std::size_t viewers = 8;      ///< at once
-  bool allow_convert = false;   ///< a viewer may have the source converted
-  std::string program;          ///< path of weir, for that
-  std::string version;          ///< of weir, shown on the page
+  std::string token;                      ///< that every viewer must bring; empty: none, loopback only
+  std::size_t viewers = 8;                ///< at once
+  std::int64_t pixels = kMostViewPixels;  ///< of a picture, at most
+  bool allow_convert = false;             ///< a viewer may have the source converted
+  std::string program;                    ///< path of weir, for that
+  std::string version;                    ///< of weir, shown on the page
   std::string preview_of = {};  ///< the source that the file was made from for this, shown on the page; empty: none
+  bool any_host = false;        ///< a Host header may name anything: who asks has a token that no web page can know
+  std::chrono::milliseconds look_again{1000};  ///< between two looks for steps of a series that grows
   HttpLimits http = {};
   ViewerLimits sockets = {};
 };
@@ -78,29 +86,35 @@ class ViewServer {
   void handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe);
   void handle(ViewerId id, Viewer& viewer, const ConvertRequest& request);
   void tell_facts(ViewerId id, Viewer& viewer);
+  void tell_facts(ViewerId id, std::size_t step, const SeenValues& values, const std::vector<std::string>& texts);
+  std::string count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel);
+  std::vector<int> sides() const;
   void answer_probe(ViewerId id, Viewer& viewer);
   void send(ViewerId id, std::string text);
   RenderEvents render_events();
-  const std::string& file_of(std::size_t step, int side) const;
-  MinMax range() const;
-  float background() const;
+  std::string file_of(std::size_t step, int side) const;
+  std::size_t first_step() const;
+  SeenValues seen_values() const;
+  void tell_steps(const SeriesSummary& summary);
 
   boost::asio::io_context& io_;
   const ViewSettings settings_;
-  const ViewedFiles files_;
+  ViewedFiles files_;  // its steps are those of the beginning
+  StepList steps_;
   const AccessRules rules_;
   std::string state_text_;  // of /api/state, but for what changes
   Backend& backend_;
   std::map<ViewerId, Viewer> viewers_;
   ViewerId last_id_ = 0;
-  std::atomic<bool> ended_{false};
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // what other threads post is dropped with it
   OpenFiles open_files_;
   KeptTexts facts_cache_;
   VolumeShelf shelf_;
+  std::optional<HistogramCounts> histograms_;
   std::optional<RenderLoop> loop_;
   SceneConverter converter_;
-  boost::asio::thread_pool side_{2};  // looks values up, counts histograms
+  boost::asio::thread_pool side_{2};  // looks facts and values up, looks for steps
+  std::optional<StepWatch> step_watch_;
   std::unique_ptr<HttpServer> http_;
 };
 

@@ -72,31 +72,34 @@ std::string hex_colour(const Float3& linear) {
 
 }  // namespace
 
-Json volume_facts(const NvdbFile& file, MinMax range, float background) {
-  const NvdbGrid& grid = file.grid();
-  const std::optional<Sidecar> sidecar = own_sidecar(file);
-  const TransferFunction transfer = make_transfer_function({}, range, background, "gray");
+Json values_facts(const SeenValues& values) {
+  const TransferFunction transfer = make_transfer_function({}, values.range, values.background, "gray");
   Json opacity = Json::array();
   for (std::size_t i = 0; i < kOpacities; ++i) {
     const std::size_t at = i * (transfer.table().size() - 1) / (kOpacities - 1);
     opacity.push_back(transfer.table()[at].a);
   }
+  return {{"range", {values.range.min, values.range.max}}, {"background", values.background}, {"opacity", opacity}};
+}
+
+Json volume_facts(const NvdbFile& file, const SeenValues& values) {
+  const NvdbGrid& grid = file.grid();
+  const std::optional<Sidecar> sidecar = own_sidecar(file);
   const Box box = grid.index_bbox();
   const std::string name = std::filesystem::path(file.path()).filename().string();
-  return {{"file", name},
-          {"word", shell_word(name.starts_with('-') ? "./" + name : name)},
-          {"bytes", file.bytes().size()},
-          {"title", quantity_title(file)},
-          {"grid_type", grid.packed() != nullptr ? "packed" : grid_type_name(grid.type())},
-          {"box", {index_json(box.lo), index_json(box.hi)}},
-          {"voxel_size", grid.voxel_size()},
-          {"origin", grid.world_origin()},
-          {"range", {range.min, range.max}},
-          {"values", {grid.value_min(), grid.value_max()}},
-          {"background", background},
-          {"opacity", opacity},
-          {"kinds", kinds_of(grid, sidecar)},
-          {"certificate", sidecar ? certificate_of(*sidecar) : Json()}};
+  Json facts{{"file", name},
+             {"word", shell_word(name.starts_with('-') ? "./" + name : name)},
+             {"bytes", file.bytes().size()},
+             {"title", quantity_title(file)},
+             {"grid_type", grid.packed() != nullptr ? "packed" : grid_type_name(grid.type())},
+             {"box", {index_json(box.lo), index_json(box.hi)}},
+             {"voxel_size", grid.voxel_size()},
+             {"origin", grid.world_origin()},
+             {"values", {grid.value_min(), grid.value_max()}},
+             {"kinds", kinds_of(grid, sidecar)},
+             {"certificate", sidecar ? certificate_of(*sidecar) : Json()}};
+  facts.update(values_facts(values));
+  return facts;
 }
 
 Json histogram_facts(const NvdbFile& file, const std::atomic<bool>& cancel) {

@@ -12,9 +12,18 @@ namespace weir {
 /// Bins of a histogram that is sent: a page has no more pixels for it.
 inline constexpr std::size_t kViewBins = 256;
 
-/// The grid and, of the sidecar where one belongs to the file, the certificate; quick. `range` are the values at the
-/// ends of colours and opacity, `background` as RenderOptions has it. Throws as read_sidecar.
-nlohmann::ordered_json volume_facts(const NvdbFile& file, MinMax range, float background);
+/// What all steps of a series have in common.
+struct SeenValues {
+  MinMax range{0, 1};    ///< at the ends of colours and opacity
+  float background = 0;  ///< as RenderOptions has it
+};
+
+/// {"range", "background", "opacity"}, the opacity where a scene gives none.
+nlohmann::ordered_json values_facts(const SeenValues& values);
+
+/// The grid, `values` and, of the sidecar where one belongs to the file, the certificate; quick. Throws as
+/// read_sidecar.
+nlohmann::ordered_json volume_facts(const NvdbFile& file, const SeenValues& values);
 
 /// {"min", "max", "counts"}: the sidecar's, else counted, which decodes the whole file. Throws Error(interrupted) where
 /// `cancel` was set meanwhile.

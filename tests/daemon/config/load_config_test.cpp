@@ -55,7 +55,8 @@ TEST_F(Config, Defaults) {
   EXPECT_EQ(config.service.state, directory_ / "weir.db");
   EXPECT_EQ(config.service.listen.text(), "127.0.0.1:8470");
   EXPECT_EQ(config.service.memory, 1073741824U);
-  EXPECT_EQ(job_memory(config.service), 1006632960U);
+  EXPECT_EQ(config.service.viewer_memory, 134217728U);
+  EXPECT_EQ(job_memory(config.service), 872415232U);
   EXPECT_EQ(config.service.jobs, 1);
   EXPECT_EQ(config.service.work_dir, "");
   EXPECT_EQ(config.service.log_file, "");
@@ -84,6 +85,7 @@ listen = "[::1]:0"
 control_socket = "weir.sock"
 port_file = "/run/weir.port"
 memory = "2GiB"
+viewer_memory = "300MiB"
 jobs = 3
 threads = 2
 nice = 19
@@ -125,7 +127,8 @@ index = [0, "*"]
   EXPECT_EQ(service.control_socket, directory_ / "weir.sock");
   EXPECT_EQ(service.port_file, "/run/weir.port");
   EXPECT_EQ(service.memory, std::uint64_t{2} << 30);
-  EXPECT_EQ(job_memory(service), ((std::uint64_t{2} << 30) - (std::uint64_t{64} << 20)) / 3);
+  EXPECT_EQ(service.viewer_memory, std::uint64_t{300} << 20);
+  EXPECT_EQ(job_memory(service), (std::uint64_t{2048 - 64 - 300} << 20) / 3);
   EXPECT_EQ(service.jobs, 3);
   EXPECT_EQ(service.threads, 2);
   EXPECT_EQ(service.nice, 19);
@@ -212,6 +215,25 @@ TEST_F(Config, MemoryTooLittleForAllJobs_IsRefused) {
             "2:8: memory is 1.0 GiB, too little for the daemon and jobs = 16; it must be at least 1.1 GiB");
   EXPECT_EQ(service_refusal("memory = 1"),
             "2:10: memory is 1 B, too little for the daemon and jobs = 1; it must be at least 128.0 MiB");
+}
+
+TEST_F(Config, ViewerMemory_IsAnEighthWhereThatLeavesEnough) {
+  const auto of = [&](const std::string& keys) {
+    return load("[service]\n" + keys + "\n[[watch]]\ndirectory = 'in'\noutput = 'out'\n").service.viewer_memory >> 20U;
+  };
+  EXPECT_EQ(of("memory = '2GiB'"), 256U);
+  EXPECT_EQ(of("memory = '64GiB'"), 512U);
+  EXPECT_EQ(of("memory = '1023MiB'"), 0U) << "an eighth is less than a viewer needs";
+  EXPECT_EQ(of("jobs = 14"), 0U) << "14 jobs of 64 MiB each leave 64 MiB";
+  EXPECT_EQ(of("jobs = 13"), 128U);
+  EXPECT_EQ(of("viewer_memory = 0"), 0U);
+  EXPECT_EQ(of("viewer_memory = '700MiB'"), 700U);
+  EXPECT_EQ(service_refusal("viewer_memory = '100MiB'"),
+            "2:17: viewer_memory is 100.0 MiB, it must be at least 128.0 MiB, or 0 for no viewer");
+  EXPECT_EQ(
+      service_refusal("memory = '512MiB'\nviewer_memory = '400MiB'"),
+      "2:10: memory is 512.0 MiB, too little for the daemon, viewer_memory = 400.0 MiB and jobs = 1; it must be at "
+      "least 528.0 MiB");
 }
 
 TEST_F(Config, ListeningBeyondLoopback_NeedsAToken) {

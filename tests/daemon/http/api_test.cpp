@@ -163,7 +163,8 @@ TEST_F(ApiTest, ShowsEveryFieldOfTheStatus) {
             "\"directory\":\"/scratch/run 1\",\"output\":\"/out\",\"method\":\"inotify\",\"up\":true,\"reason\":\"\","
             "\"jobs\":{\"discovered\":0,\"waiting\":0,\"running\":0,\"done\":0,\"failed\":0,\"quarantined\":0,"
             "\"cancelled\":0},\"waiting_bytes\":300,\"done_per_min\":1.5,\"overflows\":0,\"last_done\":null}],"
-            "\"control_at\":null}\n");
+            "\"viewer\":{\"state\":\"none\",\"reason\":\"\",\"file\":\"\",\"connections\":0,\"rss_bytes\":0,"
+            "\"memory_bytes\":0},\"control_at\":null}\n");
 }
 
 TEST_F(ApiTest, GroupsProblems) {

@@ -107,9 +107,18 @@ TEST_F(PageTest, ShowsWhatIsWrong) {
   show_sample_jobs(control_, directory_.path());
   control_.now.state = "paused";
   control_.now.reason = "/scratch has 1.2 GiB free and 4.0 GiB are needed";
+  control_.now.viewer.state = ViewerState::off;
   control_.now.watches[1].up = false;
   control_.now.watches[1].reason = "it is not there; it is looked for every second";
   run("shows_what_is_wrong");
+}
+
+TEST_F(PageTest, SaysWhyThereIsNoViewer) {
+  show_sample_jobs(control_, directory_.path());
+  control_.view_taken = true;
+  control_.now.viewer.state = ViewerState::failed;
+  control_.now.viewer.reason = "/scratch/run42/nvdb/density_24.nvdb: cannot open: No such file or directory";
+  run("says_why_there_is_no_viewer");
 }
 
 TEST_F(PageTest, SaysWhenTheServiceIsGone) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <boost/asio/local/connect_pair.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -69,6 +71,51 @@ TEST(WorkerProcess, KilledBySignal_ExitCodeIs128PlusTheSignal) {
   ShellRun shell("kill -SEGV $$");
   shell.run();
   EXPECT_EQ(shell.end->exit_code, 128 + SIGSEGV);
+}
+
+// The reactor's state of a descriptor that was closed with an event under way is that of the next descriptor, which
+// gets the event: the child must not be waited for then.
+TEST(WorkerProcess, EventOfADescriptorThatWasClosed_IsNotTakenForTheEnd) {
+  boost::asio::io_context io;
+  using Socket = boost::asio::local::stream_protocol::socket;
+  Socket first(io);
+  Socket first_peer(io);
+  Socket second(io);
+  Socket second_peer(io);
+  boost::asio::local::connect_pair(first, first_peer);
+  boost::asio::local::connect_pair(second, second_peer);
+  std::unique_ptr<WorkerProcess> worker;
+  std::optional<WorkerEnd> end;
+  bool told = false;
+  // Both sockets have an event in the queue when the handler of one closes the other.
+  const auto start = [&](Socket& other) {
+    if (worker) return;
+    other.close();
+    worker = std::make_unique<WorkerProcess>(
+        io,
+        WorkerCommand{"/bin/sh",
+                      {"sh", "-c", "trap 'exit 3' TERM; echo ready >&3; while :; do sleep 0.01; done"},
+                      0,
+                      IoClass::none},
+        [&](std::string_view) {
+          told = true;
+          worker->stop(milliseconds(5000));
+        },
+        [&](const WorkerEnd& ended) { end = ended; });
+  };
+  first.async_wait(Socket::wait_read, [&](const boost::system::error_code& error) {
+    if (!error) start(second);
+  });
+  second.async_wait(Socket::wait_read, [&](const boost::system::error_code& error) {
+    if (!error) start(first);
+  });
+  io.poll();
+  first_peer.write_some(boost::asio::buffer("x", 1));
+  second_peer.write_some(boost::asio::buffer("x", 1));
+  io.run();  // for ever, were the child waited for
+  EXPECT_TRUE(told);
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->exit_code, 3);
 }
 
 TEST(WorkerProcess, StopSendsSigtermFirst) {

@@ -259,7 +259,33 @@ def shows_what_is_wrong(browser):
           "/archive/ct is not watched: it is not there; it is looked for every second.")
     equal(browser.texts("#watches .fact")[1], "down, 0 done")
     equal(browser.text("#queue-end"), "empty in about 75 s")
+    equal(browser.visible("#results .view") or browser.visible("#series-view"), False)  # viewers are off
     picture(browser, "trouble")
+
+
+def says_why_there_is_no_viewer(browser):
+    browser.open(url)
+    loaded(browser)
+    browser.click("#results .view")
+    browser.wait("that it is taken", lambda: browser.visible("#viewer-force"))
+    equal(browser.text("#viewer-title"), "density_24_512x512x512_float32.nvdb")
+    equal(browser.text("#viewer-note"),
+          "Somebody looks at another series. Whoever does loses it when you open this one.")
+    browser.click("#viewer-force")
+    browser.wait("the reason", lambda: browser.text("#viewer-note") ==
+                 "/scratch/run42/nvdb/density_24.nvdb: cannot open: No such file or directory.")
+    equal(browser.visible("#viewer-force"), False)
+    browser.click("#viewer-close")
+    equal(browser.visible("#viewer"), False)
+    asked = asked_of_service()
+    assert asked[-1].startswith("force view "), asked
+    browser.click("#results .name")
+    browser.wait("the job", lambda: browser.visible("#job .view"))
+    browser.click("#job .view")
+    browser.wait("that it is taken", lambda: browser.visible("#viewer-force"))
+    equal(browser.visible("#job"), False)
+    refused = browser.complaints()  # Chromium's own lines of the two that were taken
+    assert refused and all("423 (Locked)" in text for text in refused), refused
 
 
 def says_when_the_service_is_gone(browser):

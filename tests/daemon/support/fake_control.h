@@ -20,6 +20,7 @@ class FakeControl : public Control {
   MetricsView figures;
   Readiness readiness_now{true, ""};
   std::map<std::pair<std::int64_t, std::size_t>, std::string> thumbnails;
+  bool view_taken = false;              ///< somebody looks at another series
   std::vector<std::string> asked;       ///< "retry 3", "pause", ...
   JobQuery asked_for;                   ///< by the last call of jobs()
   std::function<void()> before_answer;  ///< called first by status(); may throw
@@ -99,6 +100,18 @@ class FakeControl : public Control {
   }
   MetricsView metrics() override { return figures; }
   Readiness readiness() override { return readiness_now; }
+  ViewerView viewer() override { return now.viewer; }
+  ViewChange view(std::int64_t job, std::size_t output, bool force) override {
+    const auto found = find(job);
+    if (found == all.end()) return ViewChange::no_such_job;
+    if (found->state != JobState::done) return ViewChange::wrong_state;
+    if (output >= found->outputs.size()) return ViewChange::no_such_output;
+    if (now.viewer.state == ViewerState::off) return ViewChange::off;
+    if (view_taken && !force) return ViewChange::taken;
+    asked.push_back((force ? "force view " : "view ") + std::to_string(job) + " " + std::to_string(output));
+    now.viewer.file = found->outputs[output].path;
+    return ViewChange::made;
+  }
   std::optional<std::string> thumbnail_path(std::int64_t job, std::size_t output) override {
     const auto found = thumbnails.find({job, output});
     return found == thumbnails.end() ? std::nullopt : std::optional(found->second);

@@ -61,11 +61,18 @@ TEST_F(ViewPageTest, WorksWithKeys) { run("works_with_keys", {cloud("a.nvdb")});
 
 TEST_F(ViewPageTest, EditsTheTransferFunction) { run("edits_the_transfer_function", {cloud("a.nvdb")}); }
 
+TEST_F(ViewPageTest, TakesExtremeValues) { run("takes_extreme_values", {cloud("a.nvdb")}); }
+
 TEST_F(ViewPageTest, TellsValues) { run("tells_values", {cloud("a.nvdb")}); }
 
 TEST_F(ViewPageTest, ScrubsASeries) {
   for (const char* step : {"1", "2", "3"}) cloud(std::string("s_") + step + ".nvdb", "8", step);
   run("scrubs_a_series", {directory_ / "s_*.nvdb"});
+}
+
+TEST_F(ViewPageTest, ShowsStepsThatCome) {
+  for (const char* step : {"0", "2", "3", "4"}) cloud(std::string("later_s_") + step + ".nvdb", "8", step);
+  run("shows_steps_that_come", {cloud("s_1.nvdb"), "--series"});
 }
 
 TEST_F(ViewPageTest, ComparesTwoFiles) {

@@ -201,6 +201,21 @@ def edits_the_transfer_function(browser, url):
     assert "o" in state(browser), state(browser)
 
 
+def takes_extreme_values(browser, url):
+    loaded(browser, url + "#el=90&d=1e%2B20&iso=-2e-30&m=iso")
+    scene = scene_of(browser)
+    assert "density = 1e+20\n" in scene, scene
+    assert "iso = -2e-30\n" in scene, scene
+    equal(browser.visible("#banner"), False)
+    browser.script("document.querySelector('#frame').focus()")
+    browser.press("UP", "UP")
+    equal(state(browser)["el"], "89.9")
+    browser.press(*["DOWN"] * 40)
+    equal(state(browser)["el"], "-89.9")
+    converged(browser)
+    equal(browser.visible("#banner"), False)
+
+
 def tells_values(browser, url):
     loaded(browser, url)
     browser.script("""
@@ -225,13 +240,56 @@ def scrubs_a_series(browser, url):
     converged(browser)
     browser.wait("its facts", lambda: browser.text("#file-name") == "s_3.nvdb")
     assert canvas_bytes(browser) != before, "the picture is the same"
-    equal(state(browser), {"t": "2"})
+    equal(state(browser), {"f": "s_3.nvdb"})
     browser.script("document.activeElement.blur()")
     watch_frames(browser)
     browser.press("SPACE")
     browser.wait("it plays", lambda: len({f["step"] for f in frames(browser)}) == 3)
     browser.press("SPACE")
     picture(browser, "series")
+
+
+def shows_steps_that_come(browser, url):
+    steps = pathlib.Path(arguments[0]).parent
+    come = lambda name: os.rename(steps / f"later_{name}", steps / name)
+    browser.set_width(390, 500)  # a small picture, soon done
+    loaded(browser, url)
+    equal(browser.visible("#steps"), False)
+    come("s_2.nvdb")
+    browser.wait("a second step", lambda: browser.text("#step-name") == "1 of 2: s_1.nvdb")
+    equal(browser.text("#step-news"), "new step")
+    equal(browser.text("#file-name"), "s_1.nvdb")
+    picture(browser, "new-step")
+    no_overflow(browser)
+    before = canvas_bytes(browser)
+    browser.click("#follow")
+    browser.wait("it is shown", lambda: browser.text("#step-name") == "2 of 2: s_2.nvdb")
+    equal(browser.text("#step-news"), "")
+    converged(browser)
+    assert canvas_bytes(browser) != before, "the picture is the same"
+    come("s_0.nvdb")  # an older one does not move what is shown
+    browser.wait("a third step", lambda: browser.text("#step-name") == "3 of 3: s_2.nvdb")
+    come("s_3.nvdb")
+    browser.wait("it follows", lambda: browser.text("#step-name") == "4 of 4: s_3.nvdb")
+    browser.wait("its facts", lambda: browser.text("#file-name") == "s_3.nvdb")
+    browser.script("document.activeElement.blur()")
+    browser.press("[")
+    equal(browser.text("#step-name"), "3 of 4: s_2.nvdb")
+    equal(browser.script("return document.querySelector('#follow').checked"), False)
+    os.remove(steps / "s_2.nvdb")
+    browser.wait("that it is gone", lambda: browser.text("#banner") == "s_2.nvdb is no longer there.")
+    equal(browser.text("#step-name"), "no longer there: s_2.nvdb")
+    browser.press("]")
+    equal(browser.text("#step-name"), "1 of 3: s_0.nvdb")
+    converged(browser)
+    equal(browser.visible("#banner"), False)
+    equal(browser.complaints(), [])
+    # A link to a step that comes later.
+    browser.open("about:blank")
+    loaded(browser, url + "#f=s_4.nvdb")
+    equal(browser.text("#step-name"), "2 of 3: s_1.nvdb")
+    come("s_4.nvdb")
+    browser.wait("the step of the link", lambda: browser.text("#step-name") == "4 of 4: s_4.nvdb")
 
 
 def compares_two_files(browser, url):
@@ -257,6 +315,7 @@ def converts(browser, url):
     command = browser.wait("the command", lambda: browser.text("#convert-command"))
     assert command.startswith("weir convert ") and command.endswith(" --scene scene.toml"), command
     equal(browser.visible("#run-convert"), False)
+    equal(browser.text("#convert-size"), "At most 128.0 KiB; the error of a scene is known when it is made.")
 
 
 def saved_scene_gives_the_same_picture(browser, url):

@@ -20,7 +20,7 @@ class ServedView {
   explicit ServedView(const std::string& input, const std::string& against = "", ViewSettings settings = {},
                       const VoxelMemory& memory = {})
       : backend_(make_cpu_backend(0, memory)),
-        server_(std::make_unique<ViewServer>(io_, std::move(settings), find_viewed_files(input, against), *backend_)),
+        server_(std::make_unique<ViewServer>(io_, std::move(settings), find_viewed_files({input}, against), *backend_)),
         port_(server_->port()),
         thread_([this] { io_.run(); }) {}
   ~ServedView() {

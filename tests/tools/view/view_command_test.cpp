@@ -79,6 +79,31 @@ TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
   EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
 }
 
+TEST_F(ViewCommandTest, Private_TellsItsTokenAloneToTheProgramThatAsks) {
+  const std::string told = directory_ / "told";
+  ChildProcess child(
+      {"/bin/sh", "-c", "exec \"$0\" view \"$1\" --private --progress-fd 9 9>\"$2\"", WEIR_COMMAND, volume_, told});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  for (int i = 0; i < 200 && read_file(told).empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto announced = nlohmann::json::parse(read_file(told));
+  EXPECT_EQ(announced["address"], cat("127.0.0.1:", port));
+  const std::string token = announced["token"];
+  EXPECT_EQ(token.size(), 64U);
+  EXPECT_EQ(child.out_so_far().find(token), std::string::npos);
+  EXPECT_EQ(get(port, "/api/state").first, 401);
+  EXPECT_EQ(get(port, "/api/state", {"node17:8470"}, "Bearer " + token).first, 200) << "whatever the Host";
+  EXPECT_EQ(upgrade_answer(port, {.protocols = "weir.view"}).substr(0, 3), "401");
+}
+
+TEST_F(ViewCommandTest, PrivateAndSeries_AreRefusedWhereTheyMeanNothing) {
+  expect_refused({"view", volume_, "--private"}, 2,
+                 "--private tells its token to --progress-fd N alone; give that, too");
+  const std::string raw = directory_ / "v_40x30x20_float32.raw";
+  expect_refused({"view", raw, "--series", "--progress", "never", "--log-level", "off"}, 2,
+                 cat("--series is of a NanoVDB file, and ", raw, " is converted to be seen; leave it out"));
+}
+
 TEST_F(ViewCommandTest, OptionOfASource_IsRefusedWithAFile) {
   expect_refused({"view", volume_, "--dims", "1,2,3"}, 2,
                  cat("--dims says how to read a source, and ", volume_, " is shown as it is; leave it out"));

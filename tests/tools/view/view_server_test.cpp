@@ -142,6 +142,15 @@ TEST_F(ViewServerTest, Probe_TellsTheVoxelUnderThePoint) {
   EXPECT_EQ(client.text("value").value()["found"], false);
 }
 
+TEST_F(ViewServerTest, Histogram_IsCountedForAllWhoWaitForIt) {
+  std::filesystem::remove(sidecar_path(volume_));
+  ServedView served(volume_);
+  std::vector<std::unique_ptr<ViewClient>> clients;
+  for (int i = 0; i < 4; ++i) clients.push_back(std::make_unique<ViewClient>(served.port()));
+  const std::string first = clients[0]->text("histogram").value().dump();
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(clients[static_cast<std::size_t>(i)]->text("histogram").value().dump(), first);
+}
+
 TEST_F(ViewServerTest, WrongScene_IsSaidAndTheViewerGoesOn) {
   ServedView served(volume_);
   ViewClient client(served.port());
@@ -213,7 +222,10 @@ TEST_F(ViewServerTest, MessageThatIsTooLarge_EndsThatViewerAlone) {
   ServedView served(volume_);
   ViewClient other(served.port());
   ViewClient client(served.port());
-  client.send_text(std::string(100'000, ' '));
+  try {
+    client.send_text(std::string(100'000, ' '));
+  } catch (const boost::system::system_error&) {  // it was ended before all was sent
+  }
   EXPECT_TRUE(client.ended());
   wait_for_viewers(served, 1);
   other.show(1, true);
@@ -289,29 +301,6 @@ TEST_F(ViewServerTest, OneViewerTooMany_IsRefused) {
   EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 viewers, as many as there may be; close one\"}\n");
 }
 
-TEST_F(ViewServerTest, Series_ShowsEachStep) {
-  const std::string second = directory_ / "v2.nvdb";
-  std::filesystem::copy(volume_, second);
-  std::filesystem::copy(sidecar_path(volume_), sidecar_path(second));
-  ServedView served(directory_.path().string());
-  ViewClient client(served.port());
-  EXPECT_EQ(Json::parse(get(served.port(), "/api/state").second)["steps"], Json::parse("[\"v.nvdb\", \"v2.nvdb\"]"));
-  client.show(1, true, {{"step", 1}});
-  EXPECT_EQ(client.frame().value().header["step"], 1);
-}
-
-TEST_F(ViewServerTest, Against_HasTwoPicturesAboveEachOther) {
-  ServedView served(volume_, volume_);
-  ViewClient client(served.port());
-  client.show(1, false, {{"against", true}});
-  const auto frame = client.refined(1, 16);
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->header["layers"], 2);
-  EXPECT_EQ(frame->header["height"], 48);
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(frame->picture[i])); };
-  EXPECT_EQ(byte(22) << 8U | byte(23), 96U) << "the height that the PNG says";
-}
-
 TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
   ServedView served(volume_);
   ViewClient client(served.port());
@@ -320,6 +309,7 @@ TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
   client.send(request);
   const Json shown = client.text("conversion").value();
   EXPECT_EQ(shown["state"], "shown");
+  EXPECT_EQ(shown["bytes"], 40 * 30 * 20) << "a quarter of the float32 bytes";
   EXPECT_EQ(shown["command"],
             cat("weir convert ", directory_ / "v_40x30x20_float32.raw", " --encoding packed --rate 4 -o ",
                 directory_ / "v_scene.nvdb", " --scene scene.toml"));

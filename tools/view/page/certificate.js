@@ -1,7 +1,7 @@
 // What a file's certificate says: bytes, rate, error, and its blocks by kind.
 
-import {element} from "/page/dom.js";
-import * as format from "/page/format.js";
+import {element} from "./dom.js";
+import * as format from "./format.js";
 
 // Told apart by people with every kind of colour vision (Okabe and Ito).
 const kColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"];

@@ -1,6 +1,6 @@
 // The box of voxels that is shown, two sliders for each axis.
 
-import {element, set_text} from "/page/dom.js";
+import {element, set_text} from "./dom.js";
 
 export class ClipBox {
   /** `changed(box)` as it changes, null for all; `done()` when a change is over. */

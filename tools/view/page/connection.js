@@ -19,8 +19,10 @@ export class Connection {
     this.token = token;
     const protocols = ["weir.view"];
     if (token) protocols.push(`weir.token.${hex(token)}`);
-    const scheme = location.protocol === "https:" ? "wss" : "ws";
-    const socket = new WebSocket(`${scheme}://${location.host}/ws`, protocols);
+    const place = new URL("ws", location.href);  // beside the page, wherever that is
+    place.protocol = location.protocol === "https:" ? "wss" : "ws";
+    place.hash = "";
+    const socket = new WebSocket(place, protocols);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.addEventListener("open", () => this.on.opened());

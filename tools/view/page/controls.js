@@ -1,7 +1,7 @@
 // Sliders of single figures: surface, extinction, light.
 
-import {by_id, set_text} from "/page/dom.js";
-import * as format from "/page/format.js";
+import {by_id, set_text} from "./dom.js";
+import * as format from "./format.js";
 import {kStartDensity, kStartLight, start_iso} from "./look.js";
 
 const kIsoSteps = 1000;

@@ -1,6 +1,7 @@
 // "Convert for this scene": the command, and its run where the server allows it.
 
-import {by_id, set_text} from "/page/dom.js";
+import {by_id, set_text} from "./dom.js";
+import * as format from "./format.js";
 
 export class Conversion {
   /** `scene()` as text, or null; `send(message)` to the server. */
@@ -29,8 +30,9 @@ export class Conversion {
     this.send({type: "convert", id: ++this.id, scene, rate, encoding: by_id("encoding").value, run});
   }
 
-  receive({command, state, message}) {
+  receive({command, bytes, state, message}) {
     set_text(by_id("convert-command"), command);
+    set_text(by_id("convert-size"), `At most ${format.bytes(bytes)}; the error of a scene is known when it is made.`);
     by_id("run-convert").disabled = state === "running";
     const note = {
       shown: this.allowed ? "" : "Save the scene beside it; or start weir view with --allow-convert to run it here.",

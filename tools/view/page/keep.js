@@ -1,6 +1,6 @@
 // Files for the reader of the page to keep.
 
-import {element} from "/page/dom.js";
+import {element} from "./dom.js";
 
 /** Offers `blob` as a download of that name. */
 export function save(name, blob) {

@@ -8,6 +8,7 @@ export const kModes = ["dvr", "path", "iso", "mip"];
 export const kStart = Object.freeze({
   mode: "dvr", az: 35, el: 20, zoom: 1, at: null, colormap: null, opacity: null, range: null, density: null, iso: null,
   shading: null, box: null, light: null, exposure: null, step: 0, split: null, log: true,
+  file: null,  // name of a step that an address asks for; the page finds its number
 });
 
 // The light where none is chosen, for sliders to start from: direction in degrees, strength, and that of the sky.
@@ -19,14 +20,14 @@ const list = (values) => values.map(short).join(",");
 
 const kKeys = {
   mode: "m", az: "az", el: "el", zoom: "z", at: "at", colormap: "c", opacity: "o", range: "r", density: "d", iso: "iso",
-  shading: "sh", box: "b", light: "l", exposure: "e", step: "t", split: "s", log: "log",
+  shading: "sh", box: "b", light: "l", exposure: "e", file: "f", split: "s", log: "log",
 };
 
-/** The look as the text behind a URL's #. */
-export function to_hash(look) {
+/** The look as the text behind a URL's #; `file` is the name of its step, which is said of all but the first. */
+export function to_hash(look, file) {
   const parts = new URLSearchParams();
   for (const [key, name] of Object.entries(kKeys)) {
-    const value = look[key];
+    const value = key === "file" ? (look.step > 0 ? file ?? null : null) : look[key];
     if (value === null || value === kStart[key]) continue;
     if (key === "opacity") parts.set(name, value.map((point) => point.map(short).join("_")).join(","));
     else if (key === "box") parts.set(name, value.map((ends) => ends.join("_")).join(","));
@@ -50,7 +51,7 @@ const between = (low, high) => (text) => {
 const kReaders = {
   mode: (text) => kModes.includes(text) ? text : undefined,
   az: between(-3600, 3600), el: between(-90, 90), zoom: between(0.1, 60), density: between(0, 1e30),
-  iso: between(-3.4e38, 3.4e38), shading: between(0, 1), exposure: between(0, 1e6), step: between(0, 1e9),
+  iso: between(-3.4e38, 3.4e38), shading: between(0, 1), exposure: between(0, 1e6), file: (text) => text,
   split: between(0, 1), log: (text) => text === "1",
   at: (text) => numbers(text, 3) ?? undefined,
   colormap: (text) => /^[a-z-]+$/.test(text) ? text : undefined,
@@ -83,7 +84,6 @@ export function from_hash(text) {
     const value = parts.has(name) ? kReaders[key](parts.get(name)) : undefined;
     if (value !== undefined) look[key] = value;
   }
-  if (!Number.isInteger(look.step)) look.step = 0;
   look.el = camera.level(look.el);
   return look;
 }

@@ -1,31 +1,72 @@
-// The steps of a series: a slider, and play, which goes on when the picture of a step is there.
+// The steps of a series: a slider, and play, which goes on when the picture of a step is there. A step has a number that
+// never changes; its place on the slider does, where others come before it.
 
-import {set_text} from "/page/dom.js";
+import {by_id, set_text} from "./dom.js";
 
 const kFrame_ms = 100;  // of a step, at least
 
 export class Steps {
-  /** `names` of the files; `go(step, moving)`. */
-  constructor({root, slider, output, play}, names, go) {
-    Object.assign(this, {slider, output, play, names, go});
+  /** `go(step, moving)` shows a step. */
+  constructor(go) {
+    Object.assign(this, {slider: by_id("step"), play: by_id("play"), follow: by_id("follow"), go});
+    this.names = [];
+    this.order = [];
+    this.step = 0;
     this.playing = false;
-    root.hidden = names.length < 2;
-    slider.max = names.length - 1;
-    slider.addEventListener("input", () => go(Number(slider.value), true));
-    slider.addEventListener("change", () => go(Number(slider.value), false));
-    play.addEventListener("click", () => this.toggle());
+    this.fresh = 0;  // steps that came since the last one was shown
+    const chosen = (moving) => {
+      this.follow.checked = false;
+      go(this.order[Number(this.slider.value)], moving);
+    };
+    this.slider.addEventListener("input", () => chosen(true));
+    this.slider.addEventListener("change", () => chosen(false));
+    this.play.addEventListener("click", () => this.toggle());
+    this.follow.addEventListener("change", () => this.follow.checked && this.go_to_last());
+  }
+
+  /** The steps there are: `steps` are names by number, `order` the numbers in order. */
+  set({steps, order, grows}) {
+    const known = this.names.length;
+    const more = known > 0 ? order.filter((step) => step >= known).length : 0;
+    const at_last = this.place() === this.order.length - 1;
+    Object.assign(this, {names: steps, order});
+    if (grows !== undefined) by_id("follow-field").hidden = !grows;
+    by_id("steps").hidden = order.length < 2;
+    this.slider.max = Math.max(order.length - 1, 0);
+    this.fresh += more;
+    this.show(this.step);
+    if (more > 0 && this.follow.checked && at_last && !this.playing) this.go_to_last();
+  }
+
+  /** The number of the step of that name; undefined where there is none. */
+  number(name) {
+    return this.order.find((step) => this.names[step] === name);
+  }
+
+  place() {
+    return this.order.indexOf(this.step);
   }
 
   show(step) {
     this.step = step;
-    this.slider.value = step;
-    const text = `${step + 1} of ${this.names.length}: ${this.names[step]}`;
-    set_text(this.output, text);
+    const place = this.place();
+    if (place >= 0) this.slider.value = place;
+    if (place === this.order.length - 1) this.fresh = 0;
+    const where = place < 0 ? "no longer there" : `${place + 1} of ${this.order.length}`;
+    const text = `${where}: ${this.names[step] ?? ""}`;
+    set_text(by_id("step-name"), text);
     this.slider.setAttribute("aria-valuetext", text);
+    const news = {0: "", 1: "new step"}[this.fresh] ?? `${this.fresh} new steps`;
+    set_text(by_id("step-news"), news);
+  }
+
+  go_to_last() {
+    const last = this.order.at(-1);
+    if (last !== undefined && last !== this.step) this.go(last, false);
   }
 
   toggle() {
-    if (this.names.length < 2) return;
+    if (this.order.length < 2) return;
     this.playing = !this.playing;
     set_text(this.play, this.playing ? "Stop" : "Play");
     this.play.setAttribute("aria-label", this.playing ? "Stop" : "Play the steps");
@@ -33,13 +74,20 @@ export class Steps {
     else this.go(this.step, false);
   }
 
+  /** From one place to the next, and from the last to the first. */
+  neighbour(by) {
+    return this.order[(this.place() + by + this.order.length) % this.order.length];
+  }
+
   by(steps) {
-    if (this.names.length > 1) this.go((this.step + steps + this.names.length) % this.names.length, false);
+    if (this.order.length < 2) return;
+    this.follow.checked = false;
+    this.go(this.neighbour(steps), false);
   }
 
   next() {
     this.turned = performance.now();
-    this.go((this.step + 1) % this.names.length, true);
+    this.go(this.neighbour(1), true);
   }
 
   /** The picture of a step is there. */

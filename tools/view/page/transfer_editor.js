@@ -1,7 +1,7 @@
 // Opacity over the values, drawn over their histogram: points are dragged, added, removed, by mouse, touch and keys.
 
-import {element} from "/page/dom.js";
-import {number} from "/page/format.js";
+import {element} from "./dom.js";
+import {number} from "./format.js";
 
 const kSvg = "http://www.w3.org/2000/svg";
 const kWidth = 320;   // of the drawing, in its own units

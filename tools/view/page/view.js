@@ -1,8 +1,7 @@
 // The page of weir view: puts the parts together. The look is one object (look.js); whatever changes it calls change().
 
-import {ApiError, get, set_token} from "/page/api.js";
-import {by_id, offer, set_text} from "/page/dom.js";
-import * as format from "/page/format.js";
+import {ApiError, get, set_token} from "./api.js";
+import {by_id, offer, set_text} from "./dom.js";
 import * as camera from "./camera.js";
 import * as certificate from "./certificate.js";
 import {ClipBox, roi_text} from "./clip_box.js";
@@ -11,7 +10,10 @@ import {Controls} from "./controls.js";
 import {Conversion} from "./conversion.js";
 import {History} from "./history.js";
 import {save} from "./keep.js";
+import {listen_to_keys} from "./keys.js";
+import {KnownFiles} from "./known_files.js";
 import * as looks from "./look.js";
+import {curve_of, show_banner, show_file, show_link, show_mode, show_quality, show_transfer} from "./panels.js";
 import {Steps} from "./steps.js";
 import {TransferEditor, simplified} from "./transfer_editor.js";
 import {Viewport} from "./viewport.js";
@@ -24,12 +26,12 @@ let server = null;       // /api/state
 let look = looks.from_hash(location.hash);
 let history = new History(look);
 let view_id = 0;
+let drawn_first = false;  // since the server was asked for its state, a picture was asked for
 let probe = {id: 0};      // the newest question for a value: id, step and side
 let still_timer, hash_timer, probe_timer;
-const files = new Map();  // "step side" -> {facts, histogram}
-
-const facts_of = (step, side) => files.get(`${step} ${side}`)?.facts ?? files.get(`0 ${side}`)?.facts;
-const facts = () => facts_of(look.step, 0);
+let wanted_file = null;    // name of a step that the address asks for and that has not come yet
+const files = new KnownFiles();
+const facts = () => files.facts(look.step);
 
 // ---- What goes out
 
@@ -44,6 +46,7 @@ function picture_size() {
 
 function ask_picture(moving) {
   if (!facts()) return;
+  drawn_first = true;
   const [width, height] = picture_size();
   const view = {type: "view", id: ++view_id, scene: looks.to_scene(look, facts(), width / height), width, height,
                 step: look.step, moving};
@@ -82,7 +85,7 @@ function keep_soon() {
 }
 
 function keep_in_url() {
-  const hash = looks.to_hash(look);
+  const hash = looks.to_hash(look, steps.names[look.step]);
   window.history.replaceState(null, "", hash ? `#${hash}` : location.pathname);
 }
 
@@ -99,54 +102,13 @@ function show_undo() {
   by_id("redo").disabled = history.future.length === 0;
 }
 
-function gradient() {
-  const chosen = look.colormap ?? {dvr: "viridis", mip: "gray"}[look.mode] ?? "white";
-  const colours = server.colormaps[chosen] ?? server.colormaps.gray;
-  return `linear-gradient(to right, ${colours.join(", ")})`;
-}
-
-/** The opacity of a look that has no points. */
-const curve_of = (shown) => shown.opacity.map((value, i) => [i / (shown.opacity.length - 1), value]);
-
-function show_transfer(shown) {
-  const range = look.range ?? shown.range;
-  const curve = curve_of(shown);
-  const histogram = (files.get(`${look.step} 0`) ?? files.get("0 0"))?.histogram;
-  editor.show(look.opacity, curve, range);
-  editor.show_histogram(histogram, range, look.log);
-  const iso = look.iso ?? looks.start_iso(shown);
-  editor.show_iso(look.mode === "iso" ? (iso - range[0]) / (range[1] - range[0] || 1) : null);
-  by_id("gradient").style.backgroundImage = gradient();
-  set_text(by_id("range-low"), format.number(range[0]));
-  set_text(by_id("range-high"), format.number(range[1]));
-  set_text(by_id("range-unit"), shown.title || "value");
-  by_id("log").checked = look.log;
-}
-
-function show_file(shown) {
-  set_text(by_id("file-name"), shown.file);
-  certificate.show_rows(by_id("certificate"), shown);
-  certificate.show_kinds(by_id("kinds"), shown.kinds);
-  const other = facts_of(look.step, 1);
-  by_id("against-facts").hidden = !other;
-  if (!other) return;
-  set_text(by_id("against-name"), other.file);
-  certificate.show_rows(by_id("against-certificate"), other);
-  set_text(by_id("side-left"), shown.file);
-  set_text(by_id("side-right"), other.file);
-}
-
 const limits = (shown) => shown.box[0].map((lo, i) => [lo, shown.box[1][i]]);
 
 function show_look() {
   const shown = facts();
   if (!shown) return;
-  for (const choice of document.querySelectorAll("input[name=mode]")) choice.checked = choice.value === look.mode;
-  by_id("iso-field").hidden = look.mode !== "iso";
-  by_id("density-field").hidden = look.mode === "iso" || look.mode === "mip";
-  by_id("shading-field").hidden = look.mode !== "dvr";
-  by_id("colormap").value = look.colormap ?? "";
-  show_transfer(shown);
+  show_mode(look);
+  show_transfer(editor, look, shown, files.histogram(look.step), server.colormaps);
   controls.show(look, shown);
   const box = looks.shown_box(look, shown);
   clip_box.show(limits(shown), box);
@@ -161,46 +123,39 @@ function show_look() {
            `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
 }
 
-function show_quality(header) {
-  const bar = by_id("progress");
-  if (header.moving || header.samples === 0) {
-    bar.value = 0;
-    set_text(by_id("quality"), `${header.width} \u00d7 ${header.height}, ${header.moving ? "moving" : "refining"}`);
-    return;
-  }
-  bar.value = Math.log2(header.samples + 1) / Math.log2(header.of + 1);
-  if (header.view !== view_id) return;  // another one is on its way
-  const ready = header.samples >= header.of;
-  set_text(by_id("quality"), `${header.width} \u00d7 ${header.height}, ${header.samples} of ${header.of} samples a pixel` +
-                             `${ready ? ", done" : ""}`);
-}
-
-function show_banner(text) {
-  by_id("banner").hidden = !text;
-  set_text(by_id("banner"), text);
-}
-
-function show_link(text, kind) {
-  by_id("link").className = `badge ${kind}`;
-  set_text(by_id("link"), text);
-}
-
 // ---- What comes in
+
+const show_file_of_step = () => facts() && show_file(facts(), files.facts(look.step, 1));
+
+/** Another step, whose own facts may come later. */
+function go_to_step(step, moving) {
+  wanted_file = null;
+  change({...look, step}, moving);
+  show_file_of_step();
+}
+
+function receive_steps(message) {
+  const other_values = files.set_values(message);
+  steps.set(message);
+  const found = wanted_file === null ? undefined : steps.number(wanted_file);
+  if (found !== undefined) go_to_step(found, false);
+  else if (!message.order.includes(look.step)) show_banner(`${steps.names[look.step]} is no longer there.`);
+  if (!other_values || found !== undefined) return;
+  show_look();
+  if (look.range === null) ask_picture(false);
+}
 
 function receive(message) {
   if (message.type === "facts" || message.type === "histogram") {
-    const key = `${message.step} ${message.side}`;
-    const entry = files.get(key) ?? {};
-    if (message.type === "facts") entry.facts = message;
-    else entry.histogram = message;
-    files.set(key, entry);
-    const first = message.type === "facts" && key === "0 0" && view_id === 0;
+    files.add(message);
     show_look();
-    if (message.type === "facts" && facts()) show_file(facts());
-    if (first) ask_picture(false);
+    if (message.type === "facts") show_file_of_step();
+    if (!drawn_first) ask_picture(false);
+  } else if (message.type === "steps") {
+    receive_steps(message);
   } else if (message.type === "value") {
     if (message.id !== probe.id) return;
-    const at = facts_of(probe.step, probe.side);
+    const at = files.facts(probe.step, probe.side);
     if (at) set_text(by_id("value"), certificate.value_text(message, at));
   } else if (message.type === "progress") {
     if (message.what === "load") set_text(by_id("quality"), "loading the volume");
@@ -233,7 +188,6 @@ const connection = new Connection({
   opened: () => {
     show_link("connected", "good");
     show_banner("");
-    if (facts()) ask_picture(false);
   },
   closed: () => {
     show_link("not connected", "bad");
@@ -242,8 +196,8 @@ const connection = new Connection({
   message: receive,
   picture: async (header, blob) => {
     await viewport.draw(header, blob);
-    show_quality(header);
-    if (header.view === view_id) show_banner("");
+    show_quality(header, header.view !== view_id);
+    if (header.view === view_id && steps.place() >= 0) show_banner("");
     steps.drawn(header.step);
   },
 });
@@ -263,7 +217,7 @@ const conversion = new Conversion({
   },
   send: (message) => connection.send(message),
 });
-let steps = {show: () => {}, drawn: () => {}, toggle: () => {}, by: () => {}};
+const steps = new Steps(go_to_step);
 
 function set_mode(mode) {
   change({...look, mode}, false);
@@ -301,7 +255,7 @@ function listen() {
   press("save-scene", () => {
     const [width, height] = picture_size();
     // Of a series the curve depends on all of its steps, which weir render of one file does not know.
-    const opacity = look.opacity ?? (server.steps.length > 1 ? curve_of(facts()) : null);
+    const opacity = look.opacity ?? (steps.names.length > 1 ? curve_of(facts()) : null);
     save("scene.toml", new Blob([looks.to_scene({...look, opacity}, facts(), width / height)], {type: "text/plain"}));
   });
   press("copy-link", async () => {
@@ -319,21 +273,12 @@ function listen() {
     by_id("token").value = "";
     begin();
   });
-  addEventListener("keydown", (event) => {
-    if (event.target.matches?.("input[type=text], input[type=password], input[type=number], select, textarea")) return;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
-      event.preventDefault();
-      undo(event.shiftKey ? "redo" : "undo");
-      return;
-    }
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.("button, summary, input")) return;
-    if (event.key >= "1" && event.key <= "4") set_mode(looks.kModes[Number(event.key) - 1]);
-    else if (event.key === "0") by_id("reset-camera").click();
-    else if (event.key === " ") steps.toggle();
-    else if (event.key === "[") steps.by(-1);
-    else if (event.key === "]") steps.by(1);
-    else return;
-    event.preventDefault();
+  listen_to_keys({
+    mode: set_mode,
+    reset: () => by_id("reset-camera").click(),
+    play: () => steps.toggle(),
+    step: (by) => steps.by(by),
+    undo,
   });
   addEventListener("hashchange", () => {
     look = looks.from_hash(location.hash);
@@ -348,12 +293,15 @@ function listen() {
   }).observe(by_id("frame"));
 }
 
-/** The look without what the server does not have. */
+/** The look without what the server does not have. A step that it does not have yet is waited for. */
 function known(wanted) {
+  const named = steps.number(wanted.file);
+  wanted_file = wanted.file !== null && named === undefined ? wanted.file : null;
   return {
     ...wanted,
+    file: null,
     colormap: wanted.colormap && server.colormaps[wanted.colormap] ? wanted.colormap : null,
-    step: wanted.step < server.steps.length ? wanted.step : 0,
+    step: named ?? 0,
     split: server.against.length > 0 ? wanted.split : null,
   };
 }
@@ -366,21 +314,20 @@ function set_up() {
   set_text(by_id("preview"), "preview");
   by_id("preview").title = `A quick conversion of ${server.preview_of}`;
   offer(by_id("colormap"), [["", "of the mode"], ...Object.keys(server.colormaps).map((name) => [name, name])]);
-  look = known(look);
+  by_id("service").hidden = !location.pathname.endsWith("/view/");  // behind weir watch
+  // A server that was started anew may number the steps otherwise.
+  const file = look.file ?? steps.names[look.step] ?? null;
+  files.clear();
+  drawn_first = false;
+  steps.set(server);
+  look = known({...look, file});
   by_id("compare-field").hidden = server.against.length === 0;
   conversion.set_up(server.allow_convert);
-  if (!(steps instanceof Steps)) {
-    steps = new Steps({root: by_id("steps"), slider: by_id("step"), output: by_id("step-name"), play: by_id("play")},
-                      server.steps, (step, moving) => {
-                        change({...look, step}, moving);
-                        if (facts()) show_file(facts());
-                      });
-  }
 }
 
 async function begin() {
   try {
-    server = await get("/api/state");
+    server = await get("api/state");
   } catch (error) {
     if (error instanceof ApiError && error.status === 401) {
       by_id("login").hidden = false;

@@ -1,0 +1,99 @@
+#include "daemon/http/relay.h"
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/write.hpp>
+#include <utility>
+
+#include "daemon/http/http_message.h"
+#include "format/base/text.h"
+
+namespace weir {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+std::string refusal() {
+  const HttpResponse response =
+      error_response(502, "the viewer does not answer; open it again from the service's page");
+  return cat("HTTP/1.1 502 Bad Gateway\r\nContent-Type: ", response.content_type,
+             "\r\nContent-Length: ", response.body.size(), "\r\nConnection: close\r\n\r\n", response.body);
+}
+
+}  // namespace
+
+Relay::Relay(Client client, std::string request, Ended ended)
+    : client_(std::move(client)),
+      server_(client_.get_executor()),
+      limit_(client_.get_executor()),
+      request_(std::move(request)),
+      ended_(std::move(ended)) {}
+
+void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit) {
+  if (limit) {
+    limit_.expires_after(*limit);
+    limit_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error) self->end();
+    });
+  }
+  server_.async_connect(server, [self = shared_from_this()](const error_code& error) {
+    if (self->closed_) return;
+    if (error) return self->refuse();
+    asio::async_write(self->server_, asio::buffer(self->request_), [self](const error_code& failure, std::size_t) {
+      if (self->closed_) return;
+      if (failure) return self->refuse();
+      self->pump(self->client_, self->server_, self->to_server_);
+      self->pump(self->server_, self->client_, self->to_client_);
+    });
+  });
+}
+
+// The next piece is read when the one before is written: who does not read slows the other side, and fills no memory.
+template <typename From, typename To>
+void Relay::pump(From& from, To& to, Piece& piece) {
+  from.async_read_some(asio::buffer(piece),
+                       [self = shared_from_this(), &from, &to, &piece](const error_code& error, std::size_t bytes) {
+                         if (self->closed_) return;
+                         if (error == asio::error::eof) return self->finish(to);
+                         if (error) return self->end();
+                         asio::async_write(to, asio::buffer(piece, bytes),
+                                           [self, &from, &to, &piece](const error_code& failure, std::size_t) {
+                                             if (self->closed_) return;
+                                             if (failure) return self->end();
+                                             self->pump(from, to, piece);
+                                           });
+                       });
+}
+
+// One side has said all, and may still listen.
+template <typename To>
+void Relay::finish(To& to) {
+  if (++finished_ == 2) return end();
+  error_code ignored;
+  to.shutdown(asio::socket_base::shutdown_send, ignored);
+}
+
+void Relay::refuse() {
+  request_ = refusal();
+  asio::async_write(client_, asio::buffer(request_), [self = shared_from_this()](const error_code&, std::size_t) {
+    if (!self->closed_) self->end();
+  });
+}
+
+void Relay::close() {
+  closed_ = true;
+  error_code ignored;
+  limit_.cancel(ignored);
+  client_.close(ignored);
+  server_.close(ignored);
+}
+
+void Relay::end() {
+  if (closed_) return;
+  const auto self = shared_from_this();
+  close();
+  ended_(*this);
+}
+
+}  // namespace weir

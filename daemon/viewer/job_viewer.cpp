@@ -1,0 +1,188 @@
+#include "daemon/viewer/job_viewer.h"
+
+#include <algorithm>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "daemon/config/listen_address.h"
+#include "daemon/http/view_requests.h"
+#include "daemon/jobs/worker_reason.h"
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
+
+namespace weir {
+namespace {
+
+using boost::system::error_code;
+
+constexpr std::uint64_t kViewers = 4;  // at a time
+
+// How a viewer's memory is divided: the program, then as much for pictures as for voxels. One viewer's picture takes so
+// many bytes a pixel while it is drawn and encoded, which is one at a time; another's waits in its sums and as PNG.
+constexpr std::uint64_t kProgramBytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t kDrawnPixelBytes = 32;
+constexpr std::uint64_t kWaitingPixelBytes = 16;
+constexpr std::uint64_t kMostPixels = std::uint64_t{4} << 20;  // of weir view
+
+struct ViewerShares {
+  std::uint64_t voxel_bytes;
+  std::uint64_t pixels;  ///< of a picture
+};
+
+ViewerShares shares_of(std::uint64_t memory) {
+  const std::uint64_t half = (memory - std::min(memory, kProgramBytes)) / 2;
+  return {half, std::min(kMostPixels, half / (kDrawnPixelBytes + (kViewers - 1) * kWaitingPixelBytes))};
+}
+
+}  // namespace
+
+JobViewer::JobViewer(boost::asio::io_context& io, const EventLog& log, std::string program, JobViewerTimes times)
+    : io_(io), log_(log), program_(std::move(program)), times_(times), wait_(io), look_(io) {}
+
+void JobViewer::configure(const ServiceConfig& service) {
+  const ServiceConfig before = std::exchange(service_, service);
+  const bool same = before.viewer_memory == service.viewer_memory && before.threads == service.threads &&
+                    before.nice == service.nice && before.io_class == service.io_class;
+  if (!same && worker_) {
+    stop();
+    log_.info("viewer-ended", {{"file", file_}, {"reason", "the configuration is another"}});
+  }
+}
+
+JobViewer::Opened JobViewer::open(const std::string& file, bool force) {
+  if (over_ || service_.viewer_memory == 0) return Opened::off;
+  if (worker_ && series_key(file) == series_key(file_)) {
+    if (state_ == ViewerState::ready) end_when_idle();
+    return Opened::made;
+  }
+  const bool looked_at =
+      std::any_of(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; });
+  if (looked_at && !force) return Opened::taken;
+  start(file);
+  return Opened::made;
+}
+
+// The one before has given its memory back before the next one takes any.
+void JobViewer::start(const std::string& file) {
+  stop();
+  file_ = file;
+  const ViewerShares shares = shares_of(service_.viewer_memory);
+  const WorkerCommand command{
+      program_,
+      {"weir", "view", file, "--series", "--private", cat("--progress-fd=", kAnnounceDescriptor), "--progress=never",
+       "--backend=cpu", cat("--memory=", shares.voxel_bytes), cat("--pixels=", shares.pixels),
+       cat("--viewers=", kViewers), cat("--threads=", service_.threads)},
+      service_.nice,
+      service_.io_class};
+  try {
+    worker_ = std::make_unique<WorkerProcess>(
+        io_, command, [this](std::string_view line) { heard(line); }, [this](const WorkerEnd& end) { ended(end); });
+  } catch (const Error& error) {
+    fail(error.what());
+    return;
+  }
+  state_ = ViewerState::starting;
+  log_.info("viewer", {{"file", file}});
+  wait_.expires_after(times_.start);
+  wait_.async_wait([this](error_code error) {
+    if (!error) fail(cat("the viewer did not answer within ", times_.start.count() / 1000, " s"));
+  });
+  look_at_memory();
+}
+
+void JobViewer::heard(std::string_view line) {
+  if (state_ != ViewerState::starting) return;
+  try {
+    const nlohmann::json told = nlohmann::json::parse(line);
+    const ListenAddress address = parse_listen_address(told.at("address").get<std::string>());
+    token_ = told.at("token").get<std::string>();
+    address_ = {boost::asio::ip::make_address(address.host), address.port};
+  } catch (const std::exception&) {  // of the progress of something, which nothing here makes
+    return;
+  }
+  state_ = ViewerState::ready;
+  end_when_idle();
+}
+
+void JobViewer::ended(const WorkerEnd& end) { fail(worker_reason("view", end)); }
+
+void JobViewer::fail(const std::string& reason) {
+  stop();
+  state_ = ViewerState::failed;
+  reason_ = reason;
+  log_.error("viewer-failed", {{"file", file_}, {"reason", reason}});
+}
+
+void JobViewer::stop() {
+  worker_.reset();
+  wait_.cancel();
+  look_.cancel();
+  for (const Connection& connection : std::exchange(connections_, {})) connection.relay->close();
+  state_ = ViewerState::none;
+  reason_.clear();
+  token_.clear();
+}
+
+void JobViewer::end() {
+  over_ = true;
+  stop();
+}
+
+// From now on, unless somebody is connected or comes back.
+void JobViewer::end_when_idle() {
+  wait_.cancel();
+  if (!connections_.empty()) return;
+  wait_.expires_after(times_.idle);
+  wait_.async_wait([this](error_code error) {
+    if (error || !connections_.empty()) return;
+    stop();
+    log_.info("viewer-ended", {{"file", file_}, {"reason", "nobody was connected"}});
+  });
+}
+
+void JobViewer::look_at_memory() {
+  look_.expires_after(times_.look);
+  look_.async_wait([this](error_code error) {
+    if (error || !worker_) return;
+    const std::uint64_t bytes = worker_->anonymous_bytes();
+    if (bytes <= service_.viewer_memory) return look_at_memory();
+    fail(cat("the viewer took ", format_bytes(bytes), ", more than viewer_memory = ",
+             format_bytes(service_.viewer_memory), "; raise that, or make the window smaller"));
+  });
+}
+
+void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
+  if (state_ != ViewerState::ready) return;  // it ended a moment ago; the client asks again
+  const bool looks = boost::beast::websocket::is_upgrade(request);
+  const auto relay = std::make_shared<Relay>(std::move(client), forwarded_request(request, token_),
+                                             [this](Relay& over) { remove(over); });
+  connections_.push_back({relay, looks});
+  wait_.cancel();
+  relay->start(address_, looks ? std::nullopt : std::optional(times_.page));
+}
+
+void JobViewer::remove(const Relay& relay) {
+  std::erase_if(connections_, [&](const Connection& connection) { return connection.relay.get() == &relay; });
+  if (state_ == ViewerState::ready) end_when_idle();
+}
+
+ViewerView JobViewer::view() const {
+  ViewerView view;
+  view.memory_bytes = service_.viewer_memory;
+  if (over_ || service_.viewer_memory == 0) {
+    view.state = ViewerState::off;
+    view.reason = over_ ? "the service is stopping" : "viewers are off: viewer_memory is 0 in the configuration";
+    return view;
+  }
+  view.state = state_;
+  view.reason = reason_;
+  view.file = state_ == ViewerState::none ? "" : file_;
+  view.connections = connections_.size();
+  view.rss_bytes = worker_ ? worker_->resident_bytes() : 0;
+  return view;
+}
+
+}  // namespace weir

@@ -1,0 +1,73 @@
+// What the panels beside the picture show of a look, and what is said of the picture and the connection.
+
+import {by_id, set_text} from "./dom.js";
+import * as format from "./format.js";
+import * as certificate from "./certificate.js";
+import {start_iso} from "./look.js";
+
+/** The opacity of a look that has no points. */
+export const curve_of = (facts) => facts.opacity.map((value, i) => [i / (facts.opacity.length - 1), value]);
+
+function gradient(look, colormaps) {
+  const chosen = look.colormap ?? {dvr: "viridis", mip: "gray"}[look.mode] ?? "white";
+  return `linear-gradient(to right, ${(colormaps[chosen] ?? colormaps.gray).join(", ")})`;
+}
+
+export function show_transfer(editor, look, facts, histogram, colormaps) {
+  const range = look.range ?? facts.range;
+  editor.show(look.opacity, curve_of(facts), range);
+  editor.show_histogram(histogram, range, look.log);
+  const iso = look.iso ?? start_iso(facts);
+  editor.show_iso(look.mode === "iso" ? (iso - range[0]) / (range[1] - range[0] || 1) : null);
+  by_id("gradient").style.backgroundImage = gradient(look, colormaps);
+  set_text(by_id("range-low"), format.number(range[0]));
+  set_text(by_id("range-high"), format.number(range[1]));
+  set_text(by_id("range-unit"), facts.title || "value");
+  by_id("log").checked = look.log;
+}
+
+/** `other`: of the file that is compared with, where there is one. */
+export function show_file(facts, other) {
+  set_text(by_id("file-name"), facts.file);
+  certificate.show_rows(by_id("certificate"), facts);
+  certificate.show_kinds(by_id("kinds"), facts.kinds);
+  by_id("against-facts").hidden = !other;
+  if (!other) return;
+  set_text(by_id("against-name"), other.file);
+  certificate.show_rows(by_id("against-certificate"), other);
+  set_text(by_id("side-left"), facts.file);
+  set_text(by_id("side-right"), other.file);
+}
+
+export function show_mode(look) {
+  for (const choice of document.querySelectorAll("input[name=mode]")) choice.checked = choice.value === look.mode;
+  by_id("iso-field").hidden = look.mode !== "iso";
+  by_id("density-field").hidden = look.mode === "iso" || look.mode === "mip";
+  by_id("shading-field").hidden = look.mode !== "dvr";
+  by_id("colormap").value = look.colormap ?? "";
+}
+
+/** Of a picture, and whether another one is `awaited`. */
+export function show_quality(header, awaited) {
+  const bar = by_id("progress");
+  const size = `${header.width} \u00d7 ${header.height}`;
+  if (header.moving || header.samples === 0) {
+    bar.value = 0;
+    set_text(by_id("quality"), `${size}, ${header.moving ? "moving" : "refining"}`);
+    return;
+  }
+  bar.value = Math.log2(header.samples + 1) / Math.log2(header.of + 1);
+  if (awaited) return;
+  const done = header.samples >= header.of ? ", done" : "";
+  set_text(by_id("quality"), `${size}, ${header.samples} of ${header.of} samples a pixel${done}`);
+}
+
+export function show_banner(text) {
+  by_id("banner").hidden = !text;
+  set_text(by_id("banner"), text);
+}
+
+export function show_link(text, kind) {
+  by_id("link").className = `badge ${kind}`;
+  set_text(by_id("link"), text);
+}

@@ -1,0 +1,71 @@
+#include "tools/view/steps/step_watch.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/base/error.h"
+
+namespace weir {
+namespace {
+
+constexpr int kRest = 19;  // so many times as long as a look took
+
+// The steps there are now, of which those that are new are added to `summary`; none where they cannot be seen.
+std::vector<std::string> seen_steps(const StepChoice& choice, const StepList& steps, SeriesSummary& summary) {
+  const std::vector<std::string> paths = steps.paths();
+  const std::set<std::string> known(paths.begin(), paths.end());
+  std::vector<std::string> seen;
+  try {
+    for (std::string& path : find_steps(choice)) {
+      try {
+        if (!known.contains(path)) add_to_summary(summary, path);
+        seen.push_back(std::move(path));
+      } catch (const Error&) {  // not whole yet
+      }
+    }
+  } catch (const Error&) {
+  }
+  return seen;
+}
+
+}  // namespace
+
+StepWatch::StepWatch(boost::asio::io_context& io, boost::asio::thread_pool& pool, StepList& steps,
+                     const ViewedFiles& files, std::chrono::milliseconds period, Changed changed)
+    : io_(io),
+      pool_(pool),
+      steps_(steps),
+      choice_(files.choice),
+      period_(period),
+      changed_(std::move(changed)),
+      summary_(std::make_shared<SeriesSummary>(files.summary)),
+      timer_(io) {
+  wait(period_);
+}
+
+void StepWatch::wait(std::chrono::steady_clock::duration pause) {
+  timer_.expires_after(pause);
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) look();
+  });
+}
+
+void StepWatch::look() {
+  boost::asio::post(
+      pool_, [this, &io = io_, &steps = steps_, choice = choice_, summary = summary_, alive = std::weak_ptr(alive_)] {
+        const auto begin = std::chrono::steady_clock::now();
+        const bool other = steps.update(seen_steps(choice, steps, *summary));
+        const auto took = std::chrono::steady_clock::now() - begin;
+        boost::asio::post(io, [this, other, took, alive] {
+          if (!alive.lock()) return;
+          if (other) changed_(*summary_);
+          wait(std::max<std::chrono::steady_clock::duration>(period_, kRest * took));
+        });
+      });
+}
+
+}  // namespace weir

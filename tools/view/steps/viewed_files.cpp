@@ -1,0 +1,79 @@
+#include "tools/view/steps/viewed_files.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
+#include "ingest/source/convert_command.h"
+#include "ingest/source_registry.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_directory(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none);
+}
+
+std::string title_of(const std::string& input) {
+  const fs::path path(input);
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+}  // namespace
+
+std::vector<std::string> find_steps(const StepChoice& choice) {
+  const std::string& input = choice.input;
+  std::error_code none;
+  // A directory may be an input, as a Zarr array is.
+  const bool directory = is_directory(input);
+  const std::string pattern = directory ? (fs::path(input) / "*.nvdb").string() : input;
+  std::vector<std::string> files;
+  try {
+    if (choice.series && !directory) files = files_of_series(input);
+    if (files.empty()) files = expand_volumes(std::array{pattern});
+  } catch (const Error& error) {
+    if (!directory || error.kind() != ErrorKind::input) throw;
+    throw input_error(input, cat("holds no .nvdb file; weir convert makes them of what it holds"));
+  }
+  for (const std::string& file : files) {
+    if (!file.ends_with(".nvdb") && fs::exists(file, none) && format_of(file).name != "nvdb") {
+      throw Error(ErrorKind::usage,
+                  cat(file, ": is no NanoVDB file; convert it first: weir convert ", shell_word(file)));
+    }
+  }
+  return files;
+}
+
+ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& against) {
+  ViewedFiles files;
+  files.choice = choice;
+  files.title = title_of(choice.input);
+  files.steps = find_steps(choice);
+  if (!against.empty()) files.against = find_steps({against});
+  if (files.against.size() > 1 && files.against.size() != files.steps.size()) {
+    throw Error(ErrorKind::usage,
+                compose(option("against", against), cat(" has ", files.against.size(), " files, ", choice.input,
+                                                        " has ", files.steps.size(), "; give one file, or as many")));
+  }
+  files.summary = summarise_series(files.steps);
+  const bool single = !choice.series && files.steps == std::vector{choice.input};
+  files.grow = !single && files.against.size() <= 1;
+  // Its own number is the first one: what a viewer sees at first.
+  const auto named = std::find(files.steps.begin(), files.steps.end(), choice.input);
+  if (choice.series && !is_directory(choice.input)) {
+    if (named == files.steps.end()) {
+      throw input_error(choice.input,
+                        cat("is not there; name another file of its series, such as ", files.steps.front()));
+    }
+    std::rotate(files.steps.begin(), named, named + 1);
+  }
+  return files;
+}
+
+}  // namespace weir

@@ -1,0 +1,35 @@
+// Which files a viewer shows: one, the steps of a series, or those of a directory, and those they are compared with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/options/volume_series.h"
+
+namespace weir {
+
+/// What names the steps, so that it can be asked again: more may have come.
+struct StepChoice {
+  std::string input;    ///< a NanoVDB file, a pattern or a directory, whose .nvdb files are taken
+  bool series = false;  ///< the file's series: files_of_series
+};
+
+/// The steps that there are now, in natural order, one at least. Opens no file. Throws Error(input) where there is
+/// none, Error(io) where they cannot be looked for, Error(usage) where one is no NanoVDB file, with the command that
+/// makes it one.
+std::vector<std::string> find_steps(const StepChoice& choice);
+
+struct ViewedFiles {
+  std::string title;                 ///< what was named, without its folders
+  std::vector<std::string> steps;    ///< the file of a `series` first, then those beside it; else in natural order
+  std::vector<std::string> against;  ///< none, one for all steps, or one for each
+  SeriesSummary summary;             ///< of the steps
+  StepChoice choice{};
+  bool grow = false;  ///< more steps may come: `choice` names no single file, and `against` not one for each
+};
+
+/// `against` is a file, a pattern or a directory, or empty. Nothing is opened but heads. Throws as find_steps, and
+/// Error(usage) where `against` has neither one file nor as many as there are steps.
+ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& against);
+
+}  // namespace weir
