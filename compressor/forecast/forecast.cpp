@@ -1,18 +1,20 @@
 #include "compressor/forecast/forecast.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "compressor/conversion.h"
+#include "compressor/forecast/forecast_checks.h"
+#include "compressor/forecast/read_probe.h"
+#include "compressor/forecast/sample_copy.h"
 #include "compressor/forecast/sample_plan.h"
 #include "compressor/forecast/sample_scale.h"
 #include "compressor/forecast/sampled_source.h"
 #include "compressor/forecast/scratch_file_system.h"
 #include "compressor/forecast/spread.h"
+#include "compressor/forecast/trial.h"
+#include "compressor/forecast/work_time.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/reading_plan.h"
 #include "compressor/resume/work_directory.h"
@@ -21,23 +23,9 @@
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
-#include "format/base/seconds_since.h"
-#include "format/base/text.h"
-#include "format/layout/tree_layout.h"
-#include "format/nanovdb/macrocells.h"
-#include "format/output/output_files.h"
 
 namespace weir {
 namespace {
-
-/// A conversion that left nothing.
-struct Trial {
-  Sidecar sidecar;
-  double seconds = 0;
-  std::uint64_t scratch_bytes = 0;
-  std::int64_t voxels_read = 0;
-  SampledNodes nodes;  ///< of regions that vary
-};
 
 double range_db(const Sidecar& s) { return 20 * std::log10(s.value_range[1] - s.value_range[0]); }
 
@@ -54,28 +42,23 @@ class Forecaster {
         plan_(domain_, source.access(), most_voxels_, options.metric == Metric::sse ? 1 : options.brick / kLeafDim) {}
 
   Forecast run() {
-    check_places();
+    visibility_of(options_, domain_);
+    const OutputPlaces places(files_, options_);
     plan_machine();
     forecast_.whole = plan_.whole();
     forecast_.volume_bytes = static_cast<std::uint64_t>(domain_.voxels()) * source_.access().bytes_per_voxel;
     forecast_.on_device = control_.coder != nullptr;
     expect_asked_bytes();
-    if (can_sample()) sample();
-    check_room();
+    if (plan_.whole()) {
+      try_volume();
+    } else if (can_sample()) {
+      try_sample();
+    }
+    places.require_room(static_cast<std::uint64_t>(forecast_.file_bytes.value), forecast_.scratch_bytes);
     return forecast_;
   }
 
  private:
-  // What a conversion refuses before it reads. Of a small volume its own checks come again.
-  void check_places() {
-    visibility_of(options_, domain_);
-    ScratchFileSystem scratch(files_, options_.output);
-    const OutputFiles output(scratch, options_.output, options_.overwrite);
-    const WorkDirectory work(scratch, options_.output, options_.work_dir);
-    spills_beside_ = work.path() == hidden_directory_of(options_.output);
-    spill_directory_ = spills_beside_ ? directory_of(options_.output) : work.path();
-  }
-
   // As conversion.cpp divides the machine.
   void plan_machine() {
     const std::size_t processors = processors_or_all(options_.processors);
@@ -85,13 +68,17 @@ class Forecaster {
     const std::size_t threads =
         choose_threads(options_.threads, processors, options_.memory, resident, domain_, of_region);
     const MemoryPlan memory = plan_memory(options_.memory, resident, threads, domain_, of_region);
-    const ReadingPlan reading = plan_reading(source_, memory);
-    if (reading.encode.amplification > 1 && control_.notice) {
-      control_.notice(amplification_notice(source_, memory, options_.memory, reading.encode));
+    reading_ = plan_reading(source_, memory);
+    if (reading_.encode.amplification > 1 && control_.notice) {
+      control_.notice(amplification_notice(source_, memory, options_.memory, reading_.encode));
     }
-    const std::uint64_t block = std::max(reading.survey.block_bytes, reading.encode.block_bytes);
-    const std::uint64_t blocks = block * (reading.reading == Reading::in_place ? threads : 2);
+    const std::uint64_t block = std::max(reading_.survey.block_bytes, reading_.encode.block_bytes);
+    const std::uint64_t blocks = block * (reading_.reading == Reading::in_place ? threads : 2);
     const std::uint64_t walk = threads * static_cast<std::uint64_t>(memory.segment_regions) * of_region;
+    // Chunks are decoded whole; rows are read as well in smaller blocks.
+    constexpr std::uint64_t kRowsBytes = std::uint64_t{32} << 20U;
+    const bool chunked = source_.access().chunk != Index3{};
+    copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
     forecast_.threads = threads;
     forecast_.memory_bytes = std::min(options_.memory, memory.fixed_bytes + std::max(blocks, walk));
   }
@@ -109,77 +96,136 @@ class Forecaster {
 
   bool can_sample() {
     const std::int64_t most = std::max(most_voxels_, domain_.voxels() / 20);
-    if (plan_.whole() || plan_.domain().voxels() <= most) return true;
+    if (plan_.domain().voxels() <= most) return true;
     forecast_.not_sampled = "its chunks are too large for a sample";
     return false;
   }
 
-  void sample() {
-    Trial trial;
-    const SampleScale scale(domain_, plan_.domain(), options_, {region_count(domain_), region_count(plan_.domain())});
-    try {
-      trial = convert(plan_, scale);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::budget || forecast_.whole || !forecast_.exact_bytes) throw;
-      refuse_hopeless_size();
-      forecast_.not_sampled = "a sample is too small for a file of this rate";
-      return;
-    }
-    describe_work(trial, scale.share());
-    refuse_values(trial.sidecar);
-    if (forecast_.whole) return describe_file(trial.sidecar, scale);
-    // Only now it is known which regions have nodes.
-    const double budget = static_cast<double>(scale.budget().bytes);
-    const SampleScale better(domain_, plan_.domain(), options_, trial.nodes);
-    const bool other = std::abs(static_cast<double>(better.budget().bytes) - budget) > budget / 500;
-    const Sidecar again = other ? convert(plan_, better).sidecar : trial.sidecar;
-    describe_file(again, better);
-    add_spread(again, trial.nodes);
-  }
-
-  // The same as a conversion of the volume, but that it leaves nothing and that a sample has its own budget.
-  Trial convert(const SamplePlan& plan, const SampleScale& scale) {
-    ConversionOptions options = options_;
-    options.resume = Resume::off;
+  ConversionControl trial_control() const {
     ConversionControl control;
     control.cancel = control_.cancel;
     control.coder = control_.coder;
     control.pass_started = control_.pass_started;
     control.pass_advanced = control_.pass_advanced;
-    if (plan.whole()) {
-      // What nobody asked for is said of a file that was written.
-      if (options_.budget.kind != Budget::Kind::automatic) control.notice = control_.notice;
-    } else {
-      options.budget = scale.budget();
-      options.scene.reset();  // places of a sample are not where they are seen
-      if (options.non_finite == NonFinitePolicy::error) options.non_finite = NonFinitePolicy::background;
-      if (options.missing == MissingPolicy::error) options.missing = MissingPolicy::background;
-    }
-    ScratchFileSystem scratch(files_, options.output);
-    SampledSource source(source_, plan);
-    const auto started = std::chrono::steady_clock::now();
-    Trial trial;
-    trial.sidecar = convert_volume(source, options, control, scratch);
-    trial.seconds = seconds_since(started);
-    trial.scratch_bytes = scratch.spilled_bytes();
-    trial.voxels_read = source.voxels_read();
-    trial.nodes = {source.varied_in_volume(), source.varied_in_sample()};
-    return trial;
+    return control;
   }
 
-  void describe_work(const Trial& trial, double share) {
-    const Sidecar& s = trial.sidecar;
+  void try_volume() {
+    ConversionControl control = trial_control();
+    // What nobody asked for is said of a file that was written.
+    if (options_.budget.kind != Budget::Kind::automatic) control.notice = control_.notice;
+    SampledSource source(source_, plan_);
+    const Trial trial = run_trial(source, options_, control, files_);
     Forecast& f = forecast_;
-    f.sampled_voxels = static_cast<std::uint64_t>(plan_.domain().voxels());
-    f.places = plan_.places();
-    f.passes = static_cast<double>(trial.voxels_read) / static_cast<double>(f.sampled_voxels);
-    f.read_bytes = static_cast<std::uint64_t>(static_cast<double>(s.timing.bytes_read) / share);
-    f.scratch_bytes = static_cast<std::uint64_t>(static_cast<double>(trial.scratch_bytes) / share);
-    f.survey_s = s.timing.survey_s / share;
-    f.encode_s = (trial.seconds - s.timing.survey_s) / share;
+    f.exact_bytes = true;
+    f.sampled_voxels = static_cast<std::uint64_t>(domain_.voxels());
+    f.places = 1;
+    f.passes = static_cast<double>(source.voxels_read()) / static_cast<double>(domain_.voxels());
+    f.read_bytes = source.bytes_read();
+    f.scratch_bytes = trial.scratch_bytes;
+    f.survey_s = trial.survey_s;
+    f.encode_s = trial.encode_s;
+    const auto bytes = static_cast<double>(trial.sidecar.file.bytes);
+    f.file_bytes = {bytes, bytes, bytes};
+    describe_file(trial.sidecar);
   }
 
-  void describe_file(const Sidecar& s, const SampleScale& scale) {
+  void try_sample() {
+    SampledSource sampled(source_, plan_);
+    ScratchFileSystem scratch(files_, options_.output);
+    WorkDirectory work(scratch, options_.output, options_.work_dir);
+    SampleCopy copy(sampled, work.spill(), copy_block_bytes_, control_.cancel);
+    const auto voxels = static_cast<double>(plan_.domain().voxels());
+    const ReadCost cost = reading_.reading == Reading::in_place
+                              ? ReadCost{0, 0, static_cast<double>(sampled.bytes_read()) / voxels}
+                              : probe_reading(source_, reading_.survey);
+    const SampledNodes nodes{sampled.varied_in_volume(), sampled.varied_in_sample()};
+    const SampleScale scale(domain_, plan_.domain(), options_, nodes);
+    const std::vector<Part> parts = try_parts(copy, nodes);
+    Trial trial;
+    try {
+      trial = run_trial(copy, sample_options(scale), trial_control(), files_);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget || !forecast_.exact_bytes) throw;
+      refuse_hopeless_size(options_, domain_, static_cast<std::uint64_t>(forecast_.file_bytes.value));
+      forecast_.not_sampled = "a sample is too small for a file of this rate";
+      return;
+    }
+    forecast_.sampled_voxels = static_cast<std::uint64_t>(plan_.domain().voxels());
+    forecast_.places = plan_.places();
+    refuse_sampled_values(options_, trial.sidecar);
+    describe_work(trial, parts, cost, scale.share(), sampled.varied_share());
+    describe_file(trial.sidecar);
+    if (!forecast_.exact_bytes) {
+      const double bytes = scale.file_bytes(trial.sidecar);
+      forecast_.file_bytes = {bytes, bytes, bytes};
+    }
+    add_spread(trial.sidecar, parts, scale.share());
+  }
+
+  // A sample has its own budget.
+  ConversionOptions sample_options(const SampleScale& scale) const {
+    ConversionOptions options = options_;
+    options.budget = scale.budget();
+    options.scene.reset();  // places of a sample are not where they are seen
+    if (options.non_finite == NonFinitePolicy::error) options.non_finite = NonFinitePolicy::background;
+    if (options.missing == MissingPolicy::error) options.missing = MissingPolicy::background;
+    return options;
+  }
+
+  /// A conversion of a part of the sample.
+  struct Part {
+    Trial trial;
+    double voxels = 0;
+    double file_bytes = 0;  ///< of the volume, by this part
+  };
+
+  // None where a part is too small for its budget.
+  std::vector<Part> try_parts(SampleCopy& copy, const SampledNodes& nodes) {
+    const double open = static_cast<double>(nodes.of_sample) / static_cast<double>(region_count(plan_.domain()));
+    std::vector<Part> parts;
+    try {
+      for (const SamplePlan& plan : plan_.parts()) {
+        const double regions = open * static_cast<double>(region_count(plan.domain()));
+        const SampleScale scale(domain_, plan.domain(), options_,
+                                {nodes.of_volume, static_cast<std::uint64_t>(std::llround(regions))});
+        SampledSource source(copy, plan, SampledSource::From::copy);
+        Part part{run_trial(source, sample_options(scale), trial_control(), files_)};
+        part.voxels = static_cast<double>(plan.domain().voxels());
+        part.file_bytes = scale.file_bytes(part.trial.sidecar);
+        parts.push_back(std::move(part));
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget) throw;
+      parts.clear();
+    }
+    return parts;
+  }
+
+  void describe_work(const Trial& trial, const std::vector<Part>& parts, const ReadCost& cost, double share,
+                     double varied) {
+    Forecast& f = forecast_;
+    const auto sampled = static_cast<double>(plan_.domain().voxels());
+    const auto voxels = static_cast<double>(domain_.voxels());
+    // Places side by side are read again where one of them is; in the volume, fewer lie beside each other.
+    const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
+    f.passes = 1 + std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
+    f.read_bytes = static_cast<std::uint64_t>(f.passes * cost.bytes * voxels);
+    f.scratch_bytes = static_cast<std::uint64_t>(static_cast<double>(trial.scratch_bytes) / share);
+    std::vector<double> survey_s;
+    std::vector<double> encode_s;
+    for (const Part& part : parts) {
+      survey_s.push_back(part.trial.survey_s);
+      encode_s.push_back(part.trial.encode_s);
+    }
+    const double part_voxels = parts.empty() ? 0 : parts.front().voxels;
+    f.survey_s =
+        pass_time(scaled_time(trial.survey_s, sampled, survey_s, part_voxels, voxels), f.threads, voxels, cost);
+    f.encode_s = pass_time(scaled_time(trial.encode_s, sampled, encode_s, part_voxels, voxels), f.threads,
+                           (f.passes - 1) * voxels, cost);
+  }
+
+  void describe_file(const Sidecar& s) {
     Forecast& f = forecast_;
     const bool plain = s.grid.type == grid_type_name(GridType::float32);
     f.budget = s.budget.kind;
@@ -190,83 +236,28 @@ class Forecaster {
     f.value_low = s.value_range[0];
     f.value_high = s.value_range[1];
     if (s.error.psnr_db) f.psnr_db = Expected{*s.error.psnr_db, *s.error.psnr_db, *s.error.psnr_db};
-    if (f.whole) f.exact_bytes = true;
-    if (f.exact_bytes && !f.whole) return;
-    const double bytes = scale.file_bytes(s);
-    f.file_bytes = {bytes, bytes, bytes};
   }
 
-  // By conversions of parts of the sample.
-  void add_spread(const Sidecar& s, const SampledNodes& nodes) {
-    const std::vector<SamplePlan> plans = plan_.parts();
-    const double open = static_cast<double>(nodes.of_sample) / static_cast<double>(region_count(plan_.domain()));
+  void add_spread(const Sidecar& s, const std::vector<Part>& parts, double share) {
+    forecast_.parts = parts.size();
+    if (parts.empty()) return;
     std::vector<double> bytes;
     std::vector<double> db;
     double wider_db = 0;  // by which the sample's range is wider than its parts' are
-    for (const SamplePlan& plan : plans) {
-      const double regions = open * static_cast<double>(region_count(plan.domain()));
-      const SampleScale scale(domain_, plan.domain(), options_,
-                              {nodes.of_volume, static_cast<std::uint64_t>(std::llround(regions))});
-      const Sidecar part = convert(plan, scale).sidecar;
-      bytes.push_back(scale.file_bytes(part));
-      if (part.error.psnr_db) db.push_back(*part.error.psnr_db);
-      wider_db += (range_db(s) - range_db(part)) / static_cast<double>(plans.size());
+    for (const Part& part : parts) {
+      const Sidecar& of_part = part.trial.sidecar;
+      bytes.push_back(part.file_bytes);
+      if (of_part.error.psnr_db) db.push_back(*of_part.error.psnr_db);
+      wider_db += (range_db(s) - range_db(of_part)) / static_cast<double>(parts.size());
     }
-    forecast_.parts = plans.size();
-    if (plans.empty()) return;
-    const double share = SampleScale(domain_, plan_.domain(), options_, nodes).share();
     if (!forecast_.exact_bytes) forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
-    if (!s.error.psnr_db || db.size() < plans.size()) return;
+    if (!s.error.psnr_db || db.size() < parts.size()) return;
     forecast_.psnr_db = spread_of(*s.error.psnr_db, db, share);
     if (options_.budget.by_error() || !std::isfinite(wider_db)) return;
     // The volume's range is at least the sample's. If it grows with each doubling as it did from the parts to the
     // sample, the PSNR is higher by as much.
-    const double doublings = std::log2(static_cast<double>(plans.size()));
+    const double doublings = std::log2(static_cast<double>(parts.size()));
     forecast_.psnr_db->high += std::max(0.0, wider_db) / doublings * -std::log2(share);
-  }
-
-  // A conversion would, of the same values.
-  void refuse_values(const Sidecar& s) const {
-    const std::uint64_t sampled = forecast_.sampled_voxels;
-    if (options_.non_finite == NonFinitePolicy::error && s.nonfinite.count > 0) {
-      throw input_error(s.source.path,
-                        compose(s.nonfinite.count, " of the ", sampled, " voxels sampled are NaN or infinite; choose ",
-                                option("nonfinite", "background"), " or ", option("nonfinite", "keep")));
-    }
-    if (missing_policy_name(options_) == "error" && s.missing.count > 0) {
-      throw input_error(s.source.path,
-                        compose(s.missing.count, " of the ", sampled, " voxels sampled hold no data; choose ",
-                                option("missing-policy", "background"), " or, to take them for data, ",
-                                option("missing-policy", "keep")));
-    }
-  }
-
-  // Of no volume of this extent a file is shorter.
-  void refuse_hopeless_size() const {
-    NodeCounts counts;
-    counts.root_tiles = 1;
-    counts.macrocells = static_cast<std::uint64_t>(make_lattice(domain_, kMacrocell).size());
-    const std::uint64_t least = make_layout(counts).content_end;
-    const auto asked = static_cast<std::uint64_t>(forecast_.file_bytes.value);
-    if (asked >= least) return;
-    throw Error(ErrorKind::budget, compose(options_.output, ": ", asked, " bytes asked, a file of this volume takes ",
-                                           least, " besides its tree; ask for more with ", option("size")));
-  }
-
-  void check_room() const {
-    const auto file = static_cast<std::uint64_t>(forecast_.file_bytes.value);
-    const std::uint64_t beside = spills_beside_ ? forecast_.scratch_bytes : 0;
-    require_room(directory_of(options_.output), file + beside);
-    if (!spills_beside_) require_room(spill_directory_, forecast_.scratch_bytes);
-  }
-
-  void require_room(const std::string& directory, std::uint64_t bytes) const {
-    const std::uint64_t free = files_.free_bytes(directory);
-    if (bytes <= free) return;
-    throw Error(ErrorKind::io,
-                compose(options_.output, ": takes ", bytes, " bytes of ", directory, ", which has ", free, " free",
-                        disk_full_remedy()),
-                SystemFailure{ENOSPC, directory});
   }
 
   VolumeSource& source_;
@@ -276,8 +267,8 @@ class Forecaster {
   Box domain_;
   std::int64_t most_voxels_;
   SamplePlan plan_;
-  bool spills_beside_ = true;
-  std::string spill_directory_;
+  ReadingPlan reading_;
+  std::uint64_t copy_block_bytes_ = 0;
   Forecast forecast_;
 };
 

@@ -94,10 +94,22 @@ Box SamplePlan::box(const Index3& place) const {
   return {of_array(lo), of_array(lo) + of_array(voxels)};
 }
 
-Index3 SamplePlan::source_corner(const Index3& place) const {
+std::array<std::int64_t, 3> SamplePlan::strata_of(const Index3& place) const {
   const auto at = to_array(place);
   std::array<std::int64_t, 3> strata{};
   for (std::size_t a = 0; a < 3; ++a) strata[a] = offset_[a] + stride_[a] * at[a];
+  return strata;
+}
+
+Index3 SamplePlan::sample_corner(const Index3& place) const {
+  const auto strata = strata_of(place);
+  std::array<std::int64_t, 3> corner{};
+  for (std::size_t a = 0; a < 3; ++a) corner[a] = axes_[a].whole() ? axes_[a].lo() : strata[a] * axes_[a].cell();
+  return of_array(corner);
+}
+
+Index3 SamplePlan::source_corner(const Index3& place) const {
+  const auto strata = strata_of(place);
   const Index3 all{axes_[0].taken(), axes_[1].taken(), axes_[2].taken()};
   const auto linear = static_cast<std::uint64_t>(linear_index(of_array(strata), all));
   std::array<std::int64_t, 3> corner{};

@@ -40,6 +40,8 @@ class SamplePlan {
   /// The box of the sample that the cell at that place fills, and where it lies in the volume.
   Box box(const Index3& place) const;
   Index3 source_corner(const Index3& place) const;
+  /// Of a part: where the same cell lies in the sample.
+  Index3 sample_corner(const Index3& place) const;
 
   /// Parts of the sample, each of which is spread over the whole volume as it is: 8, or 4; none of fewer than 16
   /// places.
@@ -47,6 +49,7 @@ class SamplePlan {
 
  private:
   std::int64_t count(std::size_t axis) const;
+  std::array<std::int64_t, 3> strata_of(const Index3& place) const;
   void limit(std::int64_t most_voxels);
 
   std::array<SampleAxis, 3> axes_;

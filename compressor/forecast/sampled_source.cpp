@@ -1,12 +1,10 @@
 #include "compressor/forecast/sampled_source.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
-#include <thread>
 
 #include "compressor/leaf/bounds.h"
+#include "ingest/plan/for_pieces.h"
+#include "ingest/plan/staging.h"
 
 namespace weir {
 namespace {
@@ -43,9 +41,10 @@ MinMax range_in(std::span<const float> values, const Index3& extent, const Box& 
 
 }  // namespace
 
-SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan)
+SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan, From from)
     : source_(source),
       plan_(plan),
+      from_(from),
       info_(source.info()),
       read_before_(source.bytes_read()),
       in_volume_(source.info().domain()),
@@ -57,8 +56,9 @@ SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan)
 
 // Values of x fastest over piece.to, in parts that lie in one region both of the volume and of the sample.
 void SampledSource::note_ranges(const Piece& piece, std::span<const float> values) {
-  if (plan_.whole() || voxels_read_ > info_.domain().voxels()) return;
+  if (plan_.whole() || from_ == From::copy) return;
   const Index3 extent = piece.to.extent();
+  MinMax all = kNoBounds;
   for (Index3 lo, hi; lo.z < extent.z; lo.z = hi.z) {
     hi.z = part_end(lo.z, extent.z, piece.from.z, piece.to.lo.z);
     for (lo.y = 0; lo.y < extent.y; lo.y = hi.y) {
@@ -69,15 +69,23 @@ void SampledSource::note_ranges(const Piece& piece, std::span<const float> value
         const std::scoped_lock lock(mutex_);
         in_volume_.add(piece.from + lo, range);
         in_sample_.add(piece.to.lo + lo, range);
+        widen(all, range);
       }
     }
   }
+  const std::scoped_lock lock(mutex_);
+  if (all.min < all.max) varied_voxels_ += piece.to.voxels();
+}
+
+double SampledSource::varied_share() const {
+  const std::scoped_lock lock(mutex_);
+  return static_cast<double>(varied_voxels_) / static_cast<double>(voxels_read_);
 }
 
 std::uint64_t SampledSource::working_bytes() const {
   if (plan_.whole()) return source_.working_bytes();  // read to where it is wanted
   const std::uint64_t cell = cell_bytes(plan_);
-  const std::uint64_t readers = cell > kSmallCell ? 1 : std::max(1U, std::thread::hardware_concurrency());
+  const std::uint64_t readers = cell > kSmallCell ? 1 : kIoThreads;
   return source_.working_bytes() + readers * cell;
 }
 
@@ -93,7 +101,8 @@ std::vector<SampledSource::Piece> SampledSource::pieces_of(const Box& box) const
   for_each_index(places, [&](const Index3& place) {
     const Box whole = plan_.box(place);
     const Box to = intersect(whole, box);
-    pieces.push_back({to, plan_.source_corner(place) + (to.lo - whole.lo)});
+    const Index3 corner = from_ == From::volume ? plan_.source_corner(place) : plan_.sample_corner(place);
+    pieces.push_back({to, corner + (to.lo - whole.lo)});
   });
   return pieces;
 }
@@ -112,9 +121,8 @@ ConversionLoss SampledSource::read_piece(const Piece& piece, const Box& box, std
   if (extent.x == of_box.x && extent.y == of_box.y) {
     return read_into(values.subspan(static_cast<std::size_t>(linear_index(at, of_box)), count));
   }
-  std::vector<float>& buffer = buffers_.local();
-  buffer.resize(std::max(buffer.size(), count));
-  const ConversionLoss loss = read_into(std::span(buffer).first(count));
+  std::vector<float> buffer(count);
+  const ConversionLoss loss = read_into(buffer);
   const float* row = buffer.data();
   for (std::int64_t z = 0; z < extent.z; ++z) {
     for (std::int64_t y = 0; y < extent.y; ++y, row += extent.x) {
@@ -128,18 +136,13 @@ ConversionLoss SampledSource::read(const Box& box, std::span<float> values) {
   voxels_read_ += box.voxels();
   const std::vector<Piece> pieces = pieces_of(box);
   ConversionLoss total;
-  if (cell_bytes(plan_) > kSmallCell) {
-    for (const Piece& piece : pieces) total.add(read_piece(piece, box, values, false));
-    return total;
-  }
   std::mutex mutex;
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-    // The source may wait for work of its own, during which this thread must not begin another piece.
-    tbb::this_task_arena::isolate([&] {
-      const ConversionLoss loss = read_piece(pieces[i], box, values, false);
-      const std::scoped_lock lock(mutex);
-      total.add(loss);
-    });
+  // Large cells keep the source busy by themselves.
+  const std::size_t readers = cell_bytes(plan_) > kSmallCell ? 1 : kIoThreads;
+  for_pieces(static_cast<std::int64_t>(pieces.size()), readers, [&](std::int64_t i) {
+    const ConversionLoss loss = read_piece(pieces[static_cast<std::size_t>(i)], box, values, false);
+    const std::scoped_lock lock(mutex);
+    total.add(loss);
   });
   return total;
 }

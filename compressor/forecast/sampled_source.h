@@ -1,8 +1,6 @@
 // The sample of a volume as a volume, for whoever converts volumes.
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -15,10 +13,12 @@
 
 namespace weir {
 
-/// Of `source`, which must outlive it. Reading it for the first time also finds which regions vary.
+/// Of `source`, which must outlive it: of the volume that the plan was made for, or of a copy of the sample that the
+/// plan is a part of (SamplePlan::parts). Reading it also finds which regions vary.
 class SampledSource final : public VolumeSource {
  public:
-  SampledSource(VolumeSource& source, const SamplePlan& plan);
+  enum class From { volume, copy };
+  SampledSource(VolumeSource& source, const SamplePlan& plan, From from = From::volume);
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return plan_.access(source_.access()); }
@@ -29,16 +29,18 @@ class SampledSource final : public VolumeSource {
   /// Since this object was made.
   std::uint64_t bytes_read() const override { return source_.bytes_read() - read_before_; }
   std::int64_t voxels_read() const { return voxels_read_; }
-  /// Regions of 128^3 voxels of the volume, and of the sample, that hold more than one of the values read. 0 where the
-  /// sample is the volume.
+  /// Regions of 128^3 voxels of the volume, and of the sample, that hold more than one of the values read. Of a sample
+  /// of a volume; else 0.
   std::uint64_t varied_in_volume() const { return in_volume_.count(); }
   std::uint64_t varied_in_sample() const { return in_sample_.count(); }
+  /// Part of the voxels read that lie in places of more than one value: what an encode pass reads again.
+  double varied_share() const;
 
  private:
   /// A part of a place that is read.
   struct Piece {
     Box to;       ///< in the sample
-    Index3 from;  ///< its corner in the volume
+    Index3 from;  ///< its corner in the source
   };
   std::vector<Piece> pieces_of(const Box& box) const;
   ConversionLoss read_piece(const Piece& piece, const Box& box, std::span<float> values, bool alone);
@@ -46,13 +48,14 @@ class SampledSource final : public VolumeSource {
 
   VolumeSource& source_;
   SamplePlan plan_;
+  From from_;
   SourceInfo info_;
   std::uint64_t read_before_;
   std::atomic<std::int64_t> voxels_read_{0};
-  std::mutex mutex_;  // of the next two
+  mutable std::mutex mutex_;  // of what follows
+  std::int64_t varied_voxels_ = 0;
   VariedRegions in_volume_;
   VariedRegions in_sample_;
-  tbb::enumerable_thread_specific<std::vector<float>> buffers_;
 };
 
 }  // namespace weir

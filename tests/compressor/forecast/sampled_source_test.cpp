@@ -68,6 +68,7 @@ TEST(SampledSource, FindsTheRegionsThatVary) {
   source.read(all, values);
   EXPECT_EQ(source.varied_in_volume(), 2U);
   EXPECT_EQ(source.varied_in_sample(), 1U);
+  EXPECT_EQ(source.varied_share(), 0.5);  // each row goes through both halves of x
 }
 
 TEST(SampledSource, OfLargeChunks_ReadsOneAfterTheOther) {
