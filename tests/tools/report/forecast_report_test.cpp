@@ -47,7 +47,7 @@ TEST(ForecastReport, OfASample_SaysHowFarItIsUncertain) {
   EXPECT_EQ(
       forecast_text(sampled(), source(), to_rate()),
       "v.raw: 1024x1024x1024 voxels of uint16, 2.0 GiB\n"
-      "  sample    6.25 % of the voxels, from 1024 places of the volume\n"
+      "  sample    6.3 % of the voxels, from 1024 places of the volume\n"
       "  reads     3.5 GiB in 1.8 passes\n"
       "  writes    v.nvdb: 536870912 bytes, and 300.0 MiB until it is done\n"
       "  memory    up to 100.0 MiB of 512.0 MiB, 2 threads\n"
