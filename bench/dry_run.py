@@ -4,14 +4,16 @@
     bench/dry_run.py [--weir WEIR] [--edge 640] [--directory DIRECTORY] [VOLUME...]
 
 Of each volume, ten synthetic ones of EDGE^3 float32 voxels where none is given, it makes a dry run and the conversion, in
-turn, for each of RUNS, and prints a table in Markdown: PSNR, size and time as expected and as they came out. Files lie in
-DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where a PSNR is off by more
-than 1 dB or a size by more than 5 %; times are judged by who reads them, since another program may have run meanwhile.
+turn, for each of RUNS, and prints two tables in Markdown: PSNR, size and time as expected and as they came out, and how far
+they were off. Files lie in DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where
+a PSNR is off by more than 1 dB or a size by more than 5 %; times are for the reader to judge, since another program may have
+run meanwhile.
 """
 
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -32,38 +34,38 @@ def convert(weir, volume, output, options):
 
 
 class Tally:
-    """How often what was expected came out."""
+    """How far off what was expected was, by the options."""
 
     def __init__(self):
-        self.psnr, self.size, self.time, self.spread = [], [], [], []
+        self.off = {}  # options: {"dB", "%", "time %", "in range": [...]}
 
-    def add(self, expected, made, seconds):
+    def add(self, options, expected, made, seconds):
         """One line's cells."""
+        off = self.off.setdefault(" ".join(options), {"dB": [], "%": [], "time %": [], "in range": []})
         error, real = expected["error"], made["error"]
         by_size = expected["file"]["exact"]
         size, bytes_made = expected["file"], made["file"]["bytes"]
-        self.size.append(abs(size["value"] / bytes_made - 1))
-        self.time.append(abs(expected["time"]["total_s"] / seconds - 1))
+        off["%"].append(abs(size["value"] / bytes_made - 1) * 100)
+        off["time %"].append((expected["time"]["total_s"] / seconds - 1) * 100)
         if by_size and error["psnr_db"] and real["psnr_db"]:
             db = error["psnr_db"]
-            self.psnr.append(abs(db["value"] - real["psnr_db"]))
+            off["dB"].append(abs(db["value"] - real["psnr_db"]))
             if db["low"] is not None:
-                self.spread.append(db["low"] <= real["psnr_db"] <= db["high"])
+                off["in range"].append(db["low"] <= real["psnr_db"] <= db["high"])
         elif not by_size and size["low"] is not None:
-            self.spread.append(size["low"] <= bytes_made <= size["high"])
+            off["in range"].append(size["low"] <= bytes_made <= size["high"])
         return [psnr_text(error["psnr_db"], by_size), psnr_text({"value": real["psnr_db"], "low": None}, False),
                 size_text(size), f"{bytes_made / 1e6:.2f}", f"{expected['time']['total_s']:.2f}", f"{seconds:.2f}"]
 
     def print(self):
-        def within(name, found, most, unit, scale=1.0):
-            if found:
-                print(f"{name}: {sum(f <= most for f in found)} of {len(found)} within {most * scale:g} {unit}, "
-                      f"at most {max(found) * scale:.2f} {unit} off")
-        within("PSNR", self.psnr, 1, "dB")
-        within("size", self.size, 0.05, "%", 100)
-        within("time", self.time, 0.2, "%", 100)
-        print(f"spread: holds what came out in {sum(self.spread)} of {len(self.spread)}")
-        return all(p <= 1 for p in self.psnr) and all(s <= 0.05 for s in self.size)
+        """True where PSNR and size are as near as they are to be."""
+        print("| options | PSNR off by at most | size off by at most | in the range | time off, median |")
+        print("|---|---|---|---|---|")
+        for options, off in self.off.items():
+            psnr = f"{max(off['dB']):.2f} dB" if off["dB"] else "-"
+            inside = f"{sum(off['in range'])} of {len(off['in range'])}" if off["in range"] else "-"
+            print(f"| `{options}` | {psnr} | {max(off['%']):.2f} % | {inside} | {statistics.median(off['time %']):+.0f} % |")
+        return all(max(off["dB"], default=0) <= 1 and max(off["%"]) <= 5 for off in self.off.values())
 
 
 def psnr_text(psnr, has_spread):
@@ -84,7 +86,7 @@ def check(weir, volume, name, folder, tally):
         output = str(folder / "out.nvdb")
         expected, _ = convert(weir, volume, output, [*options, "--dry-run"])
         made, seconds = convert(weir, volume, output, options)
-        cells = tally.add(expected, made, seconds)
+        cells = tally.add(options, expected, made, seconds)
         print("|", " | ".join([name, " ".join(options), f"{100 * expected['sample']['share']:.3g} %", *cells]), "|", flush=True)
         for path in folder.glob("out.nvdb*"):
             path.unlink()

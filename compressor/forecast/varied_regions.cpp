@@ -1,6 +1,6 @@
 #include "compressor/forecast/varied_regions.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "compressor/leaf/bounds.h"
 
@@ -14,8 +14,13 @@ void VariedRegions::add(const Index3& voxel, const MinMax& values) {
 }
 
 std::uint64_t VariedRegions::count() const {
-  return static_cast<std::uint64_t>(
-      std::ranges::count_if(ranges_, [](const MinMax& range) { return range.min < range.max; }));
+  double seen = 0;
+  double varied = 0;
+  for (const MinMax& range : ranges_) {
+    seen += range.min <= range.max ? 1 : 0;
+    varied += range.min < range.max ? 1 : 0;
+  }
+  return seen == 0 ? 0 : static_cast<std::uint64_t>(std::llround(varied / seen * static_cast<double>(ranges_.size())));
 }
 
 }  // namespace weir

@@ -17,6 +17,7 @@ class VariedRegions {
 
   /// Values within `values` (smallest, largest) were seen in the region that holds `voxel`.
   void add(const Index3& voxel, const MinMax& values);
+  /// Regions of which nothing was seen are taken to vary as often as the others.
   std::uint64_t count() const;
 
  private:
