@@ -59,12 +59,15 @@ class Tally:
 
     def print(self):
         """True where PSNR and size are as near as they are to be."""
-        print("| options | PSNR off by at most | size off by at most | in the range | time off, median |")
-        print("|---|---|---|---|---|")
+        print("| options | PSNR off by at most | size off by at most | in the range | time off, median | time within 20 % |")
+        print("|---|---|---|---|---|---|")
         for options, off in self.off.items():
             psnr = f"{max(off['dB']):.2f} dB" if off["dB"] else "-"
             inside = f"{sum(off['in range'])} of {len(off['in range'])}" if off["in range"] else "-"
-            print(f"| `{options}` | {psnr} | {max(off['%']):.2f} % | {inside} | {statistics.median(off['time %']):+.0f} % |")
+            size = "exact" if max(off["%"]) == 0 else f"{max(off['%']):.1f} %"
+            near = sum(abs(time) <= 20 for time in off["time %"])
+            print(f"| `{options}` | {psnr} | {size} | {inside} | {statistics.median(off['time %']):+.0f} % | "
+                  f"{near} of {len(off['time %'])} |")
         return all(max(off["dB"], default=0) <= 1 and max(off["%"]) <= 5 for off in self.off.values())
 
 
