@@ -69,6 +69,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   }
   const std::uint64_t free = ceiling - fixed;
   MemoryPlan plan;
+  plan.fixed_bytes = fixed;
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
   plan.worker_bytes = 2 * plan.block_bytes / threads;
   plan.segment_regions =

@@ -17,6 +17,7 @@ struct MemoryPlan {
   std::uint64_t worker_bytes = 0;    ///< of one worker's block where each reads its own
   std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
   std::size_t digest_threads = 1;    ///< file pieces hashed at a time
+  std::uint64_t fixed_bytes = 0;     ///< taken however long the blocks are
 };
 
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.

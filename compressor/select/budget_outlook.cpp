@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "compressor/packed/block_sample.h"
-#include "compressor/select/preview.h"
+#include "compressor/select/fixed_bytes.h"
 #include "compressor/select/step_keys.h"
 #include "format/leaf/bounds.h"
-#include "format/nanovdb/macrocells.h"
 
 namespace weir {
 namespace {
@@ -74,25 +73,6 @@ class SampledSteps {
 
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
 };
-
-/// What a packed file holds besides its blocks' streams and their ends.
-double fixed_bytes(const FileRequest& request, double asked) {
-  const TreeRegions tree(request.domain);
-  const auto with = [&](bool preview) {
-    NodeCounts counts;
-    counts.root_tiles = tree.uppers.size();
-    counts.macrocells = static_cast<std::uint64_t>(make_lattice(request.domain, kMacrocell).size());
-    const std::uint64_t regions = tree.regions.size();
-    set_packed_counts(PackedRule{preview, 0}, tree, regions, counts);
-    counts.packed_bytes += regions * kChunkCost;
-    return static_cast<double>(make_layout(counts).content_end);
-  };
-  const double without = with(false);
-  if (request.packed.preview == Preview::off) return without;
-  const double both = with(true);
-  if (request.packed.preview == Preview::on) return both;
-  return asked >= kLeastOfPreview * (both - without) ? both : without;
-}
 
 /// The sampled blocks whose values are all finite.
 struct Sample {
@@ -157,8 +137,10 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   } else {
     const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
     const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
-    const auto asked = static_cast<double>(asked_bytes(budget, dense));
-    outlook = steps.within_bytes(std::max(0.0, asked - fixed_bytes(request, asked)) * share);
+    const std::uint64_t asked = asked_bytes(budget, dense);
+    const std::uint64_t fixed =
+        fixed_bytes(request.domain, Encoding::packed, request.packed.preview, asked, region_count(request.domain));
+    outlook = steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
   }
   if (rule.visibility != nullptr || rows.leaves().size() < kLeastForecastBlocks) outlook.window.reset();
   return outlook;

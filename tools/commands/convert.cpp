@@ -15,6 +15,7 @@
 
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/forecast/forecast.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/resume.h"
 #include "format/base/error.h"
@@ -23,11 +24,9 @@
 #include "format/io/file_id.h"
 #include "format/io/limited_file_system.h"
 #include "format/output/output_files.h"
-#include "format/sidecar/valid_voxels.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/plan/limited_source.h"
 #include "ingest/series_names.h"
-#include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
@@ -36,11 +35,10 @@
 #include "tools/options/series_checks.h"
 #include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
-#include "tools/report/error_text.h"
+#include "tools/report/conversion_report.h"
 #include "tools/report/finished_output.h"
-#include "tools/report/printable.h"
+#include "tools/report/forecast_report.h"
 #include "tools/report/progress.h"
-#include "tools/report/volume_title.h"
 
 namespace weir {
 namespace {
@@ -58,37 +56,11 @@ struct ConvertArguments {
   bool again = false;
   bool brief_names = false;
   bool json = false;
+  bool dry_run = false;
 };
 
 void say(const Message& line) {
   spdlog::log(line.is_remark() ? spdlog::level::info : spdlog::level::warn, "{}", line.text());
-}
-
-// What a small volume was given instead of the default rate.
-std::string default_text(const Sidecar& s, const Budget& budget) {
-  if (budget.kind != Budget::Kind::automatic) return "";
-  if (s.budget.kind == "psnr") return cat(" (default: ", kDefaultLeastDb, " dB)");
-  return s.budget.kind == "lossless" ? " (default: lossless)" : "";
-}
-
-// Before the extent: "/qc at 2, magnitude, "; empty for a file that is one volume.
-std::string chosen_prefix(const Sidecar::Source& source) {
-  const std::string text = chosen_text(source.dataset, source.index, source.component);
-  return text.empty() ? "" : text + ", ";
-}
-
-void report(const Sidecar& s, const Budget& budget, const std::string& output) {
-  std::string error = error_text(s, s.error);
-  if (s.visible) error += cat(" (what the scene shows: ", error_text(s, s.visible->error), ')');
-  const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
-  for (const std::string& also : {lost_zeros_text(zeros.lost, zeros.count), missing_text(s), nonfinite_text(s),
-                                  rounded_text(s.conversion_loss)}) {
-    if (!also.empty()) error += cat(", ", also);
-  }
-  spdlog::info("{}: {}{} voxels, {} bytes, rate {:.4g}{}, {} of {} leaves kept, {}, {:.2f} s, {} peak", output,
-               chosen_prefix(s.source), extent_text(s.source.extent), s.file.bytes, s.budget.rate,
-               default_text(s, budget), s.selection.leaves_kept, s.selection.leaves_total, error, s.timing.total_s,
-               format_bytes(s.timing.peak_rss_bytes));
 }
 
 // Bytes per second; none: no limit.
@@ -132,18 +104,18 @@ void tidy_up(const std::string& output) {
 }
 
 // The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
-std::optional<Sidecar> skip_or_replace(const SourceInfo& info, bool again, ConversionOptions& options) {
+std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArguments& a, ConversionOptions& options) {
   FinishedOutput found = find_output(info, options);
   switch (found.state) {
     case FinishedOutput::State::absent:
       return std::nullopt;
     case FinishedOutput::State::done:
-      if (again) {
+      if (a.again) {
         options.overwrite = true;
         return std::nullopt;
       }
       spdlog::info("{}: done already", options.output);
-      tidy_up(options.output);
+      if (!a.dry_run) tidy_up(options.output);
       return std::move(found.sidecar);
     case FinishedOutput::State::stale:
       spdlog::info("{}: converted again: {}", options.output, found.reason);
@@ -155,28 +127,6 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, bool again, Conve
                             "); choose another output or pass --overwrite"));
   }
   throw Error(ErrorKind::internal, "unknown state of an output");
-}
-
-// For the program that started this one.
-void announce_output(const ProgressOptions& progress, const std::string& output, bool skipped, const Sidecar& s) {
-  nlohmann::ordered_json line{{"output", output},
-                              {"skipped", skipped},
-                              {"bytes", s.file.bytes},
-                              {"rate", s.budget.rate},
-                              {"lossless", lossless_everywhere(s)},
-                              {"psnr_db", nullptr},
-                              {"bytes_read", skipped ? 0 : s.timing.bytes_read},
-                              {"peak_rss_bytes", skipped ? 0 : s.timing.peak_rss_bytes}};
-  if (s.error.psnr_db) line["psnr_db"] = *s.error.psnr_db;
-  line["max_error"] = s.error.max_abs;
-  line["value_range"] = s.value_range;
-  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
-// As a configuration names options: it is where they are set for a service.
-void announce_failure(const ProgressOptions& progress, const Error& error) {
-  const nlohmann::json line{{"failed", one_line(error.message().worded(key_wording))}};
-  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 // The default gives a small volume more than its rate where it needs it.
@@ -198,39 +148,91 @@ std::unique_ptr<VolumeSource> open_step(const SeriesStep& step, SourceOptions op
   return open_source(step.path, options);
 }
 
+// What the steps of one call have in common.
+struct SeriesWork {
+  const ConvertArguments& arguments;
+  SeriesExtents& extents;
+  Bandwidth* bandwidth;  ///< null: no limit
+  BlockCoder* coder;     ///< null: the CPU
+  Trace* trace;          ///< null: none
+};
+
+std::unique_ptr<VolumeSource> open_checked(const SeriesStep& step, const SourceOptions& options,
+                                           const SeriesWork& work) {
+  std::unique_ptr<VolumeSource> source = open_step(step, options);
+  check_files(source->info(), work.arguments.within);
+  work.extents.check(step, source->info());
+  return source;
+}
+
+// Calls action(source, files), which keep to the bandwidth.
+template <typename Action>
+void with_bandwidth(std::unique_ptr<VolumeSource> source, const SeriesWork& work, const Action& action) {
+  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({say});
+  if (work.bandwidth == nullptr) return action(*source, *unlimited);
+  source = limit_source(std::move(source), *work.bandwidth);
+  const std::unique_ptr<FileSystem> limited = limit_file_system(*unlimited, *work.bandwidth);
+  action(*source, *limited);
+}
+
+ConversionControl control_of(const SeriesWork& work, Progress& progress) {
+  ConversionControl control;
+  control.cancel = &interrupt_flag();
+  control.trace = work.trace;
+  control.coder = work.coder;
+  control.pass_started = [&progress](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
+  control.pass_advanced = [&progress](std::uint64_t done) { progress.update(done); };
+  control.notice = say;
+  return control;
+}
+
 Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options, ConversionOptions options,
-                     SeriesExtents& extents, const ConvertArguments& a, Bandwidth* bandwidth, BlockCoder* coder,
-                     Trace* trace) {
-  const ProgressOptions& shown = a.progress;
-  std::unique_ptr<VolumeSource> source = open_step(step, source_options);
-  check_files(source->info(), a.within);
-  extents.check(step, source->info());
+                     const SeriesWork& work) {
+  const ConvertArguments& a = work.arguments;
+  std::unique_ptr<VolumeSource> source = open_checked(step, source_options, work);
   if (a.skip_done) {
-    if (auto record = skip_or_replace(source->info(), a.again, options)) {
-      announce_output(shown, options.output, true, *record);
+    if (auto record = skip_or_replace(source->info(), a, options)) {
+      announce_output(a.progress, options.output, true, *record);
       return *std::move(record);
     }
   }
-  Progress progress(shown);
-  ConversionControl control;
-  control.cancel = &interrupt_flag();
-  control.trace = trace;
-  control.coder = coder;
-  control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
-  control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-  control.notice = say;
-  control.planned = [&](std::uint64_t bytes) { announce(shown, nlohmann::json{{"planned", bytes}}.dump()); };
-  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({control.notice});
-  std::unique_ptr<FileSystem> limited;
-  if (bandwidth != nullptr) {
-    source = limit_source(std::move(source), *bandwidth);
-    limited = limit_file_system(*unlimited, *bandwidth);
-  }
-  Sidecar sidecar = convert_volume(*source, options, control, limited ? *limited : *unlimited);
+  Progress progress(a.progress);
+  ConversionControl control = control_of(work, progress);
+  control.planned = [&](std::uint64_t bytes) { announce(a.progress, nlohmann::json{{"planned", bytes}}.dump()); };
+  Sidecar sidecar;
+  with_bandwidth(std::move(source), work, [&](VolumeSource& volume, FileSystem& files) {
+    sidecar = convert_volume(volume, options, control, files);
+  });
   progress.finish();
-  report(sidecar, options.budget, options.output);
-  announce_output(shown, options.output, false, sidecar);
+  say_converted(sidecar, options.budget, options.output);
+  announce_output(a.progress, options.output, false, sidecar);
   return sidecar;
+}
+
+// --dry-run: says on stdout, or in what it returns, what convert_step would come to.
+nlohmann::ordered_json forecast_step(const SeriesStep& step, const SourceOptions& source_options,
+                                     ConversionOptions options, const SeriesWork& work) {
+  const ConvertArguments& a = work.arguments;
+  std::unique_ptr<VolumeSource> source = open_checked(step, source_options, work);
+  if (a.skip_done && skip_or_replace(source->info(), a, options)) {
+    return {{"dry_run", 1}, {"input", source->info().path}, {"output", options.output}, {"done", true}};
+  }
+  Progress progress(a.progress);
+  const ConversionControl control = control_of(work, progress);
+  nlohmann::ordered_json json;
+  with_bandwidth(std::move(source), work, [&](VolumeSource& volume, FileSystem& files) {
+    const Forecast forecast = forecast_conversion(volume, options, control, files);
+    progress.finish();
+    json = forecast_json(forecast, volume.info(), options);
+    if (!a.json) std::fputs(forecast_text(forecast, volume.info(), options).c_str(), stdout);
+  });
+  return json;
+}
+
+void print_json(std::span<const nlohmann::ordered_json> forecasts) {
+  const nlohmann::ordered_json json =
+      forecasts.size() == 1 ? forecasts.front() : nlohmann::ordered_json{{"steps", forecasts}};
+  std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n").c_str(), stdout);
 }
 
 void print_json(std::span<const Sidecar> sidecars) {
@@ -271,16 +273,25 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   std::optional<ResultDirectory> directory;
   if (a.output.ends_with('/')) directory.emplace(*files, directory_of(a.output));
   std::vector<Sidecar> sidecars;
+  std::vector<nlohmann::ordered_json> forecasts;
   const std::unique_ptr<BlockCoder> coder =
       choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, say);
+  const SeriesWork work{a, extents, bandwidth ? &*bandwidth : nullptr, coder.get(), trace.get()};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
-    sidecars.push_back(convert_step(steps[i], source_options, options, extents, a, bandwidth ? &*bandwidth : nullptr,
-                                    coder.get(), trace.get()));
+    if (a.dry_run) {
+      forecasts.push_back(forecast_step(steps[i], source_options, options, work));
+    } else {
+      sidecars.push_back(convert_step(steps[i], source_options, options, work));
+    }
+  }
+  if (trace) trace->close();
+  if (a.dry_run) {
+    if (a.json) print_json(forecasts);
+    return;
   }
   say_sizes(steps, sidecars, options.budget);
-  if (trace) trace->close();
   if (a.json) print_json(sidecars);
 }
 
@@ -330,6 +341,11 @@ void add_convert(CLI::App& app) {
       ->add_flag("--brief-names", a->brief_names, "for weir watch, whose names say what the volumes of one call need")
       ->group("");
   command->add_flag("--json", a->json, "print the sidecar on stdout");
+  command
+      ->add_flag("--dry-run", a->dry_run,
+                 "write nothing: say what the conversion would read, write and take, how long, and what error it would "
+                 "have; by a sample, of a volume of more than 512 MiB of float32")
+      ->excludes("--trace");
   add_log_level(*command);
   command->callback([command, a] {
     try {

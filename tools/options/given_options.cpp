@@ -11,9 +11,9 @@ namespace weir {
 namespace {
 
 // They say how a command reports, or whether it runs at all.
-constexpr std::array<std::string_view, 13> kSilent{"help",          "json",      "progress", "progress-fd", "log-level",
-                                                   "quiet",         "skip-done", "again",    "brief-names", "resume",
-                                                   "save-interval", "trace",     "backend"};
+constexpr std::array<std::string_view, 14> kSilent{"dry-run",   "help",          "json",      "progress", "progress-fd",
+                                                   "log-level", "quiet",         "skip-done", "again",    "brief-names",
+                                                   "resume",    "save-interval", "trace",     "backend"};
 
 bool silent(std::string_view key) { return std::find(kSilent.begin(), kSilent.end(), key) != kSilent.end(); }
 

@@ -1,0 +1,282 @@
+#include "compressor/forecast/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "compressor/forecast/forecast_checks.h"
+#include "compressor/forecast/read_probe.h"
+#include "compressor/forecast/sample_copy.h"
+#include "compressor/forecast/sample_plan.h"
+#include "compressor/forecast/sample_scale.h"
+#include "compressor/forecast/sampled_source.h"
+#include "compressor/forecast/scratch_file_system.h"
+#include "compressor/forecast/spread.h"
+#include "compressor/forecast/trial.h"
+#include "compressor/forecast/work_time.h"
+#include "compressor/plan/memory_plan.h"
+#include "compressor/plan/reading_plan.h"
+#include "compressor/resume/work_directory.h"
+#include "compressor/select/file_size.h"
+#include "compressor/select/fixed_bytes.h"
+#include "compressor/surveyed_conversion.h"
+#include "format/base/error.h"
+#include "format/base/process_memory.h"
+
+namespace weir {
+namespace {
+
+double range_db(const Sidecar& s) { return 20 * std::log10(s.value_range[1] - s.value_range[0]); }
+
+class Forecaster {
+ public:
+  Forecaster(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+             FileSystem& files, std::uint64_t most_bytes)
+      : source_(source),
+        options_(options),
+        control_(control),
+        files_(files),
+        domain_(source.info().domain()),
+        most_voxels_(static_cast<std::int64_t>(most_bytes / sizeof(float))),
+        plan_(domain_, source.access(), most_voxels_, options.metric == Metric::sse ? 1 : options.brick / kLeafDim) {}
+
+  Forecast run() {
+    visibility_of(options_, domain_);
+    const OutputPlaces places(files_, options_);
+    plan_machine();
+    forecast_.whole = plan_.whole();
+    forecast_.volume_bytes = static_cast<std::uint64_t>(domain_.voxels()) * source_.access().bytes_per_voxel;
+    forecast_.on_device = control_.coder != nullptr;
+    expect_asked_bytes();
+    if (plan_.whole()) {
+      try_volume();
+    } else if (can_sample()) {
+      try_sample();
+    }
+    places.require_room(static_cast<std::uint64_t>(forecast_.file_bytes.value), forecast_.scratch_bytes);
+    return forecast_;
+  }
+
+ private:
+  // As conversion.cpp divides the machine.
+  void plan_machine() {
+    const std::size_t processors = processors_or_all(options_.processors);
+    const std::uint64_t coding = control_.coder == nullptr ? 0 : control_.coder->host_bytes();
+    const std::uint64_t resident = resident_bytes() + source_.working_bytes() + coding;
+    const std::uint64_t of_region = region_bytes(options_);
+    const std::size_t threads =
+        choose_threads(options_.threads, processors, options_.memory, resident, domain_, of_region);
+    const MemoryPlan memory = plan_memory(options_.memory, resident, threads, domain_, of_region);
+    reading_ = plan_reading(source_, memory);
+    if (reading_.encode.amplification > 1 && control_.notice) {
+      control_.notice(amplification_notice(source_, memory, options_.memory, reading_.encode));
+    }
+    const std::uint64_t block = std::max(reading_.survey.block_bytes, reading_.encode.block_bytes);
+    const std::uint64_t blocks = block * (reading_.reading == Reading::in_place ? threads : 2);
+    const std::uint64_t walk = threads * static_cast<std::uint64_t>(memory.segment_regions) * of_region;
+    // Chunks are decoded whole; rows are read as well in smaller blocks.
+    constexpr std::uint64_t kRowsBytes = std::uint64_t{32} << 20U;
+    const bool chunked = source_.access().chunk != Index3{};
+    copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
+    forecast_.threads = threads;
+    forecast_.memory_bytes = std::min(options_.memory, memory.fixed_bytes + std::max(blocks, walk));
+  }
+
+  // The default is a rate for all volumes that are not small.
+  void expect_asked_bytes() {
+    const Budget& budget = options_.budget;
+    const bool asked = budget.by_size() || (budget.kind == Budget::Kind::automatic && !plan_.whole());
+    if (!asked || budget.at_most) return;
+    const auto dense = static_cast<std::uint64_t>(domain_.voxels()) * sizeof(float);
+    const auto bytes = static_cast<double>(asked_bytes(budget, dense));
+    forecast_.exact_bytes = true;
+    forecast_.file_bytes = {bytes, bytes, bytes};
+  }
+
+  bool can_sample() {
+    const std::int64_t most = std::max(most_voxels_, domain_.voxels() / 20);
+    if (plan_.domain().voxels() <= most) return true;
+    forecast_.not_sampled = "its chunks are too large for a sample";
+    return false;
+  }
+
+  ConversionControl trial_control() const {
+    ConversionControl control;
+    control.cancel = control_.cancel;
+    control.coder = control_.coder;
+    control.pass_started = control_.pass_started;
+    control.pass_advanced = control_.pass_advanced;
+    return control;
+  }
+
+  void try_volume() {
+    ConversionControl control = trial_control();
+    // What nobody asked for is said of a file that was written.
+    if (options_.budget.kind != Budget::Kind::automatic) control.notice = control_.notice;
+    SampledSource source(source_, plan_);
+    const Trial trial = run_trial(source, options_, control, files_);
+    Forecast& f = forecast_;
+    f.exact_bytes = true;
+    f.sampled_voxels = static_cast<std::uint64_t>(domain_.voxels());
+    f.places = 1;
+    f.passes = static_cast<double>(source.voxels_read()) / static_cast<double>(domain_.voxels());
+    f.read_bytes = source.bytes_read();
+    f.scratch_bytes = trial.scratch_bytes;
+    f.survey_s = trial.survey_s;
+    f.encode_s = trial.encode_s;
+    const auto bytes = static_cast<double>(trial.sidecar.file.bytes);
+    f.file_bytes = {bytes, bytes, bytes};
+    describe_file(trial.sidecar);
+  }
+
+  void try_sample() {
+    SampledSource sampled(source_, plan_);
+    ScratchFileSystem scratch(files_, options_.output);
+    WorkDirectory work(scratch, options_.output, options_.work_dir);
+    SampleCopy copy(sampled, work.spill(), copy_block_bytes_, control_.cancel);
+    const auto voxels = static_cast<double>(plan_.domain().voxels());
+    const ReadCost cost = reading_.reading == Reading::in_place
+                              ? ReadCost{0, 0, static_cast<double>(sampled.bytes_read()) / voxels}
+                              : probe_reading(source_, reading_.survey);
+    const SampledNodes nodes{sampled.varied_in_volume(), sampled.varied_in_sample()};
+    const SampleScale scale(domain_, plan_.domain(), options_, nodes);
+    const std::vector<Part> parts = try_parts(copy, nodes);
+    Trial trial;
+    try {
+      trial = run_trial(copy, sample_options(scale), trial_control(), files_);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget || !forecast_.exact_bytes) throw;
+      refuse_hopeless_size(options_, domain_, static_cast<std::uint64_t>(forecast_.file_bytes.value));
+      forecast_.not_sampled = "a sample is too small for a file of this rate";
+      return;
+    }
+    forecast_.sampled_voxels = static_cast<std::uint64_t>(plan_.domain().voxels());
+    forecast_.places = plan_.places();
+    refuse_sampled_values(options_, trial.sidecar);
+    describe_work(trial, parts, cost, scale.share(), sampled.varied_share());
+    describe_file(trial.sidecar);
+    if (!forecast_.exact_bytes) {
+      const double bytes = scale.file_bytes(trial.sidecar);
+      forecast_.file_bytes = {bytes, bytes, bytes};
+    }
+    add_spread(trial.sidecar, parts, scale.share());
+  }
+
+  // A sample has its own budget.
+  ConversionOptions sample_options(const SampleScale& scale) const {
+    ConversionOptions options = options_;
+    options.budget = scale.budget();
+    options.scene.reset();  // places of a sample are not where they are seen
+    if (options.non_finite == NonFinitePolicy::error) options.non_finite = NonFinitePolicy::background;
+    if (options.missing == MissingPolicy::error) options.missing = MissingPolicy::background;
+    return options;
+  }
+
+  /// A conversion of a part of the sample.
+  struct Part {
+    Trial trial;
+    double voxels = 0;
+    double file_bytes = 0;  ///< of the volume, by this part
+  };
+
+  // None where a part is too small for its budget.
+  std::vector<Part> try_parts(SampleCopy& copy, const SampledNodes& nodes) {
+    const double open = static_cast<double>(nodes.of_sample) / static_cast<double>(region_count(plan_.domain()));
+    std::vector<Part> parts;
+    try {
+      for (const SamplePlan& plan : plan_.parts()) {
+        const double regions = open * static_cast<double>(region_count(plan.domain()));
+        const SampleScale scale(domain_, plan.domain(), options_,
+                                {nodes.of_volume, static_cast<std::uint64_t>(std::llround(regions))});
+        SampledSource source(copy, plan, SampledSource::From::copy);
+        Part part{run_trial(source, sample_options(scale), trial_control(), files_)};
+        part.voxels = static_cast<double>(plan.domain().voxels());
+        part.file_bytes = scale.file_bytes(part.trial.sidecar);
+        parts.push_back(std::move(part));
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget) throw;
+      parts.clear();
+    }
+    return parts;
+  }
+
+  void describe_work(const Trial& trial, const std::vector<Part>& parts, const ReadCost& cost, double share,
+                     double varied) {
+    Forecast& f = forecast_;
+    const auto sampled = static_cast<double>(plan_.domain().voxels());
+    const auto voxels = static_cast<double>(domain_.voxels());
+    // Places side by side are read again where one of them is; in the volume, fewer lie beside each other.
+    const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
+    f.passes = 1 + std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
+    f.read_bytes = static_cast<std::uint64_t>(f.passes * cost.bytes * voxels);
+    f.scratch_bytes = static_cast<std::uint64_t>(static_cast<double>(trial.scratch_bytes) / share);
+    std::vector<double> survey_s;
+    std::vector<double> encode_s;
+    for (const Part& part : parts) {
+      survey_s.push_back(part.trial.survey_s);
+      encode_s.push_back(part.trial.encode_s);
+    }
+    const double part_voxels = parts.empty() ? 0 : parts.front().voxels;
+    f.survey_s =
+        pass_time(scaled_time(trial.survey_s, sampled, survey_s, part_voxels, voxels), f.threads, voxels, cost);
+    f.encode_s = pass_time(scaled_time(trial.encode_s, sampled, encode_s, part_voxels, voxels), f.threads,
+                           (f.passes - 1) * voxels, cost);
+  }
+
+  void describe_file(const Sidecar& s) {
+    Forecast& f = forecast_;
+    const bool plain = s.grid.type == grid_type_name(GridType::float32);
+    f.budget = s.budget.kind;
+    f.encoding = s.packed ? encoding_name(Encoding::packed) : plain ? encoding_name(Encoding::float32) : s.grid.type;
+    f.lossless = s.error.lossless;
+    f.rmse = s.error.rmse;
+    f.max_abs = s.error.max_abs;
+    f.value_low = s.value_range[0];
+    f.value_high = s.value_range[1];
+    if (s.error.psnr_db) f.psnr_db = Expected{*s.error.psnr_db, *s.error.psnr_db, *s.error.psnr_db};
+  }
+
+  void add_spread(const Sidecar& s, const std::vector<Part>& parts, double share) {
+    forecast_.parts = parts.size();
+    if (parts.empty()) return;
+    std::vector<double> bytes;
+    std::vector<double> db;
+    double wider_db = 0;  // by which the sample's range is wider than its parts' are
+    for (const Part& part : parts) {
+      const Sidecar& of_part = part.trial.sidecar;
+      bytes.push_back(part.file_bytes);
+      if (of_part.error.psnr_db) db.push_back(*of_part.error.psnr_db);
+      wider_db += (range_db(s) - range_db(of_part)) / static_cast<double>(parts.size());
+    }
+    if (!forecast_.exact_bytes) forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
+    if (!s.error.psnr_db || db.size() < parts.size()) return;
+    forecast_.psnr_db = spread_of(*s.error.psnr_db, db, share);
+    if (options_.budget.by_error() || !std::isfinite(wider_db)) return;
+    // The volume's range is at least the sample's. If it grows with each doubling as it did from the parts to the
+    // sample, the PSNR is higher by as much.
+    const double doublings = std::log2(static_cast<double>(parts.size()));
+    forecast_.psnr_db->high += std::max(0.0, wider_db) / doublings * -std::log2(share);
+  }
+
+  VolumeSource& source_;
+  const ConversionOptions& options_;
+  const ConversionControl& control_;
+  FileSystem& files_;
+  Box domain_;
+  std::int64_t most_voxels_;
+  SamplePlan plan_;
+  ReadingPlan reading_;
+  std::uint64_t copy_block_bytes_ = 0;
+  Forecast forecast_;
+};
+
+}  // namespace
+
+Forecast forecast_conversion(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
+                             FileSystem& files, std::uint64_t most_bytes) {
+  return Forecaster(source, options, control, files, most_bytes).run();
+}
+
+}  // namespace weir

@@ -1,0 +1,53 @@
+// A file system in which a conversion leaves nothing: its files have no names.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "format/io/file_system.h"
+
+namespace weir {
+
+/// Over a real one, of which it shows directories, `output` and its sidecar, but nothing that another conversion of
+/// `output` keeps beside them. What is created lies in the real directories without a name and is gone with its last
+/// user; renaming, removing and making directories change nothing there. Thread-safe. `files` must outlive the object
+/// and its files.
+class ScratchFileSystem final : public FileSystem {
+ public:
+  ScratchFileSystem(FileSystem& files, const std::string& output);
+
+  /// Bytes of all unnamed files that were asked for, each as long as it ever was.
+  std::uint64_t spilled_bytes() const { return spilled_; }
+
+  std::unique_ptr<File> create(const std::string& path) override;
+  std::unique_ptr<File> open(const std::string& path) override;
+  std::unique_ptr<File> create_unnamed(const std::string& directory) override;
+  void rename(const std::string& from, const std::string& to) override;
+  void rename_new(const std::string& from, const std::string& to) override { rename(from, to); }
+  bool link(const std::string&, const std::string&) override { return true; }
+  void remove(const std::string& path) override;
+  void make_directory(const std::string&) override {}
+  void remove_directory(const std::string&) override {}
+  void sync_directory(const std::string&) override {}
+  bool exists(const std::string& path) override;
+  bool is_replaceable(const std::string& path) override { return files_.is_replaceable(path); }
+  bool is_memory(const std::string& directory) override { return files_.is_memory(directory); }
+  std::uint64_t free_bytes(const std::string& directory) override { return files_.free_bytes(directory); }
+
+ private:
+  class ScratchFile;
+
+  FileSystem& files_;
+  std::string output_;
+  std::string sidecar_;
+  std::string hidden_;
+  std::atomic<std::uint64_t> spilled_{0};
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<File>> named_;
+};
+
+}  // namespace weir

@@ -1,0 +1,233 @@
+// What a forecast says of a conversion, against what the conversion then does.
+#include "compressor/forecast/forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "compressor/conversion.h"
+#include "tests/compressor/support/memory_volume.h"
+#include "tests/support/message_of_error.h"
+#include "tests/support/run_command.h"
+
+namespace weir::forecast_test {
+namespace {
+
+using test::MemoryVolume;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+
+// In [0, 1): noise.
+float noise(const Index3& i) {
+  auto z = static_cast<std::uint64_t>(i.x + 4096 * (i.y + 4096 * i.z)) * 0x9E3779B97F4A7C15U;
+  z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ z >> 27U) * 0x94D049BB133111EBU;
+  return static_cast<float>(static_cast<double>(z >> 40U) * 0x1p-24);
+}
+
+// One half empty, the other noise below and waves above: parts that cost differently.
+float uneven(const Index3& i) {
+  if (i.x < 100) return 0;
+  if (i.z < 60) return noise(i);
+  return 0.5F + 0.5F * std::sin(0.05F * static_cast<float>(i.x) + 0.11F * static_cast<float>(i.y * i.z) / 64);
+}
+
+MemoryVolume& uneven_volume() {
+  static MemoryVolume volume({{0, 0, 0}, {200, 256, 256}}, uneven);
+  return volume;
+}
+
+class ForecastTest : public testing::Test {
+ protected:
+  ConversionOptions options(Encoding encoding, Budget::Kind kind, double target = 0) const {
+    ConversionOptions options;
+    options.output = directory_ / "out.nvdb";
+    options.memory = std::uint64_t{4} << 30U;
+    options.threads = 2;
+    options.encoding = encoding;
+    options.budget.kind = kind;
+    options.budget.target = target;
+    return options;
+  }
+  Forecast forecast(VolumeSource& volume, const ConversionOptions& options, std::uint64_t most_bytes) {
+    const Forecast forecast = forecast_conversion(volume, options, {}, *files_, most_bytes);
+    EXPECT_TRUE(list_directory(directory_.path()).empty());
+    return forecast;
+  }
+  Sidecar convert(VolumeSource& volume, ConversionOptions options) {
+    options.output = other_ / "out.nvdb";
+    options.overwrite = true;
+    return convert_volume(volume, options, {}, *files_);
+  }
+
+  TemporaryDirectory directory_;
+  TemporaryDirectory other_;
+  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
+};
+
+TEST_F(ForecastTest, SmallVolume_HasExactFigures) {
+  MemoryVolume volume({{-5, 0, 3}, {195, 110, 73}}, uneven);
+  struct Case {
+    Encoding encoding;
+    Budget::Kind kind;
+    double target;
+  };
+  for (const Case& c :
+       {Case{Encoding::automatic, Budget::Kind::automatic, 0}, Case{Encoding::float32, Budget::Kind::rate, 0},
+        Case{Encoding::fpn, Budget::Kind::psnr, 45}, Case{Encoding::packed, Budget::Kind::rate, 0},
+        Case{Encoding::packed, Budget::Kind::psnr, 50}, Case{Encoding::automatic, Budget::Kind::max_error, 0.01},
+        Case{Encoding::automatic, Budget::Kind::lossless, 0}}) {
+    const ConversionOptions asked = options(c.encoding, c.kind, c.target);
+    const Forecast f = forecast(volume, asked, kForecastBytes);
+    const std::uint64_t read_before = volume.bytes_read();
+    const Sidecar made = convert(volume, asked);
+    EXPECT_TRUE(f.whole);
+    EXPECT_TRUE(f.exact_bytes);
+    EXPECT_EQ(f.parts, 0U);
+    EXPECT_EQ(f.file_bytes.value, static_cast<double>(made.file.bytes));
+    EXPECT_EQ(f.budget, made.budget.kind);
+    EXPECT_EQ(f.lossless, made.error.lossless);
+    EXPECT_EQ(f.psnr_db.has_value(), made.error.psnr_db.has_value());
+    if (f.psnr_db) {
+      EXPECT_EQ(f.psnr_db->value, *made.error.psnr_db);
+    }
+    EXPECT_EQ(f.rmse, made.error.rmse);
+    EXPECT_EQ(f.max_abs, made.error.max_abs);
+    EXPECT_EQ(f.read_bytes, made.timing.bytes_read - read_before);
+    EXPECT_EQ(f.volume_bytes, static_cast<std::uint64_t>(200 * 110 * 70 * 4));
+    EXPECT_GT(f.scratch_bytes, 0U);
+    EXPECT_GT(f.survey_s, 0);
+    EXPECT_GT(f.encode_s, 0);
+    EXPECT_EQ(f.threads, 2U);
+    EXPECT_EQ(f.encoding == "packed", c.encoding == Encoding::packed);
+  }
+}
+
+TEST_F(ForecastTest, SampleOfUnevenParts_BracketsWhatThenComesOut) {
+  MemoryVolume& volume = uneven_volume();
+  for (const Encoding encoding : {Encoding::float32, Encoding::automatic, Encoding::packed}) {
+    const ConversionOptions asked = options(encoding, Budget::Kind::rate);
+    const Forecast f = forecast(volume, asked, 14 * kMiB);
+    const Sidecar made = convert(volume, asked);
+    EXPECT_FALSE(f.whole);
+    EXPECT_LE(f.sampled_voxels * sizeof(float), 14 * kMiB);
+    EXPECT_GE(f.places, 256);
+    EXPECT_EQ(f.parts, 8U);
+    EXPECT_TRUE(f.exact_bytes);
+    EXPECT_EQ(f.file_bytes.value, static_cast<double>(made.file.bytes));
+    ASSERT_TRUE(f.psnr_db && made.error.psnr_db) << encoding_name(encoding);
+    EXPECT_NEAR(f.psnr_db->value, *made.error.psnr_db, 1) << encoding_name(encoding);
+    EXPECT_LE(f.psnr_db->low, *made.error.psnr_db) << encoding_name(encoding);
+    EXPECT_GE(f.psnr_db->high, *made.error.psnr_db) << encoding_name(encoding);
+  }
+}
+
+TEST_F(ForecastTest, SampleForAnErrorTarget_TellsTheSize) {
+  MemoryVolume& volume = uneven_volume();
+  const ConversionOptions asked = options(Encoding::automatic, Budget::Kind::psnr, 50);
+  const Forecast f = forecast(volume, asked, 14 * kMiB);
+  const auto bytes = static_cast<double>(convert(volume, asked).file.bytes);
+  EXPECT_FALSE(f.exact_bytes);
+  EXPECT_NEAR(f.file_bytes.value / bytes, 1, 0.05);
+  EXPECT_LE(f.file_bytes.low, bytes);
+  EXPECT_GE(f.file_bytes.high, bytes);
+}
+
+TEST_F(ForecastTest, SampleForALosslessFile_TellsTheSize) {
+  MemoryVolume& volume = uneven_volume();
+  const ConversionOptions asked = options(Encoding::automatic, Budget::Kind::lossless);
+  const Forecast f = forecast(volume, asked, 14 * kMiB);
+  EXPECT_TRUE(f.lossless);
+  EXPECT_FALSE(f.psnr_db);
+  EXPECT_NEAR(f.file_bytes.value / static_cast<double>(convert(volume, asked).file.bytes), 1, 0.01);
+}
+
+TEST_F(ForecastTest, ValuesThatAreRefused_AreReported) {
+  MemoryVolume volume({{0, 0, 0}, {128, 256, 256}}, [](const Index3& i) {
+    return i.x % 8 == 3 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.y);
+  });
+  const ConversionOptions asked = options(Encoding::automatic, Budget::Kind::rate);
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { forecast(volume, asked, 8 * kMiB); }),
+            "memory: 262144 of the 2097152 voxels sampled are NaN or infinite; choose --nonfinite background or "
+            "--nonfinite keep");
+  const std::string whole = message_of_error(ErrorKind::input, [&] { forecast(volume, asked, kForecastBytes); });
+  EXPECT_EQ(whole, message_of_error(ErrorKind::input, [&] { convert(volume, asked); }));
+}
+
+TEST_F(ForecastTest, Errors_AreThoseOfTheConversion) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::size);
+  asked.budget.bytes = 10;
+  EXPECT_EQ(message_of_error(ErrorKind::budget, [&] { forecast(volume, asked, kForecastBytes); }).substr(0, 20),
+            (directory_ / "out.nvdb: 10 bytes asked").substr(0, 20));
+  asked.budget.bytes = 1000000;
+  asked.memory = kMiB;
+  EXPECT_NE(message_of_error(ErrorKind::usage, [&] { forecast(volume, asked, 1000); })
+                .find("--memory 1.0 MiB is too small for this volume with 2 threads; give at least "),
+            std::string::npos);
+  asked.memory = 4096 * kMiB;
+  asked.output = directory_ / "missing/out.nvdb";
+  EXPECT_EQ(message_of_error(ErrorKind::io, [&] { forecast(volume, asked, 1000); }),
+            asked.output + ": the directory " + (directory_ / "missing") +
+                " does not exist; make it or choose another output");
+}
+
+TEST_F(ForecastTest, SizeBelowAnyFile_IsRefusedBySampleToo) {
+  MemoryVolume volume({{0, 0, 0}, {128, 256, 256}}, uneven);
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::size);
+  asked.budget.bytes = 10;
+  EXPECT_NE(message_of_error(ErrorKind::budget, [&] { forecast(volume, asked, 8 * kMiB); })
+                .find("out.nvdb: 10 bytes asked, a file of this volume takes "),
+            std::string::npos);
+}
+
+TEST_F(ForecastTest, LargeChunks_AreNotSampled) {
+  MemoryVolume volume({{0, 0, 0}, {128, 128, 256}}, uneven);
+  volume.set_access({4, {128, 128, 128}, {}});
+  const Forecast f = forecast(volume, options(Encoding::automatic, Budget::Kind::rate), kMiB);
+  EXPECT_EQ(f.not_sampled, "its chunks are too large for a sample");
+  EXPECT_EQ(f.file_bytes.value, 128.0 * 128 * 256 * 4 / 8);
+  EXPECT_TRUE(f.exact_bytes);
+}
+
+// A disk with so much room.
+class SmallDisk final : public FileSystem {
+ public:
+  SmallDisk(FileSystem& files, std::uint64_t free) : files_(files), free_(free) {}
+  std::unique_ptr<File> create(const std::string& path) override { return files_.create(path); }
+  std::unique_ptr<File> open(const std::string& path) override { return files_.open(path); }
+  std::unique_ptr<File> create_unnamed(const std::string& path) override { return files_.create_unnamed(path); }
+  void rename(const std::string& from, const std::string& to) override { files_.rename(from, to); }
+  void rename_new(const std::string& from, const std::string& to) override { files_.rename_new(from, to); }
+  bool link(const std::string& from, const std::string& to) override { return files_.link(from, to); }
+  void remove(const std::string& path) override { files_.remove(path); }
+  void make_directory(const std::string& path) override { files_.make_directory(path); }
+  void remove_directory(const std::string& path) override { files_.remove_directory(path); }
+  void sync_directory(const std::string& path) override { files_.sync_directory(path); }
+  bool exists(const std::string& path) override { return files_.exists(path); }
+  bool is_memory(const std::string& path) override { return files_.is_memory(path); }
+  std::uint64_t free_bytes(const std::string&) override { return free_; }
+
+ private:
+  FileSystem& files_;
+  std::uint64_t free_;
+};
+
+TEST_F(ForecastTest, FullDisk_IsReported) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
+  ConversionOptions asked = options(Encoding::float32, Budget::Kind::size);
+  asked.budget.bytes = 600000;
+  SmallDisk disk(*files_, 600000);
+  const std::string message =
+      message_of_error(ErrorKind::io, [&] { forecast_conversion(volume, asked, {}, disk, kForecastBytes); });
+  EXPECT_TRUE(message.starts_with(asked.output + ": takes 6")) << message;
+  EXPECT_TRUE(message.ends_with(" bytes of " + directory_.path().string() +
+                                ", which has 600000 free; free space on that file system or choose another with -o or "
+                                "--work-dir"))
+      << message;
+}
+
+}  // namespace
+}  // namespace weir::forecast_test

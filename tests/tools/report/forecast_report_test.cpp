@@ -1,0 +1,111 @@
+#include "tools/report/forecast_report.h"
+
+#include <gtest/gtest.h>
+
+namespace weir::forecast_report_test {
+namespace {
+
+// Of a sixteenth of 1024^3 voxels, in eight parts.
+Forecast sampled() {
+  Forecast f;
+  f.sampled_voxels = std::uint64_t{1} << 26U;
+  f.places = 1024;
+  f.parts = 8;
+  f.volume_bytes = std::uint64_t{1} << 31U;
+  f.passes = 1.75;
+  f.read_bytes = std::uint64_t{7} << 29U;
+  f.encoding = "packed";
+  f.exact_bytes = true;
+  f.file_bytes = {536870912, 536870912, 536870912};
+  f.scratch_bytes = 300 << 20U;
+  f.memory_bytes = 100 << 20U;
+  f.threads = 2;
+  f.psnr_db = Expected{61.24, 60.81, 62.4};
+  f.rmse = 0.0123;
+  f.value_high = 4000;
+  f.survey_s = 12.2;
+  f.encode_s = 7.26;
+  return f;
+}
+
+SourceInfo source() {
+  SourceInfo info;
+  info.path = "v.raw";
+  info.extent = {1024, 1024, 1024};
+  info.type = ScalarType::uint16;
+  return info;
+}
+
+ConversionOptions to_rate() {
+  ConversionOptions options;
+  options.output = "v.nvdb";
+  options.budget.kind = Budget::Kind::rate;
+  return options;
+}
+
+TEST(ForecastReport, OfASample_SaysHowFarItIsUncertain) {
+  EXPECT_EQ(
+      forecast_text(sampled(), source(), to_rate()),
+      "v.raw: 1024x1024x1024 voxels of uint16, 2.0 GiB\n"
+      "  sample    6.3 % of the voxels, from 1024 places of the volume\n"
+      "  reads     3.5 GiB in 1.8 passes\n"
+      "  writes    v.nvdb: 536870912 bytes, and 300.0 MiB until it is done\n"
+      "  memory    up to 100.0 MiB of 512.0 MiB, 2 threads\n"
+      "  encoding  packed\n"
+      "  error     PSNR about 61.2 dB (60.8 to 62.4), RMSE 0.0123, values from 0 to 4000, range and background of "
+      "the sample\n"
+      "  time      about 19 s: survey 12 s, encoding 7.3 s\n");
+  const auto json = forecast_json(sampled(), source(), to_rate());
+  EXPECT_EQ(json["sample"].dump(), R"({"voxels":67108864,"share":0.0625,"places":1024,"parts":8,"none":null})");
+  EXPECT_EQ(json["file"].dump(), R"({"value":536870912.0,"low":null,"high":null,"exact":true})");
+  EXPECT_EQ(json["error"]["psnr_db"].dump(), R"({"value":61.24,"low":60.81,"high":62.4})");
+  EXPECT_EQ(json["error"]["max_abs"], nullptr);
+  EXPECT_EQ(json["read"]["passes"], 1.75);
+}
+
+TEST(ForecastReport, ForAnErrorTarget_TheSizeIsUncertain) {
+  ConversionOptions options = to_rate();
+  options.budget.kind = Budget::Kind::psnr;
+  Forecast f = sampled();
+  f.exact_bytes = false;
+  f.file_bytes = {1000.4, 900, 1100};
+  const std::string text = forecast_text(f, source(), options);
+  EXPECT_NE(text.find("  writes    v.nvdb: about 1000 bytes (900 to 1100), and"), std::string::npos) << text;
+  EXPECT_NE(text.find("PSNR about 61.2 dB, RMSE"), std::string::npos) << text;
+  const auto json = forecast_json(f, source(), options);
+  EXPECT_EQ(json["file"].dump(), R"({"value":1000.4,"low":900.0,"high":1100.0,"exact":false})");
+  EXPECT_EQ(json["error"]["psnr_db"]["low"], nullptr);
+}
+
+TEST(ForecastReport, Lossless_IsSaidOfTheSampleAlone) {
+  Forecast f = sampled();
+  f.lossless = true;
+  f.psnr_db.reset();
+  EXPECT_NE(forecast_text(f, source(), to_rate()).find("  error     lossless in the sample, values from 0 to 4000\n"),
+            std::string::npos);
+  EXPECT_EQ(forecast_json(f, source(), to_rate())["error"]["psnr_db"], nullptr);
+}
+
+TEST(ForecastReport, WithASceneOrWithoutASample_TellsNoError) {
+  ConversionOptions options = to_rate();
+  options.scene.emplace();
+  EXPECT_NE(forecast_text(sampled(), source(), options)
+                .find("  error     not told by a sample where a scene decides what is kept\n"),
+            std::string::npos);
+  EXPECT_EQ(forecast_json(sampled(), source(), options)["error"], nullptr);
+  Forecast f = sampled();
+  f.not_sampled = "its chunks are too large for a sample";
+  f.scratch_bytes = 0;
+  EXPECT_EQ(forecast_text(f, source(), to_rate()),
+            "v.raw: 1024x1024x1024 voxels of uint16, 2.0 GiB\n"
+            "  sample    none: its chunks are too large for a sample\n"
+            "  writes    v.nvdb: 536870912 bytes\n"
+            "  memory    up to 100.0 MiB of 512.0 MiB, 2 threads\n");
+  const auto json = forecast_json(f, source(), to_rate());
+  EXPECT_EQ(json["sample"]["none"], "its chunks are too large for a sample");
+  EXPECT_EQ(json["time"], nullptr);
+  EXPECT_EQ(json["file"]["value"], 536870912.0);
+}
+
+}  // namespace
+}  // namespace weir::forecast_report_test

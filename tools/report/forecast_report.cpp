@@ -1,0 +1,126 @@
+#include "tools/report/forecast_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "format/base/scalar_type.h"
+#include "format/base/share_text.h"
+#include "format/base/text.h"
+#include "ingest/source/extent.h"
+
+namespace weir {
+namespace {
+
+std::uint64_t voxels_of(const SourceInfo& source) { return static_cast<std::uint64_t>(source.domain().voxels()); }
+
+std::uint64_t whole_number(double value) { return static_cast<std::uint64_t>(std::llround(value)); }
+
+bool spread(const Forecast& f) { return f.parts > 0; }
+
+std::string seconds_text(double seconds) { return cat(fixed(seconds, seconds < 10 ? 1 : 0), " s"); }
+
+std::string line(const std::string& what, const std::string& text) {
+  constexpr std::size_t kColumn = 10;
+  std::string head = cat("  ", what);
+  head.resize(kColumn + 2, ' ');
+  return cat(head, text, "\n");
+}
+
+std::string sample_text(const Forecast& f, const SourceInfo& source) {
+  if (f.whole) return "all of the volume was converted and nothing kept: file and error are exact";
+  return cat(share_text(f.sampled_voxels, voxels_of(source)), " of the voxels, from ", f.places,
+             f.places == 1 ? " place" : " places", " of the volume");
+}
+
+std::string file_text(const Forecast& f, const std::string& output) {
+  if (f.file_bytes.value == 0) return cat(output, ": as long as it needs");
+  std::string text = cat(output, ": ", f.exact_bytes ? "" : "about ", whole_number(f.file_bytes.value), " bytes");
+  if (!f.exact_bytes && spread(f)) {
+    text += cat(" (", whole_number(std::max(0.0, f.file_bytes.low)), " to ", whole_number(f.file_bytes.high), ")");
+  }
+  if (f.scratch_bytes > 0) text += cat(", and ", format_bytes(f.scratch_bytes), " until it is done");
+  return text;
+}
+
+std::string error_line(const Forecast& f, const ConversionOptions& options) {
+  const std::string of_sample = f.whole ? "" : ", range and background of the sample";
+  const std::string range = cat("values from ", short_number(f.value_low), " to ", short_number(f.value_high));
+  if (f.lossless) return cat(f.whole ? "lossless" : "lossless in the sample", ", ", range);
+  std::string text = f.psnr_db ? cat(f.whole ? "PSNR " : "PSNR about ", fixed(f.psnr_db->value, 1), " dB") : "";
+  if (f.psnr_db && spread(f) && !options.budget.by_error()) {
+    text += cat(" (", fixed(f.psnr_db->low, 1), " to ", fixed(f.psnr_db->high, 1), ")");
+  }
+  text += cat(f.psnr_db ? ", " : "", "RMSE ", short_number(f.rmse));
+  if (f.whole) text += cat(", largest error ", short_number(f.max_abs));
+  return cat(text, ", ", range, of_sample);
+}
+
+nlohmann::ordered_json to_json(const Expected& expected, bool has_spread) {
+  nlohmann::ordered_json json{{"value", expected.value}, {"low", nullptr}, {"high", nullptr}};
+  if (!has_spread) return json;
+  json["low"] = expected.low;
+  json["high"] = expected.high;
+  return json;
+}
+
+}  // namespace
+
+std::string forecast_text(const Forecast& f, const SourceInfo& source, const ConversionOptions& options) {
+  std::string text = cat(source.path, ": ", extent_text(source.extent), " voxels of ", scalar_name(source.type), ", ",
+                         format_bytes(f.volume_bytes), "\n");
+  const bool sampled = f.not_sampled.empty();
+  text += line("sample", sampled ? sample_text(f, source) : cat("none: ", f.not_sampled));
+  if (sampled) text += line("reads", cat(format_bytes(f.read_bytes), " in ", fixed(f.passes, 1), " passes"));
+  text += line("writes", file_text(f, options.output));
+  text += line("memory", cat("up to ", format_bytes(f.memory_bytes), " of ", format_bytes(options.memory), ", ",
+                             f.threads, f.threads == 1 ? " thread" : " threads", f.on_device ? " and a device" : ""));
+  if (!sampled) return text;
+  text += line("encoding", f.encoding);
+  text += line("error", options.scene && !f.whole ? "not told by a sample where a scene decides what is kept"
+                                                  : error_line(f, options));
+  text += line("time", cat("about ", seconds_text(f.total_s()), ": survey ", seconds_text(f.survey_s), ", encoding ",
+                           seconds_text(f.encode_s)));
+  return text;
+}
+
+nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source, const ConversionOptions& options) {
+  const bool sampled = f.not_sampled.empty();
+  const bool error_known = sampled && (f.whole || !options.scene);
+  nlohmann::ordered_json json{{"dry_run", 1}, {"input", source.path}, {"output", options.output}, {"exact", f.whole}};
+  json["sample"] = {{"voxels", f.sampled_voxels},
+                    {"share", static_cast<double>(f.sampled_voxels) / static_cast<double>(voxels_of(source))},
+                    {"places", f.places},
+                    {"parts", f.parts},
+                    {"none", sampled ? nlohmann::ordered_json() : nlohmann::ordered_json(f.not_sampled)}};
+  json["read"] = {{"volume_bytes", f.volume_bytes}, {"bytes", nullptr}, {"passes", nullptr}};
+  json["file"] = nullptr;
+  if (f.file_bytes.value > 0) {
+    json["file"] = to_json(f.file_bytes, spread(f) && !f.exact_bytes);
+    json["file"]["exact"] = f.exact_bytes;
+  }
+  json["scratch_bytes"] = nullptr;
+  json["memory"] = {{"ceiling_bytes", options.memory}, {"planned_bytes", f.memory_bytes}};
+  json["threads"] = f.threads;
+  json["backend"] = f.on_device ? "cuda" : "cpu";
+  json["encoding"] = nullptr;
+  json["error"] = nullptr;
+  json["time"] = nullptr;
+  if (!sampled) return json;
+  json["read"]["bytes"] = f.read_bytes;
+  json["read"]["passes"] = f.passes;
+  json["scratch_bytes"] = f.scratch_bytes;
+  json["encoding"] = f.encoding;
+  json["time"] = {{"survey_s", f.survey_s}, {"encode_s", f.encode_s}, {"total_s", f.total_s()}};
+  if (!error_known) return json;
+  json["error"] = {{"lossless", f.lossless},
+                   {"psnr_db", nullptr},
+                   {"rmse", f.rmse},
+                   {"max_abs", nullptr},
+                   {"value_range", {f.value_low, f.value_high}}};
+  if (f.psnr_db) json["error"]["psnr_db"] = to_json(*f.psnr_db, spread(f) && !options.budget.by_error());
+  if (f.whole) json["error"]["max_abs"] = f.max_abs;
+  return json;
+}
+
+}  // namespace weir
