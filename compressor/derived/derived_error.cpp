@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compressor/derived/pair_stream.h"
+#include "compressor/compare/pair_stream.h"
 
 namespace weir {
 namespace {

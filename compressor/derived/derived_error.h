@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 #include "compressor/derived/error_histogram.h"
 #include "compressor/derived/gradient_error.h"
 #include "compressor/derived/similarity.h"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 #include "compressor/derived/derived_error.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "compressor/compare.h"
-#include "compressor/derived/value_pair.h"
+#include "compressor/compare/compare.h"
+#include "compressor/compare/value_pair.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "ingest/source/volume_source.h"
 

@@ -1,4 +1,4 @@
-#include "compressor/derived/pair_stream.h"
+#include "compressor/compare/pair_stream.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
