@@ -6,6 +6,7 @@
 
 #include "compressor/compare/compare.h"
 #include "compressor/compare/value_pair.h"
+#include "compressor/team/team.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "ingest/source/volume_source.h"
 
@@ -18,10 +19,10 @@ struct PairMargin {
 };
 
 /// Reads the volume in blocks with `margin` around each, decodes the same voxels of `grid`, whose box is the volume's,
-/// and calls `visit(values, part)` for each block of 8^3 voxels, cut to the volume, from several threads at once. Three
-/// buffers of at most twice options.block_bytes exist. Throws what reading and decoding throw, and
-/// Error(interrupted).
+/// and calls `visit(values, part)` for each block of 8^3 voxels, cut to the volume, from several threads at once; of a
+/// `team` each rank for its own. Three buffers of at most twice options.block_bytes exist. Throws what reading and
+/// decoding throw, and Error(interrupted).
 void stream_pairs(VolumeSource& source, const NvdbGrid& grid, const PairMargin& margin, const CompareOptions& options,
-                  const std::function<void(const ValuePair&, const Box&)>& visit);
+                  const std::function<void(const ValuePair&, const Box&)>& visit, const Team& team = no_team());
 
 }  // namespace weir
