@@ -52,21 +52,21 @@ PairPlan plan_pairs(const VolumeSource& source, const PairMargin& margin, std::u
   }
 }
 
-/// Decodes boxes of a grid, and has its pages released before more than CompareOptions::page_bytes of them are
+/// Decodes boxes of grids, and has pages released before more than CompareOptions::page_bytes of them are
 /// resident.
 class Decoder {
  public:
-  Decoder(const NvdbGrid& grid, const CompareOptions& options)
-      : grid_(grid), options_(options), most_(static_cast<std::int64_t>(options.page_bytes / kPagesOfLeaf)) {}
+  explicit Decoder(const CompareOptions& options)
+      : options_(options), most_(static_cast<std::int64_t>(options.page_bytes / kPagesOfLeaf)) {}
 
-  void decode(const Box& box, std::span<float> values) {
+  void decode(const NvdbGrid& grid, const Box& box, std::span<float> values) {
     const NodeLattice leaves = make_lattice(box, kLeafDim);
     const Index3 pieces{(leaves.count.x + kPiece - 1) / kPiece, leaves.count.y, leaves.count.z};
     tbb::parallel_for(std::int64_t{0}, volume(pieces), [&](std::int64_t i) {
       const Index3 at = index_at(i, pieces);
       const Index3 first{at.x * kPiece, at.y, at.z};
       const Index3 last{std::min(first.x + kPiece, leaves.count.x) - 1, at.y, at.z};
-      read_box_part(grid_, {leaves.voxels(first).lo, leaves.voxels(last).hi}, box, values);
+      read_box_part(grid, {leaves.voxels(first).lo, leaves.voxels(last).hi}, box, values);
       count(last.x - first.x + 1);
     });
   }
@@ -82,7 +82,6 @@ class Decoder {
     options_.release_pages();
   }
 
-  const NvdbGrid& grid_;
   const CompareOptions& options_;
   std::int64_t most_;
   std::atomic<std::int64_t> leaves_{0};  // decoded since the pages were released
@@ -92,10 +91,21 @@ class Decoder {
 
 void stream_pairs(VolumeSource& source, const NvdbGrid& grid, const PairMargin& margin, const CompareOptions& options,
                   const std::function<void(const ValuePair&, const Box&)>& visit, const Team& team) {
-  const Box domain = source.info().domain();
-  const PairPlan plan = plan_pairs(source, margin, options.block_bytes, team);
-  std::vector<float> decoded(static_cast<std::size_t>(plan.largest));
-  Decoder decoder(grid, options);
+  const PairedVolume one{source, grid};
+  stream_pairs(
+      std::span(&one, 1), margin, options,
+      [&](std::span<const ValuePair> values, const Box& part) { visit(values.front(), part); }, team);
+}
+
+void stream_pairs(std::span<const PairedVolume> volumes, const PairMargin& margin, const CompareOptions& options,
+                  const std::function<void(std::span<const ValuePair>, const Box&)>& visit, const Team& team) {
+  VolumeSource& first = volumes.front().source;
+  const Box domain = first.info().domain();
+  const PairPlan plan = plan_pairs(first, margin, options.block_bytes, team);
+  const auto largest = static_cast<std::size_t>(plan.largest);
+  std::vector<std::vector<float>> decoded(volumes.size(), std::vector<float>(largest));
+  std::vector<std::vector<float>> read(volumes.size() - 1, std::vector<float>(largest));
+  Decoder decoder(options);
   StreamOptions stream;
   stream.cancel = options.cancel;
   stream.trace = options.trace;
@@ -105,14 +115,23 @@ void stream_pairs(VolumeSource& source, const NvdbGrid& grid, const PairMargin& 
       options.progress(static_cast<std::uint64_t>(share * static_cast<double>(plan.voxels)) * sizeof(float));
     };
   }
-  stream_blocks(source, plan.boxes, stream, [&](const Block& block) {
+  stream_blocks(first, plan.boxes, stream, [&](const Block& block) {
     const TraceSpan span(options.trace, "compare", block.values.size_bytes());
-    const std::span<float> values = std::span(decoded).first(block.values.size());
-    decoder.decode(block.voxels, values);
-    const ValuePair pair{domain, block.voxels, block.values, values};
+    std::vector<ValuePair> pairs;
+    for (std::size_t k = 0; k < volumes.size(); ++k) {
+      std::span<const float> source = block.values;
+      if (k > 0) {
+        const std::span<float> values = std::span(read[k - 1]).first(block.values.size());
+        volumes[k].source.read(block.voxels, values);
+        source = values;
+      }
+      const std::span<float> values = std::span(decoded[k]).first(block.values.size());
+      decoder.decode(volumes[k].grid, block.voxels, values);
+      pairs.push_back({domain, block.voxels, source, values});
+    }
     const Box& leaves = plan.leaves[block.index];
     tbb::parallel_for(std::int64_t{0}, leaves.voxels(), [&](std::int64_t i) {
-      visit(pair, plan.lattice.voxels(leaves.lo + index_at(i, leaves.extent())));
+      visit(pairs, plan.lattice.voxels(leaves.lo + index_at(i, leaves.extent())));
     });
   });
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "compressor/compare/compare.h"
 #include "compressor/compare/value_pair.h"
@@ -24,5 +25,17 @@ struct PairMargin {
 /// decoding throw, and Error(interrupted).
 void stream_pairs(VolumeSource& source, const NvdbGrid& grid, const PairMargin& margin, const CompareOptions& options,
                   const std::function<void(const ValuePair&, const Box&)>& visit, const Team& team = no_team());
+
+/// A volume and the file made from it.
+struct PairedVolume {
+  VolumeSource& source;
+  const NvdbGrid& grid;
+};
+
+/// The same of several pairs, all over the domain of the first, whose blocks are read ahead: `visit` gets the values of
+/// all of them. There are three buffers for the first pair and two for each other one.
+void stream_pairs(std::span<const PairedVolume> volumes, const PairMargin& margin, const CompareOptions& options,
+                  const std::function<void(std::span<const ValuePair>, const Box&)>& visit,
+                  const Team& team = no_team());
 
 }  // namespace weir

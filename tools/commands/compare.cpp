@@ -10,9 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compressor/compare/compare.h"
 #include "compressor/derived/derived_error.h"
+#include "compressor/derived/vector_error.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"
 #include "format/base/error.h"
@@ -33,6 +36,7 @@
 #include "tools/report/derived_report.h"
 #include "tools/report/error_text.h"
 #include "tools/report/recorded_input.h"
+#include "tools/report/vector_report.h"
 #include "tools/spectrum/power_spectrum.h"
 #include "tools/spectrum/spectrum_file.h"
 #include "tools/spectrum/spectrum_report.h"
@@ -54,7 +58,8 @@ struct CompareArguments {
   std::string trace;
   bool json = false;
   bool derived = false;
-  std::string spectrum;  ///< a file; empty: not asked for
+  std::string spectrum;             ///< a file; empty: not asked for
+  std::vector<std::string> vector;  ///< source and file of the second and the third component; empty: not asked for
 };
 
 /// Of the source two blocks are held at a time. For derived errors and spectra also one of decoded values, and each
@@ -62,6 +67,8 @@ struct CompareArguments {
 constexpr std::uint64_t kHistogramBytes = std::uint64_t{600} << 10U;
 constexpr std::uint64_t kBlocks = 2;
 constexpr std::uint64_t kBlocksOfDerived = 6;
+/// And two for each other component.
+constexpr std::uint64_t kBlocksOfVector = 14;
 
 std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std::uint64_t blocks) {
   const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kCompareBytes;
@@ -72,17 +79,46 @@ std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std:
   return std::min((memory - fixed) / blocks, kMostBlockBytes);
 }
 
-std::uint64_t block_bytes(const CompareArguments& arguments, const ConversionOptions& run, const VolumeSource& source) {
+/// A file, and the source as the file's sidecar and the options say it was read.
+struct ComparedPair {
+  NvdbFile file;
+  std::unique_ptr<VolumeSource> source;
+};
+
+ComparedPair open_pair(const std::string& input, const std::string& volume, const GivenOptions& given) {
+  NvdbFile file(volume);
+  file.mapping().release_pages();  // what its validation looked at
+  SourceOptions options = read_conversion_request(given).source;
+  if (const std::string taken = take_recorded_input(input, file, given, options); !taken.empty()) {
+    spdlog::info("{}: read with {}, as {} records", input, taken, sidecar_path(volume));
+  }
+  return {std::move(file), open_source(input, options)};
+}
+
+/// That of INPUT and OUT.nvdb, and behind it those of --vector.
+std::vector<ComparedPair> open_pairs(const CompareArguments& a) {
+  std::vector<ComparedPair> pairs;
+  pairs.push_back(open_pair(a.input, a.volume, a.options));
+  for (std::size_t i = 0; i < a.vector.size(); i += 2) {
+    pairs.push_back(open_pair(a.vector[i], a.vector[i + 1], a.options));
+  }
+  return pairs;
+}
+
+std::uint64_t block_bytes(const CompareArguments& arguments, const ConversionOptions& run,
+                          const std::vector<ComparedPair>& pairs) {
   std::uint64_t each = arguments.derived ? kHistogramBytes : 0;
   if (!arguments.spectrum.empty()) each = std::max(each, kSpectrumThreadBytes);
-  return block_bytes(run.memory, source.working_bytes() + processors_or_all(run.threads) * each,
-                     each > 0 ? kBlocksOfDerived : kBlocks);
+  std::uint64_t others = processors_or_all(run.threads) * each + (pairs.size() - 1) * kStagingBytes;
+  for (const ComparedPair& pair : pairs) others += pair.source->working_bytes();
+  return block_bytes(run.memory, others, pairs.size() > 1 ? kBlocksOfVector : each > 0 ? kBlocksOfDerived : kBlocks);
 }
 
 /// What is asked for besides the comparison.
 struct Besides {
   std::optional<DerivedErrors> derived;
   std::optional<PowerSpectrum> spectrum;
+  std::optional<VectorErrors> vector;
 };
 
 nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c, const Besides& besides,
@@ -109,6 +145,7 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["value_range"] = c.range ? Json{c.range->min, c.range->max} : Json();
   if (besides.derived) report["derived"] = derived_json(*besides.derived);
   if (besides.spectrum) report["spectrum"] = spectrum_json(*besides.spectrum);
+  if (besides.vector) report["vector"] = vector_json(*besides.vector);
   report["source"] = arguments.input;
   report["volume"] = arguments.volume;
   report["total_s"] = total_s;
@@ -150,23 +187,20 @@ void print_text(const Comparison& c, const std::string& units) {
 
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  auto [source_options, run] = read_conversion_request(arguments.options);
+  const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto threads = limit_threads(run.threads);
   const auto files = make_posix_file_system();
   std::optional<SpectrumFile> spectrum_file;
   if (!arguments.spectrum.empty()) spectrum_file.emplace(*files, arguments.spectrum);
-  const NvdbFile file(arguments.volume);
-  file.mapping().release_pages();  // what its validation looked at
-  if (const std::string taken = take_recorded_input(arguments.input, file, arguments.options, source_options);
-      !taken.empty()) {
-    spdlog::info("{}: read with {}, as {} records", arguments.input, taken, sidecar_path(arguments.volume));
-  }
-  const auto source = open_source(arguments.input, source_options);
+  const std::vector<ComparedPair> pairs = open_pairs(arguments);
+  const auto& [file, source] = pairs.front();
 
   CompareOptions options;
-  options.block_bytes = block_bytes(arguments, run, *source);
+  options.block_bytes = block_bytes(arguments, run, pairs);
   options.cancel = &interrupt_flag();
-  options.release_pages = [&] { file.mapping().release_pages(); };
+  options.release_pages = [&pairs] {
+    for (const ComparedPair& pair : pairs) pair.file.mapping().release_pages();
+  };
   const std::unique_ptr<Trace> trace =
       open_trace(arguments.trace, std::array{arguments.input, arguments.volume, sidecar_path(arguments.volume)});
   options.trace = trace.get();
@@ -188,6 +222,14 @@ void compare(const CompareArguments& arguments) {
     progress.finish();
     spectrum_file->write(*besides.spectrum, std::filesystem::path(arguments.volume).filename().string());
   }
+  if (pairs.size() == 3) {
+    progress.start("vectors", bytes);
+    besides.vector = vector_errors({{{*pairs[0].source, pairs[0].file.grid()},
+                                     {*pairs[1].source, pairs[1].file.grid()},
+                                     {*pairs[2].source, pairs[2].file.grid()}}},
+                                   options);
+    progress.finish();
+  }
   if (trace) trace->close();
 
   if (comparison.loss.inexact > 0) {
@@ -205,6 +247,7 @@ void compare(const CompareArguments& arguments) {
       std::cout << derived_text(*besides.derived, extent_of(comparison.range), source->info().units);
     }
     if (besides.spectrum) std::cout << spectrum_text(*besides.spectrum);
+    if (besides.vector) std::cout << vector_text(*besides.vector, source->info().units);
   }
 }
 
@@ -226,6 +269,12 @@ void add_compare(CLI::App& app) {
           "also the power of source, file and error by wave number: a chart, FILE.png or FILE.svg, or a table, "
           "FILE.csv; reads both once more")
       ->type_name("FILE");
+  command
+      ->add_option("--vector", arguments->vector,
+                   "also the errors of vorticity and divergence of the field whose first component INPUT and OUT.nvdb "
+                   "are: sources and files of the second and of the third one; reads all once more")
+      ->type_name("V V.nvdb W W.nvdb")
+      ->expected(4);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
   command->footer(

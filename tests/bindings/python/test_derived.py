@@ -91,6 +91,33 @@ class Derived(FolderTest):
             decoded = weir.open(output).to_numpy().astype(numpy.float64)
             self.check_gradient(made["error"]["gradient"], values.astype(numpy.float64), decoded, (1, 1, 1))
 
+    def test_vorticity_and_divergence(self):
+        z, y, x = numpy.mgrid[0:21, 0:33, 0:42] * numpy.array([0.5, 1, 0.25]).reshape(3, 1, 1, 1)
+        field = (numpy.sin(y * 0.3 + x) + z, numpy.cos(x + z), numpy.sin(x * 0.5) * y)
+        paths, errors, sources = [], [], []
+        for name, values in zip("uvw", field):
+            values = values.astype("<f4")
+            source, output = self.folder / f"{name}_42x33x21_float32.raw", self.folder / f"{name}.nvdb"
+            values.tofile(source)
+            weir.convert(source, output, spacing=(0.25, 1, 0.5), psnr=40)
+            paths += [source, output]
+            sources.append(values.astype(numpy.float64))
+            errors.append(weir.open(output).to_numpy().astype(numpy.float64) - sources[-1])
+        compare = ("compare", *paths[:2], "--vector", *paths[2:], "--spacing", "0.25,1,0.5", "--json")
+        said = json.loads(run_weir(*compare))["vector"]
+
+        def derived(of):
+            (uz, uy, ux), (vz, vy, vx), (wz, wy, wx) = (numpy.gradient(one, 0.5, 1, 0.25) for one in of)
+            return numpy.sqrt((wy - vz) ** 2 + (uz - wx) ** 2 + (vx - uy) ** 2), numpy.abs(ux + vy + wz)
+
+        for key, error, source in zip(("vorticity", "divergence"), derived(errors), derived(sources)):
+            rms, source_rms = numpy.sqrt((error**2).mean()), numpy.sqrt((source**2).mean())
+            self.assertAlmostEqual(said[key]["rms"] / rms, 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["source_rms"] / source_rms, 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["relative_rms"] / (rms / source_rms), 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["max_abs"] / error.max(), 1, delta=1e-6)
+        self.assertEqual((said["voxels"], said["left_out"]), (21 * 33 * 42, 0))
+
     def test_largest_error_bounds_that_of_the_gradient(self):
         values = numpy.random.default_rng(8).standard_normal((12, 17, 30)).astype(numpy.float32)
         for spacing in ((1, 1, 1), (0.5, 2, 1)):

@@ -100,6 +100,22 @@ TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {
   EXPECT_EQ(read_file(table).substr(0, 39), "wave_number,modes,source,decoded,error\n");
 }
 
+TEST(Compare, ErrorsOfVorticityAndDivergenceOfThreeComponents) {
+  const Converted first("turbulence", "20x18x17_float32", {"--psnr", "30"});
+  const Converted lossless("noise", "20x18x17_float32", {"--lossless"});
+  const CommandResult said = run_weir(
+      {"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, lossless.raw, lossless.nvdb});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(line_of(said.out, "vorticity").substr(0, 10), "rms error ");
+  EXPECT_EQ(line_of(said.out, "divergence").substr(0, 10), "rms error ");
+  EXPECT_TRUE(said.out.ends_with(" per world unit\n")) << said.out;
+  const Converted other("noise", "20x18x16_float32", {"--lossless"});
+  const CommandResult refused =
+      run_weir({"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, other.raw, other.nvdb});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(refused.err.substr(0, refused.err.find(": holds the voxels")), "weir: " + other.raw);
+}
+
 TEST(Compare, OneVoxelChangedSinceTheConversion) {
   const Converted volume("zero", "20x10x9_float32", {"--lossless"});
   std::string bytes = read_file(volume.raw);
