@@ -55,8 +55,8 @@ std::string mapping_text(const ValueMapping& mapping) {
 }  // namespace
 
 std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options) {
-  for (const char* name :
-       {"output", "memory", "threads", "bandwidth", "work-dir", "within", "direct-io", "overwrite", "backend"})
+  for (const char* name : {"output", "memory", "threads", "bandwidth", "work-dir", "within", "direct-io", "overwrite",
+                           "backend", "certify"})
     options.erase(name);
   return options;
 }

@@ -33,6 +33,9 @@ enum class Resume { automatic, on, off };
 /// "no data" is data; the source has to be opened so (ValueMapping::keeps_missing).
 enum class MissingPolicy { automatic, error, background, keep };
 
+/// What the sidecar certifies besides the error of the values.
+enum class Certify { values, gradient };
+
 struct ConversionOptions {
   std::string output;      ///< path of the .nvdb
   bool overwrite = false;  ///< replace an existing output
@@ -47,6 +50,7 @@ struct ConversionOptions {
   bool paper_background = false;    ///< the paper's histogram; one more pass over most types
   NonFinitePolicy non_finite = NonFinitePolicy::error;
   MissingPolicy missing = MissingPolicy::automatic;  ///< not background where non_finite is keep
+  Certify certify = Certify::values;                 ///< gradient: source and file are read once more
   std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process
   std::size_t threads = 0;                       ///< workers, 0: one for each processor, as far as `memory` holds them
   std::size_t processors = 0;                    ///< that there are for it, 0: all of the machine's

@@ -14,6 +14,7 @@
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_identity.h"
 #include "compressor/default_notice.h"
+#include "compressor/derived/derived_error.h"
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
@@ -30,6 +31,7 @@
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
+#include "format/output/written_volume.h"
 #include "format/packed/block_encode.h"
 #include "ingest/files/file_state.h"
 
@@ -179,6 +181,7 @@ class SurveyedConversion {
     say_quality();
     digest(encoded);
     sidecar_.timing.encode_s = seconds_since(encoding);
+    if (options_.certify == Certify::gradient) certify_gradient();
     commit(encoded);
     return sidecar_;
   }
@@ -321,6 +324,24 @@ class SurveyedConversion {
     const TraceSpan span(parts_.control.trace, "digest", bytes);
     sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_,
                      digest_of_file(parts_.output.volume(), bytes, team_).hex()};
+  }
+
+  // Of the file as it will be read: blocks that were dropped, and the steps from one block to the next, count too.
+  void certify_gradient() {
+    const auto voxels = static_cast<std::uint64_t>(info_.domain().voxels());
+    const TraceSpan span(parts_.control.trace, "certify", voxels * sizeof(float));
+    team_.run([&] { start_pass(parts_.control, "certify", voxels); });
+    std::optional<WrittenVolume> written;
+    team_.run([&] { written.emplace(parts_.output.volume()); });
+    CompareOptions compare;
+    compare.block_bytes = reading_.pair_bytes;
+    compare.page_bytes = 2 * reading_.pair_bytes;
+    compare.cancel = parts_.control.cancel;
+    compare.progress = parts_.control.pass_advanced;
+    compare.release_pages = [&] { written->release_pages(); };
+    compare.trace = parts_.control.trace;
+    sidecar_.gradient = gradient_error(parts_.source, written->grid(), compare, team_);
+    check();
   }
 
   void commit(const EncodedFile& encoded) {

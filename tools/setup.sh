@@ -12,7 +12,7 @@ build=(
   g++ cmake ninja-build git ca-certificates
   libtbb-dev libspdlog-dev nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libxxhash-dev
   zlib1g-dev libpng-dev libtinyexr-dev libopenvdb-dev libboost-dev libhdf5-dev libpugixml-dev
-  libzfp-dev libblosc-dev libzstd-dev libjpeg-dev libsqlite3-dev libcairo2-dev pkg-config
+  libzfp-dev libfftw3-dev libblosc-dev libzstd-dev libjpeg-dev libsqlite3-dev libcairo2-dev pkg-config
 )
 package=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
 test=(

@@ -77,6 +77,8 @@ GivenOptions given_method(const weir_convert_options& o) {
   given["nonfinite"] = choice("nonfinite", o.nonfinite);
   if (o.missing_policy != WEIR_MISSING_POLICY_AUTO)
     given["missing-policy"] = choice("missing-policy", o.missing_policy);
+  if (o.certify != WEIR_CERTIFY_VALUES) given["certify"] = choice("certify", o.certify);
+  if (o.reserved != 0) throw usage(cat("reserved is ", o.reserved, ", it must be 0"));
   if (o.metric != WEIR_METRIC_SSE || (o.brick != 0 && o.brick != 8)) given["brick"] = cat(o.brick == 0 ? 8 : o.brick);
   if (o.has_background != 0) {
     given["background"] = exact(static_cast<double>(o.background));

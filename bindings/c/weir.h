@@ -128,6 +128,9 @@ enum {
 enum { WEIR_METRIC_SSE = 0, WEIR_METRIC_FARTHEST = 1, WEIR_METRIC_CLOSEST = 2, WEIR_METRIC_MEDIAN = 3 };
 /* What dropped blocks read. */
 enum { WEIR_FILL_MEAN = 0, WEIR_FILL_BACKGROUND = 1 };
+/* What the sidecar certifies: the error of the values, or also that of the gradient by central differences
+ * (error.gradient), for which the volume and the file are read once more. */
+enum { WEIR_CERTIFY_VALUES = 0, WEIR_CERTIFY_GRADIENT = 1 };
 /* What happens to NaN and infinite voxels: WEIR_ERROR_INPUT, replaced by the background, or kept. */
 enum { WEIR_NONFINITE_ERROR = 0, WEIR_NONFINITE_BACKGROUND = 1, WEIR_NONFINITE_KEEP = 2 };
 /* What happens to voxels that hold no data (weir_volume's missing, a file's _FillValue): what happens to NaN, as which
@@ -148,7 +151,7 @@ typedef struct weir_convert_options {
   const char* work_dir; /* for temporary files, on a disk; NULL: a hidden directory beside the output */
   /* Callbacks, each optional, called with `user` by one thread at a time, which may be another than the caller's, while
      the call lasts (for weir_push until its end). They must return, soon, and make no call that has the same handle. */
-  /* Float32 bytes that a pass, "survey" or "encode", has worked on; it may begin again. */
+  /* Float32 bytes that a pass, "survey", "encode" or "certify", has worked on; it may begin again. */
   void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes);
   int (*cancel)(void* user); /* asked several times a second in most passes; not 0 ends the call: WEIR_INTERRUPTED */
   void (*notice)(void* user, const char* line); /* what the user should know and is no error */
@@ -168,6 +171,8 @@ typedef struct weir_convert_options {
   int32_t missing_policy; /* WEIR_MISSING_POLICY_... */
   int32_t at_most;        /* not 0: with WEIR_BUDGET_SIZE or _RATE a shorter file, not padding, where less is enough */
   int32_t backend;        /* WEIR_BACKEND_...; for WEIR_ENCODING_PACKED; AUTO: a device where memory is 1 GiB or more */
+  int32_t certify;        /* WEIR_CERTIFY_... */
+  int32_t reserved;       /* 0 */
 } weir_convert_options;
 WEIR_API weir_status weir_convert_options_init(weir_convert_options* options, size_t struct_size);
 

@@ -47,6 +47,7 @@ std::string said_by_all(const SourceInfo& info, const ConversionOptions& options
   said.erase("source");  // where and of when a file would be
   said.erase("source modified (ns)");
   said["output"] = options.output;
+  said["certify"] = options.certify == Certify::gradient ? "gradient" : "values";
   said["overwrite"] = options.overwrite ? "yes" : "no";
   said["work-dir"] = options.work_dir;
   std::string text;

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "compressor/derived/pair_stream.h"
+#include "compressor/compare/pair_stream.h"
 
 namespace weir {
 namespace {
@@ -56,14 +57,19 @@ DerivedErrors derive_errors(VolumeSource& source, const NvdbGrid& grid, const Co
   return all;
 }
 
-GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options) {
+GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options, Team& team) {
   const GradientTally none(source.info().spacing);
   tbb::enumerable_thread_specific<GradientTally> tallies(none);
-  stream_pairs(source, grid, kNeighbours, options,
-               [&](const ValuePair& values, const Box& part) { tallies.local().add(values, part); });
-  GradientTally total = none;
-  for (const GradientTally& tally : tallies) total.merge(tally);
-  return total.result();
+  team.run([&] {
+    stream_pairs(
+        source, grid, kNeighbours, options,
+        [&](const ValuePair& values, const Box& part) { tallies.local().add(values, part); }, team);
+  });
+  std::vector<GradientTally> total{none};
+  for (const GradientTally& tally : tallies) total.front().merge(tally);
+  team.concatenate(total);  // one of each rank
+  for (std::size_t i = 1; i < total.size(); ++i) total.front().merge(total[i]);
+  return total.front().result();
 }
 
 }  // namespace weir

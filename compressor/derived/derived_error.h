@@ -5,10 +5,11 @@
 #include <array>
 #include <cstdint>
 
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 #include "compressor/derived/error_histogram.h"
 #include "compressor/derived/gradient_error.h"
 #include "compressor/derived/similarity.h"
+#include "compressor/team/team.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "ingest/source/volume_source.h"
 
@@ -28,7 +29,9 @@ struct DerivedErrors {
 DerivedErrors derive_errors(VolumeSource& source, const NvdbGrid& grid, const Comparison& compared,
                             const CompareOptions& options);
 
-/// The largest |gradient of the error| alone, and its root mean square: what a sidecar certifies.
-GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options);
+/// DerivedErrors::gradient alone: what a sidecar certifies. The ranks of `team` divide the work, and all have the
+/// result.
+GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options,
+                             Team& team = no_team());
 
 }  // namespace weir

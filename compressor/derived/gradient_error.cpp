@@ -2,38 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+
+#include "compressor/derived/neighbours.h"
 
 namespace weir {
-namespace {
-
-/// The two voxels along an axis between which a difference is taken, and the length from one to the other.
-struct Neighbours {
-  std::size_t low;
-  std::size_t high;
-  double length;
-};
-
-Neighbours neighbours(const ValuePair& values, const Index3& i, const Index3& step, bool at_low, bool at_high,
-                      double spacing) {
-  const int voxels = (at_low ? 0 : 1) + (at_high ? 0 : 1);
-  return {values.at(at_low ? i : i - step), values.at(at_high ? i : i + step), spacing * voxels};
-}
-
-}  // namespace
 
 void GradientTally::add(const ValuePair& values, const Box& part) {
   double error = 0;
   double source = 0;
-  const Index3 last = values.domain.hi - Index3{1, 1, 1};
-  const Index3& first = values.domain.lo;
   for_each_index(part, [&](const Index3& i) {
-    const std::array<Neighbours, 3> axes{neighbours(values, i, {1, 0, 0}, i.x == first.x, i.x == last.x, spacing_[0]),
-                                         neighbours(values, i, {0, 1, 0}, i.y == first.y, i.y == last.y, spacing_[1]),
-                                         neighbours(values, i, {0, 0, 1}, i.z == first.z, i.z == last.z, spacing_[2])};
     double of_error = 0;
     double of_source = 0;
-    for (const auto& [low, high, length] : axes) {
+    for (const auto& [low, high, length] : neighbours_of(values, i, spacing_)) {
       if (!values.finite(low) || !values.finite(high)) {
         ++left_out_;
         return;

@@ -4,24 +4,19 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
-#include "compressor/derived/value_pair.h"
+#include "compressor/compare/value_pair.h"
 #include "compressor/leaf/exact_sum.h"
+#include "format/sidecar/sidecar.h"
 
 namespace weir {
 
-struct GradientError {
-  std::uint64_t voxels = 0;            ///< over which it is taken
-  std::uint64_t left_out = 0;          ///< those at which a value that it takes is not finite
-  double rms = 0;                      ///< of |gradient of the error|, value per world unit
-  std::optional<double> relative_rms;  ///< that as a share of the source's; none where that is 0
-  double max_abs = 0;                  ///< the largest |gradient of the error|, value per world unit
-};
+using GradientError = Sidecar::GradientError;
 
 /// For one thread; sums do not depend on order and grouping.
 class GradientTally {
  public:
+  GradientTally() = default;
   /// `spacing`: world units per voxel.
   explicit GradientTally(const std::array<double, 3>& spacing) : spacing_(spacing) {}
 
@@ -31,7 +26,7 @@ class GradientTally {
   GradientError result() const;
 
  private:
-  std::array<double, 3> spacing_;
+  std::array<double, 3> spacing_{1, 1, 1};
   ExactSum error_;
   ExactSum source_;
   double largest_ = 0;  // squared

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "compressor/derived/value_pair.h"
+#include "compressor/compare/value_pair.h"
 #include "compressor/leaf/exact_sum.h"
 
 namespace weir {

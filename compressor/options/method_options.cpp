@@ -165,6 +165,14 @@ constexpr ConversionOption kMethodOptions[] = {
       .help = "paper: --encoding float --metric farthest --fill background and the paper's background",
       .excludes = "metric,fill,background"},
      read_preset},
+    {{.key = "certify",
+      .argument = "values|gradient",
+      .standard = "values",
+      .help = "what the sidecar certifies; gradient: also the error of the gradient by central differences "
+              "(error.gradient), for which source and file are read once more"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.conversion.certify = std::array{Certify::values, Certify::gradient}.at(read_choice(row, text));
+     }},
     {{.key = "scene",
       .argument = "SCENE.toml",
       .help = "scene file (as for weir render) that decides what matters: blocks that its opacity, iso value or region "

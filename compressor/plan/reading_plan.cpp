@@ -18,16 +18,19 @@ ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
   constexpr std::uint64_t kInPlaceSurveyBytes = std::uint64_t{1} << 20U;
   constexpr std::uint64_t kInPlaceEncodeBytes = std::uint64_t{2} << 20U;
   constexpr std::uint64_t kInPlaceVolumeBytes = std::uint64_t{64} << 30U;
+  // In the room of two blocks: three with what is around them, each up to twice as large, and the file's pages.
+  const std::uint64_t pair_bytes = memory.block_bytes / 4;
   const bool in_place = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) <= kInPlaceVolumeBytes &&
                         kInPlaceEncodeBytes <= memory.worker_bytes && source.in_memory();
   if (!in_place) {
     // Chunks are decoded many at a time, and once each where the blocks may be large enough.
     const bool chunked = access.chunk != Index3{};
     const std::uint64_t survey_bytes = chunked ? memory.block_bytes : std::min(memory.block_bytes, kSurveyBytes);
-    return {Reading::ahead, plan_blocks(domain, access, survey_bytes), plan_blocks(domain, access, memory.block_bytes)};
+    return {Reading::ahead, plan_blocks(domain, access, survey_bytes), plan_blocks(domain, access, memory.block_bytes),
+            pair_bytes};
   }
   return {Reading::in_place, plan_blocks(domain, access, kInPlaceSurveyBytes),
-          plan_blocks(domain, access, kInPlaceEncodeBytes, BlockShape::deep)};
+          plan_blocks(domain, access, kInPlaceEncodeBytes, BlockShape::deep), pair_bytes};
 }
 
 Message amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,

@@ -17,6 +17,7 @@ struct ReadingPlan {
   Reading reading = Reading::ahead;
   BlockPlan survey;
   BlockPlan encode;
+  std::uint64_t pair_bytes = 0;  ///< CompareOptions::block_bytes of a pass over source and file, after both
 };
 
 ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory);

@@ -178,8 +178,15 @@ void ConversionJob::heard(std::string_view line) {
   const auto total = told.value("total", 0.0);
   if (total <= 0) return;
   const double part = told.value("done", 0.0) / total;
-  // Two passes of about the same length.
-  fraction_ = step_ != "convert" ? part : told.value("pass", "") == "encode" ? 0.5 + part / 2 : part / 2;
+  fraction_ = step_ == "convert" ? done_of_conversion(told.value("pass", ""), part) : part;
+}
+
+// Passes of about the same length: two, or with --certify three.
+double ConversionJob::done_of_conversion(std::string_view pass, double part) const {
+  const bool certifies = std::ranges::any_of(task_.convert_options,
+                                             [](const std::string& option) { return option == "--certify=gradient"; });
+  const double before = pass == "certify" ? 2 : pass == "encode" ? 1 : 0;
+  return (before + part) / (certifies ? 3 : 2);
 }
 
 void ConversionJob::converted(const WorkerEnd& end) {

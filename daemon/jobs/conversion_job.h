@@ -82,6 +82,7 @@ class ConversionJob {
   void fail(int exit_code, const std::string& reason);
   void end(TaskEnd how);
   void heard(std::string_view line);
+  double done_of_conversion(std::string_view pass, double part) const;
 
   boost::asio::io_context& io_;
   ConversionTask task_;

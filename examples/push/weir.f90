@@ -35,7 +35,7 @@ module weir
     integer(c_int32_t) :: budget_kind, encoding, metric, brick, fill, nonfinite, has_background
     real(c_float) :: background
     integer(c_int32_t) :: overwrite, threads
-    integer(c_int32_t) :: preview, missing_policy, at_most, backend
+    integer(c_int32_t) :: preview, missing_policy, at_most, backend, certify, reserved
   end type
 
   interface

@@ -33,6 +33,8 @@ class File {
   virtual std::uint64_t size() = 0;
   /// The system's descriptor, valid while this file is open; -1 where there is none.
   virtual int descriptor() const { return -1; }
+  /// Its bytes where they lie in this process's memory, valid until it is written to; empty where they lie elsewhere.
+  virtual std::span<const std::byte> memory() const { return {}; }
   /// Whether no other process writes it through a FileSystem: it is locked, or did not exist before. False for a file
   /// that existed before, on a file system without locks.
   virtual bool exclusive() const { return true; }

@@ -103,6 +103,7 @@ class MemoryFileSystem::PagesFile final : public File {
   void start_writeback() override {}
   void sync() override {}
   std::uint64_t size() override { return pages_->bytes().size(); }
+  std::span<const std::byte> memory() const override { return pages_->bytes(); }
 
  private:
   std::shared_ptr<Pages> pages_;

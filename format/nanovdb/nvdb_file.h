@@ -14,7 +14,9 @@ class NvdbFile {
  public:
   /// Maps and validates. Throws Error(input) for a missing, empty or invalid file.
   explicit NvdbFile(const std::string& path)
-      : path_(path), mapping_(path, ".nvdb"), grid_(NvdbGrid::open(mapping_.bytes(), path)) {}
+      : path_(path),
+        mapping_(path, ".nvdb"),
+        grid_(NvdbGrid::open(mapping_.bytes(), path, [this] { mapping_.release_pages(); })) {}
 
   const std::string& path() const { return path_; }
   const NvdbGrid& grid() const { return grid_; }

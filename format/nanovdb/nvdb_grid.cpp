@@ -55,14 +55,16 @@ void check_packable(const NvdbBytes& grid, GridType type) {
 
 }  // namespace
 
-NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path) {
-  return open(file, path, first_nvdb_segment(file, path).front());
+NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path,
+                        const std::function<void()>& release) {
+  return open(file, path, first_nvdb_segment(file, path).front(), release);
 }
 
-NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record) {
+NvdbGrid NvdbGrid::open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record,
+                        const std::function<void()>& release) {
   const NvdbHeader header = read_nvdb_header(file, path, record);
   const NvdbBytes bytes(file.subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
-  const NvdbTree tree = read_nvdb_tree(bytes, header.type);
+  const NvdbTree tree = read_nvdb_tree(bytes, header.type, release);
   return of_heads(file, path, header, tree, read_nvdb_blind_data(bytes, tree.end, tree.bbox));
 }
 

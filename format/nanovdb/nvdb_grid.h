@@ -36,10 +36,13 @@ class NvdbGrid {
  public:
   /// `file` must stay valid and unchanged while the view is used. `path` is for messages only.
   /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
-  /// NanoVDB file of a supported type.
-  static NvdbGrid open(std::span<const std::byte> file, const std::string& path);
+  /// NanoVDB file of a supported type. `release`, where given, is called each time that some 8 MiB of nodes have been
+  /// looked at: a mapped file lets them go.
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path,
+                       const std::function<void()>& release = {});
   /// The same for a grid that all_nvdb_segments found, where the above opens the first.
-  static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record);
+  static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record,
+                       const std::function<void()>& release = {});
   /// The grid of heads that were read and checked. Where no more than they and its packed data's are in `file`, as of
   /// a remote one, its tree must not be looked at. Throws Error(input) where the head of the packed data is damaged.
   static NvdbGrid of_heads(std::span<const std::byte> file, const std::string& path, const NvdbHeader& header,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "format/layout/nanovdb_layout.h"
@@ -14,6 +16,7 @@ using nvdb::InternalLayout;
 
 constexpr std::uint64_t kMaxLeafBytes = nvdb::kLeafHeadBytes + (std::uint64_t{64} << kMaxLeafBitsLog2);
 constexpr std::uint64_t kMinFpnLeafBytes = nvdb::kLeafHeadBytes + 64;
+constexpr std::uint64_t kNodesToRelease = 256;                      // lower nodes, of 34 KB
 constexpr std::uint64_t kKeyField = (std::uint64_t{1} << 20U) - 1;  // 20 bits of a coordinate, in fields of 21
 constexpr std::uint64_t kKeyBits = kKeyField | kKeyField << 21U | kKeyField << 42U;
 
@@ -29,7 +32,8 @@ struct Level {
 
 class TreeReader {
  public:
-  TreeReader(const NvdbBytes& grid, GridType type) : grid_(grid), type_(type) {}
+  TreeReader(const NvdbBytes& grid, GridType type, std::function<void()> release)
+      : grid_(grid), type_(type), release_(std::move(release)) {}
 
   NvdbTree read() {
     read_head();
@@ -193,8 +197,10 @@ class TreeReader {
 
   template <typename Visit>
   void for_each_leaf(const Visit& visit) const {
-    for (std::uint64_t i = 0; i < lower_.count; ++i)
+    for (std::uint64_t i = 0; i < lower_.count; ++i) {
       for_each_child(nvdb::kLower, lower_.begin + i * lower_.stride, visit);
+      if (release_ && (i + 1) % kNodesToRelease == 0) release_();
+    }
   }
 
   std::uint64_t fpn_leaf_end(std::uint64_t leaf) const {
@@ -236,6 +242,7 @@ class TreeReader {
 
   const NvdbBytes& grid_;
   GridType type_;
+  std::function<void()> release_;
   NvdbTree tree_;
   Level upper_{};
   Level lower_{};
@@ -271,8 +278,12 @@ Index3 root_tile_origin(std::uint64_t key) {
   return {axis(42), axis(21), axis(0)};
 }
 
-NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type) { return TreeReader(grid, type).read(); }
+NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type, const std::function<void()>& release) {
+  return TreeReader(grid, type, release).read();
+}
 
-NvdbTree read_nvdb_tree_head(const NvdbBytes& grid, GridType type) { return TreeReader(grid, type).read_head_alone(); }
+NvdbTree read_nvdb_tree_head(const NvdbBytes& grid, GridType type) {
+  return TreeReader(grid, type, {}).read_head_alone();
+}
 
 }  // namespace weir

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 
 #include "format/base/index.h"
 #include "format/layout/nvdb_type.h"
@@ -38,8 +39,9 @@ Index3 root_tile_origin(std::uint64_t key);
 ///   the lower nodes, whatever width an FpN leaf has (see leaf_bits_log2);
 /// - the bounding box lies within the root tiles and has less than 2^62 voxels (it may still be
 ///   sparse and huge: whoever allocates by box checks the box).
-/// Throws Error(input) naming offset and value.
-NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type);
+/// Throws Error(input) naming offset and value. `release`, where given, is called each time that some 8 MiB of nodes
+/// have been looked at.
+NvdbTree read_nvdb_tree(const NvdbBytes& grid, GridType type, const std::function<void()>& release = {});
 
 /// The same of the head and the root table alone: nothing is known of the nodes, and `end` is past what the head says
 /// of those of one size.

@@ -38,10 +38,12 @@ void copy_part(const Box& box, const Box& part, const Index3& corner, const std:
 
 }  // namespace
 
-void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values) {
-  if (box.empty()) return;
-  const Box inside = grid.packed() != nullptr ? intersect(box, grid.index_bbox()) : box;
-  if (inside != box) std::ranges::fill(values, grid.background());
+void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values) { read_box_part(grid, box, box, values); }
+
+void read_box_part(const NvdbGrid& grid, const Box& part, const Box& box, std::span<float> values) {
+  if (part.empty()) return;
+  const Box inside = grid.packed() != nullptr ? intersect(part, grid.index_bbox()) : part;
+  if (inside != part) fill_part(box, part, grid.background(), values);
   if (inside.empty()) return;
   const NodeLattice blocks = make_lattice(inside, kLeafDim);
   std::array<float, kLeafVoxels> decoded;

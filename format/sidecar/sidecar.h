@@ -125,6 +125,16 @@ struct Sidecar {
     std::array<std::uint64_t, 6> bits{};  ///< kept leaves of 1, 2, 4, 8, 16 bits a voxel and float32
   } selection;
 
+  /// Of central differences, at the volume's faces those to the next voxel, as numpy.gradient has them; value per world
+  /// unit.
+  struct GradientError {
+    double rms = 0;                      ///< root mean square of |gradient of the error|
+    std::optional<double> relative_rms;  ///< that as a share of the source's; none where that is 0
+    double max_abs = 0;                  ///< the largest |gradient of the error|
+    std::uint64_t voxels = 0;            ///< over which it is taken
+    std::uint64_t left_out = 0;          ///< those at which a value that it takes is not finite
+  };
+
   /// Decoded values against the float32 source, all valid voxels (valid_voxels.h), in double.
   struct CertifiedError {
     double mse = 0;
@@ -134,6 +144,7 @@ struct Sidecar {
     double max_abs = 0;
     bool lossless = false;
   } error;
+  std::optional<GradientError> gradient;  ///< error.gradient: none, and no key, where it was not asked for
 
   /// With a scene that decided what matters: the same over the voxels of all 8^3 blocks of which something can be seen.
   struct Visible {

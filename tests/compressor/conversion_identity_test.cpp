@@ -106,8 +106,10 @@ TEST(ConversionIdentity, IgnoresOptionsThatDoNotAffectTheBytes) {
   other.resume = Resume::on;
   other.save_interval_s = 0;
   other.backend = CoderChoice::cuda;
-  other.provenance.options = {{"memory", "1"},    {"threads", "7"},    {"output", "o"},       {"bandwidth", "1"},
-                              {"work-dir", "/s"}, {"direct-io", "on"}, {"overwrite", "true"}, {"backend", "cuda"}};
+  other.certify = Certify::gradient;
+  other.provenance.options = {{"memory", "1"},       {"threads", "7"},    {"output", "o"},
+                              {"bandwidth", "1"},    {"work-dir", "/s"},  {"direct-io", "on"},
+                              {"overwrite", "true"}, {"backend", "cuda"}, {"certify", "gradient"}};
   EXPECT_EQ(identify_conversion(source(), other), identify_conversion(source(), {}));
 }
 

@@ -35,6 +35,7 @@ class FaultyFile final : public File {
   }
   std::uint64_t size() override { return real_->size(); }
   int descriptor() const override { return real_->descriptor(); }
+  std::span<const std::byte> memory() const override { return real_->memory(); }
   bool exclusive() const override { return real_->exclusive(); }
 
  private:

@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 #include "compressor/derived/derived_error.h"
+#include "compressor/derived/vector_error.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"
 #include "format/base/error.h"
@@ -19,6 +23,7 @@
 #include "format/base/seconds_since.h"
 #include "format/base/share_text.h"
 #include "format/base/text.h"
+#include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
 #include "format/sidecar/valid_voxels.h"
@@ -31,6 +36,10 @@
 #include "tools/report/derived_report.h"
 #include "tools/report/error_text.h"
 #include "tools/report/recorded_input.h"
+#include "tools/report/vector_report.h"
+#include "tools/spectrum/power_spectrum.h"
+#include "tools/spectrum/spectrum_file.h"
+#include "tools/spectrum/spectrum_report.h"
 
 namespace weir {
 namespace {
@@ -49,13 +58,17 @@ struct CompareArguments {
   std::string trace;
   bool json = false;
   bool derived = false;
+  std::string spectrum;             ///< a file; empty: not asked for
+  std::vector<std::string> vector;  ///< source and file of the second and the third component; empty: not asked for
 };
 
-/// Of the source two blocks are held at a time. For derived errors also one of decoded values, and each with what is
-/// around it may be twice as large; each thread counts errors in a histogram.
+/// Of the source two blocks are held at a time. For derived errors and spectra also one of decoded values, and each
+/// with what is around it may be twice as large; each thread counts errors in a histogram, or transforms a block.
 constexpr std::uint64_t kHistogramBytes = std::uint64_t{600} << 10U;
 constexpr std::uint64_t kBlocks = 2;
 constexpr std::uint64_t kBlocksOfDerived = 6;
+/// And two for each other component.
+constexpr std::uint64_t kBlocksOfVector = 14;
 
 std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std::uint64_t blocks) {
   const std::uint64_t fixed = resident_bytes() + source_bytes + kStagingBytes + kCompareBytes;
@@ -66,8 +79,50 @@ std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std:
   return std::min((memory - fixed) / blocks, kMostBlockBytes);
 }
 
-nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c,
-                               const std::optional<DerivedErrors>& derived, double total_s) {
+/// A file, and the source as the file's sidecar and the options say it was read.
+struct ComparedPair {
+  NvdbFile file;
+  std::unique_ptr<VolumeSource> source;
+};
+
+ComparedPair open_pair(const std::string& input, const std::string& volume, const GivenOptions& given) {
+  NvdbFile file(volume);
+  file.mapping().release_pages();  // what its validation looked at
+  SourceOptions options = read_conversion_request(given).source;
+  if (const std::string taken = take_recorded_input(input, file, given, options); !taken.empty()) {
+    spdlog::info("{}: read with {}, as {} records", input, taken, sidecar_path(volume));
+  }
+  return {std::move(file), open_source(input, options)};
+}
+
+/// That of INPUT and OUT.nvdb, and behind it those of --vector.
+std::vector<ComparedPair> open_pairs(const CompareArguments& a) {
+  std::vector<ComparedPair> pairs;
+  pairs.push_back(open_pair(a.input, a.volume, a.options));
+  for (std::size_t i = 0; i < a.vector.size(); i += 2) {
+    pairs.push_back(open_pair(a.vector[i], a.vector[i + 1], a.options));
+  }
+  return pairs;
+}
+
+std::uint64_t block_bytes(const CompareArguments& arguments, const ConversionOptions& run,
+                          const std::vector<ComparedPair>& pairs) {
+  std::uint64_t each = arguments.derived ? kHistogramBytes : 0;
+  if (!arguments.spectrum.empty()) each = std::max(each, kSpectrumThreadBytes);
+  std::uint64_t others = processors_or_all(run.threads) * each + (pairs.size() - 1) * kStagingBytes;
+  for (const ComparedPair& pair : pairs) others += pair.source->working_bytes();
+  return block_bytes(run.memory, others, pairs.size() > 1 ? kBlocksOfVector : each > 0 ? kBlocksOfDerived : kBlocks);
+}
+
+/// What is asked for besides the comparison.
+struct Besides {
+  std::optional<DerivedErrors> derived;
+  std::optional<PowerSpectrum> spectrum;
+  std::optional<VectorErrors> vector;
+};
+
+nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparison& c, const Besides& besides,
+                               double total_s) {
   using Json = nlohmann::ordered_json;
   const Certificate& e = c.error;
   Json report;
@@ -88,7 +143,9 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["zeros"] = c.zeros;
   report["zeros_lost"] = c.zeros_lost;
   report["value_range"] = c.range ? Json{c.range->min, c.range->max} : Json();
-  if (derived) report["derived"] = derived_json(*derived);
+  if (besides.derived) report["derived"] = derived_json(*besides.derived);
+  if (besides.spectrum) report["spectrum"] = spectrum_json(*besides.spectrum);
+  if (besides.vector) report["vector"] = vector_json(*besides.vector);
   report["source"] = arguments.input;
   report["volume"] = arguments.volume;
   report["total_s"] = total_s;
@@ -130,36 +187,47 @@ void print_text(const Comparison& c, const std::string& units) {
 
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  auto [source_options, run] = read_conversion_request(arguments.options);
+  const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto threads = limit_threads(run.threads);
-  const NvdbFile file(arguments.volume);
-  file.mapping().release_pages();  // what its validation looked at
-  if (const std::string taken = take_recorded_input(arguments.input, file, arguments.options, source_options);
-      !taken.empty()) {
-    spdlog::info("{}: read with {}, as {} records", arguments.input, taken, sidecar_path(arguments.volume));
-  }
-  const auto source = open_source(arguments.input, source_options);
+  const auto files = make_posix_file_system();
+  std::optional<SpectrumFile> spectrum_file;
+  if (!arguments.spectrum.empty()) spectrum_file.emplace(*files, arguments.spectrum);
+  const std::vector<ComparedPair> pairs = open_pairs(arguments);
+  const auto& [file, source] = pairs.front();
 
   CompareOptions options;
-  options.block_bytes =
-      arguments.derived
-          ? block_bytes(run.memory, source->working_bytes() + processors_or_all(run.threads) * kHistogramBytes,
-                        kBlocksOfDerived)
-          : block_bytes(run.memory, source->working_bytes(), kBlocks);
+  options.block_bytes = block_bytes(arguments, run, pairs);
   options.cancel = &interrupt_flag();
-  options.release_pages = [&] { file.mapping().release_pages(); };
+  options.release_pages = [&pairs] {
+    for (const ComparedPair& pair : pairs) pair.file.mapping().release_pages();
+  };
   const std::unique_ptr<Trace> trace =
       open_trace(arguments.trace, std::array{arguments.input, arguments.volume, sidecar_path(arguments.volume)});
   options.trace = trace.get();
   Progress progress(arguments.progress);
-  progress.start("compare", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
+  const std::uint64_t bytes = static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float);
+  progress.start("compare", bytes);
   options.progress = [&](std::uint64_t done) { progress.update(done); };
   const Comparison comparison = compare_volumes(*source, file.grid(), arguments.volume, options);
   progress.finish();
-  std::optional<DerivedErrors> derived;
+  Besides besides;
   if (arguments.derived) {
-    progress.start("derived", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
-    derived = derive_errors(*source, file.grid(), comparison, options);
+    progress.start("derived", bytes);
+    besides.derived = derive_errors(*source, file.grid(), comparison, options);
+    progress.finish();
+  }
+  if (spectrum_file) {
+    progress.start("spectrum", bytes);
+    besides.spectrum = power_spectrum(*source, file.grid(), options);
+    progress.finish();
+    spectrum_file->write(*besides.spectrum, std::filesystem::path(arguments.volume).filename().string());
+  }
+  if (pairs.size() == 3) {
+    progress.start("vectors", bytes);
+    besides.vector = vector_errors({{{*pairs[0].source, pairs[0].file.grid()},
+                                     {*pairs[1].source, pairs[1].file.grid()},
+                                     {*pairs[2].source, pairs[2].file.grid()}}},
+                                   options);
     progress.finish();
   }
   if (trace) trace->close();
@@ -170,12 +238,16 @@ void compare(const CompareArguments& arguments) {
   }
   const double total_s = seconds_since(start);
   if (arguments.json) {
-    std::cout << to_json(arguments, comparison, derived, total_s)
+    std::cout << to_json(arguments, comparison, besides, total_s)
                      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';
   } else {
     print_text(comparison, source->info().units);
-    if (derived) std::cout << derived_text(*derived, extent_of(comparison.range), source->info().units);
+    if (besides.derived) {
+      std::cout << derived_text(*besides.derived, extent_of(comparison.range), source->info().units);
+    }
+    if (besides.spectrum) std::cout << spectrum_text(*besides.spectrum);
+    if (besides.vector) std::cout << vector_text(*besides.vector, source->info().units);
   }
 }
 
@@ -191,6 +263,18 @@ void add_compare(CLI::App& app) {
   add_trace_option(*command, arguments->trace);
   command->add_flag("--derived", arguments->derived,
                     "also quantiles of |error|, the error of the gradient and structural similarity; reads both twice");
+  command
+      ->add_option(
+          "--spectrum", arguments->spectrum,
+          "also the power of source, file and error by wave number: a chart, FILE.png or FILE.svg, or a table, "
+          "FILE.csv; reads both once more")
+      ->type_name("FILE");
+  command
+      ->add_option("--vector", arguments->vector,
+                   "also the errors of vorticity and divergence of the field whose first component INPUT and OUT.nvdb "
+                   "are: sources and files of the second and of the third one; reads all once more")
+      ->type_name("V V.nvdb W W.nvdb")
+      ->expected(4);
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
   command->footer(

@@ -202,6 +202,7 @@ void print_sidecar(const Sidecar& s) {
   if (const std::string text = missing_text(s); !text.empty()) line("missing     ", text);
   if (const std::string text = nonfinite_text(s); !text.empty()) line("not finite  ", text);
   line("error       ", certificate_text(s, s.error));
+  if (s.gradient) line("gradient    ", gradient_text(*s.gradient, s.source.units));
   const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
   if (zeros.lost > 0) line("zeros       ", lost_zeros_text(zeros.lost, zeros.count));
   if (s.visible) {

@@ -33,6 +33,7 @@ std::string chosen_prefix(const Sidecar::Source& source) {
 void say_converted(const Sidecar& s, const Budget& budget, const std::string& output) {
   std::string error = error_text(s, s.error);
   if (s.visible) error += cat(" (what the scene shows: ", error_text(s, s.visible->error), ')');
+  if (s.gradient) error += cat(", gradient: ", gradient_text(*s.gradient, s.source.units));
   const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
   for (const std::string& also : {lost_zeros_text(zeros.lost, zeros.count), missing_text(s), nonfinite_text(s),
                                   rounded_text(s.conversion_loss)}) {

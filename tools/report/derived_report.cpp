@@ -33,12 +33,7 @@ std::string derived_text(const DerivedErrors& errors, double range, const std::s
     text += cat(i == 0 ? "|error|    " : "\n           ", 100 * DerivedErrors::kShares[i], " % of voxels at most ",
                 largest_error_text(errors.quantiles[i], range, units));
   }
-  const GradientError& gradient = errors.gradient;
-  text += "\ngradient   ";
-  if (gradient.relative_rms) text += cat("relative rms ", short_number(*gradient.relative_rms), ", ");
-  text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : " " + units, " per world unit");
-  if (gradient.left_out > 0) text += cat("; ", gradient.left_out, " voxels beside ones that are not finite left out");
-  text += "\nssim       ";
+  text += cat("\ngradient   ", gradient_text(errors.gradient, units), "\nssim       ");
   const Similarity& s = errors.similarity;
   if (s.mean) {
     text += short_number(*s.mean);

@@ -19,6 +19,15 @@ std::string error_text(const Sidecar& sidecar, const Sidecar::CertifiedError& er
              largest_error_text(error.max_abs, sidecar.value_range[1] - sidecar.value_range[0], sidecar.source.units));
 }
 
+std::string gradient_text(const Sidecar::GradientError& gradient, const std::string& units) {
+  std::string text = gradient.relative_rms ? cat("relative rms ", short_number(*gradient.relative_rms), ", ") : "";
+  text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : " " + printable(units),
+              " per world unit");
+  if (gradient.left_out == 0) return text;
+  return cat(text, "; ", gradient.left_out, gradient.left_out == 1 ? " voxel" : " voxels",
+             " at or beside one that is not finite left out");
+}
+
 std::string rounded_text(const Sidecar::ConversionLoss& loss) {
   if (loss.inexact == 0) return "";
   return cat(loss.inexact, loss.inexact == 1 ? " value" : " values", " rounded to float32, by up to ",

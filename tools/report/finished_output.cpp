@@ -30,6 +30,7 @@ Sidecar expected_record(const SourceInfo& source, const ConversionOptions& optio
     record.visible = Sidecar::Visible();
     record.visible->scene_digest = scene_digest(options.scene->scene);
   }
+  if (options.certify == Certify::gradient) record.gradient = Sidecar::GradientError();
   record.weir.options = options.provenance.options;
   return parse_sidecar(to_json_text(record), source.path);
 }
@@ -79,6 +80,7 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
   }
   const std::string scene = expected.visible ? expected.visible->scene_digest : "";
   if ((found.visible ? found.visible->scene_digest : "") != scene) return "made for a scene that said something else";
+  if (expected.gradient && !found.gradient) return "its sidecar does not certify the gradient";
   return {};
 }
 

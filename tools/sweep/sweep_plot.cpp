@@ -13,6 +13,7 @@
 #include "format/base/text.h"
 #include "tools/plot/plot_axis.h"
 #include "tools/plot/plot_canvas.h"
+#include "tools/plot/plot_scale.h"
 
 namespace weir {
 namespace {
@@ -83,28 +84,6 @@ std::vector<Series> series_of(const SweepReport& report, SweepAxis axis) {
   return all;
 }
 
-/// Where a value lies between the first tick and the last one.
-class Scale {
- public:
-  Scale(std::vector<double> ticks, bool logarithmic, std::int32_t first, std::int32_t last)
-      : ticks_(std::move(ticks)), logarithmic_(logarithmic), first_(first), last_(last) {}
-
-  const std::vector<double>& ticks() const { return ticks_; }
-  double at(double value) const {
-    const double part = (map(value) - map(ticks_.front())) / (map(ticks_.back()) - map(ticks_.front()));
-    return first_ + part * (last_ - first_);
-  }
-  std::int32_t pixel(double value) const { return static_cast<std::int32_t>(std::lround(at(value))); }
-
- private:
-  double map(double value) const { return logarithmic_ ? std::log10(value) : value; }
-
-  std::vector<double> ticks_;
-  bool logarithmic_;
-  std::int32_t first_;
-  std::int32_t last_;
-};
-
 // The inside hides what lies below, of a hollow marker too.
 void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style) {
   std::vector<PlotPoint> corners;
@@ -139,8 +118,8 @@ std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
 struct Frame {
   std::int32_t top;    ///< of the axes, the band of lossless results included
   std::int32_t floor;  ///< where the x axis lies
-  Scale x;
-  Scale psnr;
+  PlotScale x;
+  PlotScale psnr;
   bool band;
 
   PlotPoint at(const Point& p) const {
@@ -163,8 +142,8 @@ Frame make_frame(const std::vector<Series>& all, std::int32_t top) {
   const auto [x_min, x_max] = std::minmax_element(x.begin(), x.end());
   const auto [psnr_min, psnr_max] = std::minmax_element(psnr.begin(), psnr.end());
   constexpr std::int32_t kFloor = kSheetHeight - kSheetBottom;
-  return {top, kFloor, Scale(decade_ticks(*x_min, *x_max), true, kSheetLeft, kSheetWidth - kSheetRight),
-          Scale(even_ticks(*psnr_min, *psnr_max), false, kFloor, top + (band ? kLosslessBand : 0)), band};
+  return {top, kFloor, PlotScale(decade_ticks(*x_min, *x_max), true, kSheetLeft, kSheetWidth - kSheetRight),
+          PlotScale(even_ticks(*psnr_min, *psnr_max), false, kFloor, top + (band ? kLosslessBand : 0)), band};
 }
 
 void draw_axes(PlotCanvas& canvas, const Frame& frame, const std::string& x_label) {

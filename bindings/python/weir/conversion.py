@@ -17,7 +17,7 @@ from .options import box_text, given_options, text_of
 if TYPE_CHECKING:
     import xarray
 
-#: Called with the pass ("survey", "encode", ...), and its float32 bytes done and in all.
+#: Called with the pass ("survey", "encode", "certify"), and its float32 bytes done and in all.
 Progress = Callable[[str, int, int], Any]
 Path = Union[str, "os.PathLike[str]"]
 Size = Union[int, str]  #: bytes, or "64MiB", "1.5GB"
@@ -48,6 +48,7 @@ def convert(
     preset: Optional[str] = None,
     nonfinite: Optional[str] = None,
     scene: Optional[Path] = None,
+    certify: Optional[str] = None,
     spacing: Optional[Numbers] = None,
     origin: Optional[Numbers] = None,
     missing: Union[float, str, None] = None,
@@ -104,7 +105,8 @@ def convert(
 
     What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
     "fp16", "packed"; preview (of a packed file) "auto", "on", "off"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
-    brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path.
+    brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path. certify="gradient" reads source and file once more for the
+    error of the gradient, the sidecar's error.gradient.
 
     The volume: spacing (x, y, z) in world units per voxel; origin, the world position of the centre of voxel (0, 0,
     0); missing, a stored value that says "no data"; missing_policy "error", "background", "keep" (as data), what
@@ -177,6 +179,7 @@ def convert(
         preset=preset,
         nonfinite=nonfinite,
         scene=scene,
+        certify=certify,
         spacing=spacing,
         origin=origin,
         missing=missing,

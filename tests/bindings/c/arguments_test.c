@@ -142,6 +142,8 @@ static void options(void) {
   REFUSE_OPTIONS("preview is 3, it must be 0 to 2", o.preview = 3);
   REFUSE_OPTIONS("missing_policy is 4, it must be 0 to 3", o.missing_policy = 4);
   REFUSE_OPTIONS("at_most needs size (WEIR_BUDGET_SIZE) or budget (WEIR_BUDGET_RATE)", o.at_most = 1);
+  REFUSE_OPTIONS("certify is 2, it must be 0 to 1", o.certify = 2);
+  REFUSE_OPTIONS("reserved is 1, it must be 0", o.reserved = 1);
   REFUSE_OPTIONS("backend is 3, it must be 0 to 2", o.backend = 3);
   REFUSE_OPTIONS("metric is 4, it must be 0 to 3", o.metric = 4);
   REFUSE_OPTIONS("fill is 2, it must be 0 to 1", o.fill = 2);

@@ -114,6 +114,32 @@ static weir_grid_info info_of(const char* path) {
   return info;
 }
 
+/* In memory and on a disk; the volume's bytes are those of one without. */
+static void certified_gradient(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("plain.nvdb"), &error));
+  size_t size = 0;
+  unsigned char* const plain = read_file(path_of("plain.nvdb"), &size);
+  options.certify = WEIR_CERTIFY_GRADIENT;
+  weir_buffer* buffer = NULL;
+  CHECK_OK(weir_convert_to_memory(&volume, values, NULL, &options, &buffer, &error));
+  CHECK(weir_buffer_size(buffer) == size && memcmp(weir_buffer_data(buffer), plain, size) == 0);
+  const char* const in_memory = strstr(weir_buffer_sidecar(buffer), "\"gradient\":{\"rms\":");
+  CHECK(in_memory != NULL);
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("certified.nvdb"), &error));
+  CHECK(same_files(path_of("plain.nvdb"), path_of("certified.nvdb")));
+  weir_grid* grid = NULL;
+  CHECK_OK(weir_open(path_of("certified.nvdb"), &grid, &error));
+  const char* const on_disk = strstr(weir_grid_sidecar(grid), "\"gradient\":{\"rms\":");
+  CHECK(on_disk != NULL && in_memory != NULL);
+  CHECK(strncmp(on_disk, in_memory, (size_t)(strchr(in_memory, '}') - in_memory)) == 0);
+  weir_close(grid);
+  weir_buffer_free(buffer);
+  free(plain);
+}
+
 static void every_budget(const float* values) {
   const weir_volume volume = pattern_volume(WEIR_FLOAT32);
   const char* const output = path_of("budget.nvdb");
@@ -296,6 +322,7 @@ int main(void) {
   float* const values = pattern_floats();
   every_type_in_every_order();
   every_budget(values);
+  certified_gradient(values);
   values_that_are_none(values);
   callbacks(values);
   components(values);

@@ -135,6 +135,20 @@ class Mpi : public testing::Test {
   TemporaryDirectory directory_;
 };
 
+std::string gradient_of(const std::string& sidecar) {
+  const std::size_t at = sidecar.find("\"gradient\":{");
+  return at == std::string::npos ? "none" : sidecar.substr(at, sidecar.find('}', at) - at);
+}
+
+TEST_F(Mpi, CertifiesTheGradientThatOneProcessDoes) {
+  const std::string volume = sample("turbulence", "140x130x134", "float32");
+  const std::vector<std::string> options{"--rate", "6", "--certify", "gradient"};
+  expect_same(volume, options);
+  const std::string certified = gradient_of(read_file(directory_ / "serial.nvdb.json"));
+  EXPECT_NE(certified, "none");
+  EXPECT_EQ(gradient_of(read_file(directory_ / "mpi.nvdb.json")), certified);
+}
+
 TEST_F(Mpi, AnyNumberOfProcessesConvertsToTheSameBytes) {
   const std::string cloud = sample("cloud", "150x140x270", "float32");
   expect_same(cloud, {"--rate", "8"});

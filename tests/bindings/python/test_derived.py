@@ -1,4 +1,4 @@
-"""What `weir compare --derived` says is what numpy computes of the same values."""
+"""What `weir compare --derived` and `--certify gradient` say is what numpy computes of the same values."""
 
 import json
 import unittest
@@ -26,11 +26,30 @@ def similarity(a, b, value_range):
     return numpy.mean(found)
 
 
+def sizes_of_gradient(values, steps):
+    return numpy.sqrt(sum(part**2 for part in numpy.gradient(values, *steps)))
+
+
 class Derived(FolderTest):
+    def check_gradient(self, said, source, decoded, spacing):
+        """`said` of two arrays [z, y, x] of float64, in which NaN is no value."""
+        of_error = sizes_of_gradient(decoded - source, spacing[::-1])
+        of_source = sizes_of_gradient(source, spacing[::-1])
+        taken = ~numpy.isnan(of_error)
+        rms = numpy.sqrt((of_error[taken] ** 2).mean())
+        self.assertAlmostEqual(said["rms"] / rms, 1, delta=1e-6)
+        relative = rms / numpy.sqrt((of_source[taken] ** 2).mean())
+        self.assertAlmostEqual(said["relative_rms"] / relative, 1, delta=1e-6)
+        self.assertAlmostEqual(said["max_abs"] / of_error[taken].max(), 1, delta=1e-6)
+        self.assertEqual(said["voxels"], taken.sum())
+        self.assertEqual(said["left_out"], source.size - taken.sum())
+
     def check(self, values, spacing, **options):
         values.astype("<f4").tofile(self.folder / "a.raw")
         z, y, x = values.shape
-        weir.convert(values, self.folder / "a.nvdb", spacing=spacing, overwrite=True, **options)
+        made = weir.convert(
+            values, self.folder / "a.nvdb", spacing=spacing, certify="gradient", overwrite=True, **options
+        )
         said = json.loads(
             run_weir(
                 *("compare", self.folder / "a.raw", self.folder / "a.nvdb", "--derived", "--json"),
@@ -43,15 +62,8 @@ class Derived(FolderTest):
         for share, found in said["quantiles"].items():
             exact = error[int(numpy.ceil(float(share) * error.size)) - 1]
             self.assertTrue(exact <= found <= exact * (1 + 1 / 256) + 1e-300, (share, exact, found))
-        steps = spacing[::-1]
-        of_error = numpy.sqrt(sum(part**2 for part in numpy.gradient(decoded - source, *steps)))
-        of_source = numpy.sqrt(sum(part**2 for part in numpy.gradient(source, *steps)))
-        rms = numpy.sqrt((of_error**2).mean())
-        gradient = said["gradient"]
-        self.assertAlmostEqual(gradient["rms"] / rms, 1, delta=1e-6)
-        self.assertAlmostEqual(gradient["relative_rms"] / (rms / numpy.sqrt((of_source**2).mean())), 1, delta=1e-6)
-        self.assertAlmostEqual(gradient["max_abs"] / of_error.max(), 1, delta=1e-6)
-        self.assertEqual(gradient["voxels"], values.size)
+        self.check_gradient(said["gradient"], source, decoded, spacing)
+        self.assertEqual(made["error"]["gradient"], said["gradient"])
         self.assertAlmostEqual(said["ssim"], similarity(source, decoded, values.max() - values.min()), delta=1e-9)
         octaves = said["octaves"]
         self.assertEqual(octaves["zeros"] + sum(octaves["counts"]), values.size)
@@ -68,6 +80,72 @@ class Derived(FolderTest):
     def test_thin_volumes(self):
         values = numpy.random.default_rng(6).standard_normal((5, 40, 9)).cumsum(axis=1).astype(numpy.float32)
         self.check(values, (1.0, 3.0, 1.0), psnr=40, encoding="packed")
+
+    def test_certified_gradient_of_every_encoding(self):
+        z, y, x = numpy.mgrid[0:19, 0:24, 0:33]
+        values = (numpy.sin(x * 0.4) + numpy.cos(y * 0.3) * z).astype(numpy.float32)
+        for encoding in "float fpn fp4 fp8 fp16 packed".split():
+            options = {"size": 350000} if encoding == "float" else {"psnr": 30}
+            output = self.folder / f"{encoding}.nvdb"
+            made = weir.convert(values, output, certify="gradient", encoding=encoding, **options)
+            decoded = weir.open(output).to_numpy().astype(numpy.float64)
+            self.check_gradient(made["error"]["gradient"], values.astype(numpy.float64), decoded, (1, 1, 1))
+
+    def test_vorticity_and_divergence(self):
+        z, y, x = numpy.mgrid[0:21, 0:33, 0:42] * numpy.array([0.5, 1, 0.25]).reshape(3, 1, 1, 1)
+        field = (numpy.sin(y * 0.3 + x) + z, numpy.cos(x + z), numpy.sin(x * 0.5) * y)
+        paths, errors, sources = [], [], []
+        for name, values in zip("uvw", field):
+            values = values.astype("<f4")
+            source, output = self.folder / f"{name}_42x33x21_float32.raw", self.folder / f"{name}.nvdb"
+            values.tofile(source)
+            weir.convert(source, output, spacing=(0.25, 1, 0.5), psnr=40)
+            paths += [source, output]
+            sources.append(values.astype(numpy.float64))
+            errors.append(weir.open(output).to_numpy().astype(numpy.float64) - sources[-1])
+        compare = ("compare", *paths[:2], "--vector", *paths[2:], "--spacing", "0.25,1,0.5", "--json")
+        said = json.loads(run_weir(*compare))["vector"]
+
+        def derived(of):
+            (uz, uy, ux), (vz, vy, vx), (wz, wy, wx) = (numpy.gradient(one, 0.5, 1, 0.25) for one in of)
+            return numpy.sqrt((wy - vz) ** 2 + (uz - wx) ** 2 + (vx - uy) ** 2), numpy.abs(ux + vy + wz)
+
+        for key, error, source in zip(("vorticity", "divergence"), derived(errors), derived(sources)):
+            rms, source_rms = numpy.sqrt((error**2).mean()), numpy.sqrt((source**2).mean())
+            self.assertAlmostEqual(said[key]["rms"] / rms, 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["source_rms"] / source_rms, 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["relative_rms"] / (rms / source_rms), 1, delta=1e-6)
+            self.assertAlmostEqual(said[key]["max_abs"] / error.max(), 1, delta=1e-6)
+        self.assertEqual((said["voxels"], said["left_out"]), (21 * 33 * 42, 0))
+
+    def test_largest_error_bounds_that_of_the_gradient(self):
+        values = numpy.random.default_rng(8).standard_normal((12, 17, 30)).astype(numpy.float32)
+        for spacing in ((1, 1, 1), (0.5, 2, 1)):
+            options = {"max_error": 0.25, "spacing": spacing, "encoding": "packed", "overwrite": True}
+            error = weir.convert(values, self.folder / "a.nvdb", certify="gradient", **options)["error"]
+            bound = 2 * error["max_abs"] * numpy.sqrt(sum(1 / h**2 for h in spacing))
+            self.assertTrue(0 < error["gradient"]["max_abs"] <= bound, (error, bound))
+
+    def test_certified_gradient_of_a_region_of_integers_some_missing(self):
+        random = numpy.random.default_rng(7)
+        stored = random.integers(0, 900, (21, 30, 40)).cumsum(axis=2).astype("<u2")
+        stored[3:6, 10, 20:25] = 65535
+        name = self.folder / "a_40x30x21_uint16.raw"
+        stored.tofile(name)
+        for policy in ("background", "keep"):
+            options = {"psnr": 40, "missing": 65535, "nonfinite": policy, "overwrite": True}
+            made = weir.convert(
+                name, self.folder / "a.nvdb", roi="2:39,1:,:20", spacing=(1, 2, 0.5), certify="gradient", **options
+            )
+            compare = ("compare", name, self.folder / "a.nvdb", "--derived", "--json", "--spacing", "1,2,0.5")
+            said = json.loads(run_weir(*compare))
+            gradient = made["error"]["gradient"]
+            self.assertEqual(gradient, said["derived"]["gradient"])
+            source = stored[:20, 1:, 2:39].astype(numpy.float64)
+            source[source == 65535] = numpy.nan
+            decoded = weir.open(self.folder / "a.nvdb").to_numpy().astype(numpy.float64)
+            self.check_gradient(gradient, source, decoded, (1, 2, 0.5))
+            self.assertGreater(gradient["left_out"], 0)
 
 
 if __name__ == "__main__":

@@ -52,6 +52,10 @@ class CrashFile final : public File {
     const std::scoped_lock lock(stored_->mutex);
     return stored_->bytes.size();
   }
+  std::span<const std::byte> memory() const override {
+    const std::scoped_lock lock(stored_->mutex);
+    return stored_->bytes;
+  }
 
  private:
   std::shared_ptr<CrashFileSystem::Stored> stored_;

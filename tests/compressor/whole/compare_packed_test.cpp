@@ -1,7 +1,7 @@
 // compare_volumes of a packed grid: of its decoded values, not of its tree.
 #include <gtest/gtest.h>
 
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/packed_sample.h"
 

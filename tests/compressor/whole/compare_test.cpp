@@ -1,4 +1,4 @@
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

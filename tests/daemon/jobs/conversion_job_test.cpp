@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
@@ -75,6 +78,24 @@ TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
   EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
   const std::uint64_t moved = report.result.bytes_read + report.result.bytes_written;
   EXPECT_GT(report.result.seconds, 0.75 * static_cast<double>(moved) / static_cast<double>(limited.bandwidth));
+}
+
+TEST_F(ConversionJobTest, CertifiedGradient_IsAThirdPassAndNoStepBack) {
+  ConversionTask work = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
+  work.thumbnails = false;
+  work.bandwidth = 8 << 20U;
+  work.convert_options = {"--certify=gradient"};
+  std::vector<double> fractions;
+  const TaskReport report = run(work, [&](ConversionJob& job) {
+    if (job.step() == "convert" && job.fraction()) fractions.push_back(*job.fraction());
+  });
+  ASSERT_EQ(report.end, TaskEnd::done) << report.result.reason;
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_GE(fractions.front(), 0);
+  EXPECT_LE(fractions.back(), 1);
+  const auto record = nlohmann::json::parse(read_file(report.result.outputs.at(0).path + ".json"));
+  EXPECT_EQ(record["error"]["gradient"]["voxels"], 128 << 14U);
 }
 
 TEST_F(ConversionJobTest, StoppedProcess_IsTheReasonGivenForAStall) {

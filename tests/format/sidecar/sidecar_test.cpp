@@ -54,6 +54,7 @@ Sidecar sample() {
   s.budget = {"size", 1048576, 1048576, 1048592, 1.0000152587890625};
   s.selection = {"sse", "mean", 16, 512, 100, {1, 2, 3, 4, 5, 85}};
   s.error = {1e-6, 1e-3, 2e-6, 60.5, 0.125, false};
+  s.gradient = Sidecar::GradientError{0.375, 1.0 / 7.0, 8.5, 246, 14};
   s.visible = Sidecar::Visible{
       "bone.toml", 77, 39424, {0.75, 0.875, 0.0625, 21.5, 4.5, false}, "ffeeddccbbaa99887766554433221100"};
   s.macrocells = {16, {4, 5, 6}, 1};
@@ -219,6 +220,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
   lossless.error = {0, 0, 0, std::nullopt, 0, true};
   lossless.budget.requested.reset();
   lossless.visible.reset();
+  lossless.gradient.reset();
   lossless.source.files_digest.clear();
   std::vector<std::string> documents{to_json_text(sample()), to_json_text(lossless),
                                      edited([](auto& d) { d["file"]["digest"] = "xyz"; }),

@@ -8,6 +8,7 @@
 
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
+#include "tools/spectrum/block_transform.h"
 
 namespace weir::compare_test {
 namespace {
@@ -49,6 +50,70 @@ TEST(Compare, LosslessFile) {
       "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0, "missing": 0, "zeros_lost": 0})"));
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
             "lossless: all 116550 finite voxels read bit for bit\n");
+}
+
+// What stands behind `key` and blanks in a line of its own.
+std::string line_of(const std::string& text, const std::string& key) {
+  const std::size_t at = ("\n" + text).find("\n" + key + ' ');
+  if (at == std::string::npos) return "no line " + key;
+  const std::size_t begin = text.find_first_not_of(' ', at + key.size());
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+TEST(Compare, SaysOfTheGradientWhatTheConversionCertified) {
+  const TemporaryDirectory directory;
+  const std::string raw = directory / "a_50x45x37_float32.raw";
+  const std::string nvdb = directory / "a.nvdb";
+  ASSERT_EQ(run_weir({"sample", "turbulence", "-o", raw}).exit_code, 0);
+  const CommandResult made =
+      run_weir({"convert", raw, "-o", nvdb, "--psnr", "40", "--spacing", "1,1,2", "--certify", "gradient", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const CommandResult compared = run_weir({"compare", raw, nvdb, "--spacing", "1,1,2", "--derived"});
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const std::string said = line_of(compared.out, "gradient");
+  EXPECT_EQ(said.substr(0, 13), "relative rms ");
+  EXPECT_EQ(line_of(run_weir({"inspect", nvdb}).out, "gradient"), said);
+  EXPECT_NE(made.err.find(", gradient: " + said + ','), std::string::npos) << made.err;
+  const auto certified = nlohmann::json::parse(made.out)["error"]["gradient"];
+  const auto report =
+      nlohmann::json::parse(run_weir({"compare", raw, nvdb, "--spacing", "1,1,2", "--derived", "--json"}).out);
+  EXPECT_EQ(certified, report["derived"]["gradient"]);
+  EXPECT_GT(certified["rms"], 0.0);
+}
+
+TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {
+  const Converted volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
+  const std::string table = volume.directory / "a.csv";
+  const auto spectrum = [&](const std::string& path) {
+    return run_weir({"compare", volume.raw, volume.nvdb, "--spectrum", path});
+  };
+  if (!has_fftw()) {
+    EXPECT_EQ(spectrum(table).err,
+              "weir: --spectrum: this weir was built without FFTW; build it with -DWEIR_FFTW=ON\n");
+    return;
+  }
+  EXPECT_EQ(spectrum("a.txt").err, "weir: --spectrum is \"a.txt\", it must be FILE.png, FILE.svg or FILE.csv\n");
+  EXPECT_EQ(spectrum(volume.directory / "none/a.csv").exit_code, 5);
+  const CommandResult drawn = spectrum(table);
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(line_of(drawn.out, "spectrum").ends_with("; 1 block of 40 x 30 x 20 voxels")) << drawn.out;
+  EXPECT_EQ(read_file(table).substr(0, 39), "wave_number,modes,source,decoded,error\n");
+}
+
+TEST(Compare, ErrorsOfVorticityAndDivergenceOfThreeComponents) {
+  const Converted first("turbulence", "20x18x17_float32", {"--psnr", "30"});
+  const Converted lossless("noise", "20x18x17_float32", {"--lossless"});
+  const CommandResult said = run_weir(
+      {"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, lossless.raw, lossless.nvdb});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(line_of(said.out, "vorticity").substr(0, 10), "rms error ");
+  EXPECT_EQ(line_of(said.out, "divergence").substr(0, 10), "rms error ");
+  EXPECT_TRUE(said.out.ends_with(" per world unit\n")) << said.out;
+  const Converted other("noise", "20x18x16_float32", {"--lossless"});
+  const CommandResult refused =
+      run_weir({"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, other.raw, other.nvdb});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(refused.err.substr(0, refused.err.find(": holds the voxels")), "weir: " + other.raw);
 }
 
 TEST(Compare, OneVoxelChangedSinceTheConversion) {

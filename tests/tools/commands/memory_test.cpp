@@ -71,5 +71,17 @@ TEST(Memory, SmallVolumesConvertInTheLeastCeiling) {
   }
 }
 
+// Of a file much larger than the ceiling, which is mapped for it.
+TEST(Memory, TheGradientIsCertifiedInTheLeastCeiling) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const TemporaryDirectory directory;
+  const std::string input = directory / "t_400x400x200_float32.raw";
+  ASSERT_EQ(run_weir({"sample", "turbulence", "-o", input}).exit_code, 0);
+  const CommandResult result = run_weir({"convert", input, "-o", directory / "out.nvdb", "--rate", "2", "--memory",
+                                         "64MiB", "--threads", "2", "--encoding", "float", "--certify", "gradient"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(result.peak_rss_bytes, 64 * kMiB);
+}
+
 }  // namespace
 }  // namespace weir::memory_test

@@ -140,6 +140,20 @@ TEST_F(SkipDone, ConvertsAgainWhatChanged) {
   EXPECT_FALSE(leaves_it()) << "a nanosecond";
 }
 
+TEST_F(SkipDone, GradientThatTheSidecarLacks_IsCertified_AndOneThatItHasIsKept) {
+  ASSERT_EQ(convert().exit_code, 0);
+  const std::string volume = read_file(output_);
+  const CommandResult again = convert({"--certify", "gradient"});
+  EXPECT_NE(again.err.find(output_ + ": converted again: its sidecar does not certify the gradient\n"),
+            std::string::npos)
+      << again.err;
+  const auto record = nlohmann::json::parse(again.out);
+  EXPECT_EQ(record["error"]["gradient"]["voxels"], 40 * 32 * 24);
+  EXPECT_EQ(read_file(output_), volume);
+  EXPECT_TRUE(leaves_it({"--certify", "gradient"}));
+  EXPECT_TRUE(leaves_it());
+}
+
 TEST_F(SkipDone, SourceReplacedWithTheSameSizeAndTime_IsConvertedAgain) {
   ASSERT_EQ(convert().exit_code, 0);
   const auto time = fs::last_write_time(source_);

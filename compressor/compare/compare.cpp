@@ -1,4 +1,4 @@
-#include "compressor/compare.h"
+#include "compressor/compare/compare.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>

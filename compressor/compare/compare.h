@@ -20,8 +20,10 @@ struct CompareOptions {
   std::uint64_t block_bytes = std::uint64_t{64} << 20U;  ///< float32 bytes of a block; two are held at a time
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(std::uint64_t done_bytes)> progress;  ///< float32 bytes of the source, of volume * 4
-  /// Called when some tens of MiB of the grid may have become resident; a mapped file lets them go.
+  /// Called, by any thread, when some tens of MiB of the grid may have become resident, or in stream_pairs
+  /// `page_bytes`; a mapped file lets them go.
   std::function<void()> release_pages;
+  std::uint64_t page_bytes = std::uint64_t{32} << 20U;
   Trace* trace = nullptr;  ///< gets a "read" and a "compare" of each block
 };
 

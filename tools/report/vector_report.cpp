@@ -1,0 +1,43 @@
+#include "tools/report/vector_report.h"
+
+#include "format/base/text.h"
+#include "tools/report/printable.h"
+
+namespace weir {
+namespace {
+
+nlohmann::ordered_json quantity_json(const QuantityError& error) {
+  using Json = nlohmann::ordered_json;
+  return {{"rms", error.rms},
+          {"source_rms", error.source_rms},
+          {"relative_rms", error.relative_rms ? Json(*error.relative_rms) : Json()},
+          {"max_abs", error.max_abs}};
+}
+
+// The divergence of many fields is next to nothing, and a share of that says little: both are named.
+std::string quantity_text(const QuantityError& error, const std::string& units) {
+  return cat("rms error ", short_number(error.rms), ", the source's rms ", short_number(error.source_rms),
+             ", largest error ", short_number(error.max_abs), units.empty() ? "" : " " + printable(units),
+             " per world unit\n");
+}
+
+}  // namespace
+
+nlohmann::ordered_json vector_json(const VectorErrors& errors) {
+  return {{"vorticity", quantity_json(errors.vorticity)},
+          {"divergence", quantity_json(errors.divergence)},
+          {"voxels", errors.voxels},
+          {"left_out", errors.left_out}};
+}
+
+std::string vector_text(const VectorErrors& errors, const std::string& units) {
+  std::string text = cat("vorticity  ", quantity_text(errors.vorticity, units), "divergence ",
+                         quantity_text(errors.divergence, units));
+  if (errors.left_out > 0) {
+    text += cat("           ", errors.left_out, errors.left_out == 1 ? " voxel" : " voxels",
+                " at or beside one that is not finite left out\n");
+  }
+  return text;
+}
+
+}  // namespace weir

@@ -1,0 +1,15 @@
+// The chart of a spectrum: how much of the source's power a file keeps, and how large its error is, by wave number.
+#pragma once
+
+#include <string>
+
+#include "tools/plot/plot_canvas.h"
+#include "tools/spectrum/power_spectrum.h"
+
+namespace weir {
+
+/// 900 x 600 pixels, both axes logarithmic: power of the file and of the error as a share of the source's, where that
+/// is not 0. Returns the bytes of a file. Throws as make_plot_canvas.
+std::string spectrum_chart(const PowerSpectrum& spectrum, const std::string& title, PlotFormat format);
+
+}  // namespace weir
