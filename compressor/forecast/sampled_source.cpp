@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compressor/leaf/bounds.h"
+#include "format/leaf/bounds.h"
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
 

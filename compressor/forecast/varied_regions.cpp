@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "compressor/leaf/bounds.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 
