@@ -178,6 +178,8 @@ const SourceFormat& format_of(const std::string& path) {
   return *format;
 }
 
+bool is_nanovdb(const std::string& path) { return format_of(path).name == "nanovdb"; }
+
 std::unique_ptr<VolumeSource> open_source(const std::string& named, const SourceOptions& options) {
   const std::string path = without_last_slash(named);
   auto source =

@@ -41,6 +41,8 @@ std::span<const SourceFormat> source_formats();
 /// The format that opens `path`, a file or a directory that holds a file of kDirectoryHeads. Throws Error(input) where
 /// it cannot be read at all.
 const SourceFormat& format_of(const std::string& path);
+/// Whether that is the format of NanoVDB files, whatever its name ends with. Throws as format_of.
+bool is_nanovdb(const std::string& path);
 
 /// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi.
 /// Throws what that format's open throws, and Error(usage) where an option is not for this format, or the

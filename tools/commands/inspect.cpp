@@ -265,7 +265,7 @@ Json to_json(const NvdbFile& file, const Inspection& found) {
 /// Prints what is found, or returns it as JSON.
 Json inspect(const std::string& path, const InspectArguments& arguments) {
   // A damaged .nvdb without its magic is still no raw file.
-  if (!path.ends_with(".nvdb") && format_of(path).name != "nvdb") {
+  if (!path.ends_with(".nvdb") && !is_nanovdb(path)) {
     if (!arguments.plot.empty()) {
       throw Error(ErrorKind::usage, cat("--plot is for .nvdb files, and ", path, " is none; convert it first"));
     }

@@ -27,7 +27,7 @@ constexpr const char* kRate = "8";
 bool is_source(const std::string& path) {
   if (path.ends_with(".nvdb") || !is_there(path)) return false;
   try {
-    return format_of(path).name != "nvdb";
+    return !is_nanovdb(path);
   } catch (const Error&) {  // a directory that is no input, as one of .nvdb files: find_viewed_files says what it is
     return false;
   }

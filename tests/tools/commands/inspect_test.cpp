@@ -46,6 +46,16 @@ TEST_F(Inspect, WorksWithoutSidecar) {
   EXPECT_EQ(bad.exit_code, 2);
 }
 
+TEST_F(Inspect, AFileOfAnotherSuffixIsTheGridThatItHolds) {
+  const std::string copy = directory_ / "result.grid";
+  fs::copy_file(volume_, copy);
+  const auto grid = [](const std::string& path) {
+    return nlohmann::json::parse(run_weir({"inspect", path, "--json", "--progress", "never"}).out)["grid"];
+  };
+  EXPECT_FALSE(grid(volume_).is_null());
+  EXPECT_EQ(grid(copy), grid(volume_));
+}
+
 TEST_F(Inspect, SeveralFilesAndPatterns_AreListedOneAfterTheOther) {
   fs::copy_file(volume_, directory_ / "step_0001.nvdb");
   fs::copy_file(volume_, directory_ / "step_0010.nvdb");

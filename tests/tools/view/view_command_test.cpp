@@ -60,6 +60,17 @@ TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
   EXPECT_EQ(run_weir({"view", directory_ / "broken.nvdb"}).exit_code, 3);
 }
 
+TEST_F(ViewCommandTest, AFileOfAnotherSuffixIsShownAsItIs) {
+  const std::string copy = directory_ / "result.grid";
+  std::filesystem::copy_file(volume_, copy);
+  ChildProcess child({WEIR_COMMAND, "view", copy, "--against", copy});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  EXPECT_TRUE(nlohmann::json::parse(get(port, "/api/state").second)["preview_of"].is_null());
+  ViewClient client(port);
+  EXPECT_TRUE(client.text("facts"));
+}
+
 TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
   const std::string folder = directory_ / "work";
   std::filesystem::create_directory(folder);

@@ -42,7 +42,7 @@ std::vector<std::string> find_steps(const StepChoice& choice) {
     throw input_error(input, cat("holds no .nvdb file; weir convert makes them of what it holds"));
   }
   for (const std::string& file : files) {
-    if (!file.ends_with(".nvdb") && fs::exists(file, none) && format_of(file).name != "nvdb") {
+    if (!file.ends_with(".nvdb") && fs::exists(file, none) && !is_nanovdb(file)) {
       throw Error(ErrorKind::usage,
                   cat(file, ": is no NanoVDB file; convert it first: weir convert ", shell_word(file)));
     }
