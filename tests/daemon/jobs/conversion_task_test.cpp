@@ -31,7 +31,8 @@ TEST(ConversionTask, SourceBelowTheWatchedDirectory_LiesInTheWatch) {
 
 TEST(ConversionTask, TakesItsValuesFromServiceWatchAndJob) {
   ServiceConfig service;
-  service.memory = kDaemonMemory + (std::uint64_t{256} << 20U);
+  service.memory = kDaemonMemory + (std::uint64_t{256 + 160} << 20U);
+  service.viewer_memory = std::uint64_t{160} << 20U;
   service.jobs = 2;
   service.bandwidth = 1001;
   service.threads = 3;
