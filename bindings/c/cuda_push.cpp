@@ -125,11 +125,12 @@ class ResidentInFlight : public DeviceInFlight {
   std::unique_ptr<VolumeSource> whole_;
 };
 
-// Whether a device that has the volume can survey and encode it: one was chosen for that, and float32 is what it takes.
+// Whether a device that has the volume can survey and encode it: one was chosen for that, there is memory for what it
+// finds, and float32 is what it takes.
 bool may_be_resident(const weir_push& push) {
   const SourceInfo& info = push.volume->info();
-  return push.coder && !push.filled && info.type == ScalarType::float32 && info.values_as_stored() &&
-         !info.mapping.marks_missing();
+  return push.coder && push.memory >= kLeastMemoryOfDevice && !push.filled && info.type == ScalarType::float32 &&
+         info.values_as_stored() && !info.mapping.marks_missing();
 }
 
 // Slabs of several threads may be the first.

@@ -53,6 +53,7 @@ struct weir_push {
 
   weir::c::Callbacks callbacks;
   weir::Notice notice;
+  std::uint64_t memory = 0;  // of the options
   std::unique_ptr<weir::FileSystem> files;
   std::unique_ptr<weir::BlockCoder> coder;
   std::unique_ptr<weir::PushedVolume> volume;

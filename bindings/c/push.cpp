@@ -23,6 +23,7 @@ std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_conv
       choose_coder(conversion.backend, conversion.encoding == Encoding::packed, conversion.memory, control.notice);
   control.coder = made->coder.get();
   made->notice = control.notice;
+  made->memory = conversion.memory;
   made->volume = std::make_unique<PushedVolume>(std::move(info), conversion, control, *made->files);
   return made;
 }

@@ -52,6 +52,16 @@ bool all_finite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
+BlockConstants constants_of(const test::BlockVolume& volume) {
+  BlockConstants constants;
+  constants.minimum = *std::min_element(volume.values.begin(), volume.values.end());
+  constants.maximum = *std::max_element(volume.values.begin(), volume.values.end());
+  constants.below_one = kBelowOne;
+  constants.below_more = kBelowMore;
+  constants.tables = built_in_tables();
+  return constants;
+}
+
 void expect_no_failure(const Error& error) { ADD_FAILURE() << error.what(); }
 
 TEST(DeviceCoder, FiguresAndCostsAreThoseOfTheHost) {
@@ -99,12 +109,7 @@ TEST(DeviceCoder, StreamsAndDecodedValuesAreThoseOfTheHost) {
   for (const test::BlockVolume& volume : test::block_volumes()) {
     SCOPED_TRACE(volume.name);
     const Blocks blocks(volume);
-    BlockConstants constants;
-    constants.minimum = *std::min_element(volume.values.begin(), volume.values.end());
-    constants.maximum = *std::max_element(volume.values.begin(), volume.values.end());
-    constants.below_one = kBelowOne;
-    constants.below_more = kBelowMore;
-    constants.tables = built_in_tables();
+    BlockConstants constants = constants_of(volume);
     const auto loaded = coder->load(volume.values, blocks.voxels, blocks.blocks);
     ASSERT_NE(loaded, nullptr);
     for (std::int32_t rung = 1; rung < kLadderRungs; rung += 2) {
@@ -205,12 +210,7 @@ TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost)
     TransformBlock transform;
     std::vector<StreamAsk> asks;
     std::uint32_t offset = 0;
-    BlockConstants constants;
-    constants.minimum = *std::min_element(volume.values.begin(), volume.values.end());
-    constants.maximum = *std::max_element(volume.values.begin(), volume.values.end());
-    constants.below_one = kBelowOne;
-    constants.below_more = kBelowMore;
-    constants.tables = built_in_tables();
+    BlockConstants constants = constants_of(volume);
     constants.coarsest = kMostStep;
     for (std::int64_t b = 0; b < count; ++b) {
       const Values own = blocks.of(b);

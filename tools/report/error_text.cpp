@@ -21,7 +21,7 @@ std::string error_text(const Sidecar& sidecar, const Sidecar::CertifiedError& er
 
 std::string gradient_text(const Sidecar::GradientError& gradient, const std::string& units) {
   std::string text = gradient.relative_rms ? cat("relative rms ", short_number(*gradient.relative_rms), ", ") : "";
-  text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : " " + printable(units),
+  text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : cat(" ", printable(units)),
               " per world unit");
   if (gradient.left_out == 0) return text;
   return cat(text, "; ", gradient.left_out, gradient.left_out == 1 ? " voxel" : " voxels",
