@@ -139,9 +139,10 @@ def main():
     parser.add_argument("--mode", default="dvr")
     parser.add_argument("--edge", type=int, default=512)
     parser.add_argument("--seconds", type=float, default=10)
-    parser.add_argument("more", nargs="*", metavar="OPTION", help="options of weir view, after --")
-    options = parser.parse_args()
-    server = subprocess.Popen([options.weir, "view", options.file, "--listen", "127.0.0.1:0", *options.more],
+    at = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+    options = parser.parse_args(sys.argv[1:at])
+    server = subprocess.Popen([options.weir, "view", options.file, "--listen", "127.0.0.1:0", "--viewers", str(options.clients),
+                               *sys.argv[at + 1:]],
                               stdout=subprocess.PIPE, text=True)
     try:
         line = server.stdout.readline()

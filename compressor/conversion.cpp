@@ -70,7 +70,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   say_axes(info, control.notice);
   const Box domain = info.domain();
   const std::size_t processors = processors_or_all(options.processors);
-  const std::uint64_t coding = control.coder == nullptr ? 0 : control.coder->host_bytes();
+  BlockCoder* const coder = source.resident() == nullptr ? control.coder : nullptr;
+  const std::uint64_t coding = coder == nullptr ? 0 : coder->host_bytes();
   const std::uint64_t resident = held + source.working_bytes() + coding;
   std::size_t threads =
       choose_threads(options.threads, processors, options.memory, resident, domain, region_bytes(options));
@@ -125,7 +126,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
       ladders->near_everywhere = state.near_rungs;
       ladders->window = state.window();
     }
-    ladders->coder = control.coder;
+    ladders->coder = coder;
   }
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));

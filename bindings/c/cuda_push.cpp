@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -70,67 +72,110 @@ class SlabsInFlight : public DeviceInFlight {
 // All of a volume on its device, where it is surveyed and encoded.
 class ResidentInFlight : public DeviceInFlight {
  public:
-  /// Of slabs that are copied.
-  explicit ResidentInFlight(weir_push& push) : push_(push), planes_(std::in_place, push.volume->info().extent) {}
-  /// Of `values` of the current device, which stay as they are.
-  ResidentInFlight(weir_push& push, const float* values) : push_(push), given_(values) {
-    check_cuda(cudaGetDevice(&device_), "asking for the current device");
-    push.volume->expect(0, push.volume->info().extent.z);
+  /// Of slabs that are copied to the current device.
+  explicit ResidentInFlight(weir_push& push) : volume_(*push.volume), planes_(std::in_place, volume_.info().extent) {
+    take(push, planes_->device(), planes_->values());
+  }
+  /// Of `values` of `device`, which stay as they are.
+  ResidentInFlight(weir_push& push, int device, const float* values) : volume_(*push.volume) {
+    take(push, device, values);
+    volume_.expect(0, volume_.info().extent.z);
   }
 
   void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) override {
+    const Adding adding(adding_);
     check_slab(values, planes_->device());
-    push_.volume->expect(z0, nz);
-    ending_with_failures(*push_.volume, [&] { planes_->add(z0, nz, values, stream); });
+    volume_.expect(z0, nz);
+    ending_with_failures(volume_, [&] { planes_->add(z0, nz, values, stream); });
   }
 
   bool add(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) override {
+    const Adding adding(adding_);
     required(data, "data");
-    push_.volume->expect(z0, nz);
-    const SourceInfo& info = push_.volume->info();
+    const SourceInfo& info = volume_.info();
     DenseArray array;
     array.data = data;
     array.extent = {info.extent.x, info.extent.y, nz};
     array.stride = stride;
-    ending_with_failures(*push_.volume, [&] {
-      const std::unique_ptr<VolumeSource> slab = open_array(array);
-      std::vector<float> plane(static_cast<std::size_t>(info.extent.x * info.extent.y));
-      for (std::int64_t z = 0; z < nz; ++z) {
-        slab->read({{0, 0, z}, {info.extent.x, info.extent.y, z + 1}}, plane);
-        planes_->add(z0 + z, 1, plane.data());
-      }
-    });
+    const std::unique_ptr<VolumeSource> slab = open_array(array);
+    volume_.expect(z0, nz);
+    ending_with_failures(volume_, [&] { copy_rows(*slab, z0, nz); });
     return true;
   }
 
   void finish() override {
-    ending_with_failures(*push_.volume, [&] {
-      if (planes_) planes_->finish();
-      if (whole_) return;
-      const SourceInfo& info = push_.volume->info();
-      whole_ = open_resident(
-          make_resident_volume(planes_ ? planes_->device() : device_, planes_ ? planes_->values() : given_,
-                               info.domain(), say_device_failure(push_.notice)),
-          info);
-    });
+    if (adding_ > 0) {
+      throw Error(ErrorKind::usage,
+                  cat(volume_.info().path, ": slabs are still being taken; end once every call has returned"));
+    }
+    if (planes_) ending_with_failures(volume_, [&] { planes_->finish(); });
   }
 
   VolumeSource* whole() override { return whole_.get(); }
 
  private:
-  weir_push& push_;
+  // A slab from the call's beginning to its return.
+  class Adding {
+   public:
+    explicit Adding(std::atomic<int>& count) : count_(count) { ++count_; }
+    ~Adding() { --count_; }
+    Adding(const Adding&) = delete;
+    Adding& operator=(const Adding&) = delete;
+
+   private:
+    std::atomic<int>& count_;
+  };
+
+  void take(weir_push& push, int device, const float* values) {
+    const SourceInfo& info = volume_.info();
+    whole_ = open_resident(make_resident_volume(device, values, info.domain(), say_device_failure(push.notice)), info);
+  }
+
+  // Some rows at a time.
+  void copy_rows(VolumeSource& slab, std::int64_t z0, std::int64_t nz) {
+    const Index3& extent = volume_.info().extent;
+    constexpr std::int64_t kPieceValues = std::int64_t{1} << 20U;
+    const std::int64_t rows = std::clamp<std::int64_t>(kPieceValues / extent.x, 1, extent.y);
+    std::vector<float> piece;
+    for (std::int64_t z = 0; z < nz; ++z) {
+      for (std::int64_t y = 0; y < extent.y; y += rows) {
+        const Box box{{0, y, z}, {extent.x, std::min(y + rows, extent.y), z + 1}};
+        piece.resize(static_cast<std::size_t>(box.voxels()));
+        slab.read(box, piece);
+        planes_->add({0, y, z0 + z}, piece.data(), piece.size());
+      }
+    }
+  }
+
+  PushedVolume& volume_;
   std::optional<ResidentPlanes> planes_;
-  const float* given_ = nullptr;
-  int device_ = 0;
   std::unique_ptr<VolumeSource> whole_;
+  std::atomic<int> adding_{0};
 };
 
 // Whether a device that has the volume can survey and encode it: one was chosen for that, there is memory for what it
 // finds, and float32 is what it takes.
 bool may_be_resident(const weir_push& push) {
   const SourceInfo& info = push.volume->info();
-  return push.coder && push.memory >= kLeastMemoryOfDevice && !push.filled && info.type == ScalarType::float32 &&
-         info.values_as_stored() && !info.mapping.marks_missing();
+  const Index3& extent = info.extent;
+  return push.coder && push.memory >= kLeastMemoryOfDevice && push.volume->has_room_for(kResidentHostBytes) &&
+         !push.filled && info.type == ScalarType::float32 && info.values_as_stored() && !info.mapping.marks_missing() &&
+         std::max({extent.x, extent.y, extent.z}) <= kLongestAxis;
+}
+
+// What `make` makes; null, which is said, where the device has no room for it.
+template <typename Make>
+std::unique_ptr<DeviceInFlight> try_resident(const weir_push& push, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io) throw;
+    if (push.notice) {
+      push.notice(
+          cat("the volume does not stay on the device (", error.what(), "); it comes to the host, to the same bytes"));
+    }
+    return nullptr;
+  }
 }
 
 // Slabs of several threads may be the first.
@@ -140,10 +185,9 @@ DeviceInFlight& in_flight(weir_push& push) {
     const SourceInfo& info = push.volume->info();
     const auto bytes = static_cast<std::uint64_t>(volume(info.extent)) * sizeof(float);
     if (may_be_resident(push) && push.device_memory >= bytes) {
-      push.in_flight = std::make_unique<ResidentInFlight>(push);
-    } else {
-      push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, push.device_memory);
+      push.in_flight = try_resident(push, [&] { return std::make_unique<ResidentInFlight>(push); });
     }
+    if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, push.device_memory);
   }
   return static_cast<DeviceInFlight&>(*push.in_flight);
 }
@@ -165,13 +209,14 @@ void push_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* da
 bool take_in_place(weir_push& push, const void* data, const std::int64_t* stride, cudaStream_t stream) {
   if (data == nullptr || !may_be_resident(push) || !is_device_memory(data)) return false;
   const DeviceValues values{static_cast<const std::byte*>(data), slab_stride(*push.volume, stride), sizeof(float)};
-  if (!without_gaps(values, push.volume->info().extent)) return false;
   int device = 0;
   check_cuda(cudaGetDevice(&device), "asking for the current device");
+  if (!without_gaps(values, push.volume->info().extent) || !lies_on(data, device)) return false;
   check_slab(values, device);
   check_cuda(cudaStreamSynchronize(stream), "work before a volume");
-  push.in_flight = std::make_unique<ResidentInFlight>(push, reinterpret_cast<const float*>(data));
-  return true;
+  push.in_flight = try_resident(
+      push, [&] { return std::make_unique<ResidentInFlight>(push, device, static_cast<const float*>(data)); });
+  return push.in_flight != nullptr;
 }
 
 }  // namespace

@@ -62,8 +62,10 @@ weir_status weir_push_begin(const weir_volume* volume, const weir_convert_option
 
 weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* data, const int64_t stride[3],
                            weir_error* error) {
-  return guarded(error,
-                 [&] { push_host_slab(*required(push, "push"), z0, nz, data, slab_stride(*push->volume, stride)); });
+  return guarded(error, [&] {
+    weir_push& taken = *required(push, "push");
+    push_host_slab(taken, z0, nz, data, slab_stride(*taken.volume, stride));
+  });
 }
 
 weir_status weir_push_end(weir_push* push, weir_error* error) {

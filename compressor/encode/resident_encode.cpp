@@ -114,21 +114,17 @@ class ResidentEncode {
     const std::vector<Index3>& left = part.left.leaves();
     if (left.empty()) return;
     part.left.values().resize(kLeafVoxels * left.size());
-    float* to = part.left.values().data();
     if (part.blocks) {
       std::vector<std::uint32_t> numbers;
       for (const Index3& leaf : left) {
         numbers.push_back(static_cast<std::uint32_t>(linear_index(leaf - part.box.lo, part.box.extent())));
       }
       if (const auto values = part.blocks->values(numbers)) {
-        std::copy(values->begin(), values->end(), to);
+        std::copy(values->begin(), values->end(), part.left.values().begin());
         return;
       }
     }
-    for (const Index3& leaf : left) {
-      read_block(source_, target_.tree.leaves, leaf, to);
-      to += kLeafVoxels;
-    }
+    read_blocks(source_, target_.tree.leaves, part.box, left, part.left.values());
   }
 
   ResidentVolume& resident_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "format/base/simd.h"
 
@@ -56,14 +57,20 @@ std::span<const float> in_domain_values(const float* block, const Box& node, con
   return std::span(values).first(count);
 }
 
-void read_block(VolumeSource& source, const NodeLattice& leaves, const Index3& leaf, float* block) {
-  const Box inside = leaves.voxels(leaf);
-  LeafValues values;
-  LeafValues ordered;
-  const auto count = static_cast<std::size_t>(inside.voxels());
-  source.read(inside, std::span(values).first(count));
-  block_values(std::span(values).first(count), leaves.node_box(leaf), inside, ordered);
-  std::copy(ordered.begin(), ordered.end(), block);
+void read_blocks(VolumeSource& source, const NodeLattice& leaves, const Box& leaf_box, std::span<const Index3> wanted,
+                 std::span<float> blocks) {
+  const Box voxels =
+      intersect({leaves.node_box(leaf_box.lo).lo, leaves.node_box(leaf_box.hi - Index3{1, 1, 1}).hi}, leaves.domain);
+  std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
+  source.read(voxels, values);
+  LeafValues block;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const Box node = leaves.node_box(wanted[i]);
+    const Box inside = leaves.voxels(wanted[i]);
+    gather_leaf(values, voxels, node, inside, 0, block);
+    extend_outside(node, inside, block);
+    std::copy(block.begin(), block.end(), blocks.begin() + static_cast<std::ptrdiff_t>(kLeafVoxels * i));
+  }
 }
 
 }  // namespace weir

@@ -16,9 +16,10 @@ void block_values(std::span<const float> values, const Box& node, const Box& ins
 /// The other way round: the in-domain values of a block, x fastest, in `values`.
 std::span<const float> in_domain_values(const float* block, const Box& node, const Box& inside, LeafValues& values);
 
-/// Reads all values of one block out of its source, in the order of a leaf; those outside the volume as by
-/// extend_outside. Throws as VolumeSource::read.
-void read_block(VolumeSource& source, const NodeLattice& leaves, const Index3& leaf, float* block);
+/// Reads the values of some blocks of a box out of their source, 512 of each in the order of a leaf; those outside the
+/// volume as by extend_outside. The box is read once. Throws as VolumeSource::read.
+void read_blocks(VolumeSource& source, const NodeLattice& leaves, const Box& leaf_box, std::span<const Index3> wanted,
+                 std::span<float> blocks);
 
 /// Gives voxels outside `inside` the value of the nearest one inside: the smoothest way to go on that needs no bounds.
 void extend_outside(const Box& node, const Box& inside, LeafValues& block);

@@ -152,6 +152,18 @@ class PushedVolume::State {
     }
   }
 
+  bool has_room_for(std::uint64_t working_bytes) const {
+    try {
+      const std::size_t threads =
+          choose_threads(options_.threads, processors_or_all(options_.processors), options_.memory, working_bytes,
+                         info_.domain(), region_bytes(options_));
+      plan_memory(options_.memory, working_bytes, threads, info_.domain(), region_bytes(options_));
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
   const SourceInfo& info() const { return info_; }
 
  private:
@@ -343,6 +355,8 @@ void PushedVolume::fill(std::int64_t z0, std::int64_t nz, const void* data, cons
 }
 
 void PushedVolume::fail(const Error& error) { state_->fail(error); }
+
+bool PushedVolume::has_room_for(std::uint64_t working_bytes) const { return state_->has_room_for(working_bytes); }
 
 const SourceInfo& PushedVolume::info() const { return state_->info(); }
 

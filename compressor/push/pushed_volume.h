@@ -59,6 +59,9 @@ class PushedVolume {
   /// answer of every later call, and nothing is left on the disk.
   void fail(const Error& error);
 
+  /// Whether there is memory for the end of a volume that comes with it, whose source takes that much.
+  bool has_room_for(std::uint64_t working_bytes) const;
+
   /// Extent, type and path as the push was begun.
   const SourceInfo& info() const;
 

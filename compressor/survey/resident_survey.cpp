@@ -22,9 +22,11 @@ constexpr std::int64_t kMostBlocks = 4096;
 
 // Boxes of lattice positions that cover all of it: rows, or parts of one.
 std::vector<Box> leaf_boxes(const Index3& count) {
-  const Index3 most{std::min(count.x, kMostBlocks), std::clamp<std::int64_t>(kMostBlocks / count.x, 1, count.y), 1};
+  const std::int64_t x_most = std::min(count.x, kMostBlocks);
+  const std::int64_t y_most = std::clamp<std::int64_t>(kMostBlocks / x_most, 1, count.y);
+  const Index3 most{x_most, y_most, std::clamp<std::int64_t>(kMostBlocks / (x_most * y_most), 1, count.z)};
   std::vector<Box> boxes;
-  for (std::int64_t z = 0; z < count.z; ++z) {
+  for (std::int64_t z = 0; z < count.z; z += most.z) {
     for (std::int64_t y = 0; y < count.y; y += most.y) {
       for (std::int64_t x = 0; x < count.x; x += most.x) {
         const Index3 lo{x, y, z};
@@ -131,9 +133,9 @@ class ResidentSurvey {
       return;
     }
     begun.read.resize(kLeafVoxels * left.size());
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      read_block(source_, leaves_, begun.leaves.leaf(left[k]), &begun.read[kLeafVoxels * k]);
-    }
+    std::vector<Index3> leaves;
+    for (const std::uint32_t at : left) leaves.push_back(begun.leaves.leaf(at));
+    read_blocks(source_, leaves_, begun.leaves.leaf_box, leaves, begun.read);
     begun.left = begun.read;
   }
 

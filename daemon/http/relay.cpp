@@ -31,15 +31,12 @@ Relay::Relay(Client client, std::string request, Ended ended)
       ended_(std::move(ended)) {}
 
 void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit) {
-  if (limit) {
-    limit_.expires_after(*limit);
-    limit_.async_wait([self = shared_from_this()](const error_code& error) {
-      if (!error) self->end();
-    });
-  }
+  if (limit) end_within(*limit);
   server_.async_connect(server, [self = shared_from_this()](const error_code& error) {
     if (self->closed_) return;
     if (error) return self->refuse();
+    error_code ignored;
+    self->server_.set_option(asio::ip::tcp::no_delay(true), ignored);
     asio::async_write(self->server_, asio::buffer(self->request_), [self](const error_code& failure, std::size_t) {
       if (self->closed_) return;
       if (failure) return self->refuse();
@@ -66,12 +63,20 @@ void Relay::pump(From& from, To& to, Piece& piece) {
                        });
 }
 
-// One side has said all, and may still listen.
+// One side has said all, and may still listen, but not for long: a client that is gone says nothing.
 template <typename To>
 void Relay::finish(To& to) {
   if (++finished_ == 2) return end();
   error_code ignored;
   to.shutdown(asio::socket_base::shutdown_send, ignored);
+  if (limit_.expiry() <= std::chrono::steady_clock::now()) end_within(kHalfClosed);
+}
+
+void Relay::end_within(std::chrono::milliseconds limit) {
+  limit_.expires_after(limit);
+  limit_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (!error && !self->closed_) self->end();
+  });
 }
 
 void Relay::refuse() {

@@ -32,6 +32,7 @@ class Relay : public std::enable_shared_from_this<Relay> {
 
  private:
   static constexpr std::size_t kPieceBytes = 32 << 10;
+  static constexpr std::chrono::seconds kHalfClosed{10};  // after one side has said all
   using Piece = std::array<char, kPieceBytes>;
 
   template <typename From, typename To>
@@ -39,6 +40,7 @@ class Relay : public std::enable_shared_from_this<Relay> {
   template <typename To>
   void finish(To& to);
   void refuse();
+  void end_within(std::chrono::milliseconds limit);
   void end();
 
   Client client_;

@@ -60,7 +60,10 @@ std::optional<HttpResponse> refuse_now(const AccessRules& rules, const HttpReque
   const bool file = is_page_file(request);
   if (auto refused = refuse_access(rules, request, file)) return refused;
   if (viewer.state != ViewerState::ready) {
-    return file ? page_without_viewer(viewer) : error_response(503, why_none(viewer));
+    if (!file) return error_response(503, why_none(viewer));
+    ViewerView told = viewer;
+    if (refuse(rules, request, false)) told.reason.clear();  // names files, which are for who has the token
+    return page_without_viewer(told);
   }
   if (viewer.connections >= kMostViewerConnections) {
     return error_response(503,

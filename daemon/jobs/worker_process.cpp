@@ -229,10 +229,15 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (const Ended ended = std::exchange(ended_, nullptr)) ended(end);
   }
 
+  // A child that a hanging file system holds does not end: after a while it is left to whoever reaps the daemon's own.
   void kill_and_reap() {
     if (pid_ <= 0) return;
     ::kill(pid_, SIGKILL);
-    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    constexpr int kTries = 1000;  // of 2 ms
+    for (int i = 0; i < kTries; ++i) {
+      const pid_t reaped = ::waitpid(pid_, nullptr, WNOHANG);
+      if (reaped == pid_ || (reaped < 0 && errno != EINTR)) break;
+      ::usleep(2000);
     }
     pid_ = -1;
   }

@@ -37,6 +37,9 @@ ViewerShares shares_of(std::uint64_t memory) {
   return {half, std::min(kMostPixels, half / (kDrawnPixelBytes + (kViewers - 1) * kWaitingPixelBytes))};
 }
 
+// Whether a timer that has fired was not set anew since: its handler may have been waiting.
+bool is_over(const boost::asio::steady_timer& timer) { return timer.expiry() <= std::chrono::steady_clock::now(); }
+
 }  // namespace
 
 JobViewer::JobViewer(boost::asio::io_context& io, const EventLog& log, std::string program, JobViewerTimes times)
@@ -58,9 +61,7 @@ JobViewer::Opened JobViewer::open(const std::string& file, bool force) {
     if (state_ == ViewerState::ready) end_when_idle();
     return Opened::made;
   }
-  const bool looked_at =
-      std::any_of(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; });
-  if (looked_at && !force) return Opened::taken;
+  if (looked_at() && !force) return Opened::taken;
   start(file);
   return Opened::made;
 }
@@ -88,7 +89,8 @@ void JobViewer::start(const std::string& file) {
   log_.info("viewer", {{"file", file}});
   wait_.expires_after(times_.start);
   wait_.async_wait([this](error_code error) {
-    if (!error) fail(cat("the viewer did not answer within ", times_.start.count() / 1000, " s"));
+    if (!error && state_ == ViewerState::starting && is_over(wait_))
+      fail(cat("the viewer did not answer within ", times_.start.count() / 1000, " s"));
   });
   look_at_memory();
 }
@@ -126,18 +128,22 @@ void JobViewer::stop() {
   token_.clear();
 }
 
+bool JobViewer::looked_at() const {
+  return std::any_of(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; });
+}
+
 void JobViewer::end() {
   over_ = true;
   stop();
 }
 
-// From now on, unless somebody is connected or comes back.
+// From now on, unless somebody looks or comes back. Files of the page alone keep nothing alive.
 void JobViewer::end_when_idle() {
   wait_.cancel();
-  if (!connections_.empty()) return;
+  if (looked_at()) return;
   wait_.expires_after(times_.idle);
   wait_.async_wait([this](error_code error) {
-    if (error || !connections_.empty()) return;
+    if (error || state_ != ViewerState::ready || !is_over(wait_) || looked_at()) return;
     stop();
     log_.info("viewer-ended", {{"file", file_}, {"reason", "nobody was connected"}});
   });
@@ -160,13 +166,14 @@ void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
   const auto relay = std::make_shared<Relay>(std::move(client), forwarded_request(request, token_),
                                              [this](Relay& over) { remove(over); });
   connections_.push_back({relay, looks});
-  wait_.cancel();
+  if (looks) wait_.cancel();
   relay->start(address_, looks ? std::nullopt : std::optional(times_.page));
 }
 
 void JobViewer::remove(const Relay& relay) {
+  const bool looked = looked_at();
   std::erase_if(connections_, [&](const Connection& connection) { return connection.relay.get() == &relay; });
-  if (state_ == ViewerState::ready) end_when_idle();
+  if (looked && state_ == ViewerState::ready) end_when_idle();
 }
 
 ViewerView JobViewer::view() const {

@@ -24,7 +24,7 @@ namespace weir {
 
 struct JobViewerTimes {
   std::chrono::milliseconds start{60'000};  ///< until it answers
-  std::chrono::milliseconds idle{300'000};  ///< without a connection
+  std::chrono::milliseconds idle{300'000};  ///< while nobody looks
   std::chrono::milliseconds look{1'000};    ///< between two looks at its memory
   std::chrono::milliseconds page{30'000};   ///< for one file of its page to be taken
 };
@@ -64,6 +64,7 @@ class JobViewer {
   void end_when_idle();
   void look_at_memory();
   void remove(const Relay& relay);
+  bool looked_at() const;
 
   boost::asio::io_context& io_;
   const EventLog& log_;

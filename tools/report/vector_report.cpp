@@ -7,17 +7,16 @@ namespace weir {
 namespace {
 
 nlohmann::ordered_json quantity_json(const QuantityError& error) {
-  using Json = nlohmann::ordered_json;
-  return {{"rms", error.rms},
-          {"source_rms", error.source_rms},
-          {"relative_rms", error.relative_rms ? Json(*error.relative_rms) : Json()},
-          {"max_abs", error.max_abs}};
+  nlohmann::ordered_json json{
+      {"rms", error.rms}, {"source_rms", error.source_rms}, {"relative_rms", nullptr}, {"max_abs", error.max_abs}};
+  if (error.relative_rms) json["relative_rms"] = *error.relative_rms;
+  return json;
 }
 
 // The divergence of many fields is next to nothing, and a share of that says little: both are named.
 std::string quantity_text(const QuantityError& error, const std::string& units) {
   return cat("rms error ", short_number(error.rms), ", the source's rms ", short_number(error.source_rms),
-             ", largest error ", short_number(error.max_abs), units.empty() ? "" : " " + printable(units),
+             ", largest error ", short_number(error.max_abs), units.empty() ? "" : cat(" ", printable(units)),
              " per world unit\n");
 }
 

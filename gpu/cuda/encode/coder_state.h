@@ -17,6 +17,7 @@
 #include "gpu/cuda/encode/encoder_tables.h"
 #include "gpu/cuda/encode/reused_memory.h"
 #include "gpu/cuda/push/background_stream.h"
+#include "gpu/cuda/runtime/current_device.h"
 #include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
@@ -68,7 +69,7 @@ struct CoderState {
   auto attempt(const Call& call) -> decltype(call()) {
     if (broken) return {};
     try {
-      check_cuda(cudaSetDevice(device), "choosing the device");
+      const KeptDevice kept(device);
       return call();
     } catch (const Error& error) {
       fail(error);

@@ -1,6 +1,5 @@
 #include "gpu/cuda/encode/device_blocks.h"
 
-#include <limits>
 #include <utility>
 
 #include "gpu/cuda/encode/launch.h"
@@ -101,7 +100,7 @@ std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
   const Index3 extent = voxels.extent();
   const Index3 corner = blocks.lo - voxels.lo;
   const Index3 count = blocks.extent();
-  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max() / 8;
+  constexpr std::int64_t kMost = kLongestAxis;
   const std::int64_t all[3][3] = {
       {extent.x, corner.x, count.x}, {extent.y, corner.y, count.y}, {extent.z, corner.z, count.z}};
   for (int axis = 0; axis < 3; ++axis) {

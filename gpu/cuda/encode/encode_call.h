@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "format/base/host_device.h"
 #include "format/packed/block_coder.h"
@@ -11,6 +12,9 @@
 namespace weir {
 
 struct DigestTables;
+
+/// Voxels along an axis that the device's whole numbers take.
+inline constexpr std::int64_t kLongestAxis = std::numeric_limits<std::int32_t>::max() / 8;
 
 /// Values on the device, x fastest, and the blocks that they are the values of.
 struct BlockBox {

@@ -13,16 +13,12 @@
 namespace weir {
 namespace {
 
-// Boxes that are worked on at once.
-constexpr std::size_t kMostOpen = 8;
-// Of each, at most: what a survey finds of 4,096 blocks, or their streams, and the values of as many that the host asks
-// for.
-constexpr std::uint64_t kOpenHostBytes = std::uint64_t{40} << 20U;
-
 class DeviceVolume final : public ResidentVolume {
  public:
   DeviceVolume(int device, const float* values, const Box& voxels, std::function<void(const Error&)> failed)
-      : state_(std::make_shared<CoderState>(device, kMostOpen, std::move(failed))), values_(values), voxels_(voxels) {}
+      : state_(std::make_shared<CoderState>(device, kMostResidentBoxes, std::move(failed))),
+        values_(values),
+        voxels_(voxels) {}
 
   const Box& voxels() const override { return voxels_; }
 
@@ -37,7 +33,7 @@ class DeviceVolume final : public ResidentVolume {
     });
   }
 
-  std::size_t most_open() const override { return kMostOpen; }
+  std::size_t most_open() const override { return kMostResidentBoxes; }
 
   std::optional<std::vector<std::uint64_t>> count(int exponent, double base, std::size_t bins) override {
     if (bins > kMostCountedBins) return std::nullopt;
@@ -54,7 +50,7 @@ class DeviceVolume final : public ResidentVolume {
 
   void read(const Box& box, std::span<float> values) override {
     const char* const what = "copying values from the device";
-    check_cuda(cudaSetDevice(state_->device), "choosing the device");
+    const KeptDevice kept(state_->device);
     const Index3 extent = voxels_.extent();
     const Index3 from = box.lo - voxels_.lo;
     const Index3 size = box.extent();
@@ -69,7 +65,7 @@ class DeviceVolume final : public ResidentVolume {
     check_cuda(cudaStreamSynchronize(cudaStreamPerThread), what);
   }
 
-  std::uint64_t host_bytes() const override { return kMostOpen * kOpenHostBytes; }
+  std::uint64_t host_bytes() const override { return kResidentHostBytes; }
 
  private:
   BlockPlace place_of(const Box& blocks) const {
@@ -91,6 +87,7 @@ class DeviceVolume final : public ResidentVolume {
 
 std::unique_ptr<ResidentVolume> make_resident_volume(int device, const float* values, const Box& voxels,
                                                      std::function<void(const Error&)> failed) {
+  const KeptDevice kept;
   use_device(device);
   return std::make_unique<DeviceVolume>(device, values, voxels, std::move(failed));
 }

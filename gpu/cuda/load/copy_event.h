@@ -27,6 +27,8 @@ class CopyEvent {
   /// Waits until what was recorded is done; returns at once where nothing was. Throws Error(io), beginning with `what`,
   /// where a copy failed.
   void wait(std::string_view what = "copying to the device") const { check_cuda(cudaEventSynchronize(event_), what); }
+  /// Whether it is done, or nothing was recorded; what failed is for wait() to say.
+  bool done() const { return cudaEventQuery(event_) == cudaSuccess; }
 
  private:
   cudaEvent_t event_ = nullptr;

@@ -21,6 +21,13 @@ bool without_gaps(const DeviceValues& values, const Index3& extent) {
          values.stride[2] == bytes * extent.x * extent.y;
 }
 
+bool lies_on(const void* address, int device) {
+  cudaPointerAttributes attributes{};
+  check_cuda(cudaPointerGetAttributes(&attributes, address), "asking where a volume's values are");
+  return attributes.type == cudaMemoryTypeManaged ||
+         (attributes.type == cudaMemoryTypeDevice && attributes.device == device);
+}
+
 bool is_device_memory(const void* address) {
   if (device_count() == 0) return false;
   cudaPointerAttributes attributes{};

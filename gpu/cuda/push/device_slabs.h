@@ -38,6 +38,9 @@ bool without_gaps(const DeviceValues& values, const Index3& extent);
 /// `device`, which the first slab came from, is current.
 void check_slab(const DeviceValues& values, int device);
 
+/// Whether kernels of `device` can read what is at `address`, as memory of that device or managed. Throws Error(io).
+bool lies_on(const void* address, int device);
+
 class DeviceSlabs {
  public:
   /// Takes planes [z0, z0 + nz), x fastest, without gaps. Called by one thread, whose exception ends the object's work.

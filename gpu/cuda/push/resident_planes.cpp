@@ -1,7 +1,10 @@
 #include "gpu/cuda/push/resident_planes.h"
 
+#include <utility>
+
 #include "gpu/cuda/push/device_slabs.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -16,29 +19,44 @@ ResidentPlanes::ResidentPlanes(const Index3& extent) : extent_(extent) {
 }
 
 ResidentPlanes::~ResidentPlanes() {
+  for (CopyEvent& copied : copied_) {
+    try {
+      copied.wait(kCopyingPlanes);
+    } catch (const Error&) {  // it was said where it could be
+    }
+  }
   try {
-    finish();
-  } catch (const Error&) {  // it was said where it could be
+    const KeptDevice kept(device_);
+    values_ = {};
+  } catch (const Error&) {  // the device is gone, and the memory with it
   }
 }
 
 void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) {
   check_slab(values, device_);
   float* const to = values_.data() + voxels(z0);
-  if (without_gaps(values, extent_)) {
-    check_cuda(cudaMemcpyAsync(to, values.first, voxels(nz) * sizeof(float), cudaMemcpyDefault, stream),
-               kCopyingPlanes);
-  } else {
-    gather_planes(values, {extent_.x, extent_.y, nz}, reinterpret_cast<std::byte*>(to), stream);
+  CopyEvent copied;
+  try {
+    if (without_gaps(values, extent_)) {
+      check_cuda(cudaMemcpyAsync(to, values.first, voxels(nz) * sizeof(float), cudaMemcpyDefault, stream),
+                 kCopyingPlanes);
+    } else {
+      gather_planes(values, {extent_.x, extent_.y, nz}, reinterpret_cast<std::byte*>(to), stream);
+    }
+    copied.record(stream);
+  } catch (...) {
+    cudaStreamSynchronize(stream);  // nothing may write to the memory once it is freed
+    throw;
   }
   const std::lock_guard lock(mutex_);
-  copied_.emplace_back();
-  copied_.back().record(stream);
+  while (!copied_.empty() && copied_.front().done()) copied_.pop_front();
+  copied_.push_back(std::move(copied));
 }
 
-void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const float* values) {
-  check_cuda(cudaMemcpyAsync(values_.data() + voxels(z0), values, voxels(nz) * sizeof(float), cudaMemcpyHostToDevice,
-                             cudaStreamPerThread),
+void ResidentPlanes::add(const Index3& first, const float* values, std::size_t count) {
+  const KeptDevice kept(device_);
+  check_cuda(cudaMemcpyAsync(values_.data() + linear_index(first, extent_), values, count * sizeof(float),
+                             cudaMemcpyHostToDevice, cudaStreamPerThread),
              kCopyingPlanes);
   check_cuda(cudaStreamSynchronize(cudaStreamPerThread), kCopyingPlanes);
 }

@@ -27,8 +27,8 @@ class ResidentPlanes {
   /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, in `stream`. Work that is queued there
   /// afterwards may change the values. Any threads may call. Throws Error(usage) as check_slab(), and Error(io).
   void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream);
-  /// The same of planes of the host, without gaps; they are there when the call returns.
-  void add(std::int64_t z0, std::int64_t nz, const float* values);
+  /// `count` values of the host from voxel `first` on, x fastest; they are there when the call returns.
+  void add(const Index3& first, const float* values, std::size_t count);
 
   /// Waits for all copies. Throws Error(io).
   void finish();

@@ -61,6 +61,16 @@ TEST(ViewRequests, TokenIsNeededForAllButThePage) {
   EXPECT_EQ(refusal(rules, page, kReady).substr(0, 3), "401") << "a WebSocket is no file of the page";
 }
 
+// It may name files.
+TEST(ViewRequests, WhyAViewerFailedIsForWhoHasTheToken) {
+  const AccessRules rules{"se", true};
+  const ViewerView failed = in_state(ViewerState::failed, "weir: /runs/secret.nvdb: is damaged");
+  EXPECT_EQ(refusal(rules, ask("/view/"), failed).find("secret"), std::string::npos);
+  EXPECT_NE(refusal(rules, ask("/view/"), failed).find("no viewer runs now"), std::string::npos);
+  EXPECT_NE(refusal(rules, ask("/view/", "Bearer se"), failed).find("/runs/secret.nvdb: is damaged"),
+            std::string::npos);
+}
+
 TEST(ViewRequests, ForeignPagesAreRefused) {
   const AccessRules rules;
   EXPECT_EQ(refusal(rules, ask_socket("http://evil.example", ""), kReady),
