@@ -73,9 +73,7 @@ std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
 // The values of a block where a coder is to look at them; null where there is none.
 std::unique_ptr<LoadedBlocks> load_block(const EncodeTarget& target, const Block& block, const Box& leaf_box) {
   if (target.packed == nullptr || target.packed->coder == nullptr) return nullptr;
-  const NodeLattice& leaves = target.tree.leaves;
-  return target.packed->coder->load(
-      block.values, block.voxels, {leaves.node_box(leaf_box.lo).lo, leaves.node_box(leaf_box.hi - Index3{1, 1, 1}).hi});
+  return target.packed->coder->load(block.values, block.voxels, target.tree.leaves.nodes_box(leaf_box));
 }
 
 // for_each_layer(), by batches of regions whose streams a coder writes: the next while those of one are taken.

@@ -14,7 +14,6 @@
 #include "compressor/encode/packed_encoder.h"
 #include "compressor/packed/block_values.h"
 #include "compressor/survey/surveyed_leaves.h"
-#include "format/base/error.h"
 
 namespace weir {
 namespace {
@@ -36,7 +35,7 @@ class ResidentEncode {
     const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
     std::vector<std::unique_ptr<Part>> next = begin(regions, 0, at_once);
     for (std::size_t first = 0; first < regions.size(); first += at_once) {
-      if (options_.cancel != nullptr && *options_.cancel) throw Error(ErrorKind::interrupted, "interrupted");
+      throw_if_cancelled(options_);
       const std::vector<std::unique_ptr<Part>> group = std::move(next);
       next = begin(regions, first + at_once, at_once);
       end(group);
@@ -60,11 +59,10 @@ class ResidentEncode {
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
       const TraceSpan span(target_.trace, "ask");
       const std::int64_t region = regions[first + i];
-      const NodeLattice& leaves = target_.tree.leaves;
       const Box box = target_.tree.leaf_box(region);
       parts[i] = std::make_unique<Part>(Part{region, box, nullptr, nullptr, LeftLeaves(box), std::nullopt});
       Part& part = *parts[i];
-      part.blocks = resident_.open({leaves.node_box(box.lo).lo, leaves.node_box(box.hi - Index3{1, 1, 1}).hi});
+      part.blocks = resident_.open(target_.tree.leaves.nodes_box(box));
       if (part.blocks) {
         part.batch = std::make_unique<CodedBatch>(target_, box, std::span(&part.region, 1), *part.blocks,
                                                   CodedBatch::Blocks::resident);
@@ -87,12 +85,7 @@ class ResidentEncode {
       encoder.add_layer(part.region, places_of(part), *part.surveyed, layers[i].second, coded_of(part), part.left);
       encoder.finish();
     });
-    for (const std::unique_ptr<Part>& part : parts) {
-      const NodeLattice& leaves = target_.tree.leaves;
-      done_ += intersect({leaves.node_box(part->box.lo).lo, leaves.node_box(part->box.hi - Index3{1, 1, 1}).hi},
-                         leaves.domain)
-                   .voxels();
-    }
+    for (const std::unique_ptr<Part>& part : parts) done_ += target_.tree.leaves.voxels(part->box).voxels();
     if (options_.progress) options_.progress(done_, target_.tree.leaves.domain.voxels());
   }
 

@@ -59,8 +59,7 @@ std::span<const float> in_domain_values(const float* block, const Box& node, con
 
 void read_blocks(VolumeSource& source, const NodeLattice& leaves, const Box& leaf_box, std::span<const Index3> wanted,
                  std::span<float> blocks) {
-  const Box voxels =
-      intersect({leaves.node_box(leaf_box.lo).lo, leaves.node_box(leaf_box.hi - Index3{1, 1, 1}).hi}, leaves.domain);
+  const Box voxels = leaves.voxels(leaf_box);
   std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
   source.read(voxels, values);
   LeafValues block;

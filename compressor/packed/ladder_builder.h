@@ -36,10 +36,10 @@ struct LadderAim {
   std::optional<KeyWindow> window{};
   BlockCoder* coder = nullptr;  ///< looks at the rungs of many blocks at a time, where there is one
 
-  /// Whether others may look at rungs in the survey. Exact kinds and near rungs are looked at here.
-  bool looks_at_rungs() const { return has_rungs() && !lattice && !(near_rungs && near_everywhere); }
-  /// Who does.
-  BlockCoder* surveying_coder() const { return looks_at_rungs() ? coder : nullptr; }
+  /// Who looks at rungs in the survey. Exact kinds and near rungs are looked at here.
+  BlockCoder* surveying_coder() const {
+    return has_rungs() && !lattice && !(near_rungs && near_everywhere) ? coder : nullptr;
+  }
   /// Which rungs it looks at.
   RungAsk rung_ask() const { return window ? RungAsk{false, window->step()} : RungAsk{}; }
 

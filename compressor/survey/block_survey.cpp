@@ -76,7 +76,8 @@ class BlockSurvey::Leaves {
       const LeafRow& row = rows_[at];
       const auto count = static_cast<std::size_t>(leaves_.voxels(leaf).voxels());
       if (found && row.finite == count && !row.uniform() && aim_->near_for(sample_.has(leaf)) == NearRungs::no) {
-        const auto ladder = builder(tally).build_from(found->figures[at], found->costs.subspan(costs * at, costs), row);
+        const auto ladder =
+            tally.builder(*aim_).build_from(found->figures[at], found->costs.subspan(costs * at, costs), row);
         if (ladder) {
           ladders[at] = *ladder;
           return;
@@ -148,12 +149,8 @@ class BlockSurvey::Leaves {
     LeafValues block;
     block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
     const NearRungs rungs = aim_->near_for(sample_.has(leaf));
-    return all ? builder(tally).build(block, row, rungs) : builder(tally).build_non_finite(block, row, rungs);
-  }
-
-  LadderBuilder& builder(Tally& tally) const {
-    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*aim_);
-    return *tally.ladders;
+    return all ? tally.builder(*aim_).build(block, row, rungs)
+               : tally.builder(*aim_).build_non_finite(block, row, rungs);
   }
 
   void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
@@ -243,8 +240,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   BlockCoder* const coder = ladders_ ? ladders_->surveying_coder() : nullptr;
   if (coder != nullptr && !holds_one_value(block.values)) {
     const NodeLattice& lattice = rows_.leaves();
-    loaded = coder->load(block.values, block.voxels,
-                         {lattice.node_box(leaf_box.lo).lo, lattice.node_box(leaf_box.hi - Index3{1, 1, 1}).hi});
+    loaded = coder->load(block.values, block.voxels, lattice.nodes_box(leaf_box));
     if (loaded) loaded->begin_survey(ladders_->rung_ask());
   }
   const Leaves leaves(*this, block, leaf_box, block_rows, block_faces,
@@ -285,9 +281,9 @@ bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::si
     leaves.ladders[at] = LadderBuilder::uniform();
   } else {
     if (ladders_->near_for(sample_.has(leaf)) == NearRungs::yes) return false;
-    if (!tally.ladders) tally.ladders = std::make_unique<LadderBuilder>(*ladders_);
     const std::size_t costs = found.costs.size() / found.figures.size();
-    const auto ladder = tally.ladders->build_from(found.figures[at], found.costs.subspan(costs * at, costs), row);
+    const auto ladder =
+        tally.builder(*ladders_).build_from(found.figures[at], found.costs.subspan(costs * at, costs), row);
     if (!ladder) return false;
     leaves.ladders[at] = *ladder;
   }

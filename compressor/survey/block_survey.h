@@ -83,6 +83,10 @@ class BlockSurvey {
     Tally(const Tally& other) : SurveyTally(other), uniform(other.uniform) {}
     Tally& operator=(const Tally&) = delete;
     UniformDigest uniform;
+    LadderBuilder& builder(const LadderAim& aim) {
+      if (!ladders) ladders = std::make_unique<LadderBuilder>(aim);
+      return *ladders;
+    }
     std::unique_ptr<LadderBuilder> ladders;  // made where first needed
   };
   class Leaves;

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "compressor/packed/block_values.h"
-#include "format/base/error.h"
 
 namespace weir {
 namespace {
@@ -48,7 +47,7 @@ class ResidentSurvey {
         options_(options),
         survey_(source.info(), rows, nullptr, false, options.trace, ladders, BlockSurvey::Counting::elsewhere) {}
 
-  SurveyTally run() {
+  Survey run() {
     const std::vector<Box> boxes = leaf_boxes(leaves_.count);
     // The device works on one group while the host takes what it has found of another.
     const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
@@ -56,13 +55,13 @@ class ResidentSurvey {
     std::vector<Begun> next(at_once);
     begin(boxes, 0, next);
     for (std::size_t first = 0; first < boxes.size(); first += at_once) {
-      check_cancel();
+      throw_if_cancelled(options_);
       group.swap(next);
       begin(boxes, first + at_once, next);
       end(group);
     }
     count();
-    return survey_.tally();
+    return survey_.result(survey_.tally());
   }
 
  private:
@@ -75,10 +74,6 @@ class ResidentSurvey {
     std::vector<float> read{};                 // where the device does not give them
   };
 
-  void check_cancel() const {
-    if (options_.cancel != nullptr && *options_.cancel) throw Error(ErrorKind::interrupted, "interrupted");
-  }
-
   // Boxes from `first` on, as many as the group takes.
   void begin(const std::vector<Box>& boxes, std::size_t first, std::vector<Begun>& group) {
     for (std::size_t i = 0; i < group.size(); ++i) {
@@ -88,7 +83,7 @@ class ResidentSurvey {
       if (!begun.used) continue;
       const Box& box = boxes[first + i];
       begun.leaves.begin(box);
-      begun.blocks = resident_.open({leaves_.node_box(box.lo).lo, leaves_.node_box(box.hi - Index3{1, 1, 1}).hi});
+      begun.blocks = resident_.open(leaves_.nodes_box(box));
       if (begun.blocks) begun.blocks->begin_survey(ask_);
     }
   }
@@ -119,7 +114,7 @@ class ResidentSurvey {
     for (const Begun& begun : group) {
       if (!begun.used) continue;
       if (begun.blocks) survey_.write(begun.leaves);
-      done_ += voxels_of(begun.leaves.leaf_box).voxels();
+      done_ += leaves_.voxels(begun.leaves.leaf_box).voxels();
     }
     if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
   }
@@ -140,7 +135,7 @@ class ResidentSurvey {
   }
 
   void survey_read(const Box& leaf_box) {
-    const Box voxels = voxels_of(leaf_box);
+    const Box voxels = leaves_.voxels(leaf_box);
     std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
     const ConversionLoss loss = source_.read(voxels, values);
     survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
@@ -161,8 +156,8 @@ class ResidentSurvey {
     std::vector<std::uint64_t> counts(bins);
     std::vector<float> values;
     for (const Box& leaf_box : leaf_boxes(leaves_.count)) {
-      check_cancel();
-      const Box voxels = voxels_of(leaf_box);
+      throw_if_cancelled(options_);
+      const Box voxels = leaves_.voxels(leaf_box);
       values.resize(static_cast<std::size_t>(voxels.voxels()));
       source_.read(voxels, values);
       for (const float v : values) {
@@ -170,11 +165,6 @@ class ResidentSurvey {
       }
     }
     survey_.add_counts(RangeHistogram::restored(range.exponent(), range.base(), counts));
-  }
-
-  Box voxels_of(const Box& leaf_box) const {
-    return intersect({leaves_.node_box(leaf_box.lo).lo, leaves_.node_box(leaf_box.hi - Index3{1, 1, 1}).hi},
-                     leaves_.domain);
   }
 
   ResidentVolume& resident_;
@@ -188,8 +178,8 @@ class ResidentSurvey {
 
 }  // namespace
 
-SurveyTally survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
-                            const StreamOptions& options) {
+Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                       const StreamOptions& options) {
   return ResidentSurvey(resident, source, rows, ladders, options).run();
 }
 

@@ -10,10 +10,10 @@
 
 namespace weir {
 
-/// Fills `rows` and their ladders with what survey_volume() finds of the same values, and returns what it returns as a
-/// tally. What the device has no room for, or fails at, is done by reading `source`, which has those values. Throws as
+/// Fills `rows` and their ladders with what survey_volume() finds of the same values, and returns what it returns. What
+/// the device has no room for, or fails at, is done by reading `source`, which has those values. Throws as
 /// VolumeSource::read, and Error(interrupted).
-SurveyTally survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
-                            const StreamOptions& options);
+Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                       const StreamOptions& options);
 
 }  // namespace weir

@@ -46,8 +46,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
                      Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
                      const Pauses& pauses, const std::optional<LadderAim>& ladders) {
   if (surveys_resident(source, rows, widths, faces, state, ladders)) {
-    const BlockSurvey survey(source.info(), rows, nullptr, false, options.trace, ladders);
-    return survey.result(survey_resident(*source.resident(), source, rows, *ladders, options));
+    return survey_resident(*source.resident(), source, rows, *ladders, options);
   }
   BlockSurvey survey(source.info(), rows, faces, widths, options.trace, ladders);
   SurveyState from_nothing;

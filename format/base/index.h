@@ -97,6 +97,11 @@ struct NodeLattice {
   }
   /// The part of node_box inside the domain; never empty.
   constexpr Box voxels(const Index3& i) const { return intersect(node_box(i), domain); }
+  /// The same of a box of positions that is not empty.
+  constexpr Box nodes_box(const Box& positions) const {
+    return {(first + positions.lo) * dim, (first + positions.hi) * dim};
+  }
+  constexpr Box voxels(const Box& positions) const { return intersect(nodes_box(positions), domain); }
   /// True where the node reaches outside the domain.
   constexpr bool overhangs(const Index3& i) const { return !domain.contains(node_box(i)); }
   constexpr std::int64_t linear(const Index3& i) const { return linear_index(i, count); }

@@ -98,10 +98,7 @@ Box BlockPlan::leaf_box(std::int64_t i) const {
   return intersect({lo, lo + leaves}, {{0, 0, 0}, lattice.count});
 }
 
-Box BlockPlan::voxel_box(const Box& leaf_box) const {
-  return intersect({(lattice.first + leaf_box.lo) * kLeafDim, (lattice.first + leaf_box.hi) * kLeafDim},
-                   lattice.domain);
-}
+Box BlockPlan::voxel_box(const Box& leaf_box) const { return lattice.voxels(leaf_box); }
 
 BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes, BlockShape shape) {
   Axes axes{BlockAxis(domain.lo.x, domain.hi.x, access.chunk.x, access.chunk_origin.x),

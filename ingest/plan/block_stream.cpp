@@ -16,6 +16,10 @@
 namespace weir {
 namespace {
 
+bool is_cancelled(const StreamOptions& options) {
+  return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+}
+
 constexpr std::size_t kBuffers = 2;
 
 /// The hand-over between the reader and the caller: block i goes through buffer i % kBuffers, is read
@@ -80,14 +84,6 @@ class BlockReader {
   std::jthread thread_;
 };
 
-bool is_cancelled(const StreamOptions& options) {
-  return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
-}
-
-void throw_if_cancelled(const StreamOptions& options) {
-  if (is_cancelled(options)) throw Error(ErrorKind::interrupted, "interrupted");
-}
-
 // Between two blocks. A `cancel` that is set meanwhile is found at the next rest: whoever is asked last before the end
 // knows that it is the end.
 void rest(const StreamOptions& options, std::size_t boxes_done) {
@@ -106,6 +102,10 @@ std::size_t end_of_group(std::span<const Box> boxes, std::size_t first) {
 }
 
 }  // namespace
+
+void throw_if_cancelled(const StreamOptions& options) {
+  if (is_cancelled(options)) throw Error(ErrorKind::interrupted, "interrupted");
+}
 
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
                              const std::function<void(const Block&)>& work) {

@@ -35,6 +35,9 @@ struct StreamOptions {
   Trace* trace = nullptr;  ///< gets a "read" of each box
 };
 
+/// Throws Error(interrupted) where `cancel` is set.
+void throw_if_cancelled(const StreamOptions& options);
+
 /// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of
 /// the largest box's size exist at a time. An exception of either side ends both and is rethrown;
 /// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the read

@@ -130,6 +130,8 @@ bool FaultyFileSystem::is_replaceable(const std::string& path) { return real_.is
 
 bool FaultyFileSystem::is_memory(const std::string& directory) { return real_.is_memory(directory); }
 
-std::uint64_t FaultyFileSystem::free_bytes(const std::string& directory) { return real_.free_bytes(directory); }
+std::uint64_t FaultyFileSystem::free_bytes(const std::string& directory) {
+  return free_bytes_ ? *free_bytes_ : real_.free_bytes(directory);
+}
 
 }  // namespace weir

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,9 @@ class FaultyFileSystem final : public FileSystem {
 
   /// From here on as on exFAT: link does nothing.
   void take_links_away() { has_links_ = false; }
+
+  /// From here on so many bytes are free.
+  void leave_free(std::uint64_t bytes) { free_bytes_ = bytes; }
 
   /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
   std::vector<std::string> calls() const;
@@ -60,6 +65,7 @@ class FaultyFileSystem final : public FileSystem {
   std::string awaited_name_;
   int fail_after_it_ = -1;
   bool has_links_ = true;
+  std::optional<std::uint64_t> free_bytes_;
   mutable std::mutex mutex_;
   std::vector<std::string> calls_;
   std::atomic<bool> failed_{false};

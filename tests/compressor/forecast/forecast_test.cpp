@@ -9,6 +9,7 @@
 
 #include "compressor/conversion.h"
 #include "tests/compressor/support/memory_volume.h"
+#include "tests/support/faulty_file_system.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/run_command.h"
 
@@ -192,34 +193,12 @@ TEST_F(ForecastTest, LargeChunks_AreNotSampled) {
   EXPECT_TRUE(f.exact_bytes);
 }
 
-// A disk with so much room.
-class SmallDisk final : public FileSystem {
- public:
-  SmallDisk(FileSystem& files, std::uint64_t free) : files_(files), free_(free) {}
-  std::unique_ptr<File> create(const std::string& path) override { return files_.create(path); }
-  std::unique_ptr<File> open(const std::string& path) override { return files_.open(path); }
-  std::unique_ptr<File> create_unnamed(const std::string& path) override { return files_.create_unnamed(path); }
-  void rename(const std::string& from, const std::string& to) override { files_.rename(from, to); }
-  void rename_new(const std::string& from, const std::string& to) override { files_.rename_new(from, to); }
-  bool link(const std::string& from, const std::string& to) override { return files_.link(from, to); }
-  void remove(const std::string& path) override { files_.remove(path); }
-  void make_directory(const std::string& path) override { files_.make_directory(path); }
-  void remove_directory(const std::string& path) override { files_.remove_directory(path); }
-  void sync_directory(const std::string& path) override { files_.sync_directory(path); }
-  bool exists(const std::string& path) override { return files_.exists(path); }
-  bool is_memory(const std::string& path) override { return files_.is_memory(path); }
-  std::uint64_t free_bytes(const std::string&) override { return free_; }
-
- private:
-  FileSystem& files_;
-  std::uint64_t free_;
-};
-
 TEST_F(ForecastTest, FullDisk_IsReported) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
   ConversionOptions asked = options(Encoding::float32, Budget::Kind::size);
   asked.budget.bytes = 600000;
-  SmallDisk disk(*files_, 600000);
+  FaultyFileSystem disk(*files_, -1, 0);
+  disk.leave_free(600000);
   const std::string message =
       message_of_error(ErrorKind::io, [&] { forecast_conversion(volume, asked, {}, disk, kForecastBytes); });
   EXPECT_TRUE(message.starts_with(asked.output + ": takes 6")) << message;
