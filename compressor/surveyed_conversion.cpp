@@ -237,7 +237,7 @@ class SurveyedConversion {
   void move_window(FileRequest& request, double cut) {
     LadderState& state = ladders();
     const auto window = state.moves++ == 0 ? KeyWindow::about(cut) : std::nullopt;
-    state.centre = window ? std::optional(window->centre) : std::nullopt;
+    state.centre = window ? std::optional(window->centre()) : std::nullopt;
     request.packed.window = window;
     if (!state.built) return;  // all rungs are there
     state.rebuilt = true;

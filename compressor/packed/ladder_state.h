@@ -16,7 +16,7 @@ struct LadderState {
   bool rebuilt = false;  ///< by a pass after the survey, which may not have come to its end
   int moves = 0;         ///< how often a cut lay outside the window, so that another one was taken
 
-  std::optional<KeyWindow> window() const { return centre ? std::optional(KeyWindow{*centre}) : std::nullopt; }
+  std::optional<KeyWindow> window() const { return centre ? std::optional(KeyWindow(*centre)) : std::nullopt; }
 };
 
 }  // namespace weir

@@ -1,25 +1,21 @@
 #include "compressor/packed/ladder_window.h"
 
-#include "format/packed/block_steps.h"
-
 namespace weir {
-
-std::int32_t KeyWindow::step() const { return coarsest_step_within(quantum()); }
 
 std::size_t start_rung(const KeyWindow& window, const PackedLadder& ladder) {
   return static_cast<std::size_t>(rung_about(ladder.first_step, window.step()));
 }
 
 std::size_t start_near_rung(const KeyWindow& window, const PackedLadder& ladder) {
-  const int exponent = std::ilogb(window.quantum());
   return static_cast<std::size_t>(
-      std::clamp(ladder.near_exponent - exponent, 0, static_cast<int>(PackedLadder::kMostNear) - 1));
+      std::clamp(ladder.near_exponent - window.exponent(), 0, static_cast<int>(PackedLadder::kMostNear) - 1));
 }
 
 LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row) {
   LadderRange range;
   range.rungs = rungs_within(window, row.sse, start_rung(window, ladder), PackedLadder::kMeanRungs, ladder.count,
                              [&](std::size_t rung) { return ladder.point(rung); });
+  if (ladder.near_count == 0) return range;
   range.near = rungs_within(window, row.sse, start_near_rung(window, ladder), 0, ladder.near_count,
                             [&](std::size_t rung) { return ladder.near_point(rung); });
   return range;

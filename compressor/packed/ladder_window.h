@@ -12,29 +12,39 @@
 
 #include "compressor/leaf/leaf_row.h"
 #include "compressor/packed/packed_ladder.h"
+#include "format/packed/block_steps.h"
 
 namespace weir {
 
 /// Keys between which the cut of a selection lies: squared error saved per byte.
-struct KeyWindow {
-  double centre = 0;  ///< a normal number, > 0
-
+class KeyWindow {
+ public:
+  /// About `centre`, a normal number, > 0.
+  explicit KeyWindow(double centre) : centre_(centre), step_(coarsest_step_within(quantum())) {}
   /// About a key; none about one so small that nothing is left to save.
   static std::optional<KeyWindow> about(double key) {
-    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow{key}) : std::nullopt;
+    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key)) : std::nullopt;
   }
 
   /// A sample of the blocks tells the cut within that factor.
   static constexpr double kWidth = 2.5;
 
-  double low() const { return centre / kWidth; }
-  double high() const { return centre * kWidth; }
+  double centre() const { return centre_; }
+  double low() const { return centre_ / kWidth; }
+  double high() const { return centre_ * kWidth; }
   bool holds(double key) const { return key >= low() && key <= high(); }
   /// Of a quantiser whose uniform error falls by that much per byte: at size^2 / 12 a value, halving the step takes a
   /// bit a value, and saves size^2 / 2 a byte.
-  double quantum() const { return std::sqrt(2 * centre); }
+  double quantum() const { return std::sqrt(2 * centre_); }
   /// The coarsest step whose size is at most that, or the finest.
-  std::int32_t step() const;
+  std::int32_t step() const { return step_; }
+  /// The exponent of the quantum.
+  int exponent() const { return exponent_; }
+
+ private:
+  double centre_;
+  std::int32_t step_;
+  int exponent_ = std::ilogb(quantum());
 };
 
 /// Rungs [first, end), which are next to each other; none where first == end.
@@ -56,9 +66,16 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   std::optional<RungPoint> point = at(coarse);
   while (!point && coarse > first) point = at(--coarse);
   if (!point) return {first, first, true};
-  const auto slope = [&](const RungPoint& from, const RungPoint& to) {
-    return energy * (from.share - to.share) / (to.bytes - from.bytes);
+  // Whether a byte more from one point to a later one saves less, or more, than a key.
+  const auto saves = [&](const RungPoint& from, const RungPoint& to) { return energy * (from.share - to.share); };
+  const auto saves_less = [&](const RungPoint& from, const RungPoint& to, double key) {
+    return saves(from, to) < key * (to.bytes - from.bytes);
   };
+  const auto saves_more = [&](const RungPoint& from, const RungPoint& to, double key) {
+    return saves(from, to) > key * (to.bytes - from.bytes);
+  };
+  const double low = window.low();
+  const double high = window.high();
   std::size_t fine = coarse;
   bool more = true;
   RungPoint last = *point;
@@ -67,7 +84,7 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
     if (!next) break;
     ++fine;
     if (!(next->bytes > last.bytes)) continue;
-    more = !(slope(last, *next) < window.low());
+    more = !saves_less(last, *next, low);
     if (!more) break;
     last = *next;
   }
@@ -77,9 +94,9 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
     const std::optional<RungPoint> next = at(coarse - 1);
     if (!next) break;
     --coarse;
-    const bool steep = next->bytes < begin.bytes && slope(*next, begin) > window.high();
+    const bool steep = next->bytes < begin.bytes && saves_more(*next, begin, high);
     begin = *next;
-    if (steep && slope(kMeanAlone, *next) > window.high()) break;
+    if (steep && saves_more(kMeanAlone, *next, high)) break;
   }
   return {coarse, fine + 1, more};
 }

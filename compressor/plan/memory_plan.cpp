@@ -15,7 +15,7 @@
 namespace weir {
 namespace {
 
-// Per worker: stack, allocator arena, histogram or value table (512 KiB), radix buckets (512 KiB), a region's steps
+// Per worker: stack, allocator arena, histogram or value table (512 KiB), buckets of keys (512 KiB), a region's steps
 // (1.3 MiB; those of packed blocks are the region_bytes that callers give), leaves being encoded (700 KiB).
 constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image.

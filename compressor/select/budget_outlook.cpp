@@ -113,6 +113,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   const MeanRange range{sample.range.min, sample.range.max};
   GainRule rule = request.rule;
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
+  const StreamLengths lengths(range, *rule.packed);
   SampledSteps steps;
   RegionGains gains;
   for (const Sample::Leaf& sampled : sample.leaves) {
@@ -125,8 +126,8 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     LeafGain leaf;
     gains.clear();
     gains.begin(leaf);
-    rule.add_packed_steps(ladder, region, sampled.row, sampled.voxels, rule.visibility == nullptr ? nullptr : &reach,
-                          leaf, gains);
+    rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
+                          rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
     for (const LeafStep& step : leaf.all_steps()) steps.add(ladder, step);
   }
   const Budget& budget = request.budget;

@@ -20,7 +20,7 @@ struct BudgetOutlook {
 
 /// What that decides.
 inline LadderState decided_by(const BudgetOutlook& outlook) {
-  return {true, outlook.near_rungs, outlook.window ? std::optional(outlook.window->centre) : std::nullopt};
+  return {true, outlook.near_rungs, outlook.window ? std::optional(outlook.window->centre()) : std::nullopt};
 }
 
 /// Volumes of fewer blocks have all rungs built: looking ahead would take as long.

@@ -3,11 +3,11 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <vector>
 
-#include "compressor/select/step_keys.h"
 #include "format/base/error.h"
 #include "format/layout/nanovdb_layout.h"
 
@@ -17,11 +17,62 @@ PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) cons
   return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
 }
 
-// Calls visit(region, key, bytes, gain) for everything below the upper nodes that can be bought.
-template <typename Visit>
-void CutSearch::for_each_key(const Visit& visit) const {
+// The weights of a range of keys, in buckets of 1 << shift of their bits; and of what lies outside it.
+struct CutSearch::Counted {
+  struct Bucket {
+    PurchaseGoal::Weight weight = 0;
+    std::uint64_t items = 0;
+    void operator+=(const Bucket& other) {
+      weight += other.weight;
+      items += other.items;
+    }
+  };
+  // As many as a core's cache holds.
+  static constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 14U;
+  enum Outside : std::size_t { kRequired, kAbove, kBelow };
+
+  explicit Counted(const KeyRange& keys) : range(keys) {
+    while ((range.end - range.first - 1) >> shift >= kMostBuckets) ++shift;
+    buckets.resize(((range.end - range.first - 1) >> shift) + 1);
+  }
+  void add(double key, PurchaseGoal::Weight weight) {
+    if (!(key > 0)) return;
+    const Bucket one{weight, 1};
+    if (range.holds(key)) {
+      buckets[(key_bits(key) - range.first) >> shift] += one;
+    } else {
+      outside[key == kRequiredKey ? kRequired : key_bits(key) < range.first ? kBelow : kAbove] += one;
+    }
+  }
+  PurchaseGoal::Weight all() const {
+    PurchaseGoal::Weight sum = 0;
+    for (const Bucket& bucket : buckets) sum += bucket.weight;
+    for (const Bucket& part : outside) sum += part.weight;
+    return sum;
+  }
+  KeyRange keys_of(std::size_t bucket) const {
+    const std::uint64_t first = range.first + (std::uint64_t{bucket} << shift);
+    return {first, std::min(range.end, first + (std::uint64_t{1} << shift))};
+  }
+
+  KeyRange range;
+  unsigned shift = 0;
+  std::vector<Bucket> buckets;
+  std::array<Bucket, 3> outside{};
+};
+
+CutSearch::KeyRange CutSearch::all_keys() { return {key_bits(kLastKey), key_bits(kRequiredKey)}; }
+
+CutSearch::KeyRange CutSearch::likely_keys() const {
+  if (!rule_.packed || !rule_.packed->window) return all_keys();
+  return {key_bits(rule_.packed->window->low()), key_bits(rule_.packed->window->high()) + 1};
+}
+
+template <typename Begin>
+void CutSearch::for_each_key(const Begin& begin) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
+    const auto visit = begin();
     visit(index, region.key, rule_.region_bytes(), region.opening_gain);
     if (region.key == 0) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
@@ -34,88 +85,76 @@ void CutSearch::for_each_key(const Visit& visit) const {
   });
 }
 
-Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
-  // Radix selection from the top: 16 bits of the keys a pass, weights counted per bucket, until the bucket
-  // that the goal is reached in is small enough to be sorted.
-  constexpr int kDigit = 16;
-  constexpr std::size_t kBuckets = std::size_t{1} << kDigit;
-  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
-  struct Bucket {
-    PurchaseGoal::Weight weight = 0;
-    std::uint64_t items = 0;
-    void operator+=(const Bucket& other) {
-      weight += other.weight;
-      items += other.items;
-    }
-  };
-  using Buckets = std::vector<Bucket>;
-  std::uint64_t prefix = 0;
-  PurchaseGoal::Weight above = 0;
-  for (int shift = 64 - kDigit; shift >= 0; shift -= kDigit) {
-    // What is required is bought whatever the goal.
-    const auto matches = [&](double key, int bits) {
-      return key > 0 && key != kRequiredKey && (bits == 64 || key_bits(key) >> bits == prefix);
+CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) const {
+  tbb::enumerable_thread_specific<Counted> local{Counted(range)};
+  for_each_key([&] {
+    return [&goal, &counted = local.local()](std::int64_t, double key, std::uint64_t bytes, double gain) {
+      counted.add(key, goal.weight(bytes, gain));
     };
-    tbb::enumerable_thread_specific<Buckets> local(kBuckets);
-    tbb::enumerable_thread_specific<PurchaseGoal::Weight> required(0);
-    const auto count = [&](Buckets& buckets, double key, PurchaseGoal::Weight weight) {
-      if (key == kRequiredKey) required.local() += weight;
-      if (!matches(key, shift + kDigit)) return;
-      Bucket& bucket = buckets[key_bits(key) >> shift & (kBuckets - 1)];
-      bucket.weight += weight;
-      ++bucket.items;
-    };
-    for_each_key([&](std::int64_t, double key, std::uint64_t bytes, double gain) {
-      count(local.local(), key, goal.weight(bytes, gain));
-    });
-    Buckets total(kBuckets);
-    for (const Buckets& buckets : local) {
-      for (std::size_t i = 0; i < kBuckets; ++i) total[i] += buckets[i];
-    }
-    rows_.team().sum<Bucket>(total);
-    PurchaseGoal::Weight all_required = required.combine(std::plus<>());
-    rows_.team().sum<PurchaseGoal::Weight>({&all_required, 1});
-    required.clear();
-    for (const Upper& upper : tree_.uppers) {
-      count(total, upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
-    }
-    if (prefix == 0 && shift == 64 - kDigit) {
-      above += all_required + required.combine(std::plus<>());
-      if (goal.left) {
-        PurchaseGoal::Weight all = above;
-        for (const Bucket& bucket : total) all += bucket.weight;
-        goal.limit = all > *goal.left ? all - *goal.left : 0;
-      }
-      if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
-    }
-    std::size_t bucket = kBuckets;
-    while (bucket > 0 && goal.admits_all(above, total[bucket - 1].weight)) above += total[--bucket].weight;
-    if (bucket == 0) return {0, above};  // everything may be bought
-    prefix = prefix << kDigit | (bucket - 1);
-    if (shift == 0) break;
-    if (total[bucket - 1].items <= kSortedItems) {
-      return sorted_threshold(goal, above, [&](double key) { return matches(key, shift); });
-    }
+  });
+  Counted total(range);
+  for (const Counted& counted : local) {
+    for (std::size_t i = 0; i < total.buckets.size(); ++i) total.buckets[i] += counted.buckets[i];
+    for (std::size_t i = 0; i < total.outside.size(); ++i) total.outside[i] += counted.outside[i];
   }
-  return {std::bit_cast<double>(prefix), above};
+  rows_.team().sum<Counted::Bucket>(total.buckets);
+  rows_.team().sum<Counted::Bucket>(total.outside);
+  for (const Upper& upper : tree_.uppers) total.add(upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
+  return total;
+}
+
+Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
+  constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
+  KeyRange range = likely_keys();
+  for (bool first = true;; first = false) {
+    const Counted counted = count(range, goal);
+    if (first && goal.left) {
+      const PurchaseGoal::Weight all = counted.all();
+      goal.limit = all > *goal.left ? all - *goal.left : 0;
+    }
+    // What is required is bought whatever the goal.
+    PurchaseGoal::Weight above = counted.outside[Counted::kRequired].weight;
+    if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
+    const Counted::Bucket& higher = counted.outside[Counted::kAbove];
+    if (higher.items > 0 && !goal.admits_all(above, higher.weight)) {
+      range = {range.end, all_keys().end};
+      continue;
+    }
+    above += higher.weight;
+    std::size_t bucket = counted.buckets.size();
+    while (bucket > 0 && goal.admits_all(above, counted.buckets[bucket - 1].weight)) {
+      above += counted.buckets[--bucket].weight;
+    }
+    if (bucket == 0) {
+      if (counted.outside[Counted::kBelow].items == 0) return {0, above};  // everything may be bought
+      range = {all_keys().first, range.first};
+      continue;
+    }
+    const bool few = counted.buckets[bucket - 1].items <= kSortedItems;
+    range = counted.keys_of(bucket - 1);
+    if (range.end - range.first == 1) return {std::bit_cast<double>(range.first), above};
+    if (few) return sorted_threshold(goal, above, range);
+  }
 }
 
 Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above,
-                                      const std::function<bool(double)>& matches) const {
+                                      const KeyRange& range) const {
   struct Purchase {
     double key;
     std::int64_t region;  // -1: an upper node
     PurchaseGoal::Weight weight;
   };
   tbb::enumerable_thread_specific<std::vector<Purchase>> local;
-  for_each_key([&](std::int64_t region, double key, std::uint64_t bytes, double gain) {
-    if (matches(key)) local.local().push_back({key, region, goal.weight(bytes, gain)});
+  for_each_key([&] {
+    return [&, &found = local.local()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
+      if (range.holds(key)) found.push_back({key, region, goal.weight(bytes, gain)});
+    };
   });
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);
   for (const Upper& upper : tree_.uppers) {
-    if (matches(upper.key)) items.push_back({upper.key, -1, goal.weight(rule_.upper_bytes(), upper.opening_gain)});
+    if (range.holds(upper.key)) items.push_back({upper.key, -1, goal.weight(rule_.upper_bytes(), upper.opening_gain)});
   }
   std::sort(items.begin(), items.end(),
             [](const Purchase& a, const Purchase& b) { return a.key != b.key ? a.key > b.key : a.region < b.region; });

@@ -1,17 +1,17 @@
 // Where the budget ends in the order of keys: the cut between what is bought and
-// what is not, found by radix selection over the keys' bits in passes over the
-// spilled rows.
+// what is not, found in passes over the spilled rows, each of which divides the
+// range of keys that it lies in.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
+#include "compressor/select/step_keys.h"
 #include "compressor/select/tree_regions.h"
 
 namespace weir {
@@ -54,10 +54,25 @@ class CutSearch {
   Threshold find_threshold(PurchaseGoal& goal) const;
 
  private:
-  template <typename Visit>
-  void for_each_key(const Visit& visit) const;
-  Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above,
-                             const std::function<bool(double)>& matches) const;
+  // Keys whose bits are in [first, end).
+  struct KeyRange {
+    std::uint64_t first;
+    std::uint64_t end;
+    bool holds(double key) const { return key_bits(key) - first < end - first; }
+  };
+  struct Counted;
+
+  // Everything that can be bought but for what is required.
+  static KeyRange all_keys();
+  // Where the cut is looked for first.
+  KeyRange likely_keys() const;
+  // Of all that can be bought, by the range.
+  Counted count(const KeyRange& range, const PurchaseGoal& goal) const;
+  Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above, const KeyRange& range) const;
+  // Calls begin() for each region, and what that returned with (region, key, bytes, gain) for everything below the
+  // upper nodes that can be bought there.
+  template <typename Begin>
+  void for_each_key(const Begin& begin) const;
 
   const GainRule& rule_;
   const RowStore& rows_;

@@ -56,7 +56,7 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
   std::array<double, 5> errors{};
   for (unsigned log2 = 0; log2 <= bits_log2_of(last); ++log2) errors[log2] = error_at(width_of(log2));
   while (from != last) {
-    LeafStep best;
+    LeafStep best{};
     for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
       const LeafStep step = step_to(width_of(log2), from, error - errors[log2]);
       if (step.gain > 0 && step.key > best.key) best = step;
@@ -228,52 +228,66 @@ std::uint64_t GainRule::region_bytes() const {
 
 namespace {
 
-// A way to keep a packed block.
+// A way to keep a packed block. Without initial values, as is a corner: there is room for many, and few are there.
 struct PackedPoint {
-  std::uint32_t bytes = 0;
-  double error = 0;
-  KeptLevel level = 0;
+  std::uint32_t bytes;
+  double error;
+  KeptLevel level;
 };
+
+// The error that a byte saves from one way to a longer one.
+double key_between(const PackedPoint& from, const PackedPoint& to) {
+  return (from.error - to.error) / static_cast<double>(to.bytes - from.bytes);
+}
+
+LeafStep packed_step(const PackedPoint& from, const PackedPoint& to) {
+  return {from.error - to.error, key_between(from, to), to.bytes - from.bytes, to.level};
+}
 
 // The lower convex hull of error over bytes, grown from few bytes to many.
 class PackedHull {
  public:
-  explicit PackedHull(double error_of_none) { points_[count_++] = {0, error_of_none, 0}; }
+  explicit PackedHull(double error_of_none) { corners_[count_++].point = {0, error_of_none, 0}; }
 
   void add(const PackedPoint& point) {
     while (count_ > 1 && point.bytes <= last().bytes && point.error <= last().error) --count_;
     if (point.bytes <= last().bytes || point.error >= last().error) return;
-    while (count_ > 1 && slope(points_[count_ - 2], last()) <= slope(last(), point)) --count_;
-    points_[count_++] = point;
+    double key = key_between(last(), point);
+    while (count_ > 1 && corners_[count_ - 1].key <= key) {
+      --count_;
+      key = key_between(last(), point);
+    }
+    corners_[count_++] = {point, key};
   }
-  const PackedPoint& last() const { return points_[count_ - 1]; }
-  std::span<const PackedPoint> points() const { return {points_.data(), count_}; }
+  const PackedPoint& last() const { return corners_[count_ - 1].point; }
+  void add_steps(LeafGain& leaf, RegionGains& out) const {
+    for (std::size_t i = 1; i < count_; ++i) {
+      const PackedPoint& from = corners_[i - 1].point;
+      const PackedPoint& to = corners_[i].point;
+      out.add(leaf, {from.error - to.error, corners_[i].key, to.bytes - from.bytes, to.level});
+    }
+  }
 
  private:
-  static double slope(const PackedPoint& from, const PackedPoint& to) {
-    return (from.error - to.error) / static_cast<double>(to.bytes - from.bytes);
-  }
-
-  std::array<PackedPoint, PackedLadder::kMostRungs + PackedLadder::kMostNear + 2> points_;
+  struct Corner {
+    PackedPoint point;
+    double key;  // from the corner before it
+  };
+  std::array<Corner, PackedLadder::kMostRungs + PackedLadder::kMostNear + 2> corners_;
   std::size_t count_ = 0;
 };
 
 constexpr auto kEndBytes = static_cast<std::uint32_t>(packed::chunk::kEndBytes);
 
-LeafStep packed_step(const PackedPoint& from, const PackedPoint& to) {
-  const std::uint32_t bytes = to.bytes - from.bytes;
-  const double gain = from.error - to.error;
-  return {gain, gain / static_cast<double>(bytes), bytes, to.level};
-}
-
 }  // namespace
 
-void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row,
-                                std::int64_t voxels, const MinMax* reach, LeafGain& leaf, RegionGains& out) const {
+void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const StreamLengths& lengths,
+                                const LeafRow& row, std::int64_t voxels, const MinMax* reach, LeafGain& leaf,
+                                RegionGains& out) const {
   const Weights weights = weights_of(reach, region.value);
   const double none = leaf.exact ? 0 : weights.tile * row.sse_about(region.value);
   const auto stream = [&](KeptLevel level) {
-    const std::uint32_t bytes = packed_stream_bytes(ladder, level, region.means, *packed);
+    const std::uint32_t bytes = lengths.at(ladder, level);
     return bytes == 0 ? 0 : bytes + kEndBytes;
   };
   const PackedPoint exact{stream(kExactLevel), 0, kExactLevel};
@@ -312,8 +326,7 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
   PackedHull hull(none);
   for (std::size_t i = 0; i < count; ++i) hull.add(ways[i]);
   hull.add(exact);
-  const std::span<const PackedPoint> points = hull.points();
-  for (std::size_t i = 1; i < points.size(); ++i) out.add(leaf, packed_step(points[i - 1], points[i]));
+  hull.add_steps(leaf, out);
   // Saves nothing that can be measured, but without it not every bit is kept.
   if (hull.last().level != kExactLevel && exact.bytes > hull.last().bytes)
     out.add(leaf, packed_step(hull.last(), exact));
@@ -329,7 +342,11 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
       leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
       leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
   SharedValues region;
-  if (packed) region = shared_values(rows, leaves, fill);
+  std::optional<StreamLengths> lengths;
+  if (packed) {
+    region = shared_values(rows, leaves, fill);
+    lengths.emplace(region.means, *packed);
+  }
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const Index3 node = leaves.first + leaf;
     const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
@@ -347,7 +364,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     const MinMax* const reach = visibility == nullptr ? nullptr : &rows.reach(leaf);
     out.begin(gain);
     if (packed) {
-      add_packed_steps(rows.ladder(leaf), region, row, voxels, reach, gain, out);
+      add_packed_steps(rows.ladder(leaf), region, *lengths, row, voxels, reach, gain, out);
     } else {
       add_steps(row, voxels, tile, weights_of(reach, tile), gain, out);
     }

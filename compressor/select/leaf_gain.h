@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "compressor/leaf/encoding.h"
 #include "compressor/leaf/fill.h"
@@ -19,12 +19,12 @@
 
 namespace weir {
 
-/// From one way to keep a leaf to the next better one.
+/// From one way to keep a leaf to the next better one. Without initial values, so that room for many costs nothing.
 struct LeafStep {
-  double gain = 0;          ///< squared error saved, or the brick's distance
-  double key = 0;           ///< for sse gain / bytes, else gain: steps are bought by falling key
-  std::uint32_t bytes = 0;  ///< what the file grows by
-  KeptLevel level = 0;
+  double gain;          ///< squared error saved, or the brick's distance
+  double key;           ///< for sse gain / bytes, else gain: steps are bought by falling key
+  std::uint32_t bytes;  ///< what the file grows by
+  KeptLevel level;
 };
 
 struct LeafGain {
@@ -52,37 +52,31 @@ class RegionGains {
   static constexpr std::uint64_t kMostBytes = LeafChoices::kLeaves * (sizeof(LeafGain) + kMostSteps * sizeof(LeafStep));
 
   // Pages that no step touches cost nothing.
-  RegionGains() {
-    leaves_.reserve(LeafChoices::kLeaves);
-    steps_.reserve(LeafChoices::kLeaves * kMostSteps);
-  }
-  RegionGains(RegionGains&&) = default;
-  RegionGains& operator=(RegionGains&&) = default;
+  RegionGains()
+      : leaves_(std::make_unique_for_overwrite<LeafGain[]>(LeafChoices::kLeaves)),
+        steps_(std::make_unique_for_overwrite<LeafStep[]>(LeafChoices::kLeaves * kMostSteps)) {}
 
-  void clear() {
-    leaves_.clear();
-    steps_.clear();
-  }
+  void clear() { leaf_count_ = step_count_ = 0; }
   /// The steps that come are those of `leaf`.
-  void begin(LeafGain& leaf) { leaf.steps = steps_.data() + steps_.size(); }
+  void begin(LeafGain& leaf) { leaf.steps = steps_.get() + step_count_; }
   void add(LeafGain& leaf, const LeafStep& step) {
-    steps_.push_back(step);
+    steps_[step_count_++] = step;
     ++leaf.step_count;
   }
-  void end(const LeafGain& leaf) { leaves_.push_back(leaf); }
+  void end(const LeafGain& leaf) { leaves_[leaf_count_++] = leaf; }
 
-  auto begin() const { return leaves_.begin(); }
-  auto end() const { return leaves_.end(); }
-  auto begin() { return leaves_.begin(); }
-  auto end() { return leaves_.end(); }
-  std::size_t size() const { return leaves_.size(); }
-  /// Of all leaves.
-  std::size_t step_count() const { return steps_.size(); }
+  const LeafGain* begin() const { return leaves_.get(); }
+  const LeafGain* end() const { return leaves_.get() + leaf_count_; }
+  LeafGain* begin() { return leaves_.get(); }
+  LeafGain* end() { return leaves_.get() + leaf_count_; }
+  std::size_t size() const { return leaf_count_; }
   const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
 
  private:
-  std::vector<LeafGain> leaves_;
-  std::vector<LeafStep> steps_;
+  std::unique_ptr<LeafGain[]> leaves_;
+  std::size_t leaf_count_ = 0;
+  std::unique_ptr<LeafStep[]> steps_;
+  std::size_t step_count_ = 0;
 };
 
 /// Decides gains; the same for every thread, plan and memory ceiling.
@@ -115,8 +109,9 @@ struct GainRule {
 
   /// Adds a packed block's steps to `out`: `leaf` says whether a block without a stream reads the same bits, and
   /// whether it is required. `reach` is null where everything counts alike.
-  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const LeafRow& row, std::int64_t voxels,
-                        const MinMax* reach, LeafGain& leaf, RegionGains& out) const;
+  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const StreamLengths& lengths,
+                        const LeafRow& row, std::int64_t voxels, const MinMax* reach, LeafGain& leaf,
+                        RegionGains& out) const;
 
  private:
   // What a squared error counts where the leaf reads its tile, and where it is kept.

@@ -77,17 +77,11 @@ SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, co
   return region;
 }
 
-std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, const MeanRange& means,
-                                  const PackedRule& rule) {
-  if (level == 0) return 0;
-  if (level == kExactLevel) return ladder.exact_bytes;
-  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].bytes;
-  const std::size_t rung = level - 1U;
-  if (ladder.rungs[rung].bits == 0) return 0;
-  const std::int32_t step = ladder.step(rung);
-  if (step < rule.coarsest || step >= rule.coarsest + kPackedSteps) return 0;
-  const unsigned bits = mean_bits(means, step);
-  return bits == kNoMeanBits ? 0 : stream_bytes(ladder.rungs[rung].bits, bits);
+StreamLengths::StreamLengths(const MeanRange& means, const PackedRule& rule) : coarsest_(rule.coarsest) {
+  for (std::size_t field = 0; field < mean_bits_.size(); ++field) {
+    const std::int32_t step = coarsest_ + static_cast<std::int32_t>(field);
+    mean_bits_[field] = static_cast<std::uint8_t>(step > kMostStep ? kNoMeanBits : mean_bits(means, step));
+  }
 }
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
@@ -115,12 +109,13 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
                             const LeafChoices& choices) {
   PlannedStreams plan;
   plan.region = shared_values(rows, tree.leaves, fill);
+  const StreamLengths lengths(plan.region.means, rule);
   rows.for_each([&](const Index3& leaf, const LeafRow&) {
     const std::size_t position = tree.mask_position(leaf);
     const KeptLevel level = choices.level(position);
     if (level == 0) return;
     const PackedLadder& ladder = rows.ladder(leaf);
-    plan.bytes[position] = static_cast<std::uint16_t>(packed_stream_bytes(ladder, level, plan.region.means, rule));
+    plan.bytes[position] = static_cast<std::uint16_t>(lengths.at(ladder, level));
     if (level == kExactLevel) {
       plan.steps[position] =
           ladder.exact == ExactKind::bounded ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;

@@ -18,6 +18,8 @@
 #include "format/layout/tree_layout.h"
 #include "format/nanovdb/packed_data.h"
 #include "format/packed/block_constants.h"
+#include "format/packed/block_encode.h"
+#include "format/packed/block_steps.h"
 
 namespace weir {
 
@@ -29,9 +31,30 @@ struct SharedValues {
 /// Of the region with those rows, in their order; `leaves` is the leaf lattice.
 SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill);
 
-/// Bytes of a block's stream at a level; 0 where the level is none, or cannot be had.
-std::uint32_t packed_stream_bytes(const PackedLadder& ladder, KeptLevel level, const MeanRange& means,
-                                  const PackedRule& rule);
+/// What the streams of a region take whose means lie in a range.
+class StreamLengths {
+ public:
+  StreamLengths(const MeanRange& means, const PackedRule& rule);
+
+  /// Bytes of a block's stream at a level; 0 where the level is none, or cannot be had.
+  std::uint32_t at(const PackedLadder& ladder, KeptLevel level) const {
+    if (level == 0) return 0;
+    if (level == kExactLevel) return ladder.exact_bytes;
+    if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].bytes;
+    return of_rung(ladder, level - 1U);
+  }
+  /// 0 where it was not built, or cannot be had.
+  std::uint32_t of_rung(const PackedLadder& ladder, std::size_t rung) const {
+    const std::uint32_t bits = ladder.rungs[rung].bits;
+    const auto field = static_cast<std::uint32_t>(ladder.step(rung) - coarsest_);
+    if (bits == 0 || field >= mean_bits_.size() || mean_bits_[field] == kNoMeanBits) return 0;
+    return stream_bytes(bits, mean_bits_[field]);
+  }
+
+ private:
+  std::int32_t coarsest_;
+  std::array<std::uint8_t, kPackedSteps> mean_bits_{};  // by the field of the step
+};
 
 /// The streams of a region as planned: bytes and step of each block, 0 bytes where it has none.
 struct PlannedStreams {

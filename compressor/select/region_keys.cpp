@@ -1,6 +1,7 @@
 #include "compressor/select/region_keys.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "compressor/select/step_keys.h"
 #include "format/layout/nanovdb_layout.h"
@@ -8,19 +9,37 @@
 namespace weir {
 namespace {
 
-// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves.
-double hull_step(double opening_gain, std::uint64_t opening_bytes, std::vector<LeafStep>& steps) {
-  // Equal keys in any order: the best ratio is at the end of a run of them.
-  std::sort(steps.begin(), steps.end(), [](const LeafStep& a, const LeafStep& b) { return a.key > b.key; });
+// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves. It rises as
+// long as the next step's own is higher, and never after: seldom are all steps looked at. The steps of each leaf fall.
+double hull_step(double opening_gain, std::uint64_t opening_bytes, const RegionGains& gains) {
+  struct Next {
+    const LeafStep* step;
+    const LeafStep* end;  // of its leaf's
+  };
+  std::vector<Next> heap;
+  heap.reserve(gains.size());
+  for (const LeafGain& leaf : gains) {
+    if (leaf.step_count > 0) heap.push_back({leaf.steps, leaf.steps + leaf.step_count});
+  }
+  // Of equal keys those of the first leaf first, so that sums never depend on more than the steps.
+  const auto after = [](const Next& a, const Next& b) {
+    return a.step->key != b.step->key ? a.step->key < b.step->key : a.step > b.step;
+  };
+  std::make_heap(heap.begin(), heap.end(), after);
   double saved = opening_gain;
   auto cost = static_cast<double>(opening_bytes);
-  double best = saved / cost;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    saved += steps[i].gain;
-    cost += static_cast<double>(steps[i].bytes);
-    if (i + 1 == steps.size() || steps[i + 1].key != steps[i].key) best = std::max(best, saved / cost);
+  while (!heap.empty() && heap.front().step->key > saved / cost) {
+    std::pop_heap(heap.begin(), heap.end(), after);
+    Next& best = heap.back();
+    saved += best.step->gain;
+    cost += static_cast<double>(best.step->bytes);
+    if (++best.step == best.end) {
+      heap.pop_back();
+    } else {
+      std::push_heap(heap.begin(), heap.end(), after);
+    }
   }
-  return best;
+  return saved / cost;
 }
 
 }  // namespace
@@ -55,21 +74,18 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
-  std::vector<LeafStep> steps;
-  steps.reserve(gains.step_count());
   bool required = false;
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
     highest = std::max(highest, leaf.first_gain());
-    steps.insert(steps.end(), leaf.all_steps().begin(), leaf.all_steps().end());
   }
   if (required || (rule_.max_error && exceeds(*rule_.max_error, region, tile))) {
     region.key = kRequiredKey;
   } else if (exact || rule_.max_error || !sees(region, tile)) {
     region.key = 0;
   } else if (rule_.metric == Metric::sse) {
-    region.key = std::max(kLastKey, hull_step(region.opening_gain, rule_.region_bytes(), steps));
+    region.key = std::max(kLastKey, hull_step(region.opening_gain, rule_.region_bytes(), gains));
   } else {
     region.key = std::max(kLastKey, highest);
   }

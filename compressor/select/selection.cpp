@@ -126,7 +126,7 @@ void Selection::resolve_ties(const PurchaseGoal& goal, const Threshold& threshol
       std::size_t end = first + 1;  // a brick goes as one
       while (rule_.metric != Metric::sse && end < ties.size() && ties[end].leaf->brick == ties[first].leaf->brick)
         ++end;
-      LeafStep all;
+      LeafStep all{};
       for (std::size_t i = first; i < end; ++i) {
         all.bytes += ties[i].leaf->steps[ties[i].step].bytes;
         all.gain += ties[i].leaf->steps[ties[i].step].gain;
@@ -188,11 +188,10 @@ void Selection::buy_for(PurchaseGoal goal) {
   team.follow(cut_);
 }
 
-LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows) const {
+LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, RegionGains& gains) const {
   LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
   if (!region.open) return choices;
-  RegionGains gains;
   rule_.gains(tree_, rows, gains);
   for (const LeafGain& leaf : gains) {
     // Keys fall from step to step: the last one above the cut is the width.

@@ -58,8 +58,8 @@ class Selection {
   /// to `squared_error`; all there is where that is not enough. For Metric::sse.
   void choose_error(double squared_error);
 
-  /// What becomes of the leaves of a region, after choose().
-  LeafChoices choices(std::int64_t region, const RegionRows& rows) const;
+  /// What becomes of the leaves of a region, after choose(). `gains` is room to work in.
+  LeafChoices choices(std::int64_t region, const RegionRows& rows, RegionGains& gains) const;
 
   const Cut& cut() const { return cut_; }
   /// The key at which buying ended; nullopt where all was bought, or only what is required.

@@ -202,10 +202,11 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   const GainRule& rule = selection.rule();
   const RegionPlanner planner(rule, tree);
   tbb::enumerable_thread_specific<PlanTally> tallies;
+  tbb::enumerable_thread_specific<RegionGains> gains;
   std::vector<RegionErrors> errors(tree.regions.size());
   for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
     Region& region = tree.regions[static_cast<std::size_t>(index)];
-    LeafChoices choices = selection.choices(index, region_rows);
+    LeafChoices choices = selection.choices(index, region_rows, gains.local());
     planner.mark(region_rows, choices);
     store.write(index, choices);
     RegionErrors& of_region = errors[static_cast<std::size_t>(index)];

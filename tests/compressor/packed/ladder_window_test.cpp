@@ -49,7 +49,7 @@ Ladders ladders_of(const LeafValues& block, double key, NearRungs near) {
   Ladders ladders;
   ladders.row = summarize_leaf(block, 0);
   ladders.all = LadderBuilder(aim).build(block, ladders.row, near);
-  aim.window = KeyWindow{key};
+  aim.window = KeyWindow(key);
   ladders.within = LadderBuilder(aim).build(block, ladders.row, near);
   return ladders;
 }
@@ -67,7 +67,7 @@ TEST(LadderWindow, WhatTheSurveyBuildsIsWhatIsLeftOfAllRungs) {
     for (const double key : keys_of(summarize_leaf(block, 0))) {
       const Ladders ladders = ladders_of(block, key, NearRungs::no);
       if (!(ladders.row.sse > 0)) continue;
-      const KeyWindow window{key};
+      const KeyWindow window(key);
       const LadderRange of_all = range_within(window, ladders.all, ladders.row);
       const LadderRange of_within = range_within(window, ladders.within, ladders.row);
       ASSERT_EQ(of_within.rungs.first, of_all.rungs.first) << seed << ' ' << key;
@@ -102,7 +102,7 @@ TEST(LadderWindow, HoldsTheBestRungOfEachCutInIt) {
     for (const double key : keys_of(summarize_leaf(block, 0))) {
       const Ladders ladders = ladders_of(block, key, NearRungs::yes);
       if (!(ladders.row.sse > 0)) continue;
-      const KeyWindow window{key};
+      const KeyWindow window(key);
       const LadderRange range = range_within(window, ladders.all, ladders.row);
       for (const double at : {window.low(), key, window.high()}) {
         const double best = least_cost(ladders.all, ladders.row, at, [](std::size_t) { return true; });
