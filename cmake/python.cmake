@@ -18,7 +18,7 @@ endif()
 
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bindings/python/*.cpp)
 pybind11_add_module(weir_python MODULE NO_EXTRAS ${sources})
-target_link_libraries(weir_python PRIVATE weir_tools)
+target_link_libraries(weir_python PRIVATE weir_tools $<TARGET_NAME_IF_EXISTS:weir_cuda_source>)
 weir_use_drivers(weir_python lib/python3/dist-packages/weir)
 target_compile_definitions(weir_python PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
 # Other modules of a process have libraries of their own: nothing but the module's entry is to be seen.

@@ -12,21 +12,7 @@
 
 #include "tests/fake_cuda/fake_runtime.h"
 
-namespace weir {
-
-// In place of the kernel.
-void gather_planes(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t /*stream*/) {
-  for (std::int64_t z = 0; z < extent.z; ++z) {
-    for (std::int64_t y = 0; y < extent.y; ++y) {
-      for (std::int64_t x = 0; x < extent.x; ++x) {
-        std::memcpy(to, from.first + x * from.stride[0] + y * from.stride[1] + z * from.stride[2], from.value_bytes);
-        to += from.value_bytes;
-      }
-    }
-  }
-}
-
-namespace device_slabs_test {
+namespace weir::device_slabs_test {
 namespace {
 
 using test::FakeRuntime;
@@ -188,5 +174,4 @@ TEST_F(DeviceSlabsTest, KnowsDeviceMemoryFromTheHosts) {
 }
 
 }  // namespace
-}  // namespace device_slabs_test
-}  // namespace weir
+}  // namespace weir::device_slabs_test
