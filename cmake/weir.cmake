@@ -268,7 +268,7 @@ endfunction()
 # kernels' steps on the host, as the program weir_tests_coder, which needs CUDA's headers and no device.
 function(weir_coder_tests)
   set(root ${PROJECT_SOURCE_DIR})
-  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_coder/*.cpp ${root}/gpu/cuda/encode/*.cpp ${root}/gpu/cuda/source/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_coder/*.cpp ${root}/gpu/cuda/encode/*.cpp ${root}/bindings/cuda/*.cpp)
   add_executable(weir_tests_coder ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
                                   ${root}/tests/fake_cuda/fake_gather.cpp
                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/load/pinned_memory.cpp

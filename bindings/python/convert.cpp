@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "bindings/python/device_source.h"
 #include "bindings/python/watch.h"
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
@@ -45,7 +46,8 @@ ConversionRequest make_request(const std::string& output, const GivenOptions& gi
   return request;
 }
 
-using OpenSource = std::function<std::unique_ptr<VolumeSource>()>;
+/// Given where to say what becomes of it.
+using OpenSource = std::function<std::unique_ptr<VolumeSource>(const Notice&)>;
 
 Sidecar convert(const ConversionOptions& options, const OpenSource& open, const py::object& progress) {
   std::optional<Sidecar> sidecar;
@@ -59,19 +61,21 @@ Sidecar convert(const ConversionOptions& options, const OpenSource& open, const 
         choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
     control.coder = coder.get();
     const std::unique_ptr<FileSystem> files = make_posix_file_system();
-    const std::unique_ptr<VolumeSource> source = open();
+    const std::unique_ptr<VolumeSource> source = open(control.notice);
     sidecar = convert_volume(*source, options, control, *files);
   });
   return *std::move(sidecar);
 }
 
-DenseArray dense_array(const py::array& array, const std::string& type, const SourceOptions& options) {
-  if (array.ndim() != 3) throw Error(ErrorKind::internal, cat("an array of ", array.ndim(), " axes"));
+// Of axes z, y, x.
+DenseArray dense_array(const void* data, const std::array<std::int64_t, 3>& shape,
+                       const std::array<std::int64_t, 3>& strides, const std::string& type,
+                       const SourceOptions& options) {
   DenseArray dense;
-  dense.data = array.data();
+  dense.data = data;
   dense.type = parse_scalar(type).value();
-  dense.extent = {array.shape(2), array.shape(1), array.shape(0)};
-  dense.stride = {array.strides(2), array.strides(1), array.strides(0)};
+  dense.extent = {shape[2], shape[1], shape[0]};
+  dense.stride = {strides[2], strides[1], strides[0]};
   if (options.spacing) dense.spacing = *options.spacing;
   if (options.origin) dense.origin = *options.origin;
   dense.name = options.dataset;
@@ -137,7 +141,7 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
     request.conversion.output = outputs[i];
     request.source.spool_directory =
         request.conversion.work_dir.empty() ? directory_of(outputs[i]) : request.conversion.work_dir;
-    const auto open = [&] {
+    const auto open = [&](const Notice&) {
       std::unique_ptr<VolumeSource> opened = open_step(steps[i]);
       extents.check(steps[i], opened->info());
       return opened;
@@ -149,8 +153,15 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
   return texts;
 }
 
-std::string convert_array(const py::array& source, const std::string& type, const std::string& output,
-                          const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
+namespace {
+
+using Axes = std::array<std::int64_t, 3>;
+using OpenArray =
+    std::function<std::unique_ptr<VolumeSource>(const DenseArray&, const ConversionOptions&, const Notice&)>;
+
+std::string convert_dense(const void* data, const Axes& shape, const Axes& strides, const std::string& type,
+                          const std::string& output, const GivenOptions& options, const py::dict& meaning,
+                          const py::object& progress, const OpenArray& open) {
   ConversionRequest request = make_request(output, options);
   constexpr std::array<std::string_view, 7> kOfArrays{"dataset", "missing", "missing-policy", "spacing",
                                                       "origin",  "roi",     "ghost"};
@@ -159,16 +170,37 @@ std::string convert_array(const py::array& source, const std::string& type, cons
   }
   check_output({}, output);
   request.conversion.resume = Resume::off;
-  DenseArray array = dense_array(source, type, request.source);
+  DenseArray array = dense_array(data, shape, strides, type, request.source);
   add_meaning(meaning, array);
   return to_json_text(convert(
       request.conversion,
-      [&] {
-        std::unique_ptr<VolumeSource> all = open_array(array);
+      [&](const Notice& notice) {
+        std::unique_ptr<VolumeSource> all = open(array, request.conversion, notice);
         if (!request.source.roi) return all;
         return crop_to(std::move(all), *request.source.roi);
       },
       progress));
+}
+
+}  // namespace
+
+std::string convert_array(const py::array& source, const std::string& type, const std::string& output,
+                          const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
+  if (source.ndim() != 3) throw Error(ErrorKind::internal, cat("an array of ", source.ndim(), " axes"));
+  return convert_dense(
+      source.data(), {source.shape(0), source.shape(1), source.shape(2)},
+      {source.strides(0), source.strides(1), source.strides(2)}, type, output, options, meaning, progress,
+      [](const DenseArray& array, const ConversionOptions&, const Notice&) { return open_array(array); });
+}
+
+std::string convert_device_array(std::uint64_t address, const std::array<std::int64_t, 3>& shape,
+                                 const std::array<std::int64_t, 3>& strides, const std::string& type,
+                                 const std::optional<std::uint64_t>& stream, const std::string& output,
+                                 const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
+  return convert_dense(reinterpret_cast<const void*>(address), shape, strides, type, output, options, meaning, progress,
+                       [&](const DenseArray& array, const ConversionOptions& conversion, const Notice& notice) {
+                         return open_device_source(array, stream, conversion, notice);
+                       });
 }
 
 }  // namespace weir::python

@@ -4,6 +4,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +23,12 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
 /// "name", "units", "coordinates" and "note".
 std::string convert_array(const pybind11::array& source, const std::string& type, const std::string& output,
                           const GivenOptions& options, const pybind11::dict& meaning, const pybind11::object& progress);
+/// The same of an array whose values lie on a CUDA device, after the work queued in `stream` where one is given. Axes
+/// z, y, x; strides in bytes.
+std::string convert_device_array(std::uint64_t address, const std::array<std::int64_t, 3>& shape,
+                                 const std::array<std::int64_t, 3>& strides, const std::string& type,
+                                 const std::optional<std::uint64_t>& stream, const std::string& output,
+                                 const GivenOptions& options, const pybind11::dict& meaning,
+                                 const pybind11::object& progress);
 
 }  // namespace weir::python

@@ -18,6 +18,9 @@ PYBIND11_MODULE(_core, m) {
         py::arg("several"), py::arg("progress"));
   m.def("convert_array", &weir::python::convert_array, py::arg("source").noconvert(), py::arg("type"),
         py::arg("output"), py::arg("options"), py::arg("meaning"), py::arg("progress"));
+  m.def("convert_device_array", &weir::python::convert_device_array, py::arg("address"), py::arg("shape"),
+        py::arg("strides"), py::arg("type"), py::arg("stream"), py::arg("output"), py::arg("options"),
+        py::arg("meaning"), py::arg("progress"));
   py::class_<Grid>(m, "Grid")
       .def(py::init<const std::string&>(), py::arg("path"))
       .def("close", &Grid::close)

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "bindings/cuda/device_array_source.h"
 #include "gpu/cuda/runtime/device_array.h"
-#include "gpu/cuda/source/device_array.h"
 #include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/message_of_error.h"

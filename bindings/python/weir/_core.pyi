@@ -18,6 +18,17 @@ def convert_array(
     meaning: dict[str, Any],
     progress: Optional[Progress],
 ) -> str: ...
+def convert_device_array(
+    address: int,
+    shape: tuple[int, ...],
+    strides: tuple[int, ...],
+    type: str,
+    stream: Optional[int],
+    output: bytes,
+    options: dict[str, str],
+    meaning: dict[str, Any],
+    progress: Optional[Progress],
+) -> str: ...
 def open_remote(url: str, fetch: Callable[[list[tuple[int, int]]], list[bytes]], cache: str) -> Grid: ...
 
 class Grid:

@@ -10,6 +10,7 @@ import numpy
 from numpy.typing import NDArray
 
 from . import _core
+from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
 from .options import box_text, given_options, text_of
@@ -25,12 +26,12 @@ Numbers = Sequence[float]
 
 _TYPES = {"bool": "uint8"} | {
     name: name
-    for name in "uint8 int8 uint16 int16 uint32 int32 uint64 int64 float16 float32 float64".split()
+    for name in "uint8 int8 uint16 int16 uint32 int32 uint64 int64 float16 float32 float64 bfloat16".split()
 }
 
 
 def convert(
-    source: Union[Path, NDArray[Any], "xarray.DataArray"],
+    source: Union[Path, NDArray[Any], "xarray.DataArray", Any],
     output: Optional[Path] = None,
     *,
     rate: Optional[float] = None,
@@ -83,6 +84,10 @@ def convert(
         A path of anything that `weir convert` reads, or a numpy array indexed [z, y, x] as HDF5 does it: of bool,
         integers or floats of up to 64 bits in this machine's byte order, with any strides, read-only or not, a
         numpy.memmap too. An array is read where it is and not copied; it must not change before the call returns.
+        Or an array of another library, [z, y, x] too, that has DLPack or __cuda_array_interface__ (CuPy, PyTorch, Numba,
+        JAX): of the host's memory as one of numpy's; on a CUDA device it is read there, after the work that the library
+        has queued, and float32 without gaps is coded there where encoding is "packed", backend not "cpu" and memory
+        1 GiB or more: then only what becomes of the values crosses the bus. bfloat16 is known as well.
         Or an xarray.DataArray of three axes: in the order z, y, x where their names (x, y, lat, lon ...) or attributes
         "axis" say which they are, else as they are. Its name, units, long_name and time are kept, its coordinates become
         spacing and origin; an axis whose coordinates fall is turned round.
@@ -208,30 +213,47 @@ def convert(
         overwrite=overwrite,
     )
     target = b"" if output is None else os.fsencode(output)
-    if isinstance(source, numpy.ndarray):
+    if isinstance(source, (str, os.PathLike)):
+        texts = _core.convert_files(os.fsencode(source), target, options, several, progress)
+    elif isinstance(source, numpy.ndarray) or is_array_elsewhere(source):
         if not target:
             raise UsageError("output is missing: an array has no name to make one from")
         if listed:
             raise UsageError("dataset is a list; an array is one volume, whose name is a text")
-        texts = [_core.convert_array(source, _scalar_type(source), target, options, meaning, progress)]
-    elif isinstance(source, (str, os.PathLike)):
-        texts = _core.convert_files(os.fsencode(source), target, options, several, progress)
+        texts = [_convert_array(source, target, options, meaning, progress)]
     else:
-        raise TypeError(f"source is a {source.__class__.__name__}, it must be a path, a numpy array or an xarray.DataArray")
+        raise TypeError(
+            f"source is a {source.__class__.__name__}, it must be a path, a numpy array, an xarray.DataArray"
+            " or an array with DLPack or __cuda_array_interface__"
+        )
     records = [json.loads(text) for text in texts]
     return records if several else records[0]
 
 
-def _scalar_type(array: NDArray[Any]) -> str:
-    """weir's name of the array's type. Raises UsageError for what is no volume of scalars."""
+def _convert_array(
+    source: Any, target: bytes, options: dict[str, str], meaning: dict[str, Any], progress: Optional[Progress]
+) -> str:
+    """The sidecar's text."""
+    array = source if isinstance(source, numpy.ndarray) else array_of(source)
+    if isinstance(array, DeviceArray):
+        kind = _scalar_type(array.type, len(array.shape))
+        return _core.convert_device_array(
+            array.address, array.shape, array.strides, kind, array.stream, target, options, meaning, progress
+        )
     if isinstance(array, numpy.ma.MaskedArray):
         raise UsageError("source is a masked array; give source.filled(VALUE), missing=VALUE and missing_policy")
-    if array.ndim != 3:
-        raise UsageError(f"source has {array.ndim} axes, it must have three: [z, y, x]")
-    if array.dtype.name not in _TYPES:
-        raise UsageError(f"source is of {array.dtype.name}, it must be one of {', '.join(_TYPES)}")
+    kind = _scalar_type(array.dtype.name, array.ndim)
     if not array.dtype.isnative:
         raise UsageError(
             f"source has the other byte order ({array.dtype.str}); give source.astype(source.dtype.newbyteorder('='))"
         )
-    return _TYPES[array.dtype.name]
+    return _core.convert_array(array, kind, target, options, meaning, progress)
+
+
+def _scalar_type(name: str, axes: int) -> str:
+    """weir's name of an array's type. Raises UsageError for what is no volume of scalars."""
+    if axes != 3:
+        raise UsageError(f"source has {axes} axes, it must have three: [z, y, x]")
+    if name not in _TYPES:
+        raise UsageError(f"source is of {name}, it must be one of {', '.join(_TYPES)}")
+    return _TYPES[name]

@@ -50,7 +50,7 @@ class Errors(FolderTest):
             "source has 2 axes, it must have three: [z, y, x]": values[0],
             "source has 4 axes, it must have three: [z, y, x]": values[None],
             "source is of complex128, it must be one of bool, uint8, int8, uint16, int16, uint32, int32, uint64, "
-            "int64, float16, float32, float64": values.astype(complex),
+            "int64, float16, float32, float64, bfloat16": values.astype(complex),
             "source has the other byte order (>f4); give source.astype(source.dtype.newbyteorder('='))": values.astype(
                 ">f4"
             ),
@@ -66,7 +66,11 @@ class Errors(FolderTest):
 
     def test_what_is_no_volume(self):
         message = self.refused(TypeError, weir.convert, [[[1.0]]], self.folder / "out.nvdb")
-        self.assertEqual(message, "source is a list, it must be a path, a numpy array or an xarray.DataArray")
+        self.assertEqual(
+            message,
+            "source is a list, it must be a path, a numpy array, an xarray.DataArray or an array with DLPack or"
+            " __cuda_array_interface__",
+        )
         message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9))
         self.assertEqual(message, "output is missing: an array has no name to make one from")
         message = self.refused(TypeError, weir.convert, ramp(9, 9, 9), "a.nvdb", rte=8)

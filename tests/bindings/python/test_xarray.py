@@ -270,7 +270,8 @@ class Convert(FolderTest):
         )
         self.assertEqual(
             self.refused(TypeError, weir.convert, self.array().to_dataset(), self.folder / "b.nvdb"),
-            "source is a Dataset, it must be a path, a numpy array or an xarray.DataArray",
+            "source is a Dataset, it must be a path, a numpy array, an xarray.DataArray or an array with DLPack or"
+            " __cuda_array_interface__",
         )
 
     def test_the_accessor(self):

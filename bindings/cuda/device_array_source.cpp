@@ -1,4 +1,4 @@
-#include "gpu/cuda/source/device_array.h"
+#include "bindings/cuda/device_array_source.h"
 
 #include <algorithm>
 #include <atomic>

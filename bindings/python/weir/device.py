@@ -1,0 +1,115 @@
+"""Arrays in the memory of a CUDA device, of whatever library: those with DLPack or __cuda_array_interface__."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy
+from numpy.typing import NDArray
+
+from .errors import UsageError
+
+#: Where DLPack says values lie.
+_HOST = (1, 3)  #: the host's memory, page-locked or not
+_CUDA = (2, 13)  #: a device's memory, managed memory
+
+#: The stream that work of any other stream waits for; CUDA's legacy default one.
+_DEFAULT_STREAM = 1
+
+#: DLPack's codes of types.
+_KINDS = {0: "int", 1: "uint", 2: "float", 4: "bfloat", 6: "bool"}
+
+
+@dataclass(frozen=True)
+class DeviceArray:
+    """Values that lie on a device; `owner` keeps them there."""
+
+    address: int
+    type: str  #: numpy's name of it, or "bfloat16"
+    shape: tuple[int, ...]
+    strides: tuple[int, ...]  #: bytes
+    stream: Optional[int]  #: what computes the values has been queued there; None: it has ended
+    owner: Any
+
+
+def is_array_elsewhere(source: Any) -> bool:
+    """Whether `source` says where its values lie."""
+    return hasattr(source, "__dlpack_device__") or hasattr(source, "__cuda_array_interface__")
+
+
+def array_of(source: Any) -> Union[DeviceArray, NDArray[Any]]:
+    """The values of such an array, where they are: on a device, or in the host's memory. Raises UsageError."""
+    if not hasattr(source, "__dlpack_device__"):
+        return _of_interface(source, source.__cuda_array_interface__)
+    kind = int(source.__dlpack_device__()[0])
+    if kind in _HOST:
+        try:
+            return numpy.from_dlpack(source)
+        except (BufferError, RuntimeError, TypeError) as error:
+            raise UsageError(f"source cannot be read as an array of numpy ({error}); give one") from None
+    if kind not in _CUDA:
+        raise UsageError(f"source lies on a device of DLPack's kind {kind}; copy it to the host first")
+    return _of_dlpack(source)
+
+
+def _of_interface(source: Any, interface: dict[str, Any]) -> DeviceArray:
+    if interface.get("mask") is not None:
+        raise UsageError("source is a masked array; fill it, and give missing=VALUE and missing_policy")
+    stored = numpy.dtype(interface["typestr"])
+    shape = tuple(interface["shape"])
+    strides = interface.get("strides") or _packed(shape, stored.itemsize)
+    if not stored.isnative:
+        raise UsageError(f"source has the other byte order ({stored.str}); give it in this machine's")
+    stream = interface.get("stream") if interface.get("version", 0) >= 3 else _DEFAULT_STREAM
+    return DeviceArray(int(interface["data"][0]), stored.name, shape, tuple(strides), stream, source)
+
+
+# dlpack.h, https://dmlc.github.io/dlpack/latest/c_api.html
+class _DLDevice(ctypes.Structure):
+    _fields_ = [("device_type", ctypes.c_int32), ("device_id", ctypes.c_int32)]
+
+
+class _DLDataType(ctypes.Structure):
+    _fields_ = [("code", ctypes.c_uint8), ("bits", ctypes.c_uint8), ("lanes", ctypes.c_uint16)]
+
+
+class _DLTensor(ctypes.Structure):
+    _fields_ = [
+        ("data", ctypes.c_void_p),
+        ("device", _DLDevice),
+        ("ndim", ctypes.c_int32),
+        ("dtype", _DLDataType),
+        ("shape", ctypes.POINTER(ctypes.c_int64)),
+        ("strides", ctypes.POINTER(ctypes.c_int64)),
+        ("byte_offset", ctypes.c_uint64),
+    ]
+
+
+def _of_dlpack(source: Any) -> DeviceArray:
+    try:
+        capsule = source.__dlpack__(stream=_DEFAULT_STREAM)
+    except (BufferError, RuntimeError) as error:
+        raise UsageError(f"source does not give its values ({error})") from None
+    pointer = ctypes.pythonapi.PyCapsule_GetPointer
+    pointer.restype = ctypes.c_void_p
+    pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+    tensor = _DLTensor.from_address(pointer(capsule, b"dltensor"))  # a DLManagedTensor begins with it
+    shape = tuple(tensor.shape[i] for i in range(tensor.ndim))
+    if tensor.dtype.lanes != 1:
+        raise UsageError(f"source has values of {tensor.dtype.lanes} components; give one of them")
+    kind = _KINDS.get(tensor.dtype.code, f"DLPack's type {tensor.dtype.code} of ")
+    size = tensor.dtype.bits // 8
+    strides = tuple(size * tensor.strides[i] for i in range(tensor.ndim)) if tensor.strides else _packed(shape, size)
+    name = kind if kind == "bool" else f"{kind}{tensor.dtype.bits}"
+    # A capsule that nobody takes over gives the values back when it goes.
+    return DeviceArray((tensor.data or 0) + tensor.byte_offset, name, shape, strides, _DEFAULT_STREAM, capsule)
+
+
+def _packed(shape: tuple[int, ...], size: int) -> tuple[int, ...]:
+    strides = []
+    for extent in reversed(shape):
+        strides.append(size)
+        size *= extent
+    return tuple(reversed(strides))
