@@ -118,7 +118,11 @@ TEST_F(JobViewerTest, SeriesThatIsBeingOpened_IsLeftUnlessForced) {
   EXPECT_EQ(viewer.view().file, "/out/t_1.nvdb");
   EXPECT_EQ(viewer.open("/out/s_1.nvdb", true), Opened::made);
   ASSERT_TRUE(comes_to(viewer, ViewerState::ready));
-  connect(viewer, true).close();
+  {
+    auto socket = connect(viewer, true);
+    asio::ip::tcp::socket server(io_);
+    acceptor_.accept(server);
+  }
   EXPECT_TRUE(eventually([&] { return viewer.view().connections == 0; }));
   EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::made) << "it came, and was closed";
 }
