@@ -13,6 +13,7 @@
 #include "daemon/http/request_target.h"
 #include "daemon/jobs/thumbnail_file.h"
 #include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
 
 namespace weir {
 namespace {
@@ -180,9 +181,10 @@ HttpResponse retry(const Call& call) {
 
 HttpResponse viewer(const Call& call) { return ok(to_json(call.control.viewer())); }
 
-// The page of the viewer, at that file.
-std::string view_address(const std::string& path) {
-  return cat("/view/#f=", percent_encode(path.substr(path.rfind('/') + 1)));
+// The page of the viewer, at that file; it says which series the page is of, and which job brings that back.
+std::string view_address(const std::string& path, std::int64_t job, std::size_t output) {
+  return cat("/view/?series=", series_digest(path), "&job=", job, "&output=", output,
+             "#f=", percent_encode(path.substr(path.rfind('/') + 1)));
 }
 
 HttpResponse view(const Call& call) {
@@ -199,14 +201,14 @@ HttpResponse view(const Call& call) {
   OrderedJson json = to_json(call.control.viewer());
   switch (change) {
     case ViewChange::made:
-      json["url"] = view_address(job->outputs.at(output).path);
+      json["url"] = view_address(job->outputs.at(output).path, *id, output);
       return ok(json);
     case ViewChange::wrong_state:
       return error_response(409, cat("job ", *id, " is ", job_state_name(job->state), ": nothing to view"));
     case ViewChange::off:
       return error_response(409, json["reason"]);
     case ViewChange::taken:
-      return error_response(423, cat("somebody looks at ", json["file"].get<std::string>(),
+      return error_response(423, cat("somebody looks at ", json["file"].get<std::string>(), ", or opens it",
                                      "; wait until that page is closed, or take the viewer with force=1"));
     case ViewChange::no_such_job:
     case ViewChange::no_such_output:

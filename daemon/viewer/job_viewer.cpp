@@ -58,10 +58,10 @@ void JobViewer::configure(const ServiceConfig& service) {
 JobViewer::Opened JobViewer::open(const std::string& file, bool force) {
   if (over_ || service_.viewer_memory == 0) return Opened::off;
   if (worker_ && series_key(file) == series_key(file_)) {
-    if (state_ == ViewerState::ready) end_when_idle();
+    if (state_ == ViewerState::ready) await_page();
     return Opened::made;
   }
-  if (looked_at() && !force) return Opened::taken;
+  if (taken() && !force) return Opened::taken;
   start(file);
   return Opened::made;
 }
@@ -106,6 +106,11 @@ void JobViewer::heard(std::string_view line) {
     return;
   }
   state_ = ViewerState::ready;
+  await_page();
+}
+
+void JobViewer::await_page() {
+  awaited_until_ = std::chrono::steady_clock::now() + times_.open;
   end_when_idle();
 }
 
@@ -130,6 +135,12 @@ void JobViewer::stop() {
 
 bool JobViewer::looked_at() const {
   return std::any_of(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; });
+}
+
+// Who has asked for it is not overtaken on the way.
+bool JobViewer::taken() const {
+  return state_ == ViewerState::starting || looked_at() ||
+         (state_ == ViewerState::ready && std::chrono::steady_clock::now() < awaited_until_);
 }
 
 void JobViewer::end() {
@@ -166,7 +177,10 @@ void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
   const auto relay = std::make_shared<Relay>(std::move(client), forwarded_request(request, token_),
                                              [this](Relay& over) { remove(over); });
   connections_.push_back({relay, looks});
-  if (looks) wait_.cancel();
+  if (looks) {
+    wait_.cancel();
+    awaited_until_ = {};
+  }
   relay->start(address_, looks ? std::nullopt : std::optional(times_.page));
 }
 

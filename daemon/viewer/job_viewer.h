@@ -24,6 +24,7 @@ namespace weir {
 
 struct JobViewerTimes {
   std::chrono::milliseconds start{60'000};  ///< until it answers
+  std::chrono::milliseconds open{20'000};   ///< from its answer, for the page of who asked for it to come
   std::chrono::milliseconds idle{300'000};  ///< while nobody looks
   std::chrono::milliseconds look{1'000};    ///< between two looks at its memory
   std::chrono::milliseconds page{30'000};   ///< for one file of its page to be taken
@@ -42,7 +43,8 @@ class JobViewer {
   /// Takes memory, threads and priority from now on; a viewer that runs with others ends.
   void configure(const ServiceConfig& service);
   /// Has a viewer of the series of `file`, a NanoVDB file: the one that runs, where it is of that series, else a new
-  /// one in its place. That one is left to those who look at it, unless `force`. A failure to start is in view().
+  /// one in its place. That one is left to those who look at it, or have asked for it and are on their way, unless
+  /// `force`. A failure to start is in view().
   Opened open(const std::string& file, bool force);
   ViewerView view() const;
   /// Answers a connection by the viewer, which is ready.
@@ -61,10 +63,12 @@ class JobViewer {
   void ended(const WorkerEnd& end);
   void fail(const std::string& reason);
   void stop();
+  void await_page();
   void end_when_idle();
   void look_at_memory();
   void remove(const Relay& relay);
   bool looked_at() const;
+  bool taken() const;
 
   boost::asio::io_context& io_;
   const EventLog& log_;
@@ -75,6 +79,7 @@ class JobViewer {
   ViewerState state_ = ViewerState::none;
   std::string reason_;
   std::string file_;
+  std::chrono::steady_clock::time_point awaited_until_;  // a page of who asked for it; over when it has come
   std::string token_;
   boost::asio::ip::tcp::endpoint address_;
   std::unique_ptr<WorkerProcess> worker_;

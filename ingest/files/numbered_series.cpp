@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include "format/base/ascii.h"
 #include "format/base/error.h"
+#include "format/io/digest.h"
 #include "ingest/files/file_pattern.h"
 
 namespace weir {
@@ -31,6 +33,11 @@ std::string without_numbers(std::string_view name) {
 std::string series_key(const std::string& path) {
   const fs::path whole(path);
   return (whole.parent_path() / "").string() + without_numbers(whole.filename().string());
+}
+
+std::string series_digest(const std::string& path) {
+  const std::string key = series_key(fs::absolute(path).lexically_normal().string());
+  return piece_digest(std::as_bytes(std::span(key))).hex();
 }
 
 std::vector<std::string> files_of_series(const std::string& path) {

@@ -104,6 +104,7 @@ void view(const ViewArguments& arguments) {
   }
   ViewedFiles files =
       find_viewed_files({preview ? preview->file() : arguments.input, arguments.series}, arguments.against);
+  if (preview) files.key = viewed_key({arguments.input}, arguments.against);  // its file's name is another each time
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
   if (!files.summary.difference.empty()) spdlog::warn("{}", files.summary.difference);

@@ -71,6 +71,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       shelf_(backend, volumes_held(files_)),
       converter_(io, settings_.program) {
   state_text_ = line({{"title", files_.title},
+                      {"series", files_.key},
                       {"version", settings_.version},
                       {"grows", files_.grow},
                       {"against", names_of(files_.against)},
@@ -144,6 +145,10 @@ std::optional<HttpResponse> ViewServer::refuse_viewer(const HttpRequest& request
   const auto target = parse_target(request.target);
   if (!target || target->path != std::vector<std::string>{"ws"}) {
     return error_response(404, cat("there is no WebSocket at ", request.target));
+  }
+  const auto series = target->query.find("series");
+  if (series != target->query.end() && series->second != files_.key) {
+    return error_response(409, cat("this viewer shows another series now: ", files_.title));
   }
   if (viewers_.size() >= settings_.viewers) {
     return error_response(503, cat("there are ", viewers_.size(), " viewers, as many as there may be; close one"));

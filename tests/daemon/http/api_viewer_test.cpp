@@ -4,6 +4,7 @@
 
 #include "daemon/http/api.h"
 #include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
 #include "tests/daemon/support/fake_control.h"
 
 namespace weir::api_viewer_test {
@@ -36,9 +37,11 @@ TEST(ApiViewer, IsOpenedAtADoneJobsOutput) {
   control.now.viewer.memory_bytes = 1 << 27;
   const HttpResponse made = ask("POST", "/api/jobs/1/view?output=1");
   EXPECT_EQ(made.status, 200U);
-  EXPECT_EQ(made.body,
-            "{\"state\":\"starting\",\"reason\":\"\",\"file\":\"/out/a b+1.nvdb\",\"connections\":0,\"rss_bytes\":0,"
-            "\"memory_bytes\":134217728,\"url\":\"/view/#f=a%20b%2B1.nvdb\"}\n");
+  EXPECT_EQ(
+      made.body,
+      cat("{\"state\":\"starting\",\"reason\":\"\",\"file\":\"/out/a b+1.nvdb\",\"connections\":0,\"rss_bytes\":0,"
+          "\"memory_bytes\":134217728,\"url\":\"/view/?series=",
+          series_digest("/out/a b+9.nvdb"), "&job=1&output=1#f=a%20b%2B1.nvdb\"}\n"));
   EXPECT_EQ(get("/api/viewer").at("state"), "starting");
   EXPECT_EQ(get("/api/status").at("viewer").at("file"), "/out/a b+1.nvdb");
   const auto refused = [&](const std::string& target) {
@@ -53,7 +56,8 @@ TEST(ApiViewer, IsOpenedAtADoneJobsOutput) {
             "400 give output=N, the place of an output from 0 on, and force=1, or leave them out");
   control.view_taken = true;
   EXPECT_EQ(refused("/api/jobs/1/view"),
-            "423 somebody looks at /out/a b+1.nvdb; wait until that page is closed, or take the viewer with force=1");
+            "423 somebody looks at /out/a b+1.nvdb, or opens it; wait until that page is closed, or take the viewer "
+            "with force=1");
   EXPECT_EQ(ask("POST", "/api/jobs/1/view?force=1").status, 200U);
   control.now.viewer = {ViewerState::off, "viewers are off", "", 0, 0, 0};
   EXPECT_EQ(refused("/api/jobs/1/view"), "409 viewers are off");

@@ -78,3 +78,39 @@ with Browser(1200, 900) as page:
     page.wait("the first step", lambda: page.text("#step-name") == "1 of 2: s_1_24x20x16_uint8.nvdb", 30)
     converged(page)
     equal(page.complaints(), [])
+
+    # Somebody else opens another file: this page says so, keeps its picture and its name, and gets the viewer back.
+    def ask(target):
+        return page.script("""
+            return fetch(arguments[0], {method: arguments[0].includes('/view?') ? 'POST' : 'GET',
+                                        headers: {'X-Weir': 'page', Authorization: `Bearer ${arguments[1]}`}})
+                .then((response) => response.json())""", target, token)
+
+    def done():
+        return {pathlib.Path(job["source"]).name: job for job in ask("/api/jobs?state=done")["jobs"]}
+
+    other = "t_24x20x16_uint8"
+    hidden.write_bytes(bytes(251 - byte for byte in data))
+    hidden.rename(pathlib.Path(sources, other + ".raw"))
+    page.wait("its job", lambda: other + ".raw" in done(), 60)
+    before = canvas(page)
+    taken = ask(f"/api/jobs/{done()[other + '.raw']['id']}/view?force=1")
+    equal(taken["file"].rpartition("/")[2], other + ".nvdb")
+    page.wait("the notice", lambda: page.text("#other-series-note") ==
+              f"The viewer now shows another file, {other}.nvdb. This page is of s_1_24x20x16_uint8.nvdb.", 60)
+    equal(page.text("#link"), "another file")
+    equal(page.text("#file-name"), "s_1_24x20x16_uint8.nvdb")
+    equal(page.script("return document.title"), "s_1_24x20x16_uint8.nvdb \u2013 weir view")
+    equal(canvas(page) == before, True)
+    picture(page, "service-other-file")
+    page.complaints()  # of the requests while there was no viewer
+    page.click("#take-back")
+    page.wait("that it is being opened by somebody", lambda: "loses it" in page.text("#other-series-note"))
+    equal(page.text("#take-back"), "Take it all the same")
+    page.complaints()
+    page.click("#take-back")
+    page.wait("it is back", lambda: page.text("#link") == "connected", 60)
+    equal(page.visible("#other-series"), False)
+    converged(page)
+    equal(page.text("#file-name"), "s_1_24x20x16_uint8.nvdb")
+    equal(canvas(page) == before, True)

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
 #include "tests/daemon/support/raw_client.h"
 #include "tests/daemon/support/service_harness.h"
 #include "tests/support/python.h"
@@ -54,7 +55,9 @@ TEST_F(WatchViewer, IsStartedAtTheFileOfAJob_AndAnsweredBehindView) {
   EXPECT_EQ(service.get("/api/status")["viewer"]["state"], "none");
   const Json asked = service.post(cat("/api/jobs/", job, "/view"));
   EXPECT_EQ(asked["state"], "starting") << asked;
-  EXPECT_EQ(asked["url"], cat("/view/#f=s_1", ServiceHarness::kSuffix, ".nvdb"));
+  const std::string series = series_digest(service.out("s_9" + std::string(ServiceHarness::kSuffix) + ".nvdb"));
+  EXPECT_EQ(asked["url"],
+            cat("/view/?series=", series, "&job=", job, "&output=0#f=s_1", ServiceHarness::kSuffix, ".nvdb"));
   EXPECT_EQ(asked["memory_bytes"], 1 << 27) << "an eighth of 1 GiB";
   ASSERT_TRUE(ready(service)) << service.get("/api/viewer");
   const RawResponse page = ask(service, "/view/");
@@ -65,8 +68,11 @@ TEST_F(WatchViewer, IsStartedAtTheFileOfAJob_AndAnsweredBehindView) {
   EXPECT_EQ(state["steps"],
             (Json{cat("s_1", ServiceHarness::kSuffix, ".nvdb"), cat("s_2", ServiceHarness::kSuffix, ".nvdb")}));
   EXPECT_EQ(state["grows"], true);
+  EXPECT_EQ(state["series"], series);
   EXPECT_EQ(state["allow_convert"], false);
   EXPECT_EQ(ask(service, "/view/ws", kSocket).status, 101);
+  EXPECT_EQ(ask(service, "/view/ws?series=" + series, kSocket).status, 101);
+  EXPECT_EQ(ask(service, "/view/ws?series=0", kSocket).status, 409);
   EXPECT_EQ(ask(service, "/view/ws", cat(kSocket, "Origin: http://evil.example\r\n")).status, 403);
   EXPECT_EQ(ask(service, "/view/weir.db").status, 404);
   EXPECT_EQ(service.logged(" viewer "), 1U) << service.log();

@@ -87,7 +87,7 @@ class JobViewerTest : public testing::Test {
 
 TEST_F(JobViewerTest, OneViewer_ServesItsWholeSeries) {
   answering_program();
-  JobViewer viewer(io_, log_, program_);
+  JobViewer viewer(io_, log_, program_, {.open = milliseconds(0)});
   viewer.configure(service());
   EXPECT_EQ(viewer.view().state, ViewerState::none);
   EXPECT_EQ(viewer.open("/out/s_1.nvdb", false), Opened::made);
@@ -106,9 +106,30 @@ TEST_F(JobViewerTest, OneViewer_ServesItsWholeSeries) {
   EXPECT_EQ(calls().size(), 2U);
 }
 
+TEST_F(JobViewerTest, SeriesThatIsBeingOpened_IsLeftUnlessForced) {
+  answering_program();
+  JobViewer viewer(io_, log_, program_, {.open = milliseconds(200)});
+  viewer.configure(service());
+  viewer.open("/out/s_1.nvdb", false);
+  EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::taken) << "it is being started for somebody";
+  ASSERT_TRUE(comes_to(viewer, ViewerState::ready));
+  EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::taken) << "the page of who asked is on its way";
+  EXPECT_TRUE(eventually([&] { return viewer.open("/out/t_1.nvdb", false) == Opened::made; })) << "it never came";
+  EXPECT_EQ(viewer.view().file, "/out/t_1.nvdb");
+  EXPECT_EQ(viewer.open("/out/s_1.nvdb", true), Opened::made);
+  ASSERT_TRUE(comes_to(viewer, ViewerState::ready));
+  {
+    auto socket = connect(viewer, true);
+    asio::ip::tcp::socket server(io_);
+    acceptor_.accept(server);
+  }
+  EXPECT_TRUE(eventually([&] { return viewer.view().connections == 0; }));
+  EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::made) << "it came, and was closed";
+}
+
 TEST_F(JobViewerTest, SeriesThatIsLookedAt_IsLeftUnlessForced) {
   answering_program();
-  JobViewer viewer(io_, log_, program_);
+  JobViewer viewer(io_, log_, program_, {.open = milliseconds(0)});
   viewer.configure(service());
   viewer.open("/out/s_1.nvdb", false);
   ASSERT_TRUE(comes_to(viewer, ViewerState::ready));

@@ -31,5 +31,13 @@ TEST(NumberedSeries, Key_IsOfTheDirectoryAndTheNameWithoutNumbers) {
   EXPECT_NE(series_key("/a1/s.raw"), series_key("/a2/s.raw")) << "numbers of directories count";
 }
 
+TEST(NumberedSeries, Digest_IsTheSameFromWhereverTheFileIsNamed) {
+  const std::string here = (std::filesystem::current_path() / "s_1.nvdb").string();
+  EXPECT_EQ(series_digest("s_2.nvdb"), series_digest(here));
+  EXPECT_EQ(series_digest("x/../s_2.nvdb"), series_digest(here));
+  EXPECT_NE(series_digest("t_2.nvdb"), series_digest(here));
+  EXPECT_EQ(series_digest(here).size(), 32U);
+}
+
 }  // namespace
 }  // namespace weir::numbered_series_test

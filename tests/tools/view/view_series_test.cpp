@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "format/base/text.h"
+#include "ingest/files/numbered_series.h"
 #include "tests/tools/support/converted_volume.h"
 #include "tests/tools/view/served_view.h"
 #include "tests/tools/view/view_client.h"
@@ -80,6 +81,21 @@ TEST_F(ViewSeriesTest, SeriesOfAFile_BeginsAtThatFile) {
   EXPECT_TRUE(files.grow);
   EXPECT_FALSE(find_viewed_files({volume_}, "").grow);
   EXPECT_FALSE(find_viewed_files({directory_ / "s_*.nvdb"}, directory_ / "s_*.nvdb").grow) << "a pair each";
+}
+
+TEST_F(ViewSeriesTest, PageOfAnotherSeries_IsRefused) {
+  std::filesystem::copy(volume_, directory_ / "v_1.nvdb");
+  ServedView served(directory_ / "v_1.nvdb");
+  const std::string series = Json::parse(get(served.port(), "/api/state").second)["series"];
+  EXPECT_EQ(series, viewed_key({directory_ / "v_1.nvdb"}, ""));
+  const auto answer = [&](const std::string& key) {
+    return upgrade_answer(served.port(), {.target = cat("/ws?series=", key)});
+  };
+  EXPECT_EQ(answer(series), "101");
+  EXPECT_EQ(answer(viewed_key({volume_}, "")), "409 {\"error\":\"this viewer shows another series now: v_1.nvdb\"}\n");
+  EXPECT_EQ(viewed_key({directory_ / "v_1.nvdb", true}, ""), viewed_key({directory_ / "v_2.nvdb", true}, ""));
+  EXPECT_EQ(viewed_key({directory_ / "v_1.nvdb", true}, ""), series_digest(directory_ / "v_3.nvdb"));
+  EXPECT_NE(viewed_key({volume_}, volume_), viewed_key({volume_}, ""));
 }
 
 TEST_F(ViewSeriesTest, Against_HasTwoPicturesAboveEachOther) {

@@ -9,17 +9,16 @@ export class Connection {
   /** `on`: opened(), closed(), message(object), picture(header, Blob), which returns a promise. */
   constructor(on) {
     this.on = on;
-    this.token = "";
     this.socket = null;
     this.view = null;      // that waits for the next frame of the screen
     this.waiting = false;
   }
 
-  open(token) {
-    this.token = token;
+  /** `series`: the only one that this page is of; a server of another one refuses. */
+  open(token, series) {
     const protocols = ["weir.view"];
     if (token) protocols.push(`weir.token.${hex(token)}`);
-    const place = new URL("ws", location.href);  // beside the page, wherever that is
+    const place = new URL(`ws?series=${encodeURIComponent(series)}`, location.href);  // beside the page, wherever that is
     place.protocol = location.protocol === "https:" ? "wss" : "ws";
     place.hash = "";
     const socket = new WebSocket(place, protocols);

@@ -14,6 +14,7 @@ import {listen_to_keys} from "./keys.js";
 import {KnownFiles} from "./known_files.js";
 import * as looks from "./look.js";
 import {curve_of, show_banner, show_file, show_link, show_mode, show_quality, show_transfer} from "./panels.js";
+import {is_own_series, offer_again, series_key} from "./shown_series.js";
 import {Steps} from "./steps.js";
 import {TransferEditor, simplified} from "./transfer_editor.js";
 import {Viewport} from "./viewport.js";
@@ -86,7 +87,7 @@ function keep_soon() {
 
 function keep_in_url() {
   const hash = looks.to_hash(look, steps.names[look.step]);
-  window.history.replaceState(null, "", hash ? `#${hash}` : location.pathname);
+  window.history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
 }
 
 /** A change is over. */
@@ -326,8 +327,9 @@ function set_up() {
 }
 
 async function begin() {
+  let state;
   try {
-    server = await get("api/state");
+    state = await get("api/state");
   } catch (error) {
     if (error instanceof ApiError && error.status === 401) {
       by_id("login").hidden = false;
@@ -338,9 +340,18 @@ async function begin() {
     }
     show_link("not connected", "bad");
     show_banner(error.status === 0 ? "The server does not answer; it may have ended." : error.message);
+    if (error.status === 503) offer_again();
     connection.retry(begin);
     return;
   }
+  if (!is_own_series(state, look.file ?? steps.names[look.step] ?? null)) {
+    show_link("another file", "warn");
+    show_banner("");
+    by_id("login").hidden = true;
+    connection.retry(begin);
+    return;
+  }
+  server = state;
   by_id("login").hidden = true;
   by_id("main").hidden = false;
   show_banner("");
@@ -351,7 +362,7 @@ async function begin() {
     connection.retry(begin);
     return;
   }
-  connection.open(sessionStorage.getItem("weir-token") ?? "");
+  connection.open(sessionStorage.getItem("weir-token") ?? "", series_key());
 }
 
 listen();

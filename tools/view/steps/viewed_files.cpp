@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/digest.h"
 #include "ingest/files/numbered_series.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source_registry.h"
@@ -50,8 +52,17 @@ std::vector<std::string> find_steps(const StepChoice& choice) {
   return files;
 }
 
+// Of a series that of any of its files.
+std::string viewed_key(const StepChoice& choice, const std::string& against) {
+  if (choice.series && against.empty() && !is_directory(choice.input)) return series_digest(choice.input);
+  const auto absolute = [](const std::string& path) { return fs::absolute(path).lexically_normal().string(); };
+  const std::string named = cat(absolute(choice.input), '\n', against.empty() ? "" : absolute(against));
+  return piece_digest(std::as_bytes(std::span(named))).hex();
+}
+
 ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& against) {
   ViewedFiles files;
+  files.key = viewed_key(choice, against);
   files.choice = choice;
   files.title = title_of(choice.input);
   files.steps = find_steps(choice);

@@ -21,12 +21,16 @@ std::vector<std::string> find_steps(const StepChoice& choice);
 
 struct ViewedFiles {
   std::string title;                 ///< what was named, without its folders
+  std::string key;                   ///< the same text for what is the same, and for nothing else; tells no path
   std::vector<std::string> steps;    ///< the file of a `series` first, then those beside it; else in natural order
   std::vector<std::string> against;  ///< none, one for all steps, or one for each
   SeriesSummary summary;             ///< of the steps
   StepChoice choice{};
   bool grow = false;  ///< more steps may come: `choice` names no single file, and `against` not one for each
 };
+
+/// ViewedFiles::key of what is named so.
+std::string viewed_key(const StepChoice& choice, const std::string& against);
 
 /// `against` is a file, a pattern or a directory, or empty. Nothing is opened but heads. Throws as find_steps, and
 /// Error(usage) where `against` has neither one file nor as many as there are steps.

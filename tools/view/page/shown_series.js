@@ -1,0 +1,62 @@
+// The series that this page is of. Behind weir watch the one viewer may be taken over for another one: then this page
+// says so, keeps its picture, and offers to bring its own series back.
+
+import {post} from "./api.js";
+import {by_id, set_text} from "./dom.js";
+
+const kTaken = 423;
+
+const asked = new URLSearchParams(location.search);
+const job = asked.get("job");
+
+let key = asked.get("series");  // null: of whatever is shown at first
+let name = null;                // of a file of it, where one is known
+let forced = false;             // the next click takes it from whoever looks
+
+function show(text, {back = false, there = false} = {}) {
+  by_id("other-series").hidden = !text;
+  set_text(by_id("other-series-note"), text);
+  by_id("take-back").hidden = !(back && job);
+  by_id("go-there").hidden = !there;
+}
+
+async function take_back() {
+  try {
+    await post(`../api/jobs/${encodeURIComponent(job)}/view?output=${asked.get("output") ?? 0}${forced ? "&force=1" : ""}`);
+    forced = false;
+    show("The viewer is being started for this page.");
+  } catch (error) {
+    forced = error.status === kTaken;
+    set_text(by_id("take-back"), forced ? "Take it all the same" : "Take it back");
+    set_text(by_id("other-series-note"), forced ? "Somebody looks at the other file, or opens it, and loses it when you take the viewer."
+                                                : error.message);
+  }
+}
+
+export const series_key = () => key;
+
+/** Whether `state`, of the server, is of this page's series; where it is not, the page says so. `file`: of this page. */
+export function is_own_series(state, file) {
+  key ??= state.series;
+  name ??= file;
+  const own = state.series === key;
+  if (own) {
+    forced = false;
+    set_text(by_id("take-back"), "Take it back");
+    show("");
+    return true;
+  }
+  if (!forced) {
+    show(`The viewer now shows another file, ${state.title}. ${name ? `This page is of ${name}` : "This address is of another series"}.`,
+         {back: true, there: true});
+  }
+  return false;
+}
+
+/** No viewer runs: where a job is known, it can be started again. */
+export function offer_again() {
+  if (job && !forced) show("No viewer runs for this page now.", {back: true});
+}
+
+by_id("take-back").addEventListener("click", take_back);
+by_id("go-there").addEventListener("click", () => location.assign(location.pathname));
