@@ -13,16 +13,21 @@
 
 namespace {
 
+using weir::ZarrFilter;
 using weir::ZarrPacker;
 
-const std::array<weir::ZarrCodecs, 8> kChains{{{{}, false, {}},
-                                               {{2, 0, 1}, false, {ZarrPacker::zlib}},
-                                               {{}, false, {ZarrPacker::gzip}},
-                                               {{2, 1, 0}, false, {ZarrPacker::zstd}},
-                                               {{}, false, {ZarrPacker::blosc}},
-                                               {{0, 2, 1}, false, {ZarrPacker::crc32c}},
-                                               {{}, false, {ZarrPacker::zstd, ZarrPacker::gzip}},
-                                               {{}, false, {ZarrPacker::blosc, ZarrPacker::crc32c}}}};
+const ZarrFilter kDelta{ZarrFilter::Kind::delta, 1, weir::ScalarType::int32, true};
+const std::array<weir::ZarrCodecs, 10> kChains{
+    {{{}, false, {}},
+     {{2, 0, 1}, false, {ZarrPacker::zlib}},
+     {{}, false, {ZarrPacker::gzip}},
+     {{2, 1, 0}, false, {ZarrPacker::zstd}},
+     {{}, false, {ZarrPacker::blosc}},
+     {{0, 2, 1}, false, {ZarrPacker::crc32c}},
+     {{}, false, {ZarrPacker::zstd, ZarrPacker::gzip}},
+     {{}, false, {ZarrPacker::blosc, ZarrPacker::crc32c}},
+     {{2, 1, 0}, true, {}, {kDelta, {ZarrFilter::Kind::shuffle, 4}}},
+     {{}, false, {ZarrPacker::zlib}, {{ZarrFilter::Kind::shuffle, 3}, kDelta}}}};
 const weir::ChunkShape kShape{{3, 5, 7}, 4};
 
 void check_chunk(const weir::ZarrCodecs& codecs, std::span<const std::byte> stored) {

@@ -6,6 +6,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/chunks/unshuffle.h"
 #include "ingest/hdf5/filters/undo_filters.h"
 
 namespace weir {

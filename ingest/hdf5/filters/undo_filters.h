@@ -1,4 +1,4 @@
-// The filters that weir undoes itself besides deflate: lzf, shuffle and Fletcher's checksum, each in memory of known
+// The filters that weir undoes itself besides deflate and shuffle: lzf and Fletcher's checksum, each in memory of known
 // size.
 #pragma once
 
@@ -12,11 +12,6 @@ namespace weir {
 /// more than it says; any other one, with the next, tells how many bytes to repeat from how far back (M. Lehmann,
 /// LibLZF, lzf_d.c). Throws Error(input), without a place, where the stream is damaged, ends early or holds more.
 void unpack_lzf(std::span<const std::byte> stream, std::span<std::byte> bytes);
-
-/// Puts the bytes of values of `value_bytes` each, stored plane by plane, back together. Bytes beyond the
-/// last whole value are at the end of both. `values` is as long as `planes` and does not overlap it;
-/// value_bytes >= 1.
-void unshuffle(std::span<const std::byte> planes, std::size_t value_bytes, std::span<std::byte> values);
 
 inline constexpr std::size_t kFletcher32Bytes = 4;
 

@@ -6,6 +6,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/zarr/codecs/crc32c.h"
+#include "ingest/zarr/codecs/filters.h"
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "ingest/zarr/codecs/transpose.h"
 
@@ -52,7 +53,8 @@ std::size_t most_stored_bytes(const ZarrCodecs& codecs, std::size_t chunk_bytes)
 }
 
 ScratchSize scratch_size(const ZarrCodecs& codecs, std::size_t chunk_bytes) {
-  ScratchSize size{chunk_bytes, most_stored_bytes(codecs, chunk_bytes), !codecs.transpose.empty(), 0};
+  ScratchSize size{chunk_bytes, most_stored_bytes(codecs, chunk_bytes),
+                   !codecs.transpose.empty() || !codecs.filters.empty(), 0};
   for (const ZarrPacker packer : codecs.packers) {
     size.two = size.two || packer != ZarrPacker::crc32c;
     if (packer == ZarrPacker::zstd) size.codec_bytes = std::max(size.codec_bytes, kZstdBytes);
@@ -79,6 +81,11 @@ std::span<const std::byte> decode_chunk(const ZarrCodecs& codecs, const ChunkSha
   }
   if (bytes.size() != chunk_bytes) {
     throw Error(ErrorKind::input, cat("holds ", bytes.size(), " bytes, not ", chunk_bytes));
+  }
+  for (std::size_t i = codecs.filters.size(); i-- > 0;) {
+    const std::span<std::byte> undone = undo_filter(codecs.filters[i], bytes, other.first(chunk_bytes));
+    if (undone.data() != bytes.data()) std::swap(buffer, other);
+    bytes = undone;
   }
   if (codecs.transpose.empty()) return bytes;
   undo_transpose(bytes, shape.extent, codecs.transpose, shape.value_bytes, other.first(chunk_bytes));

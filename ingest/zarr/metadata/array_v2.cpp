@@ -17,6 +17,10 @@ void read_type(const nlohmann::json& dtype, ZarrArray& array, const std::string&
   if (dtype.is_array()) throw unsupported_type(where, "a structure");
   const std::string text = dtype.is_string() ? dtype.get<std::string>() : json_text(dtype);
   const bool ordered = text.starts_with('<') || text.starts_with('>') || text.starts_with('|');
+  if (text == "|b1") {  // one byte, 0 or 1
+    array.type = ScalarType::uint8;
+    return;
+  }
   const auto type = ordered ? parse_scalar(std::string_view(text).substr(1)) : std::nullopt;
   if (!type || (text.front() == '|' && scalar_bytes(*type) > 1)) throw unsupported_type(where, text);
   array.type = *type;
@@ -31,10 +35,44 @@ void read_compressor(const nlohmann::json& compressor, ZarrArray& array, const s
   array.codecs.packers.push_back(*packer);
 }
 
-void refuse_filters(const nlohmann::json& filters, const std::string& where) {
-  if (!filters.is_array() || filters.empty()) return;
-  throw input_error(where, cat("has the filter ", in_quotes(json_string(filters.front(), "id")),
-                               ", and no filters are undone here; write the array without filters"));
+// Of a delta of any other type, and of other filters, the number of bytes of a value changes, or how it is rounded.
+ZarrFilter read_delta(const nlohmann::json& filter, const ZarrArray& array, const std::string& where) {
+  const std::string dtype = json_string(filter, "dtype");
+  const std::string astype = json_string(filter, "astype");
+  const auto type = parse_scalar(dtype.empty() ? std::string_view() : std::string_view(dtype).substr(1));
+  const bool narrow = type == ScalarType::float16 || type == ScalarType::bfloat16;
+  if (!type || narrow || scalar_bytes(*type) != scalar_bytes(array.type) || (!astype.empty() && astype != dtype)) {
+    throw input_error(where, cat("has the filter 'delta' from ", dtype, " to ", astype.empty() ? dtype : astype,
+                                 ", and it is undone of one type, an integer or float32 or float64 as wide as the "
+                                 "array's; write the array without it"));
+  }
+  return {ZarrFilter::Kind::delta, 1, *type, dtype.front() == '>'};
+}
+
+ZarrFilter read_shuffle(const nlohmann::json& filter, const std::string& where) {
+  constexpr std::int64_t kUsual = 4;
+  const nlohmann::json& size = json_member(filter, "elementsize");
+  const std::int64_t bytes = size.is_number_integer() ? size.get<std::int64_t>() : size.is_null() ? kUsual : 0;
+  if (bytes >= 1 && bytes <= 256) return {ZarrFilter::Kind::shuffle, static_cast<std::size_t>(bytes)};
+  throw input_error(where, cat("elementsize of the filter 'shuffle' is ", json_text(size),
+                               ", and must be a whole number from 1 to 256; the file is damaged"));
+}
+
+void read_filters(const nlohmann::json& filters, ZarrArray& array, const std::string& where) {
+  constexpr std::size_t kMostFilters = 16;
+  if (!filters.is_array()) return;
+  if (filters.size() > kMostFilters) {
+    throw input_error(where,
+                      cat("has ", filters.size(), " filters, more than ", kMostFilters, "; the file is damaged"));
+  }
+  for (const nlohmann::json& filter : filters) {
+    const std::string id = json_string(filter, "id");
+    if (id != "delta" && id != "shuffle") {
+      throw input_error(where, cat("has the filter ", in_quotes(id),
+                                   ", and weir undoes delta and shuffle; write the array without it"));
+    }
+    array.codecs.filters.push_back(id == "delta" ? read_delta(filter, array, where) : read_shuffle(filter, where));
+  }
 }
 
 void read_order(const nlohmann::json& order, ZarrArray& array, const std::string& where) {
@@ -55,12 +93,13 @@ ZarrArray parse_zarr_v2(const nlohmann::json& metadata, nlohmann::json attribute
   array.chunk = json_extents(json_member(metadata, "chunks"), "chunks", 1, where);
   require_same_axes(array.shape, array.chunk, "chunks", where);
   read_type(json_member(metadata, "dtype"), array, where);
-  refuse_filters(json_member(metadata, "filters"), where);
+  read_filters(json_member(metadata, "filters"), array, where);
   read_compressor(json_member(metadata, "compressor"), array, where);
   read_order(json_member(metadata, "order"), array, where);
   const nlohmann::json& separator = json_member(metadata, "dimension_separator");
   array.keys = {false, separator.is_null() ? '.' : read_separator(separator, "dimension_separator", where)};
-  const nlohmann::json& fill = json_member(metadata, "fill_value");
+  const nlohmann::json fill =
+      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "dtype") == "|b1");
   array.fill_text = json_text(fill);
   if (!fill.is_null()) array.fill = fill_bytes(fill, array.type, array.codecs.big_endian, where);
   array.attributes = std::move(attributes);

@@ -43,6 +43,7 @@ void refuse_extensions(const nlohmann::json& metadata, const std::string& where)
 
 ScalarType read_type(const nlohmann::json& type, const std::string& where) {
   const std::string name = type.is_string() ? type.get<std::string>() : extension_name(type);
+  if (name == "bool") return ScalarType::uint8;  // one byte, 0 or 1
   const auto known = parse_scalar(name);
   // By its full name, not one of numpy's or C's.
   if (!known || scalar_name(*known) != name) throw unsupported_type(where, name.empty() ? json_text(type) : name);
@@ -80,7 +81,8 @@ ZarrArray parse_zarr_v3(const nlohmann::json& metadata, const std::string& where
   require_same_axes(array.shape, array.chunk, "chunk_shape", where);
   array.keys = read_keys(json_member(metadata, "chunk_key_encoding"), where);
   read_codecs(json_member(metadata, "codecs"), array, where);
-  const nlohmann::json& fill = json_member(metadata, "fill_value");
+  const nlohmann::json fill =
+      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "data_type") == "bool");
   array.fill_text = json_text(fill);
   array.fill = fill_bytes(fill, array.type, array.values().big_endian, where);
   array.attributes = json_member(metadata, "attributes");

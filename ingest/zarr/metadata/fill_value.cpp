@@ -144,4 +144,8 @@ std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, b
       where, cat("fill_value is ", json_text(fill), ", which is no ", scalar_name(type), "; the file is damaged"));
 }
 
+nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool) {
+  return of_bool && fill.is_boolean() ? nlohmann::json(fill.get<bool>() ? 1 : 0) : fill;
+}
+
 }  // namespace weir

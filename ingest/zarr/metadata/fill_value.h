@@ -17,4 +17,7 @@ namespace weir {
 std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
                                   const std::string& where);
 
+/// `fill`, with 1 for true and 0 for false where the array is one of bool.
+nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool);
+
 }  // namespace weir

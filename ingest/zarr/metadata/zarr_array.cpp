@@ -28,9 +28,12 @@ std::string ZarrArray::layout_text() const {
   std::string text = cat("chunked ", extents_text(unit()));
   if (sharding) text += cat(" in shards of ", extents_text(chunk));
   if (!values().transpose.empty()) text += ", transposed";
+  for (const ZarrFilter& filter : values().filters) text += cat(", ", filter_name(filter.kind));
   for (const ZarrPacker packer : values().packers) text += cat(", ", packer_name(packer));
   return text;
 }
+
+const char* filter_name(ZarrFilter::Kind kind) { return kind == ZarrFilter::Kind::shuffle ? "shuffle" : "delta"; }
 
 const char* packer_name(ZarrPacker packer) {
   constexpr std::array kNames{"zlib", "gzip", "zstd", "blosc", "crc32c"};

@@ -16,12 +16,21 @@ namespace weir {
 /// What packs or checks the bytes of a chunk.
 enum class ZarrPacker { zlib, gzip, zstd, blosc, crc32c };
 
+/// A filter of version 2, which rearranges values before they are packed, and keeps their number of bytes.
+struct ZarrFilter {
+  enum class Kind { shuffle, delta } kind = Kind::shuffle;
+  std::size_t value_bytes = 1;          ///< of shuffle, >= 1
+  ScalarType type = ScalarType::uint8;  ///< of delta: an integer, float32 or float64, as wide as the array's
+  bool big_endian = false;              ///< of delta
+};
+
 /// How the values of a chunk become the bytes that are stored.
 struct ZarrCodecs {
   /// Axis i of what is stored is axis transpose[i] of the chunk; empty: the chunk's own order.
   std::vector<std::size_t> transpose;
   bool big_endian = false;
-  std::vector<ZarrPacker> packers;  ///< in the order of writing
+  std::vector<ZarrPacker> packers;       ///< in the order of writing
+  std::vector<ZarrFilter> filters = {};  ///< in the order of writing, before the packers
 };
 
 /// Chunks that lie together in one object, a shard, with an index of their places.
@@ -62,6 +71,8 @@ struct ZarrArray {
   std::string layout_text() const;
 };
 
+/// "shuffle".
+const char* filter_name(ZarrFilter::Kind kind);
 /// "zstd".
 const char* packer_name(ZarrPacker packer);
 

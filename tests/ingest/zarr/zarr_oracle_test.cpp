@@ -109,7 +109,7 @@ TEST(ZarrOracle, ArraysOfAllTypesOrdersAndCodecs_HaveTheValuesThatWereWritten) {
   if (!python_has("zarr, numcodecs")) GTEST_SKIP() << "python3-zarr is not installed (tools/setup.sh)";
   const TemporaryDirectory directory;
   ASSERT_TRUE(write_arrays(directory));
-  EXPECT_EQ(compare_all(directory, ".f32"), 74U);
+  EXPECT_EQ(compare_all(directory, ".f32"), 90U);
 }
 
 // Not one of the fast tests: `npm install zarrita` in a folder, and its node_modules in WEIR_NODE_MODULES.

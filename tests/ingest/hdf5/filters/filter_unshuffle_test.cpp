@@ -1,4 +1,4 @@
-#include "ingest/hdf5/filters/undo_filters.h"
+#include "ingest/chunks/unshuffle.h"
 
 #include <gtest/gtest.h>
 

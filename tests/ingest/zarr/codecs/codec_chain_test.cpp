@@ -45,6 +45,21 @@ TEST(CodecChain, TransposedChunks_GetTheOrderOfTheArray) {
   EXPECT_EQ(decoded({{2, 0, 1}, false, {}}, {{2, 3, 4}, 1}, stored), expected);
 }
 
+TEST(CodecChain, Filters_AreUndoneFromTheLastOn) {
+  // 1, 3, 2, 258 as 16-bit differences 1, 2, -1, 256, high bytes first; then the first bytes of all, then the second.
+  ZarrCodecs codecs{{}, true, {}};
+  codecs.filters = {{ZarrFilter::Kind::delta, 1, ScalarType::int16, true}, {ZarrFilter::Kind::shuffle, 2}};
+  std::vector<std::byte> stored;
+  for (const int byte : {0, 0, 0xFF, 1, 1, 2, 0xFF, 0}) stored.push_back(static_cast<std::byte>(byte));
+  std::vector<std::byte> expected;
+  for (const int byte : {0, 1, 0, 3, 0, 2, 1, 2}) expected.push_back(static_cast<std::byte>(byte));
+  EXPECT_EQ(decoded(codecs, {{1, 2, 2}, 2}, stored), expected);
+  codecs.transpose = {2, 1, 0};
+  expected.clear();
+  for (const int byte : {0, 1, 0, 2, 0, 3, 1, 2}) expected.push_back(static_cast<std::byte>(byte));
+  EXPECT_EQ(decoded(codecs, {{1, 2, 2}, 2}, stored), expected);
+}
+
 TEST(CodecChain, StreamsOfMoreOrFewerBytes_AreRefused) {
   const ZarrCodecs zlib{{}, false, {ZarrPacker::zlib}};
   const ChunkShape shape{{4, 4, 4}, 2};

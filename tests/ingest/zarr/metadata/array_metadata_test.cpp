@@ -56,12 +56,36 @@ TEST(ZarrMetadata, Version2_WhatIsNotReadIsNamed) {
   EXPECT_EQ(refusal_v2(zarray("[1,1,1]", "[1,1,1]", "<f4", "0", R"("compressor":{"id":"lzma"})")),
             "a: has the compressor 'lzma', and weir reads zlib, gzip, zstd, blosc and crc32c; write the array with one "
             "of them");
-  EXPECT_EQ(refusal_v2(zarray("[1,1,1]", "[1,1,1]", "<f4", "0", R"("filters":[{"id":"delta","dtype":"<f4"}])")),
-            "a: has the filter 'delta', and no filters are undone here; write the array without filters");
+  const auto filter = [](std::string_view filters) {
+    return refusal_v2(zarray("[1,1,1]", "[1,1,1]", "<f4", "0", cat("\"filters\":[", filters, "]")));
+  };
+  EXPECT_EQ(filter(R"({"id":"fixedscaleoffset","scale":10})"),
+            "a: has the filter 'fixedscaleoffset', and weir undoes delta and shuffle; write the array without it");
+  EXPECT_EQ(filter(R"({"id":"delta","dtype":"<f4","astype":"<i2"})"),
+            "a: has the filter 'delta' from <f4 to <i2, and it is undone of one type, an integer or float32 or float64 "
+            "as wide as the array's; write the array without it");
+  EXPECT_EQ(filter(R"({"id":"delta","dtype":"<f8"})"),
+            "a: has the filter 'delta' from <f8 to <f8, and it is undone of one type, an integer or float32 or float64 "
+            "as wide as the array's; write the array without it");
+  EXPECT_EQ(
+      filter(R"({"id":"shuffle","elementsize":0})"),
+      "a: elementsize of the filter 'shuffle' is 0, and must be a whole number from 1 to 256; the file is damaged");
   EXPECT_EQ(refusal_v2(zarray("[1,1,1]", "[1,1,1]", "<f4", "0", R"("dimension_separator":"-")")),
             "a: dimension_separator is \"-\", and must be \".\" or \"/\"; the file is damaged");
   EXPECT_EQ(refusal_v2("{\"zarr_format\":2,"), "a: is no JSON at byte 18; the file is damaged or still being written");
   EXPECT_EQ(refusal_v2("[2]"), "a: is no JSON object; the file is damaged");
+}
+
+TEST(ZarrMetadata, Version2_FiltersAndBool_AreReadAsTheyAreWritten) {
+  const ZarrArray array = v2(zarray("[9,9,9]", "[3,3,3]", ">i4", "0",
+                                    R"("filters":[{"id":"delta","dtype":">i4","astype":">i4"},{"id":"shuffle"}])"));
+  ASSERT_EQ(array.codecs.filters.size(), 2U);
+  EXPECT_EQ(array.codecs.filters[0].type, ScalarType::int32);
+  EXPECT_TRUE(array.codecs.filters[0].big_endian);
+  EXPECT_EQ(array.codecs.filters[1].value_bytes, 4U) << "what numcodecs takes where nothing is said";
+  EXPECT_EQ(array.layout_text(), "chunked 3 x 3 x 3, delta, shuffle");
+  EXPECT_EQ(v2(zarray("[9,9,9]", "[3,3,3]", "|b1", "true")).fill, bytes({1}));
+  EXPECT_EQ(v3(zarr_json("[9,9,9]", "[3,3,3]", R"([{"name":"bytes"}])", "bool", "false")).fill, bytes({0}));
 }
 
 TEST(ZarrMetadata, FillValues_AreReadInEveryForm) {

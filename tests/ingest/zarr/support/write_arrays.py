@@ -66,6 +66,20 @@ for i, dtype in enumerate(TYPES):
                 file.unlink()
             array = zarr.open(store)[:]
         note(name, f"{name}.zarr", "", array)
+# With filters, and of truth values.
+for i, dtype in enumerate(["<i2", ">i4", "<u8", "|u1", "<f4", ">f4", "<f8", "|b1"]):
+    for variant in range(2):
+        name = f"v2_filter_{i}_{variant}"
+        size = np.dtype(dtype).itemsize
+        array = np.cumsum(random.integers(-3, 4, 13 * 17 * 19)).reshape(13, 17, 19)
+        array = array % 3 == 0 if dtype == "|b1" else (array * (0.1 if "f" in dtype else 1)).astype(dtype)
+        delta = [] if dtype == "|b1" else [numcodecs.Delta(dtype)]
+        filters = [delta + [numcodecs.Shuffle(size)], delta][variant] or None
+        store = zarr.DirectoryStore(str(out / f"{name}.zarr"))
+        stored = zarr.create(array.shape, chunks=(5, 8, 7), dtype=dtype, compressor=COMPRESSORS[i % 8], filters=filters,
+                             order="CF"[variant], store=store, fill_value=0)
+        stored[:] = array
+        note(name, f"{name}.zarr", "", stored[:])  # differences of floats do not sum to the values written
 for variant, (order, method) in enumerate([("C", zipfile.ZIP_STORED), ("F", zipfile.ZIP_DEFLATED)]):
     name = f"v2_zip_{variant}"
     array = values_of(">i2", (2, 3, 11, 12, 13))

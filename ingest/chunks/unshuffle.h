@@ -1,0 +1,14 @@
+// The filter that stores the bytes of values plane by plane, as HDF5 and numcodecs have it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace weir {
+
+/// Puts the bytes of values of `value_bytes` each, stored plane by plane, back together. Bytes beyond the
+/// last whole value are at the end of both. `values` is as long as `planes` and does not overlap it;
+/// value_bytes >= 1.
+void unshuffle(std::span<const std::byte> planes, std::size_t value_bytes, std::span<std::byte> values);
+
+}  // namespace weir
