@@ -28,7 +28,7 @@ from store import Store
 from volumes import VolumeFiles
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXPERIMENTS = (Peers(), Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), RoundTrip(), Pictures(),
+EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), Peers(), RoundTrip(), Pictures(),
                Speed(), TwoPasses(), Stages(), Headline())
 
 

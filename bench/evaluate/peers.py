@@ -133,7 +133,7 @@ class Zfp(Peer):
         return [self.command, "-z", stream, "-f", "-3", *volume.extent, *options, "-o", output]
 
     def version(self):
-        printed = subprocess.run([self.command], capture_output=True, text=True, check=False).stderr  # its usage, exit code 1
+        printed = subprocess.run([self.command], capture_output=True, text=True, check=False).stderr  # its usage
         number = re.search(r"zfp version (\S+)", printed)
         return f"zfp {number[1]}" if number else "zfp, whose version is not known"
 

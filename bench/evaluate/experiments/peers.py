@@ -10,18 +10,15 @@ import sys
 import volumes
 from experiment import Experiment, describe, method_options, remove_volume, size_text
 from experiments.speed import threads_here
-from markdown import command, decibel, percent, table
+from markdown import command
+from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_text,
+                         versions_text)
+from png import write_png
 from programs import ProgramFailed, run
 from search import smallest_that_reaches
 
-TARGETS_DB = (60, 80, 100)
-SHARES = (1, 2, 5, 10, 20)  # percent of dense float32
-SPEED_DB = 80
-OURS = ("auto", "packed")
-PEERS = ("sperr", "sz3", "zfp_rate", "zfp_accuracy")
-METHODS = (*OURS, *PEERS)
-TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "zfp_rate": "ZFP's rate",
-          "zfp_accuracy": "ZFP's accuracy"}
+CHART = "peers.png"
+IMAGES = "images/evaluation"  # relative to the report
 ROUNDS = 3
 TOLERANCE_DB = 0.1  # above the target, where the search ends
 TOLERANCE_BYTES = 0.01  # below the size, as a share of it
@@ -57,20 +54,26 @@ class Peers(Experiment):
         for result in measured.results(self.name):
             head = {"volume": result["volume"], "extent": size_text(result["extent"]), "method": result["method"],
                     "version": result["version"]}
-            empty = {"target_db": None, "share": None, "parameter": None, **dict.fromkeys(POINT_KEYS), "threads": None, "compress_s": None,
-                     "decompress_s": None}
+            empty = dict.fromkeys(("target_db", "share", "parameter", *POINT_KEYS, "threads", "compress_s",
+                                   "decompress_s"))
             for kind in ("targets", "shares", "speeds"):
                 rows += [{**head, **empty, **row} for row in result[kind]]
         return rows
 
     def text(self, measured):
-        by = by_volume(measured)
-        return "\n\n".join((_shares_table(by), _speed_table(by), versions_text(measured), command(
+        return "\n\n".join((
+            f"![PSNR against bytes]({IMAGES}/{CHART})", targets_text(measured), shares_table(measured),
+            speed_table(measured), versions_text(measured), command(
             "bench/evaluate.sh --only peers --sperr SPERR3D --sz3 SZ3",
             "weir convert VOLUME.raw --psnr 80 --encoding packed",
             "sperr3d -c VOLUME_float32.raw --ftype 32 --dims X Y Z --omp 2 --psnr 80 --bitstream OUT",
             "sz3 -f -i VOLUME_float32.raw -z OUT -3 X Y Z -M ABS BOUND",
-            "zfp -h -i VOLUME_float32.raw -z OUT -f -3 X Y Z -r BITS        # or -a BOUND")))
+            "zfp -i VOLUME_float32.raw -z OUT -f -3 X Y Z -r BITS        # or -a BOUND")))
+
+    def pictures(self, measured, directory):
+        path = directory / CHART
+        write_png(path, chart(measured))
+        return {CHART: path}
 
     def broken_promises(self, measured):
         return [f"{result['volume']}, {result['method']}: {row['psnr_db']} dB with --psnr {row['target_db']}"
@@ -196,79 +199,3 @@ def nothing():
 
 def thread_counts():
     return sorted({1, threads_here()})
-
-
-def by_volume(measured):
-    """Volume's name -> method -> result, in the order of METHODS."""
-    by = {}
-    for result in sorted(measured.results("peers"), key=lambda r: METHODS.index(r["method"])):
-        by.setdefault(result["volume"], {})[result["method"]] = result
-    return by
-
-
-def methods_of(by):
-    return [method for method in METHODS if any(method in results for results in by.values())]
-
-
-def targets_text(measured):
-    """The first table of the page: bytes for each error, and beside it the speed at SPEED_DB."""
-    by = by_volume(measured)
-    methods = methods_of(by)
-    lines = []
-    for volume, results in by.items():
-        extent = size_text(next(iter(results.values()))["extent"])
-        for target in TARGETS_DB:
-            points = {method: next(row for row in result["targets"] if row["target_db"] == target)
-                      for method, result in results.items()}
-            least = min((point["bytes"] for point in points.values() if point["bytes"]), default=0)
-            cells = [_bytes_text(points.get(method), results.get(method), least) for method in methods]
-            speeds = [_both_speeds(results.get(method)) if target == SPEED_DB else "" for method in methods]
-            lines.append([f"{volume}, {extent}" if target == TARGETS_DB[0] else "", f"{target} dB", *cells, *speeds])
-    header = ["bytes of dense for", "", *(TITLES[method] for method in methods),
-              *(f"{'MB/s there, back: ' if method == methods[0] else ''}{TITLES[method]}" for method in methods)]
-    return table(header, lines)
-
-
-def _bytes_text(point, result, least):
-    if not point or not point["bytes"]:
-        return "-"
-    text = percent(point["bytes"], result["dense_bytes"], 2)
-    return f"**{text}**" if point["bytes"] == least else text
-
-
-def _both_speeds(result):
-    if not result or not result["speeds"]:
-        return "-"
-    row = result["speeds"][-1]
-    return ", ".join(f"{result['dense_bytes'] / row[key] / 1e6:.0f}" for key in ("compress_s", "decompress_s"))
-
-
-def _shares_table(by):
-    methods = methods_of(by)
-    lines = []
-    for volume, results in by.items():
-        for share in SHARES:
-            points = [next((row for row in results[method]["shares"] if row["share"] == share), None)
-                      if method in results else None for method in methods]
-            lines.append([volume if share == SHARES[0] else "", f"{share} %",
-                          *(decibel(point) if point and point["bytes"] else "-" for point in points)])
-    return table(["PSNR in dB at", "of dense", *(TITLES[method] for method in methods)], lines)
-
-
-def _speed_table(by):
-    lines = []
-    for volume, results in by.items():
-        for method, result in results.items():
-            cells = [f"{row[key]:.2f}" for row in result["speeds"] for key in ("compress_s", "decompress_s")]
-            lines.append([volume if method == next(iter(results)) else "", TITLES[method], *cells])
-    counts = sorted({row["threads"] for results in by.values() for r in results.values() for row in r["speeds"]})
-    header = [f"seconds at {SPEED_DB} dB", "method", *(f"{count} thread{'s' if count > 1 else ''}, {way}"
-                                                       for count in counts for way in ("there", "back"))]
-    return table(header, [line + ["-"] * (len(header) - len(line)) for line in lines])
-
-
-def versions_text(measured):
-    loads = [record["load"] for record in measured.records("peers")]
-    versions = sorted({result["version"] for result in measured.results("peers")})
-    return (f"Measured: {'; '.join(versions)}. Load average of the machine before each measurement: "
-            f"{min(loads):.1f} to {max(loads):.1f}.")
