@@ -5,7 +5,7 @@
 #   bench/evaluate.sh [OPTION...] [DIR]       DIR: default build/evaluation, or build/evaluation-quick
 #
 #   --only NAME,...   these experiments only: sizes, worst_case, errors, few_bytes, lossless,
-#                     metrics, zfp, round_trip, pictures, speed, two_passes, stages, headline
+#                     metrics, zfp, peers, round_trip, pictures, speed, two_passes, stages, headline
 #   --again           measure anew what is there already
 #   --report          no measurement, only the report of those there are
 #   --scale N         divides the extents of the paper's large sets, default 4
@@ -13,6 +13,8 @@
 #                     2.2 times 26 and 46 GB, 43 GB
 #   --quick           small volumes only, for the tests: a minute
 #   --publish         copies report and pictures to docs/ as well
+#   --sperr FILE, --sz3 FILE   the commands sperr3d and sz3, which peers measures; default: on PATH
+#   --sperr-commit ID, --sz3-commit ID   what they were built of, for the report
 #   --weir FILE       the command to measure; default: build/release/weir, built first
 #
 # Leaves evaluation.md, evaluation.json, a CSV for each experiment and images/ in DIR. Exit code 1 where a promise is not

@@ -13,6 +13,7 @@ from experiments.few_bytes import FewBytes
 from experiments.headline import Headline
 from experiments.lossless import Lossless
 from experiments.metrics import Metrics
+from experiments.peers import Peers
 from experiments.pictures import Pictures
 from experiments.round_trip import RoundTrip
 from experiments.sizes import Sizes
@@ -21,13 +22,14 @@ from experiments.stages import Stages
 from experiments.two_passes import TwoPasses
 from experiments.worst_case import WorstCase
 from experiments.zfp import Zfp
+from peers import find_peers
 from report import broken_promises, publish, write_report
 from store import Store
 from volumes import VolumeFiles
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), RoundTrip(), Pictures(), Speed(),
-               TwoPasses(), Stages(), Headline())
+EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), Peers(), RoundTrip(), Pictures(),
+               Speed(), TwoPasses(), Stages(), Headline())
 
 
 def parse(arguments):
@@ -43,6 +45,10 @@ def parse(arguments):
     parser.add_argument("--quick", action="store_true", help="small volumes only, for the tests")
     parser.add_argument("--publish", action="store_true", help="copy report and pictures to docs/ as well")
     parser.add_argument("--weir", type=pathlib.Path, default=ROOT / "build/release/weir", help="the command to measure")
+    for name, program in (("sperr", "sperr3d"), ("sz3", "sz3")):
+        parser.add_argument(f"--{name}", type=pathlib.Path, metavar="FILE", help=f"the command {program}; default: "
+                            "on PATH")
+        parser.add_argument(f"--{name}-commit", default="", metavar="ID", help="what it was built of, for the report")
     given = parser.parse_args(arguments)
     wanted = [name for name in given.only.split(",") if name]
     for name in wanted:
@@ -64,7 +70,8 @@ def main(arguments):
         weir = programs.Weir(given.weir.resolve())
         measured = Store(given.directory, {"machine": programs.machine(), "weir": weir.version()}, given.again)
         files = VolumeFiles(given.directory, os.environ.get("WEIR_DATA", ROOT.parent / "shared/data"), weir)
-        bench = Bench(given.directory, weir, measured, files, given.scale, given.quick, given.full)
+        bench = Bench(given.directory, weir, measured, files, given.scale, given.quick, given.full,
+                      find_peers(given.sperr, given.sz3, given.sperr_commit, given.sz3_commit))
         for experiment in given.experiments:
             experiment.measure(bench)
     write_report(EXPERIMENTS, measured, given.directory)

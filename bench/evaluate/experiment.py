@@ -19,6 +19,7 @@ class Bench:
     scale: float = 4
     quick: bool = False
     full: bool = False
+    peers: tuple = ()  # of peers.find_peers
 
     def volumes(self):
         """Those of the tables of errors that can be had."""

@@ -1,0 +1,103 @@
+"""The tables and the chart of the experiment `peers`."""
+
+from chart import error_chart
+from experiment import size_text
+from markdown import decibel, percent, table
+
+TARGETS_DB = (60, 80, 100)
+SHARES = (1, 2, 5, 10, 20)  # percent of dense float32
+SPEED_DB = 80
+OURS = ("auto", "packed")
+PEERS = ("sperr", "sz3", "zfp_rate", "zfp_accuracy")
+METHODS = (*OURS, *PEERS)
+TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "zfp_rate": "ZFP's rate",
+          "zfp_accuracy": "ZFP's accuracy"}
+
+
+def by_volume(measured):
+    """Volume's name -> method -> result, in the order of METHODS."""
+    by = {}
+    for result in sorted(measured.results("peers"), key=lambda r: METHODS.index(r["method"])):
+        by.setdefault(result["volume"], {})[result["method"]] = result
+    return by
+
+
+def methods_of(by):
+    return [method for method in METHODS if any(method in results for results in by.values())]
+
+
+def targets_text(measured):
+    """The first table of the page: bytes for each error, and beside it the speed at SPEED_DB."""
+    by = by_volume(measured)
+    methods = methods_of(by)
+    lines = []
+    for volume, results in by.items():
+        extent = size_text(next(iter(results.values()))["extent"])
+        for target in TARGETS_DB:
+            points = {method: next(row for row in result["targets"] if row["target_db"] == target)
+                      for method, result in results.items()}
+            least = min((point["bytes"] for point in points.values() if point["bytes"]), default=0)
+            cells = [_bytes_text(points.get(method), results.get(method), least) for method in methods]
+            speeds = [_both_speeds(results.get(method)) if target == SPEED_DB else "" for method in methods]
+            lines.append([f"{volume}, {extent}" if target == TARGETS_DB[0] else "", f"{target} dB", *cells, *speeds])
+    header = ["bytes of dense for", "", *(TITLES[method] for method in methods),
+              *(f"{'MB/s there, back: ' if method == methods[0] else ''}{TITLES[method]}" for method in methods)]
+    return table(header, lines)
+
+
+def _bytes_text(point, result, least):
+    if not point or not point["bytes"]:
+        return "-"
+    text = percent(point["bytes"], result["dense_bytes"], 2)
+    return f"**{text}**" if point["bytes"] == least else text
+
+
+def _both_speeds(result):
+    if not result or not result["speeds"]:
+        return "-"
+    row = result["speeds"][-1]
+    return ", ".join(f"{result['dense_bytes'] / row[key] / 1e6:.0f}" for key in ("compress_s", "decompress_s"))
+
+
+def shares_table(measured):
+    by = by_volume(measured)
+    methods = methods_of(by)
+    lines = []
+    for volume, results in by.items():
+        for share in SHARES:
+            points = [next((row for row in results[method]["shares"] if row["share"] == share), None)
+                      if method in results else None for method in methods]
+            lines.append([volume if share == SHARES[0] else "", f"{share} %",
+                          *(decibel(point) if point and point["bytes"] else "-" for point in points)])
+    return table(["PSNR in dB at", "of dense", *(TITLES[method] for method in methods)], lines)
+
+
+def speed_table(measured):
+    by = by_volume(measured)
+    lines = []
+    for volume, results in by.items():
+        for method, result in results.items():
+            cells = [f"{row[key]:.2f}" for row in result["speeds"] for key in ("compress_s", "decompress_s")]
+            lines.append([volume if method == next(iter(results)) else "", TITLES[method], *cells])
+    counts = sorted({row["threads"] for results in by.values() for r in results.values() for row in r["speeds"]})
+    header = [f"seconds at {SPEED_DB} dB", "method", *(f"{count} thread{'s' if count > 1 else ''}, {way}"
+                                                       for count in counts for way in ("there", "back"))]
+    return table(header, [line + ["-"] * (len(header) - len(line)) for line in lines])
+
+
+def versions_text(measured):
+    loads = [record["load"] for record in measured.records("peers")]
+    versions = sorted({result["version"] for result in measured.results("peers")})
+    return (f"Measured: {'; '.join(versions)}. Load average of the machine before each measurement: "
+            f"{min(loads):.1f} to {max(loads):.1f}.")
+
+
+def chart(measured):
+    """PSNR against bytes of dense, of all points that are measured."""
+    panels = {}
+    for volume, results in by_volume(measured).items():
+        panels[volume] = {TITLES[method]: [(100 * row["bytes"] / result["dense_bytes"], row["psnr_db"])
+                                           for kind in ("targets", "shares") for row in result[kind]
+                                           if row["bytes"] and row["psnr_db"] is not None]
+                          for method, result in results.items()}
+    return error_chart(panels, [TITLES[method] for method in METHODS])
