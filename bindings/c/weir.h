@@ -55,7 +55,7 @@ typedef struct weir_error {
   char message[WEIR_MESSAGE_BYTES]; /* ends with a zero, cut where it is longer; "" after a success */
 } weir_error;
 
-/* "0.1.0". The library owns the string. */
+/* "0.2.0". The library owns the string. */
 WEIR_API const char* weir_version(void);
 
 /* ---- Volumes --------------------------------------------------------------------------------------------------- */
