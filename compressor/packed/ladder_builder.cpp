@@ -239,9 +239,9 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
 
 void LadderBuilder::build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder) {
   const std::uint32_t bounded = exact_.write_bounded(block, max_error, stream_);
-  // On a lattice as coarse as the error allows, exact is shorter.
-  const std::uint32_t exact =
-      bounded == 0 || aim_.lattice ? exact_.write(block, aim_.lattice, stream_) : kRawStreamBytes;
+  // On a lattice as coarse as the error allows, exact is shorter; on none, floats in their order are not.
+  const FloatOrder order = bounded == 0 || aim_.lattice ? FloatOrder::used : FloatOrder::unused;
+  const std::uint32_t exact = exact_.write(block, aim_.lattice, stream_, order);
   const bool rounds = bounded > 0 && bounded < exact;
   ladder.exact = rounds ? ExactKind::bounded : ExactKind::values;
   ladder.exact_bytes = static_cast<std::uint16_t>(rounds ? bounded : exact);

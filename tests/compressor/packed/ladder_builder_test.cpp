@@ -80,5 +80,22 @@ TEST(LadderBuilder, BlocksOnALatticeAreExactWithoutTheFloatsOrder) {
   EXPECT_LT(ladder.exact_bytes, 1000);
 }
 
+// Whole numbers in floats: rounded to less than half their distance they take more bits.
+TEST(LadderBuilder, ABoundBelowTheStepOfALatticeTakesNoMoreThanExact) {
+  const LeafValues block = filled([](double x, double y, double z) {
+    return static_cast<float>(std::fmod(37 * x * x + 11 * y * z + 5 * z * z * x, 251));
+  });
+  const auto bytes = [&](LadderAim aim) {
+    return LadderBuilder(aim).build(block, summarize_leaf(block, 0), NearRungs::no).exact_bytes;
+  };
+  LadderAim lossless;
+  lossless.lossless = true;
+  LadderAim bounded;
+  bounded.max_error = 0.255;
+  EXPECT_EQ(bytes(bounded), bytes(lossless));
+  bounded.max_error = 3;
+  EXPECT_LT(bytes(bounded), bytes(lossless));
+}
+
 }  // namespace
 }  // namespace weir::ladder_builder_test
