@@ -13,7 +13,7 @@ from experiments.few_bytes import FewBytes
 from experiments.headline import Headline
 from experiments.lossless import Lossless
 from experiments.metrics import Metrics
-from experiments.peers import Peers
+from experiments.peers import Peers, keep_records
 from experiments.pictures import Pictures
 from experiments.round_trip import RoundTrip
 from experiments.sizes import Sizes
@@ -44,6 +44,8 @@ def parse(arguments):
     parser.add_argument("--full", action="store_true", help="besides, the sets at the paper's extents")
     parser.add_argument("--quick", action="store_true", help="small volumes only, for the tests")
     parser.add_argument("--publish", action="store_true", help="copy report and pictures to docs/ as well")
+    parser.add_argument("--kept", type=pathlib.Path, default=pathlib.Path(__file__).parent / "kept.json", metavar="FILE",
+                        help="figures of peers for runs that do not find them; --publish writes it")
     parser.add_argument("--weir", type=pathlib.Path, default=ROOT / "build/release/weir", help="the command to measure")
     for name, program in (("sperr", "sperr3d"), ("sz3", "sz3")):
         parser.add_argument(f"--{name}", type=pathlib.Path, metavar="FILE", help=f"the command {program}; default: "
@@ -71,12 +73,13 @@ def main(arguments):
         measured = Store(given.directory, {"machine": programs.machine(), "weir": weir.version()}, given.again)
         files = VolumeFiles(given.directory, os.environ.get("WEIR_DATA", ROOT.parent / "shared/data"), weir)
         bench = Bench(given.directory, weir, measured, files, given.scale, given.quick, given.full,
-                      find_peers(given.sperr, given.sz3, given.sperr_commit, given.sz3_commit))
+                      find_peers(given.sperr, given.sz3, given.sperr_commit, given.sz3_commit), given.kept)
         for experiment in given.experiments:
             experiment.measure(bench)
     write_report(EXPERIMENTS, measured, given.directory)
     if given.publish:
         publish(given.directory, ROOT / "docs")
+        keep_records(measured, given.kept)
     broken = broken_promises(EXPERIMENTS, measured)
     for line in broken:
         print(line, file=sys.stderr)

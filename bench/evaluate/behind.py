@@ -4,13 +4,15 @@ import math
 
 from experiments.few_bytes import gap_db
 from markdown import command, decibel, percent, table, whole
+from peer_tables import OTHERS, TITLES, by_volume
 
 OURS = ("auto", "packed")
 RIVALS = ("zfp", "auto")
+LARGE_BYTES = 1 << 24
 
 
 def behind_text(measured):
-    finders = (_rates, _accuracy, _plateau, _above_lossless, _bounds, _lossless, _pictures, _noise, _reading, _time)
+    finders = (_peers_bytes, _peers_error, _peers_time, _rates, _accuracy, _plateau, _above_lossless, _bounds, _lossless, _pictures, _noise, _reading, _time)
     lines = [line for find in finders for line in find(measured)]
     return table(["ours", "is behind", "at its worst", "where"], lines) + "\n\n" + command("bench/evaluate.sh --report")
 
@@ -27,6 +29,56 @@ def _gap_line(ours, title, gaps):
     gap, own, theirs, where = max(behind, key=lambda found: found[0])
     figures = f"{decibel(own)} dB against " + ("lossless" if theirs["lossless"] else f"{decibel(theirs)} dB")
     return [[ours, title, figures if math.isinf(gap) else f"{gap:.0f} dB, {figures}", where]]
+
+
+def _peers_pairs(measured):
+    """(ours, its result, peer's title, its result) for each volume."""
+    for results in by_volume(measured).values():
+        for ours in OURS:
+            for peer in OTHERS:
+                if ours in results and peer in results:
+                    yield ours, results[ours], TITLES[peer], results[peer]
+
+
+def _peers_bytes(measured):
+    found = {}
+    for ours, own, peer, theirs in _peers_pairs(measured):
+        for mine, other in zip(own["targets"], theirs["targets"]):
+            if mine["bytes"] and other["bytes"]:
+                where = (f"{own['volume']} at {mine['target_db']} dB, {percent(mine['bytes'], own['dense_bytes'])} of dense "
+                         f"against {percent(other['bytes'], own['dense_bytes'])}")
+                found.setdefault((ours, peer), []).append((mine["bytes"] / other["bytes"], where))
+    return [line for (ours, peer), ratios in found.items()
+            for line in _times_line(ours, f"{peer}, bytes for a PSNR{_how_often(ratios, 1)}", ratios)]
+
+
+def _peers_error(measured):
+    found = {}
+    for ours, own, peer, theirs in _peers_pairs(measured):
+        for mine, other in zip(own["shares"], theirs["shares"]):
+            if mine["bytes"] and other["bytes"]:
+                gap = -gap_db(mine, other)
+                found.setdefault((ours, peer), []).append((gap, mine, other,
+                                                           f"{own['volume']} at {mine['share']} % of dense"))
+    return [line for (ours, peer), gaps in found.items()
+            for line in _gap_line(ours, f"{peer}, PSNR at equal bytes{_how_often(gaps, 0)}", gaps)]
+
+
+def _peers_time(measured):
+    """Of volumes of which starting up is no part."""
+    found = {}
+    for ours, own, peer, theirs in _peers_pairs(measured):
+        for key, way in (("compress_s", "there"), ("decompress_s", "back")):
+            if own["dense_bytes"] >= LARGE_BYTES and own["speeds"] and theirs["speeds"]:
+                mine, other = own["speeds"][-1], theirs["speeds"][-1]
+                where = f"{own['volume']}, {mine[key]:.2f} s against {other[key]:.2f} s, {mine['threads']} threads"
+                found.setdefault((ours, peer, way), []).append((mine[key] / other[key], where))
+    return [line for (ours, peer, way), ratios in found.items()
+            for line in _times_line(ours, f"{peer}, seconds {way}{_how_often(ratios, 1)}", ratios)]
+
+
+def _how_often(found, even):
+    return f", in {sum(first[0] > even for first in found)} of {len(found)}"
 
 
 def _rates(measured):

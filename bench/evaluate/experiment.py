@@ -20,6 +20,7 @@ class Bench:
     quick: bool = False
     full: bool = False
     peers: tuple = ()  # of peers.find_peers
+    kept: pathlib.Path = None  # file with figures of peers that are not found
 
     def volumes(self):
         """Those of the tables of errors that can be had."""

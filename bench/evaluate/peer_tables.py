@@ -1,5 +1,7 @@
 """The tables and the chart of the experiment `peers`."""
 
+import statistics
+
 from chart import error_chart
 from experiment import size_text
 from markdown import decibel, percent, table
@@ -8,8 +10,8 @@ TARGETS_DB = (60, 80, 100)
 SHARES = (1, 2, 5, 10, 20)  # percent of dense float32
 SPEED_DB = 80
 OURS = ("auto", "packed")
-PEERS = ("sperr", "sz3", "zfp_rate", "zfp_accuracy")
-METHODS = (*OURS, *PEERS)
+OTHERS = ("sperr", "sz3", "zfp_rate", "zfp_accuracy")
+METHODS = (*OURS, *OTHERS)
 TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "zfp_rate": "ZFP's rate",
           "zfp_accuracy": "ZFP's accuracy"}
 
@@ -26,23 +28,25 @@ def methods_of(by):
     return [method for method in METHODS if any(method in results for results in by.values())]
 
 
-def targets_text(measured):
-    """The first table of the page: bytes for each error, and beside it the speed at SPEED_DB."""
+def targets_table(measured):
+    """The first table of the page: bytes for each error, and below them the speed at SPEED_DB."""
     by = by_volume(measured)
     methods = methods_of(by)
     lines = []
     for volume, results in by.items():
         extent = size_text(next(iter(results.values()))["extent"])
         for target in TARGETS_DB:
-            points = {method: next(row for row in result["targets"] if row["target_db"] == target)
-                      for method, result in results.items()}
+            points = {method: target_point(result, target) for method, result in results.items()}
             least = min((point["bytes"] for point in points.values() if point["bytes"]), default=0)
             cells = [_bytes_text(points.get(method), results.get(method), least) for method in methods]
-            speeds = [_both_speeds(results.get(method)) if target == SPEED_DB else "" for method in methods]
-            lines.append([f"{volume}, {extent}" if target == TARGETS_DB[0] else "", f"{target} dB", *cells, *speeds])
-    header = ["bytes of dense for", "", *(TITLES[method] for method in methods),
-              *(f"{'MB/s there, back: ' if method == methods[0] else ''}{TITLES[method]}" for method in methods)]
-    return table(header, lines)
+            lines.append([f"{volume}, {extent}" if target == TARGETS_DB[0] else "", f"{target} dB", *cells])
+    for key, way in (("compress_s", "there"), ("decompress_s", "back")):
+        lines.append([f"MB/s {way}, median", f"{SPEED_DB} dB", *(_median_speed(by, method, key) for method in methods)])
+    return table(["bytes of dense for", "", *(TITLES[method] for method in methods)], lines)
+
+
+def target_point(result, target):
+    return next(row for row in result["targets"] if row["target_db"] == target)
 
 
 def _bytes_text(point, result, least):
@@ -52,11 +56,11 @@ def _bytes_text(point, result, least):
     return f"**{text}**" if point["bytes"] == least else text
 
 
-def _both_speeds(result):
-    if not result or not result["speeds"]:
-        return "-"
-    row = result["speeds"][-1]
-    return ", ".join(f"{result['dense_bytes'] / row[key] / 1e6:.0f}" for key in ("compress_s", "decompress_s"))
+def _median_speed(by, method, key):
+    """Of dense bytes, by most threads."""
+    speeds = [results[method]["dense_bytes"] / results[method]["speeds"][-1][key] / 1e6 for results in by.values()
+              if method in results and results[method]["speeds"]]
+    return f"{statistics.median(speeds):.0f}" if speeds else "-"
 
 
 def shares_table(measured):

@@ -6,6 +6,7 @@ import pathlib
 import shutil
 
 from behind import behind_text
+from experiments.peers import Peers
 
 IMAGES = "images/evaluation"  # relative to the report
 NOT_MEASURED = "*Not measured yet.*"
@@ -28,6 +29,7 @@ def write_report(experiments, measured, directory):
         for name, path in experiment.pictures(measured, directory).items():
             shutil.copyfile(path, directory / IMAGES / name)
     text = text.replace("@promises@", promises_text(broken_promises(experiments, measured)))
+    text = text.replace("@first@", Peers().first_text(measured) if measured.records(Peers.name) else NOT_MEASURED)
     text = text.replace("@behind@", behind_text(measured))
     text = text.replace("@origin@", origin_text(measured.records()))
     (directory / "evaluation.md").write_text(text)

@@ -27,18 +27,21 @@ class Store:
 
     def measure(self, experiment, name, function):
         """The result of `experiment`'s measurement `name`: as stored, else what `function()` returns, stored."""
-        path = self._state / experiment / (re.sub(r"[^A-Za-z0-9._-]", "_", name) + ".json")
+        path = self._path(experiment, name)
         if path.exists() and not self._again:
             return json.loads(path.read_text())["result"]
         print(f"{experiment}: {name}", file=sys.stderr, flush=True)
         load = os.getloadavg()[0]  # before: of what else the machine does
         record = {"experiment": experiment, "name": name, **self._origin, "load": load, "result": function()}
         record["date"] = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_suffix(".partial")
-        partial.write_text(json.dumps(record, indent=1) + "\n")
-        os.replace(partial, path)
+        _write(path, record)
         return record["result"]
+
+    def adopt(self, record):
+        """Takes a record of another store, unless there is one of its name."""
+        path = self._path(record["experiment"], record["name"])
+        if not path.exists():
+            _write(path, record)
 
     def records(self, experiment="*"):
         """All records of an experiment, in the order in which they were named."""
@@ -47,3 +50,13 @@ class Store:
 
     def results(self, experiment):
         return [record["result"] for record in self.records(experiment)]
+
+    def _path(self, experiment, name):
+        return self._state / experiment / (re.sub(r"[^A-Za-z0-9._-]", "_", name) + ".json")
+
+
+def _write(path, record):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(record, indent=1) + "\n")
+    os.replace(partial, path)

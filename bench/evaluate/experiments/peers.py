@@ -1,9 +1,10 @@
 """SPERR, SZ3 and both modes of ZFP beside weir: bytes for an error, error at equal bytes, seconds of both directions.
 
-Errors are measured by weir on what each command decompresses to, for all in the same way. A peer whose command is
-missing is left out, visibly; what was measured of it before stays in the report.
+Errors are measured by weir on what each command decompresses to, for all in the same way. Of a peer whose command is
+missing the report has what DIR holds, or else what the last published run left in bench/evaluate/kept.json.
 """
 
+import json
 import math
 import sys
 
@@ -11,7 +12,7 @@ import volumes
 from experiment import Experiment, describe, method_options, remove_volume, size_text
 from experiments.speed import threads_here
 from markdown import command
-from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_text,
+from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_table,
                          versions_text)
 from png import write_png
 from programs import ProgramFailed, run
@@ -30,10 +31,14 @@ class Peers(Experiment):
     name = "peers"
 
     def measure(self, bench):
-        wanted = volumes.few_bytes_set(64)[:2] if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
+        wanted = volumes.few_bytes_set(48)[:2] if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
         for peer in bench.peers:
             if not peer.command:
-                print(f"peers: {peer.title} skipped, the command {peer.program} is not found", file=sys.stderr)
+                kept = kept_records(bench.kept, peer.name)
+                print(f"peers: {peer.title} skipped, the command {peer.program} is not found"
+                      + ("; its figures are those that are kept" if kept else ""), file=sys.stderr)
+                for record in kept:
+                    bench.store.adopt(record)
         for volume in wanted:
             if bench.files.available(volume):
                 for encoding in OURS:
@@ -60,15 +65,18 @@ class Peers(Experiment):
                 rows += [{**head, **empty, **row} for row in result[kind]]
         return rows
 
-    def text(self, measured):
-        return "\n\n".join((
-            f"![PSNR against bytes]({IMAGES}/{CHART})", targets_text(measured), shares_table(measured),
-            speed_table(measured), versions_text(measured), command(
+    def first_text(self, measured):
+        """What opens the report."""
+        return "\n\n".join((f"![PSNR against bytes]({IMAGES}/{CHART})", targets_table(measured), command(
             "bench/evaluate.sh --only peers --sperr SPERR3D --sz3 SZ3",
             "weir convert VOLUME.raw --psnr 80 --encoding packed",
             "sperr3d -c VOLUME_float32.raw --ftype 32 --dims X Y Z --omp 2 --psnr 80 --bitstream OUT",
             "sz3 -f -i VOLUME_float32.raw -z OUT -3 X Y Z -M ABS BOUND",
             "zfp -i VOLUME_float32.raw -z OUT -f -3 X Y Z -r BITS        # or -a BOUND")))
+
+    def text(self, measured):
+        return "\n\n".join((shares_table(measured), speed_table(measured), versions_text(measured),
+                            command("bench/evaluate.sh --only peers --sperr SPERR3D --sz3 SZ3")))
 
     def pictures(self, measured, directory):
         path = directory / CHART
@@ -187,6 +195,20 @@ class _Theirs:
         back = [run(self._peer.decode(self._volume, self._stream, self._decoded, options, threads)).seconds
                 for _ in range(rounds)]
         return {"threads": threads, "compress_s": min(there), "decompress_s": min(back)}
+
+
+def kept_records(path, method=None):
+    """The records of other methods than weir's in a file by keep_records(); of one of them where it is named."""
+    records = json.loads(path.read_text()) if path.exists() else []
+    return [record for record in records if method in (None, record["result"]["method"])]
+
+
+def keep_records(measured, path):
+    """Leaves what was measured of others for runs that do not find them."""
+    records = {record["name"]: record for record in kept_records(path)}
+    records.update((record["name"], record) for record in measured.records(Peers.name)
+                   if record["result"]["method"] not in OURS)
+    path.write_text(json.dumps([records[name] for name in sorted(records)], indent=1) + "\n")
 
 
 def quality(point):

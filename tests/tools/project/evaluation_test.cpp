@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "format/base/text.h"
 #include "tests/support/python.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
@@ -56,8 +57,9 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   EXPECT_EQ(all["worst_case"][1]["encoding"], "packed");
   EXPECT_EQ(all["worst_case"][1]["fixed_bytes"], 4096 + 800 + 32 + 2 * 288 + 96 + 3840 + 16 + 1548);
   EXPECT_EQ(all["worst_case"][2]["bytes"], 1407712);
-  EXPECT_EQ(all["errors"].size(), 2 * 5 * 10U);  // volumes, methods, shares
-  EXPECT_EQ(all["few_bytes"].size(), 4 * 5U);    // volumes, shares
+  EXPECT_EQ(all["errors"].size(), 2 * 5 * 10U);          // volumes, methods, shares
+  EXPECT_EQ(all["few_bytes"].size(), 4 * 5U);            // volumes, shares
+  EXPECT_GE(all["peers"].size(), 2 * 2 * (3 + 5 + 1U));  // volumes, encodings; dB, shares, speeds
   for (const Json& row : all["few_bytes"]) EXPECT_EQ(row["packed_bytes"], row["bytes_asked"]) << row;
   ASSERT_EQ(all["lossless"].size(), 1U);
   EXPECT_LT(all["lossless"][0]["packed_bytes"], all["lossless"][0]["auto_bytes"]);
@@ -81,8 +83,9 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   }
 
   const std::string text = report();
-  for (const char* title : {"# Evaluation", "## Actual size", "## Worst case", "## Error against size", "## Few bytes",
-                            "## Lossless", "## ZFP", "## There and back", "## Pictures", "## Time and memory"}) {
+  for (const char* title :
+       {"# Evaluation", "## Bytes for an error", "## Actual size", "## Worst case", "## Error against size",
+        "## Few bytes", "## Lossless", "## ZFP", "## There and back", "## Pictures", "## Time and memory"}) {
     EXPECT_NE(text.find(title), std::string::npos) << title;
   }
   EXPECT_NE(text.find("| 32^3 | auto | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos)
@@ -139,6 +142,75 @@ TEST_F(Evaluation, Interrupted_EndsAndKeepsFinishedMeasurements) {
             std::string::npos)
       << result.err;
   EXPECT_EQ(list_directory(state), std::vector<std::string>{first});
+}
+
+// In the place of sz3: rounds to the bound, and deflates.
+constexpr const char* kPretendedSz3 = R"(
+import array, sys, zlib
+given = sys.argv[1:]
+if given == ["-v"]:
+    print("SZ3 Version: 9.9.9")
+    sys.exit()
+option = lambda name: given[given.index(name) + 1]
+if "-i" in given:
+    step = 2 * float(option("ABS"))
+    values = array.array("f")
+    values.frombytes(open(option("-i"), "rb").read())
+    codes = array.array("q", [round(v / step) for v in values])
+    open(option("-z"), "wb").write(array.array("d", [step]).tobytes() + zlib.compress(codes.tobytes(), 1))
+else:
+    stream = open(option("-z"), "rb").read()
+    step = array.array("d", stream[:8])[0]
+    codes = array.array("q", zlib.decompress(stream[8:]))
+    open(option("-o"), "wb").write(array.array("f", [code * step for code in codes]).tobytes())
+)";
+
+TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
+  const std::string sz3 = directory_ / "sz3";
+  write_file(sz3, cat("#!", kPython, kPretendedSz3));
+  fs::permissions(sz3, fs::perms::owner_all);
+  const std::vector<std::string> quick{"--quick", "--only", "peers", "--kept", directory_ / "kept.json"};
+  std::vector<std::string> found = quick;
+  found.insert(found.end(), {"--sz3", sz3, "--sz3-commit", "0123456789abcdef"});
+  const CommandResult run = evaluate(found);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("peers: SPERR skipped, the command sperr3d is not found\n"), std::string::npos) << run.err;
+
+  std::size_t targets = 0;
+  Json theirs = Json::array();
+  for (const Json& row : figures()["peers"]) {
+    if (row["method"] != "sz3") continue;
+    theirs.push_back(row);
+    EXPECT_EQ(row["version"], "SZ3 9.9.9 of 0123456789ab");
+    if (row["target_db"].is_null()) continue;
+    EXPECT_GE(row["psnr_db"], row["target_db"]) << row;
+    EXPECT_LE(row["psnr_db"], row["target_db"].get<double>() + 0.1) << row;
+    ++targets;
+  }
+  EXPECT_EQ(targets, 2 * 3U);  // volumes, dB
+  EXPECT_NE(report().find("| auto | SZ3, bytes for a PSNR, in "), std::string::npos) << report();
+  EXPECT_NE(report().find("SZ3 9.9.9 of 0123456789ab"), std::string::npos);
+
+  // As --publish leaves them, for a directory that has none.
+  Json kept = Json::array();
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path() / "state/peers")) {
+    if (entry.path().string().ends_with("_sz3.json")) kept.push_back(Json::parse(read_file(entry.path())));
+  }
+  ASSERT_EQ(kept.size(), 2U);
+  write_file(directory_ / "kept.json", kept.dump());
+  for (const Json& record : kept) {
+    fs::remove(directory_.path() / "state/peers" / (record["name"].get<std::string>() + ".json"));
+  }
+  const CommandResult without = evaluate(quick);
+  ASSERT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_NE(without.err.find("peers: SZ3 skipped, the command sz3 is not found; its figures are those that are kept\n"),
+            std::string::npos)
+      << without.err;
+  Json again = Json::array();
+  for (const Json& row : figures()["peers"]) {
+    if (row["method"] == "sz3") again.push_back(row);
+  }
+  EXPECT_EQ(again, theirs);
 }
 
 TEST_F(Evaluation, UnknownExperiment_IsRefusedWithTheKnownNames) {
