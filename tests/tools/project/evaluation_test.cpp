@@ -178,7 +178,8 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
 
   std::size_t targets = 0;
   Json theirs = Json::array();
-  for (const Json& row : figures()["peers"]) {
+  const Json first = figures();
+  for (const Json& row : first["peers"]) {
     if (row["method"] != "sz3") continue;
     theirs.push_back(row);
     EXPECT_EQ(row["version"], "SZ3 9.9.9 of 0123456789ab");
@@ -207,7 +208,8 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
             std::string::npos)
       << without.err;
   Json again = Json::array();
-  for (const Json& row : figures()["peers"]) {
+  const Json second = figures();
+  for (const Json& row : second["peers"]) {
     if (row["method"] == "sz3") again.push_back(row);
   }
   EXPECT_EQ(again, theirs);
