@@ -123,7 +123,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
       }
     }
     if (state.decided && state.built) {
-      ladders->near_everywhere = state.near_rungs;
+      ladders->near = state.near;
       ladders->window = state.window();
     }
     ladders->coder = coder;

@@ -225,7 +225,7 @@ class SurveyedConversion {
     if (!aim) return;
     LadderState& state = ladders();
     if (aim->has_rungs() && !state.decided) state = decided_by(outlook_of(request, stores_.rows));
-    if (aim->near_rungs && state.near_rungs && !state.built) state.built = state.rebuilt = true;
+    if (aim->near_rungs && state.near != NearBlocks::none && !state.built) state.built = state.rebuilt = true;
     request.packed.window = state.window();
     MissingLadders missing;
     missing.all = state.rebuilt;
@@ -249,7 +249,7 @@ class SurveyedConversion {
     const LadderState& state = ladders();
     if (!aim.background) aim.background = background_.value;
     if (state.built) {
-      aim.near_everywhere = state.near_rungs;
+      aim.near = state.near;
       aim.window = state.window();
     }
     // What an earlier process saved of them must not be taken for what is built now.

@@ -106,9 +106,8 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
         ladder);
     if (near == NearRungs::yes) more = add_near_rungs(block, row, energy, ladder);
   }
-  const bool sparse = 2U * row.zeros > row.finite;
   const bool on_no_lattice = ladder.exact_bytes == kRawStreamBytes;
-  if (near == NearRungs::yes && !may_be_exact && on_no_lattice && (more || sparse)) {
+  if (near == NearRungs::yes && !may_be_exact && on_no_lattice && (more || is_sparse(row))) {
     set_exact(block, FloatOrder::used, ladder);
   }
   return ladder;

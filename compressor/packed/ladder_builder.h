@@ -9,6 +9,7 @@
 
 #include "compressor/leaf/leaf_row.h"
 #include "compressor/packed/exact_block.h"
+#include "compressor/packed/ladder_state.h"
 #include "compressor/packed/ladder_window.h"
 #include "compressor/packed/packed_ladder.h"
 #include "format/leaf/leaf_codec.h"
@@ -23,6 +24,8 @@ namespace weir {
 /// Whether a ladder has near rungs, and its exact kind predicts floats.
 enum class NearRungs { no, yes };
 
+inline bool is_sparse(const LeafRow& row) { return 2U * row.zeros > row.finite; }
+
 /// What ladders are built for.
 struct LadderAim {
   bool lossless = false;             ///< exact kinds alone
@@ -31,21 +34,22 @@ struct LadderAim {
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
   bool near_rungs = false;           ///< a budget of bytes, or of an error, may buy them
-  bool near_everywhere = false;      ///< it is known to, so that all blocks get them, and not a sample alone
+  NearBlocks near{};                 ///< those that it is known to buy them for; before, a sample alone has them
   /// Where the cut is known to lie: the rungs that it cannot choose are left out.
   std::optional<KeyWindow> window{};
   BlockCoder* coder = nullptr;  ///< looks at the rungs of many blocks at a time, where there is one
 
   /// Who looks at rungs in the survey. Exact kinds and near rungs are looked at here.
   BlockCoder* surveying_coder() const {
-    return has_rungs() && !lattice && !(near_rungs && near_everywhere) ? coder : nullptr;
+    return has_rungs() && !lattice && !(near_rungs && near == NearBlocks::all) ? coder : nullptr;
   }
   /// Which rungs it looks at.
   RungAsk rung_ask() const { return window ? RungAsk{false, window->step()} : RungAsk{}; }
 
   /// Which ladder a block gets in the survey.
-  NearRungs near_for(bool sampled) const {
-    return near_rungs && (near_everywhere || sampled) ? NearRungs::yes : NearRungs::no;
+  NearRungs near_for(const LeafRow& row, bool sampled) const {
+    const bool bought = near == NearBlocks::all || (near == NearBlocks::sparse && is_sparse(row));
+    return near_rungs && (bought || sampled) ? NearRungs::yes : NearRungs::no;
   }
   /// Whether ladders lead from few bytes to many, and a budget chooses.
   bool has_rungs() const { return !lossless && !max_error; }

@@ -2,15 +2,23 @@
 // journal.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "compressor/packed/ladder_window.h"
 
 namespace weir {
 
+/// Which blocks have near rungs, besides the sampled ones.
+enum class NearBlocks : std::uint8_t {
+  none,
+  sparse,  ///< those most of whose values are zero, which near rungs suit at any budget
+  all      ///< where nearly everything is kept
+};
+
 struct LadderState {
   bool decided = false;            ///< before, the rest means nothing
-  bool near_rungs = false;         ///< all blocks have near rungs, not the sampled ones alone
+  NearBlocks near{};               ///< of the best file
   std::optional<double> centre{};  ///< of the window that cuts are expected in; none: all rungs count
   bool built = false;    ///< ladders are built so; else with all rungs, and near rungs of sampled blocks alone
   bool rebuilt = false;  ///< by a pass after the survey, which may not have come to its end

@@ -12,15 +12,15 @@
 namespace weir {
 
 struct BudgetOutlook {
-  /// Whether the best file keeps some blocks by near rungs or as floats in order.
-  bool near_rungs = false;
+  /// Which blocks the best file keeps some of by near rungs or as floats in order.
+  NearBlocks near{};
   /// Where the cut of the selection lies, about. None: unknown, or all can be bought, or a scene weighs.
   std::optional<KeyWindow> window{};
 };
 
 /// What that decides.
 inline LadderState decided_by(const BudgetOutlook& outlook) {
-  return {true, outlook.near_rungs, outlook.window ? std::optional(outlook.window->centre()) : std::nullopt};
+  return {true, outlook.near, outlook.window ? std::optional(outlook.window->centre()) : std::nullopt};
 }
 
 /// Volumes of fewer blocks have all rungs built: looking ahead would take as long.

@@ -75,7 +75,7 @@ class BlockSurvey::Leaves {
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
       const LeafRow& row = rows_[at];
       const auto count = static_cast<std::size_t>(leaves_.voxels(leaf).voxels());
-      if (found && row.finite == count && !row.uniform() && aim_->near_for(sample_.has(leaf)) == NearRungs::no) {
+      if (found && row.finite == count && !row.uniform() && aim_->near_for(row, sample_.has(leaf)) == NearRungs::no) {
         const auto ladder =
             tally.builder(*aim_).build_from(found->figures[at], found->costs.subspan(costs * at, costs), row);
         if (ladder) {
@@ -148,7 +148,7 @@ class BlockSurvey::Leaves {
     if (all && row.uniform()) return LadderBuilder::uniform();
     LeafValues block;
     block_values(values, leaves_.node_box(leaf), leaves_.voxels(leaf), block);
-    const NearRungs rungs = aim_->near_for(sample_.has(leaf));
+    const NearRungs rungs = aim_->near_for(row, sample_.has(leaf));
     return all ? tally.builder(*aim_).build(block, row, rungs)
                : tally.builder(*aim_).build_non_finite(block, row, rungs);
   }
@@ -280,7 +280,7 @@ bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::si
   if (row.uniform()) {
     leaves.ladders[at] = LadderBuilder::uniform();
   } else {
-    if (ladders_->near_for(sample_.has(leaf)) == NearRungs::yes) return false;
+    if (ladders_->near_for(row, sample_.has(leaf)) == NearRungs::yes) return false;
     const std::size_t costs = found.costs.size() / found.figures.size();
     const auto ladder =
         tally.builder(*ladders_).build_from(found.figures[at], found.costs.subspan(costs * at, costs), row);

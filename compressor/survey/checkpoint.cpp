@@ -96,7 +96,7 @@ Checkpoint checkpoint_of(const Json& json) {
   }
   const Json& ladders = json.at("ladders");
   ladders.at("decided").get_to(c.ladders.decided);
-  ladders.at("near_rungs").get_to(c.ladders.near_rungs);
+  c.ladders.near = static_cast<NearBlocks>(ladders.at("near").get<int>());
   if (ladders.contains("centre")) c.ladders.centre = double_of(ladders["centre"]);
   ladders.at("built").get_to(c.ladders.built);
   ladders.at("rebuilt").get_to(c.ladders.rebuilt);
@@ -122,7 +122,7 @@ std::string to_text(const Checkpoint& c) {
             {"tally", to_json(c.survey.tally)},
             {"ladders",
              {{"decided", c.ladders.decided},
-              {"near_rungs", c.ladders.near_rungs},
+              {"near", static_cast<int>(c.ladders.near)},
               {"built", c.ladders.built},
               {"rebuilt", c.ladders.rebuilt},
               {"moves", c.ladders.moves}}},

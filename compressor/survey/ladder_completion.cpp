@@ -62,7 +62,7 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
     gather_leaf(block.values, block.voxels, leaves.node_box(leaf), inside, 0, values);
     extend_outside(leaves.node_box(leaf), inside, values);
     LadderBuilder& builder = builders.local();
-    const NearRungs near = aim.near_for(sample.has(leaf));
+    const NearRungs near = aim.near_for(row, sample.has(leaf));
     const bool finite = row.finite == inside.voxels();
     ladder = finite ? builder.build(values, row, near) : builder.build_non_finite(values, row, near);
   };

@@ -75,7 +75,7 @@ TEST(Checkpoint, ReadsBackBitForBit) {
   EXPECT_EQ(back->background->method, "sampled-mode");
   EXPECT_EQ(back->background->share, 1.0 / 3);
   EXPECT_TRUE(back->ladders.decided);
-  EXPECT_TRUE(back->ladders.near_rungs);
+  EXPECT_EQ(back->ladders.near, NearBlocks::sparse);
   EXPECT_EQ(back->ladders.centre, 1.0 / 3);
   EXPECT_TRUE(back->ladders.built);
   EXPECT_TRUE(back->ladders.rebuilt);
