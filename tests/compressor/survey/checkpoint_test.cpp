@@ -29,7 +29,7 @@ Checkpoint sample() {
   t.loss = {5, 6, 0.1, 8};
   c.survey.done.add({{0, 0, 0}, {1, 2, 3}});
   c.survey.done.add({{0, 5, 0}, {9, 9, 9}});
-  c.ladders = {true, true, 1.0 / 3, true, true, 2};
+  c.ladders = {true, NearBlocks::sparse, 1.0 / 3, true, true, 2};
   c.background = {-1e-30F, "sampled-mode", 1.0 / 3};
   c.attempt = {3, std::numeric_limits<double>::infinity(), Encoding::fp8, "iso 3", 0.3};
   c.plan.bytes[15] = std::byte{255};

@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/nanovdb/read_box.h"
+#include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/hard_cases.h"
 #include "tests/compressor/support/memory_volume.h"
@@ -101,6 +102,17 @@ TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
 }
 
 // Means a million apart have codes of many bits, whose products round.
+// Whose decoded errors are smaller than what the survey counts, since no value falls below zero.
+TEST(PackedConversion, ThePsnrOfASparseCloudIsNoLargerThanNeedBe) {
+  const auto source = open_synthetic("cloud", {{96, 80, 72}, 1});
+  MemoryVolume volume(*source);
+  for (const double target : {45.0, 55.0}) {
+    const Converted converted = test::convert(volume, packed(Budget::Kind::psnr, target));
+    EXPECT_GE(*converted.sidecar.error.psnr_db, target);
+    EXPECT_LE(*converted.sidecar.error.psnr_db, target + 0.1);
+  }
+}
+
 TEST(PackedConversion, KeepsTheLargestErrorWhereMeansLieFarApart) {
   std::uint32_t state = 7;
   MemoryVolume volume(kPackedDomain, [&](const Index3& i) {
