@@ -213,8 +213,8 @@ struct Attempts {
 }  // namespace
 
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
-  // The error of coded coefficients is that of the values to parts of ten thousand: planned for all of what may be left,
-  // every other file would miss it by so much, and be made once more.
+  // The error of coded coefficients is that of the values to parts of ten thousand: planned for all of what may be
+  // left, every other file would miss it by so much, and be made once more.
   const double most = request.encoding == Encoding::packed ? kPackedShare : 1;
   request.planned_error = most * request.squared_error;
   Attempts attempts{std::move(request), job.rows, job.work};
