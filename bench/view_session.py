@@ -10,6 +10,7 @@ at the server's resident bytes, those of no file among them, and its open descri
 object with the medians of the second and of the last quarter of the looks, which are the same where nothing leaks.
 """
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -146,8 +147,9 @@ def main():
             end = time.monotonic() + 60 * options.minutes
             while time.monotonic() < end:
                 people = [Person(port, options, chance) for _ in range(3)]
-                for person in people:
-                    person.visit()
+                # At once: who waits for another one answers no ping, and is taken for gone.
+                with concurrent.futures.ThreadPoolExecutor(len(people)) as pool:
+                    list(pool.map(Person.visit, people))
                 misbehave(port, chance)
                 replace(folder, options.steps, chance)
                 for person in people:
