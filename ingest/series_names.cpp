@@ -28,7 +28,16 @@ std::string volume_text(const SeriesStep& step) {
   std::string text = step.path;
   if (!step.dataset.empty()) text += ": " + step.dataset;
   for (const std::int64_t& i : step.index) text += cat(&i == step.index.data() ? " at " : ",", i);
+  if (step.level) text += cat(", level ", *step.level);
   return text;
+}
+
+// "NAME_level_1.nvdb" of "NAME.nvdb"; `name` of a step that is no level.
+std::string with_level(const std::string& name, const SeriesStep& step) {
+  if (!step.from_finest) return name;
+  constexpr std::string_view kEnd = ".nvdb";
+  const bool ends = name.ends_with(kEnd);
+  return cat(ends ? name.substr(0, name.size() - kEnd.size()) : name, "_level_", *step.from_finest, ends ? kEnd : "");
 }
 
 // As little as tells the steps of one file apart.
@@ -38,7 +47,7 @@ std::string name_in_call(const SeriesStep& step, std::span<const SeriesStep> ste
     std::size_t count = 0;
     for (const SeriesStep& other : steps) {
       if (other.path != step.path) continue;
-      names.insert(step_name(name, other));
+      names.insert(with_level(step_name(name, other), other));
       ++count;
     }
     if (names.size() == count) return step_name(name, step);
@@ -182,6 +191,7 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
     std::filesystem::path path = output.substr(0, directory_end) + step_name(output.substr(directory_end), step);
     if (output.empty()) path = std::filesystem::path(step.path).replace_filename(default_name(step));
     if (directory) path /= default_name(step);
+    path = with_level(path.string(), step);
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {
       throw Error(ErrorKind::usage,

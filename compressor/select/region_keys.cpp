@@ -74,7 +74,8 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
-  bool required = false;
+  const std::int64_t voxels = tree_.region_lattice.voxels(tree_.region_lattice.position(index)).voxels();
+  bool required = !rule_.packed && rule_.fill.splits(region.sums.finite, voxels);
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
@@ -155,6 +156,12 @@ void RegionKeys::summarize_uppers() {
     if (rule_.packed) {
       upper.tile_error = tiles;
       upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
+      continue;
+    }
+    const std::int64_t voxels = tree_.upper_lattice.voxels(tree_.upper_lattice.position(i)).voxels();
+    if (rule_.fill.splits(upper.sums.finite, voxels)) {
+      upper.key = kRequiredKey;
+      upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
       continue;
     }
     if (exact || !seen) continue;

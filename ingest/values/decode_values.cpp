@@ -23,11 +23,12 @@ using MissingMask = std::array<bool, kAtOnce>;
 template <typename T>
 class Decoder {
  public:
-  Decoder(ScalarType type, const ValueMapping& mapping) : type_(type), mapping_(mapping) {
+  Decoder(ScalarType type, const ValueMapping& mapping) : type_(type), mapping_(mapping), guards_(mapping.gaps) {
     for (const StoredValue& value : mapping.missing) {
       if (!holds(type, value)) continue;
       std::visit([this](const auto v) { missing_.push_back(static_cast<T>(v)); }, value);
     }
+    guards_ = guards_ || !missing_.empty();
   }
 
   ConversionLoss decode(std::span<T> stored, std::span<float> values) const {
@@ -42,7 +43,7 @@ class Decoder {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (missing[i]) {
         std::memcpy(&values[i], &mark, sizeof mark);
-      } else if (!missing_.empty() && is_missing(values[i])) {
+      } else if (guards_ && is_missing(values[i])) {
         std::memcpy(&values[i], &other, sizeof other);
       }
     }
@@ -82,6 +83,7 @@ class Decoder {
   ScalarType type_;
   const ValueMapping& mapping_;
   std::vector<T> missing_;
+  bool guards_;  // whether a stored NaN could be taken for missing_value()
 };
 
 template <typename T>

@@ -103,6 +103,7 @@ WEIR_HOST_DEVICE void add_statistics(const Warp& warp, const RecordCall& call, s
     record.mean = mean(lane);
     record.m2 = squares(lane);
     record.bounds = MinMax{low(lane), high(lane)};
+    record.inactive = 0;
   });
 }
 
