@@ -89,7 +89,7 @@ std::string component_part(const DatasetInfo& dataset, const ComponentChoice& ch
 bool meant_by(const SeriesStep& step, const DatasetInfo& dataset) {
   if (!step.dataset.empty()) return dataset.name == step.dataset || dataset.name == '/' + step.dataset;
   const std::size_t positions = step.index.size();
-  return dataset.obstacle.empty() &&
+  return dataset.obstacle.empty() && !dataset.by_name_only &&
          (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size());
 }
 
@@ -118,7 +118,9 @@ class FileNames {
       const std::vector<DatasetInfo>& datasets = datasets_of(step.path);
       const DatasetInfo* const dataset = opened(datasets, step, options_.component.has_value());
       if (dataset == nullptr) return std::nullopt;
-      const auto volumes = std::ranges::count_if(datasets, [](const DatasetInfo& d) { return d.obstacle.empty(); });
+      const auto volumes = std::ranges::count_if(datasets, [&](const DatasetInfo& d) {
+        return d.obstacle.empty() && (!d.by_name_only || !step.dataset.empty());
+      });
       std::string name = step.stem;
       if (volumes > 1) name = joined_name(name, dataset_part(dataset->name));
       if (options_.component) name = joined_name(name, component_part(*dataset, *options_.component));
