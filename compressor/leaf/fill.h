@@ -36,7 +36,7 @@ struct Fill {
     if (row.finite > 0 && !(row.uniform() && same(row.mean, value))) return false;
     return row.finite == voxels || (non_finite != NonFinitePolicy::keep && same(background, value));
   }
-  /// Whether a block of `voxels`, `finite` of which have values, must not become one tile.
+  /// Whether a node over `voxels`, in the domain or not, `finite` of which have values, must not become one tile.
   bool splits(std::uint64_t finite, std::int64_t voxels) const {
     return gaps && finite > 0 && std::cmp_less(finite, voxels);
   }

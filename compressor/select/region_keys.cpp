@@ -74,8 +74,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
-  const std::int64_t voxels = tree_.region_lattice.voxels(tree_.region_lattice.position(index)).voxels();
-  bool required = !rule_.packed && rule_.fill.splits(region.sums.finite, voxels);
+  bool required = !rule_.packed && rule_.fill.splits(region.sums.finite, kLowerDim * kLowerDim * kLowerDim);
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
@@ -158,8 +157,7 @@ void RegionKeys::summarize_uppers() {
       upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
       continue;
     }
-    const std::int64_t voxels = tree_.upper_lattice.voxels(tree_.upper_lattice.position(i)).voxels();
-    if (rule_.fill.splits(upper.sums.finite, voxels)) {
+    if (rule_.fill.splits(upper.sums.finite, kUpperDim * kUpperDim * kUpperDim)) {
       upper.key = kRequiredKey;
       upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
       continue;
