@@ -21,7 +21,7 @@ class WatchZarr : public testing::TestWithParam<const char*> {
  protected:
   static constexpr int kChunks = 4;
   static std::string keys(const std::string& more = "") {
-    return cat("watch = \"", GetParam(), "\"\nrecursive = true\nsettle = 0.6\nlossless = true\n", more);
+    return cat("watch = \"", GetParam(), "\"\nrecursive = true\nsettle = 0.9\nlossless = true\n", more);
   }
   /// The metadata of an array of 8 * kChunks x 16 x 16 bytes in the directory `store`, of version 2 or 3.
   static void begin(const std::string& store, int version) {
@@ -56,7 +56,7 @@ TEST_P(WatchZarr, AStoreThatGrowsSlowly_IsConvertedOnceAndWhole) {
   for (const int version : {2, 3}) begin(service.in(cat("v", version, ".zarr")), version);
   for (int chunk = 0; chunk < kChunks; ++chunk) {
     for (const int version : {2, 3}) add_chunk(service.in(cat("v", version, ".zarr")), version, chunk);
-    std::this_thread::sleep_for(std::chrono::milliseconds(350));
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));
     EXPECT_EQ(service.logged(" start "), 0U) << "before chunk " << chunk + 1 << '\n' << service.log();
   }
   ASSERT_TRUE(service.eventually_done(2)) << service.log();
@@ -72,7 +72,7 @@ TEST_P(WatchZarr, WithMarkers_TheMarkerSaysIt) {
   const std::string store = service.in("a.zarr");
   begin(store, 3);
   for (int chunk = 0; chunk < kChunks; ++chunk) add_chunk(store, 3, chunk);
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
   EXPECT_EQ(service.logged(" start "), 0U) << service.log();
   std::ofstream(store + "/zarr.json.done") << "";
   ASSERT_TRUE(service.eventually_done(1)) << service.log();

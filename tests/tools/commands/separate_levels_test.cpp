@@ -114,12 +114,12 @@ TEST_F(SeparateLevels, KilledBetweenTwoLevels_LeavesWholeFilesAndTheNextRunMakes
   plan.boxes = {{plan.domain}, {{{0, 0, 0}, {16, 16, 16}}}};
   plan.single = true;
   test::write_plotfile(path_, plan);
-  ASSERT_EQ(convert({"--rate", "2"}).exit_code, 0);
+  ASSERT_EQ(convert({"--lossless"}).exit_code, 0);
   const std::vector<std::string> expected{read_file(out(0)), read_file(out(1))};
   fs::remove_all(directory_.path() / "out");
 
-  ChildProcess command({WEIR_COMMAND, "convert", path_, "--levels", "separate", "-o", directory_ / "out/", "--rate",
-                        "2", "--bandwidth", "2MB"});
+  ChildProcess command({WEIR_COMMAND, "convert", path_, "--levels", "separate", "-o", directory_ / "out/", "--lossless",
+                        "--bandwidth", "2MB"});
   while (command.running() && !fs::exists(sidecar_path(out(0)))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -132,7 +132,7 @@ TEST_F(SeparateLevels, KilledBetweenTwoLevels_LeavesWholeFilesAndTheNextRunMakes
   EXPECT_EQ(read_file(out(0)), expected[0]);
   const auto before = fs::last_write_time(out(0));
 
-  const CommandResult again = convert({"--rate", "2", "--skip-done"});
+  const CommandResult again = convert({"--lossless", "--skip-done"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(fs::last_write_time(out(0)), before);
   EXPECT_EQ(read_file(out(0)), expected[0]);
