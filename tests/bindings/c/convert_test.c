@@ -342,12 +342,13 @@ static void separate_levels(void) {
   options.has_background = 1;
   options.background = -1;
   CHECK_OK(weir_convert_file(path, &input, &options, path_of("rho.nvdb"), &error));
+  static const int64_t kPlaces[2][3] = {{4, 7, 11}, {1, 3, 6}}; /* of the coarse level the middle one is refined */
   static const float kExpected[2][3] = {{2, 2, 2}, {1, -1, 1}};
   for (int n = 0; n < 2; ++n) {
     weir_grid* grid = NULL;
     CHECK_OK(weir_open(path_of(n == 0 ? "rho_level_0.nvdb" : "rho_level_1.nvdb"), &grid, &error));
     for (int i = 0; i < 3; ++i) {
-      const int64_t at = n == 0 ? 4 + 3 * i : 1 + 2 * i; /* of the coarse level in its middle: refined */
+      const int64_t at = kPlaces[n][i];
       const int64_t index[3] = {at, at, at};
       float value = 0;
       CHECK_OK(weir_value(grid, index, &value, &error));

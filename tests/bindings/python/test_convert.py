@@ -246,7 +246,7 @@ class SeparateLevels(FolderTest):
         self.assertEqual([record["missing"]["count"] for record in records], [0, 32**3])
         with weir.open(self.folder / "out/plt00042_density_level_0.nvdb") as fine:
             self.assertEqual(fine.to_numpy().shape, (64, 64, 64))
-            self.assertEqual(fine.voxel_size, (1 / 128, 1 / 128, 1 / 128))
+            self.assertEqual(tuple(fine.spacing), (1 / 128, 1 / 128, 1 / 128))
         with weir.open(self.folder / "out/plt00042_density_level_1.nvdb") as coarse:
             values = coarse.to_numpy()
             self.assertEqual(values.shape, (64, 64, 64))
@@ -254,7 +254,7 @@ class SeparateLevels(FolderTest):
             self.assertTrue((values[:16] > 0).all())
 
     def test_what_keeps_voxels_without_a_value_is_refused(self):
-        with self.assertRaisesRegex(ValueError, "nonfinite='keep' does not go with levels='separate'"):
+        with self.assertRaisesRegex(ValueError, "nonfinite keep does not go with levels separate"):
             weir.convert(self.folder / "plt00042", dataset="density", levels="separate", nonfinite="keep")
 
 
