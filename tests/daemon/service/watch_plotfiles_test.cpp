@@ -77,7 +77,8 @@ TEST_P(WatchPlotfiles, SeparateLevels_AreTheOutputsOfOneJob) {
                               "--lossless", "-o", service.path("alone.nvdb")});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   std::vector<std::string> outputs;
-  for (const auto& output : service.job("plt00042/Header")["outputs"]) outputs.push_back(output["path"]);
+  const ServiceHarness::Json job = service.job("plt00042/Header");
+  for (const auto& output : job["outputs"]) outputs.push_back(output["path"]);
   ASSERT_EQ(outputs.size(), 2U);
   for (const std::string level : {"0", "1"}) {
     const std::string output = service.out("plt00042_level_" + level + ".nvdb");
