@@ -126,11 +126,24 @@ ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bo
   return loss;
 }
 
+// Gives stored NaN of the bits of missing_value() other bits.
+void tell_from_missing(std::span<float> values) {
+  for (float& value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    value = std::bit_cast<float>(bits ^ static_cast<std::uint32_t>(bits == kMissingBits));
+  }
+}
+
 }  // namespace
 
 ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                              const ValueMapping& mapping, std::span<float> values) {
   if (mapping.identity()) return convert_values(bytes, type, big_endian, values);
+  if (!mapping.scales() && mapping.missing.empty()) {  // the usual level of a plotfile
+    const ConversionLoss loss = convert_values(bytes, type, big_endian, values);
+    tell_from_missing(values);
+    return loss;
+  }
   const bool swap = big_endian != kNativeIsBig;
   switch (type) {
     case ScalarType::uint8:
