@@ -89,8 +89,11 @@ std::string component_part(const DatasetInfo& dataset, const ComponentChoice& ch
 bool meant_by(const SeriesStep& step, const DatasetInfo& dataset) {
   if (!step.dataset.empty()) return dataset.name == step.dataset || dataset.name == '/' + step.dataset;
   const std::size_t positions = step.index.size();
+  // With a position more, what would be components are the voxels along x.
+  const bool with_components = dataset.components > 1 && positions + 3 == dataset.extents.size();
   return dataset.obstacle.empty() && !dataset.by_name_only &&
-         (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size());
+         (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size() ||
+          with_components);
 }
 
 // The one of `datasets` that `step` opens; null where that is not known.
