@@ -111,7 +111,7 @@ def main():
         if process.returncode != 0:
             raise SystemExit(f"weir convert --levels {levels} failed")
         print(f"--levels {levels}: converted in {converting:.2f} s, {converting / reading:.1f} times as long, "
-              f"peak memory {usage.ru_maxrss / 1024:.0f} MiB")
+              f"{usage.ru_utime + usage.ru_stime:.2f} s of processors, peak memory {usage.ru_maxrss / 1024:.0f} MiB")
 
 
 if __name__ == "__main__":
