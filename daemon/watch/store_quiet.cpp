@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFilesAtOnce = 4096;
+constexpr std::size_t kFilesAtOnce = 1024;
 constexpr std::chrono::nanoseconds kLeastSettle = std::chrono::milliseconds(100);  // settle may be 0
 
 bool names_store(std::string_view component) { return component.size() > 5 && component.ends_with(".zarr"); }

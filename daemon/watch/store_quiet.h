@@ -20,7 +20,7 @@ bool is_store_head(std::string_view path);
 /// Whether `path` lies in a directory NAME.zarr.
 bool is_in_store(std::string_view path);
 
-/// Looks through a directory, a few thousand files at a time: an event loop has others to serve. One thread.
+/// Looks through a directory, a thousand files at a time: an event loop has others to serve. One thread.
 class StoreQuiet {
  public:
   using Time = std::chrono::steady_clock::time_point;
