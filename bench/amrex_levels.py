@@ -3,14 +3,13 @@
 
     bench/amrex_levels.py --weir build/release/weir build/amrex
 
-Writes DIRECTORY/plt00001, as many cells on each level, the finer ones in the middle, and DIRECTORY/plt00001.nvdb. The
-files are put out of the page cache before either is timed (posix_fadvise).
+Writes DIRECTORY/plt00001, as many cells on each level, the finer ones in the middle, and converts it to one file and to
+one for each level, beside it. The files are put out of the page cache before each is timed (posix_fadvise).
 """
 import argparse
 import itertools
 import os
 import pathlib
-import resource
 import subprocess
 import time
 
@@ -89,6 +88,7 @@ def main():
     parser.add_argument("--weir", default="weir", help="the command; default: weir")
     parser.add_argument("--cells", type=int, default=512, help=f"of level 0 along each axis, a multiple of {2 * BOX}; "
                         "the finest level has 4 times as many; default: 512")
+    parser.add_argument("--rate", type=float, default=32, help="of each file; default: 32")
     options = parser.parse_args()
     plotfile = options.directory / "plt00001"
     if not plotfile.exists():
@@ -97,14 +97,21 @@ def main():
     size = sum(file.stat().st_size for file in files)
     drop_from_cache(files)
     reading = read_once(files)
-    drop_from_cache(files)
-    begun = time.perf_counter()
-    subprocess.run([options.weir, "convert", plotfile, "--dataset", "density", "--rate", "32", "--memory", "512MiB", "-q",
-                    "--overwrite", "-o", options.directory / "plt00001.nvdb"], check=True)
-    converting = time.perf_counter() - begun
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-    print(f"{size / 2**20:.0f} MiB on {LEVELS} levels, {options.cells << (LEVELS - 1)}^3 voxels: read once in {reading:.2f} s, "
-          f"converted in {converting:.2f} s, {converting / reading:.1f} times as long, peak memory {peak:.0f} MiB")
+    voxels = options.cells << (LEVELS - 1)
+    print(f"{size / 2**20:.0f} MiB on {LEVELS} levels, {voxels}^3 voxels as one grid: read once in {reading:.2f} s")
+    for levels in ("composite", "separate"):
+        drop_from_cache(files)
+        begun = time.perf_counter()
+        process = subprocess.Popen([options.weir, "convert", plotfile, "--dataset", "density", "--levels", levels,
+                                    "--rate", str(options.rate), "--memory", "512MiB", "-q", "--overwrite", "-o",
+                                    options.directory / "plt00001.nvdb"])
+        _, status, usage = os.wait4(process.pid, 0)
+        converting = time.perf_counter() - begun
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            raise SystemExit(f"weir convert --levels {levels} failed")
+        print(f"--levels {levels}: converted in {converting:.2f} s, {converting / reading:.1f} times as long, "
+              f"{usage.ru_utime + usage.ru_stime:.2f} s of processors, peak memory {usage.ru_maxrss / 1024:.0f} MiB")
 
 
 if __name__ == "__main__":

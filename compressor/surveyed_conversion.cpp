@@ -62,14 +62,15 @@ Digest digest_of_file(File& file, std::uint64_t bytes, Team& team) {
   return combine(pieces);
 }
 
-FileRequest request_for(const ConversionOptions& options, const Survey& survey, float background, const Box& domain) {
+FileRequest request_for(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
+                        float background) {
   FileRequest request;
   request.encoding = options.encoding;
   request.rule.metric = options.metric;
   request.rule.brick_leaves = options.brick / kLeafDim;
-  request.rule.fill = {options.fill, background, options.non_finite};
+  request.rule.fill = {options.fill, background, options.non_finite, info.mapping.gaps};
   request.budget = options.budget;
-  request.domain = domain;
+  request.domain = info.domain();
   request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
   request.path = options.output;
   return request;
@@ -261,7 +262,7 @@ class SurveyedConversion {
 
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.
   FileRequest make_request() {
-    FileRequest request = request_for(options_, survey_, background_.value, info_.domain());
+    FileRequest request = request_for(options_, survey_, info_, background_.value);
     request.packed = packed_request(options_, survey_, info_, request.rule.fill.background);
     if (parts_.seen) {
       shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.work, stores_.rows);

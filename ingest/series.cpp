@@ -138,7 +138,32 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   return steps;
 }
 
+// The steps of `step` for each level of its file. Other formats refuse the option when they are opened.
+std::vector<SeriesStep> with_levels(const SeriesStep& step, const SourceOptions& options) {
+  if (options.levels == Levels::composite) return {step};
+  const SourceFormat& format = format_of(step.path);
+  if (format.levels == nullptr) return {step};
+  const std::int64_t count = format.levels(step.path, options);
+  std::vector<SeriesStep> steps;
+  for (std::int64_t from_finest = 0; from_finest < count; ++from_finest) {
+    SeriesStep at = step;
+    at.level = count - 1 - from_finest;
+    at.from_finest = from_finest;
+    at.series = cat(step.path, '\n', step.series, '\n', from_finest);  // boxes move from file to file
+    steps.push_back(std::move(at));
+  }
+  return steps;
+}
+
 }  // namespace
+
+SourceOptions options_of_step(const SourceOptions& options, const SeriesStep& step) {
+  SourceOptions of_step = options;
+  of_step.dataset = step.dataset;
+  of_step.index = step.index;
+  of_step.own_level = step.level;
+  return of_step;
+}
 
 std::vector<SeriesStep> expand_series(std::span<const std::string> inputs, const SourceOptions& options,
                                       const Notice& notice) {
@@ -146,8 +171,10 @@ std::vector<SeriesStep> expand_series(std::span<const std::string> inputs, const
   for (const std::string& input : inputs) {
     for (const SeriesStep& file : files_of(input, options.stack)) {
       for (const SeriesStep& dataset : with_datasets(file, options, notice)) {
-        const auto positions = with_indices(dataset, options);
-        steps.insert(steps.end(), positions.begin(), positions.end());
+        for (const SeriesStep& position : with_indices(dataset, options)) {
+          const auto levels = with_levels(position, options);
+          steps.insert(steps.end(), levels.begin(), levels.end());
+        }
       }
     }
   }

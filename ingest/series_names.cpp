@@ -28,7 +28,16 @@ std::string volume_text(const SeriesStep& step) {
   std::string text = step.path;
   if (!step.dataset.empty()) text += ": " + step.dataset;
   for (const std::int64_t& i : step.index) text += cat(&i == step.index.data() ? " at " : ",", i);
+  if (step.level) text += cat(", level ", *step.level);
   return text;
+}
+
+// "NAME_level_1.nvdb" of "NAME.nvdb"; `name` of a step that is no level.
+std::string with_level(const std::string& name, const SeriesStep& step) {
+  if (!step.from_finest) return name;
+  constexpr std::string_view kEnd = ".nvdb";
+  const bool ends = name.ends_with(kEnd);
+  return cat(ends ? name.substr(0, name.size() - kEnd.size()) : name, "_level_", *step.from_finest, ends ? kEnd : "");
 }
 
 // As little as tells the steps of one file apart.
@@ -38,7 +47,7 @@ std::string name_in_call(const SeriesStep& step, std::span<const SeriesStep> ste
     std::size_t count = 0;
     for (const SeriesStep& other : steps) {
       if (other.path != step.path) continue;
-      names.insert(step_name(name, other));
+      names.insert(with_level(step_name(name, other), other));
       ++count;
     }
     if (names.size() == count) return step_name(name, step);
@@ -80,8 +89,11 @@ std::string component_part(const DatasetInfo& dataset, const ComponentChoice& ch
 bool meant_by(const SeriesStep& step, const DatasetInfo& dataset) {
   if (!step.dataset.empty()) return dataset.name == step.dataset || dataset.name == '/' + step.dataset;
   const std::size_t positions = step.index.size();
-  return dataset.obstacle.empty() &&
-         (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size());
+  // With a position more, what would be components are the voxels along x.
+  const bool with_components = dataset.components > 1 && positions + 3 == dataset.extents.size();
+  return dataset.obstacle.empty() && !dataset.by_name_only &&
+         (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size() ||
+          with_components);
 }
 
 // The one of `datasets` that `step` opens; null where that is not known.
@@ -109,7 +121,9 @@ class FileNames {
       const std::vector<DatasetInfo>& datasets = datasets_of(step.path);
       const DatasetInfo* const dataset = opened(datasets, step, options_.component.has_value());
       if (dataset == nullptr) return std::nullopt;
-      const auto volumes = std::ranges::count_if(datasets, [](const DatasetInfo& d) { return d.obstacle.empty(); });
+      const auto volumes = std::ranges::count_if(datasets, [&](const DatasetInfo& d) {
+        return d.obstacle.empty() && (!d.by_name_only || !step.dataset.empty());
+      });
       std::string name = step.stem;
       if (volumes > 1) name = joined_name(name, dataset_part(dataset->name));
       if (options_.component) name = joined_name(name, component_part(*dataset, *options_.component));
@@ -182,6 +196,7 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
     std::filesystem::path path = output.substr(0, directory_end) + step_name(output.substr(directory_end), step);
     if (output.empty()) path = std::filesystem::path(step.path).replace_filename(default_name(step));
     if (directory) path /= default_name(step);
+    path = with_level(path.string(), step);
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {
       throw Error(ErrorKind::usage,

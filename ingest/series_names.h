@@ -27,8 +27,9 @@ enum class DefaultNames {
 
 /// Where each step's file goes: beside its input where `output` is empty; into `output` where that ends with a
 /// slash, or is a directory and there are several; else to the name it gives, with the braces of its last part
-/// replaced. Where `output` gives no name, `names` does; `options` are those that the steps were made with, and files
-/// that hold several volumes are listed for it. Throws Error(usage) where two steps would share one name.
+/// replaced. Where `output` gives no name, `names` does. Of Levels::separate each name ends with _level_N.nvdb, N from
+/// 0, the finest, on. `options` are those that the steps were made with, and files that hold several volumes are listed
+/// for it. Throws Error(usage) where two steps would share one name.
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output,
                                         const SourceOptions& options = {}, DefaultNames names = DefaultNames::of_file);
 

@@ -65,8 +65,8 @@ constexpr std::array kFormats{
                  .open = open_amrex,
                  .list = list_amrex,
                  .container = true,
-                 .levels = true,
-                 .directory = true},
+                 .directory = true,
+                 .levels = count_amrex_levels},
     SourceFormat{.name = "zarr",
                  .recognises = recognises_zarr,
                  .open = open_zarr,
@@ -108,7 +108,8 @@ void refuse_foreign_options(const std::string& path, const SourceFormat& format,
   }
   if (!format.vectors)
     refuse(options.component.has_value(), option("component"), "arrays of vectors in HDF5, VTK and OpenVDB files");
-  if (!format.levels) {
+  if (format.levels == nullptr) {
+    refuse(options.levels != Levels::composite, option("levels", "separate"), "AMReX plotfiles");
     refuse(options.level.has_value(), option("level"), "AMReX plotfiles");
     refuse(options.upsampling.has_value(), option("upsample"), "AMReX plotfiles");
   }

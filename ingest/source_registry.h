@@ -28,9 +28,11 @@ struct SourceFormat {
   bool raw_shape = false;  ///< takes --dims, --type, --endian and --offset
   bool container = false;  ///< takes --dataset and --index
   bool vectors = false;    ///< takes --component
-  bool levels = false;     ///< takes --level and --upsample
   bool directory = false;  ///< its inputs may be directories, which a file in them names (kDirectoryHeads)
   bool chunks = false;     ///< takes --missing-chunks
+  /// How many levels of refinement a file has, up to options.level. A format with it takes --level, --levels and
+  /// --upsample. Throws what open throws.
+  std::int64_t (*levels)(const std::string& path, const SourceOptions& options) = nullptr;
 };
 
 inline constexpr std::size_t kMagicBytes = 16;

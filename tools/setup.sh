@@ -26,6 +26,7 @@ if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then
   # For the tests of the daemon's page, and to evaluate ZFP's own command. Ubuntu has no such packages (its chromium is a
   # snap); what needs them is skipped there.
   test+=(chromium chromium-driver zfp)
+  check+=(python3-yt) # for tools/test.sh --full
 fi
 # VTK and a display for its pictures, to test bindings/paraview. ParaView has a VTK of its own, which this one would remove.
 if [[ $(dpkg-query --show --showformat '${db:Status-Abbrev}' python3-paraview 2>/dev/null || true) != ii* ]]; then

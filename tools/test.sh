@@ -7,7 +7,7 @@
 #                          threads run, with ThreadSanitizer; a short run of each fuzzer. The tests of the command once more
 #                          of a build without HDF5, OpenVDB and all else that is optional.
 #   tools/test.sh --full   besides, those that take long, and all tests with the sanitizers, the property tests over a
-#                          thousand volumes, Zarr against npm's zarrita, and clang-tidy.
+#                          thousand volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
 # N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
@@ -201,6 +201,15 @@ run_zarrita() {
     --gtest_filter='ZarrOracle.*' || true
 }
 
+# Composites of AMReX plotfiles against the covering grids of yt.
+run_yt() {
+  if ! /usr/bin/python3 -c 'import yt' 2>/dev/null; then
+    skip "AMReX against yt" "python3-yt is not installed"
+    return 0
+  fi
+  WEIR_YT=1 check "AMReX against yt" build/release/weir_tests_ingest --gtest_filter='YtOracle.*' || true
+}
+
 check_format() {
   if ! has clang-format; then
     skip clang-format "not installed"
@@ -252,6 +261,7 @@ fi
 if [[ $size == full ]]; then
   run_property_tests
   run_zarrita
+  run_yt
   check_tidy
 fi
 

@@ -178,6 +178,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
   } else if (o.level != 0) {
     throw usage(cat("level is ", o.level, ", and has_level is 0; set it"));
   }
+  if (o.levels != WEIR_LEVELS_COMPOSITE) texts["levels"] = choice("levels", o.levels);
   if (o.upsample != WEIR_UPSAMPLE_CONSTANT) texts["upsample"] = choice("upsample", o.upsample);
   if (o.missing_chunks != WEIR_MISSING_CHUNKS_FILL)
     texts["missing-chunks"] = choice("missing-chunks", o.missing_chunks);
@@ -198,6 +199,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
   require_in("endian", o.endian, WEIR_ENDIAN_AUTO, WEIR_ENDIAN_BIG + 1);
   if (o.endian != WEIR_ENDIAN_AUTO) texts["endian"] = o.endian == WEIR_ENDIAN_LITTLE ? "little" : "big";
   if (o.stack != 0) texts["stack"] = "true";
+  if (o.reserved != 0) throw usage(cat("reserved is ", o.reserved, ", it must be 0"));
   return read_conversion_request(texts).source;
 }
 

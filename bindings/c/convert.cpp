@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "bindings/c/conversion_options.h"
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
 #include "bindings/c/weir.h"
+#include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/process_memory.h"
@@ -13,6 +15,7 @@
 #include "format/io/memory_file_system.h"
 #include "format/output/output_files.h"
 #include "gpu/packed/coder_choice.h"
+#include "ingest/series_names.h"
 #include "ingest/source_registry.h"
 
 struct weir_buffer {
@@ -111,6 +114,7 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     const weir_convert_options given = options_or_defaults(options);
     ConversionOptions conversion = read_options(given);
     source_options.keeps_missing = conversion.missing == MissingPolicy::keep;
+    settle_gaps(source_options, conversion);
     conversion.output = checked_output(output);
     std::error_code ignored;
     if (std::filesystem::equivalent(path, conversion.output, ignored)) {
@@ -119,7 +123,16 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     source_options.memory = conversion.memory + resident_bytes();
     source_options.spool_directory =
         conversion.work_dir.empty() ? directory_of(conversion.output) : conversion.work_dir;
-    const auto source = open_source(path, source_options);
-    convert(*source, std::move(conversion), given, *make_posix_file_system());
+    if (source_options.levels == Levels::composite) {
+      convert(*open_source(path, source_options), std::move(conversion), given, *make_posix_file_system());
+      return;
+    }
+    const std::vector<SeriesStep> levels = expand_series(std::vector{path}, source_options);
+    const std::vector<std::string> outputs = series_outputs(levels, conversion.output, source_options);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      conversion.output = outputs[i];
+      convert(*open_source(path, options_of_step(source_options, levels[i])), conversion, given,
+              *make_posix_file_system());
+    }
   });
 }

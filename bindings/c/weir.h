@@ -201,6 +201,7 @@ WEIR_API const char* weir_buffer_sidecar(const weir_buffer* buffer); /* JSON tex
 WEIR_API void weir_buffer_free(weir_buffer* buffer);
 
 enum { WEIR_ENDIAN_AUTO = 0, WEIR_ENDIAN_LITTLE = 1, WEIR_ENDIAN_BIG = 2 };
+enum { WEIR_LEVELS_COMPOSITE = 0, WEIR_LEVELS_SEPARATE = 1 };
 enum { WEIR_UPSAMPLE_CONSTANT = 0, WEIR_UPSAMPLE_LINEAR = 1 };
 enum { WEIR_MISSING_CHUNKS_FILL = 0, WEIR_MISSING_CHUNKS_ERROR = 1 };
 
@@ -230,10 +231,14 @@ typedef struct weir_input_options {
   int32_t missing_chunks; /* of a Zarr array, what chunks that are not stored read as: WEIR_MISSING_CHUNKS_... */
   const char* magnitude;  /* "u,v,w": datasets, in place of `dataset`, that are the components of the vectors whose
                            * length is the volume; NULL: none */
+  int32_t levels;         /* of an AMReX plotfile: WEIR_LEVELS_COMPOSITE, one file; WEIR_LEVELS_SEPARATE, a file of each
+                           * level, "NAME_level_0.nvdb", the finest, and so on for the output "NAME.nvdb" */
+  int32_t reserved;       /* 0 */
 } weir_input_options;
 WEIR_API weir_status weir_input_options_init(weir_input_options* options, size_t struct_size);
 
-/* Converts a file of any format that weir reads. input_options NULL: the file says all. */
+/* Converts a file of any format that weir reads. input_options NULL: the file says all. Of several levels those before
+ * one that fails are left. */
 WEIR_API weir_status weir_convert_file(const char* input, const weir_input_options* input_options,
                                        const weir_convert_options* options, const char* output, weir_error* error);
 

@@ -121,9 +121,7 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
   std::optional<ResultDirectory> directory;
   SeriesExtents extents(budget);
   const auto open_step = [&](const SeriesStep& step) {
-    request.source.dataset = step.dataset;
-    request.source.index = step.index;
-    return open_source(step.path, request.source);
+    return open_source(step.path, options_of_step(request.source, step));
   };
   run_watched(py::none(), [&](Watch& watch) {
     steps = expand_series(std::vector{source}, request.source, [&](const Message& line) { watch.notice(line); });

@@ -2,12 +2,16 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "compressor/leaf/finite_values.h"
+#include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/quantised_leaf.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/quantised_codec.h"
+#include "ingest/source/stored_value.h"
 
 namespace weir {
 namespace {
@@ -79,11 +83,26 @@ class LeafEncoder final : public LayerEncoder {
       sources_[batch_] = values;
       for (float& v : values) v = std::isfinite(v) ? v : target_.fill.background;
     }
+    const bool gaps = !finite_[batch_] && target_.fill.gaps;
+    masks_[batch_] = gaps ? active_voxels(sources_[batch_], node, inside) : std::nullopt;
     nodes_[batch_] = node;
     insides_[batch_] = inside;
     leaves_.push_back(place);
     if (++batch_ == kLeafBatch) encode_batch();
     if (leaves_.size() >= kHeldLeaves) finish();
+  }
+
+  // Of a leaf some of whose voxels are missing, the others. The first and the last voxel of the domain are always
+  // active: the box of active voxels is the domain.
+  std::optional<LeafMask> active_voxels(const LeafValues& source, const Box& node, const Box& inside) const {
+    LeafMask mask;
+    for_each_inside(node, inside, [&](std::size_t i) { mask[i] = !is_missing(source[i]); });
+    const Box& domain = target_.tree.leaves.domain;
+    for (const Index3& corner : {domain.lo, domain.hi - Index3{1, 1, 1}}) {
+      const Index3 i = corner - node.lo;
+      if (node.contains(corner)) mask.set(static_cast<std::size_t>(i.x << 6 | i.y << 3 | i.z));
+    }
+    return std::cmp_equal(mask.count(), inside.voxels()) ? std::nullopt : std::optional(mask);
   }
 
   void encode_batch() {
@@ -101,10 +120,14 @@ class LeafEncoder final : public LayerEncoder {
     full_leaf_statistics({values_.data(), batch_}, {nodes_.data(), batch_}, statistics);
     for (std::size_t i = 0; i < batch_; ++i) {
       if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
+      records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
+      if (masks_[i]) {
+        statistics[i] = leaf_statistics(values_[i], nodes_[i], *masks_[i]);
+        set_active(records_.back(), *masks_[i], nodes_[i], insides_[i], statistics[i]);
+      }
       const std::size_t at = bytes_.size();
       bytes_.resize(at + leaf_bytes(leaves_[first + i].width));
       const std::span<std::byte> image = std::span(bytes_).subspan(at);
-      records_.push_back(make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]));
       if (target_.type == GridType::float32) {
         encode_float_leaf(values_[i], nodes_[i], insides_[i], statistics[i], image.first<nvdb::kFloatLeafBytes>());
       } else {
@@ -116,6 +139,7 @@ class LeafEncoder final : public LayerEncoder {
         records_.back().exact = leaf.exact ? 1 : 0;
         records_.back().zeros_lost = leaf.zeros_lost;
       }
+      if (masks_[i]) set_active_voxels(nodes_[i], *masks_[i], image);
     }
     batch_ = 0;
   }
@@ -125,6 +149,7 @@ class LeafEncoder final : public LayerEncoder {
   std::array<LeafValues, kLeafBatch> values_{};
   std::array<LeafValues, kLeafBatch> sources_{};  // before non-finite values were replaced; where there are any
   std::array<bool, kLeafBatch> finite_{};
+  std::array<std::optional<LeafMask>, kLeafBatch> masks_{};  // of the active voxels, where some in the domain are not
   std::array<QuantisedLeaf, kLeafBatch> quantised_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};

@@ -1,5 +1,6 @@
 #include "compressor/encode/leaf_record.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "format/base/simd.h"
@@ -120,6 +121,34 @@ LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box
     record.outward[d - 1] = bounds;
   }
   return record;
+}
+
+void set_active(LeafRecord& record, const LeafMask& mask, const Box& node, const Box& inside,
+                const NodeStatistics& statistics) {
+  const auto byte = [](std::int64_t i) { return static_cast<std::uint8_t>(i); };
+  const Box box{statistics.bbox.lo - node.lo, statistics.bbox.hi - node.lo};
+  record.mean = statistics.mean;
+  record.m2 = statistics.m2;
+  widen(record.active, {statistics.min, statistics.max});
+  record.inactive = static_cast<std::uint16_t>(inside.voxels() - static_cast<std::int64_t>(mask.count()));
+  record.active_lo = {byte(box.lo.x), byte(box.lo.y), byte(box.lo.z)};
+  record.active_end = {byte(box.hi.x), byte(box.hi.y), byte(box.hi.z)};
+}
+
+NodeStatistics active_statistics(const LeafRecord& record, const Box& node, const Box& inside) {
+  NodeStatistics statistics;
+  const MinMax& bounds = record.inactive == 0 ? record.bounds : record.active;
+  statistics.min = std::min(statistics.min, bounds.min);
+  statistics.max = std::max(statistics.max, bounds.max);
+  statistics.mean = record.mean;
+  statistics.m2 = record.m2;
+  statistics.count = static_cast<std::uint64_t>(inside.voxels() - record.inactive);
+  statistics.bbox = inside;
+  if (record.inactive == 0) return statistics;
+  const auto& [x, y, z] = record.active_lo;
+  const auto& [end_x, end_y, end_z] = record.active_end;
+  statistics.bbox = {node.lo + Index3{x, y, z}, node.lo + Index3{end_x, end_y, end_z}};
+  return statistics;
 }
 
 }  // namespace weir

@@ -21,6 +21,13 @@ namespace weir {
 LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box& inside,
                             const NodeStatistics& statistics);
 
+/// Tells `record`, made of all in-domain voxels, which of them are active: those of `mask`, with these statistics.
+void set_active(LeafRecord& record, const LeafMask& mask, const Box& node, const Box& inside,
+                const NodeStatistics& statistics);
+
+/// Statistics of the active voxels of the leaf at `node`, whose in-domain voxels are `inside`.
+NodeStatistics active_statistics(const LeafRecord& record, const Box& node, const Box& inside);
+
 /// Records by leaf ordinal. Thread-safe for different leaves.
 class RecordStore {
  public:

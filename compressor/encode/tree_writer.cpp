@@ -106,8 +106,9 @@ class LowerWriter {
           const Box leaf_node = tree.leaves.node_box(leaf);
           const LeafWidth width = choices.width(position);
           if (width == LeafWidth::tile) {
-            const float value = parts_.fill.leaf_value(rows.at(leaf));
-            const bool active = parts_.fill.active() && voxels == leaf_node;
+            const LeafRow& row = rows.at(leaf);
+            const float value = parts_.fill.leaf_value(row);
+            const bool active = parts_.fill.active(row.finite) && voxels == leaf_node;
             image.set_tile(entry, value, active);
             if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
             cells.add_tile(voxels, value);
@@ -116,7 +117,7 @@ class LowerWriter {
           const LeafRecord& record = records[next++];
           image.set_child(entry, offset - node);
           offset += leaf_bytes(width);
-          table.add_child(record_statistics(record, voxels));
+          table.add_child(active_statistics(record, leaf_node, voxels));
           cells.add_leaf(leaf_node, record);
         }
       }
@@ -174,11 +175,12 @@ class LowerWriter {
       if (leaf == Index3{0, 0, 0} || leaf == last) {
         const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
         image.set_child(entry, parts_.layout.leaves + ordinal * nvdb::kFloatLeafBytes - node);
-        table.add_child(record_statistics(records[places.ordinal(position)], voxels));
+        table.add_child(active_statistics(records[places.ordinal(position)], leaf_node, voxels));
         return;
       }
-      const float value = parts_.fill.leaf_value(rows.at(leaf));
-      const bool active = voxels == leaf_node;
+      const LeafRow& row = rows.at(leaf);
+      const float value = parts_.fill.leaf_value(row);
+      const bool active = voxels == leaf_node && parts_.fill.active(row.finite);
       image.set_tile(entry, value, active);
       if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
     });
@@ -201,17 +203,6 @@ class LowerWriter {
         for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(Index3{x, y, z});
       }
     }
-  }
-
-  static NodeStatistics record_statistics(const LeafRecord& record, const Box& voxels) {
-    NodeStatistics statistics;
-    statistics.min = std::min(statistics.min, record.bounds.min);
-    statistics.max = std::max(statistics.max, record.bounds.max);
-    statistics.mean = record.mean;
-    statistics.m2 = record.m2;
-    statistics.count = static_cast<std::uint64_t>(voxels.voxels());
-    statistics.bbox = voxels;
-    return statistics;
   }
 
   const TreeParts& parts_;
@@ -245,7 +236,7 @@ NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std
     }
     const Index3 at = tree.region_lattice.position(r);
     const float value = tile_value(parts.fill, region.sums);
-    const bool active = parts.fill.active() && !tree.region_lattice.overhangs(at);
+    const bool active = parts.fill.active(region.sums.finite) && !tree.region_lattice.overhangs(at);
     image.set_tile(entry, value, active);
     if (active) table.add_tile(value, kLowerDim, tree.region_lattice.node_box(at).lo);
   });
@@ -277,7 +268,7 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
       total.add(write_upper(parts, u, lowers.statistics, image, out, head.active_tiles[1]));
     } else {
       tile.value = tile_value(parts.fill, upper.sums);
-      tile.active = has_nodes && parts.fill.active() && !tree.upper_lattice.overhangs(at);
+      tile.active = has_nodes && parts.fill.active(upper.sums.finite) && !tree.upper_lattice.overhangs(at);
       if (tile.active) {
         total.add_tile(tile.value, static_cast<std::uint64_t>(kUpperDim * kUpperDim * kUpperDim),
                        tree.upper_lattice.node_box(at));

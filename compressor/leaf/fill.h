@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "compressor/leaf/leaf_row.h"
 
@@ -19,6 +20,9 @@ struct Fill {
   FillMode mode = FillMode::mean;
   float background = 0;
   NonFinitePolicy non_finite = NonFinitePolicy::error;
+  /// Missing voxels are inactive, and read the background (ValueMapping::gaps): no tile stands for some of them and for
+  /// others.
+  bool gaps = false;
 
   /// Value of the tile that replaces a leaf.
   float leaf_value(const LeafRow& row) const {
@@ -32,8 +36,13 @@ struct Fill {
     if (row.finite > 0 && !(row.uniform() && same(row.mean, value))) return false;
     return row.finite == voxels || (non_finite != NonFinitePolicy::keep && same(background, value));
   }
+  /// Whether a node over `voxels`, in the domain or not, `finite` of which have values, must not become one tile.
+  bool splits(std::uint64_t finite, std::int64_t voxels) const {
+    return gaps && finite > 0 && std::cmp_less(finite, voxels);
+  }
   /// Dropped blocks inside the domain are active tiles where they carry a mean; background is inactive.
   bool active() const { return mode == FillMode::mean; }
+  bool active(std::uint64_t finite) const { return active() && !(gaps && finite == 0); }
 };
 
 }  // namespace weir

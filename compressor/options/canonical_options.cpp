@@ -61,6 +61,7 @@ void add_source(const SourceOptions& source, Texts& texts) {
     text += cat(text.empty() ? "" : ",", dataset);
   }
   if (source.level) texts["level"] = cat(*source.level);
+  if (source.levels != Levels::composite) texts["levels"] = levels_name(source.levels);
   if (source.upsampling && *source.upsampling != Upsampling::constant) {
     texts["upsample"] = upsampling_name(*source.upsampling);
   }

@@ -40,6 +40,16 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
   }
 }
 
+/// Levels have voxels of different sizes, each its own.
+void check_levels(const GivenOptions& given, const SourceOptions& source) {
+  if (source.levels != Levels::separate) return;
+  for (const char* const key : {"upsample", "roi", "ghost", "spacing", "origin", "stack"}) {
+    if (!given.contains(key)) continue;
+    throw usage_error(compose(option(key), " is for one volume, and ", option("levels", "separate"),
+                              " makes several; leave one of them out"));
+  }
+}
+
 }  // namespace
 
 bool is_conversion_option(std::string_view key) { return find_row(key) != nullptr; }
@@ -50,11 +60,26 @@ const OptionRow& conversion_option(std::string_view key) {
   return *row;
 }
 
+void settle_gaps(const SourceOptions& source, ConversionOptions& options) {
+  if (source.levels != Levels::separate) return;
+  const bool kept = options.missing == MissingPolicy::keep || options.missing == MissingPolicy::error;
+  if (!kept && options.non_finite != NonFinitePolicy::keep) {
+    options.missing = MissingPolicy::background;
+    return;
+  }
+  throw usage_error(compose(kept ? option("missing-policy", options.missing == MissingPolicy::keep ? "keep" : "error")
+                                 : option("nonfinite", "keep"),
+                            " does not go with ", option("levels", "separate"),
+                            ", whose voxels without a value become the background; use background"));
+}
+
 ConversionRequest read_conversion_request(const GivenOptions& given) {
   ConversionRequest request;
   request.conversion.encoding = Encoding::automatic;
   for (const auto table : tables()) read_options(table, given, request);
   check_method(given, request.conversion);
+  check_levels(given, request.source);
+  settle_gaps(request.source, request.conversion);
   request.source.memory = request.conversion.memory;
   return request;
 }

@@ -42,6 +42,10 @@ const OptionRow& conversion_option(std::string_view key);
 /// the values make sense for a file is for open_source to say.
 ConversionRequest read_conversion_request(const GivenOptions& given);
 
+/// Of Levels::separate, whose volumes have voxels without a value: these become the background. Throws Error(usage)
+/// where `options` say something else of voxels that hold no data. What read_conversion_request returns is settled.
+void settle_gaps(const SourceOptions& source, ConversionOptions& options);
+
 /// "X,Y,Z" of whole numbers of any sign, voxels. Throws Error(usage) naming the option `key`.
 Index3 read_dims(std::string_view key, const std::string& text);
 

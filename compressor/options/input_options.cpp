@@ -196,6 +196,15 @@ constexpr ConversionOption kInputOptions[] = {
       .help = "of an AMReX plotfile: the finest level of refinement that is read, 0 the coarsest; the volume has its "
               "cells"},
      read_level},
+    {{.key = "levels",
+      .argument = "composite|separate",
+      .standard = "composite",
+      .help = "of an AMReX plotfile: composite, one file with the cells of the finest level; separate, a file of each "
+              "level, NAME_level_N.nvdb with N from 0, the finest, on, in which cells that a finer level has are "
+              "inactive. A budget is that of each file"},
+     [](const OptionRow& row, const std::string& text, Request& r) {
+       r.source.levels = std::array{Levels::composite, Levels::separate}.at(read_choice(row, text));
+     }},
     {{.key = "upsample",
       .argument = "constant|linear",
       .standard = "constant",

@@ -360,7 +360,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     gain.exact = fill.exact(row, voxels, tile);
     gain.required = (corner && (!packed || packed->preview)) ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels) ||
-                    (row.finite == 0 && !gain.exact);
+                    (row.finite == 0 && !gain.exact) || (!packed && fill.splits(row.finite, kLeafVoxels));
     const MinMax* const reach = visibility == nullptr ? nullptr : &rows.reach(leaf);
     out.begin(gain);
     if (packed) {

@@ -74,7 +74,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
-  bool required = false;
+  bool required = !rule_.packed && rule_.fill.splits(region.sums.finite, kLowerDim * kLowerDim * kLowerDim);
   double highest = 0;
   for (const LeafGain& leaf : gains) {
     required = required || leaf.required;
@@ -155,6 +155,11 @@ void RegionKeys::summarize_uppers() {
     if (rule_.packed) {
       upper.tile_error = tiles;
       upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
+      continue;
+    }
+    if (rule_.fill.splits(upper.sums.finite, kUpperDim * kUpperDim * kUpperDim)) {
+      upper.key = kRequiredKey;
+      upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
       continue;
     }
     if (exact || !seen) continue;

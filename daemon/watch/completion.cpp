@@ -75,6 +75,9 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.expected_bytes = expected_bytes(watch, path);
   rules.marker = watch.marker;
   if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
+  if (is_store_head(path) && rules.policy != Completion::marker) {
+    rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle);
+  }
   return rules;
 }
 
@@ -83,6 +86,8 @@ FileSample sample_file(const std::string& path, const std::string& marker) {
   struct stat status {};
   if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
   if (is_plotfile_head(path) && !is_plotfile_header(path)) return sample;
+  // A hierarchy may have the metadata of both versions.
+  if (is_store_head(path) && head_in_directory(std::string(named_by_head(path))) != path) return sample;
   sample.exists = true;
   sample.identity = identity_of(status);
   sample.marked = !marker.empty() && look_at(path + marker, status);
@@ -118,7 +123,12 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
 
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
   CompletionAnswer answer = by_policy(sample, now);
-  if (answer.state != State::complete || !rules_.unwritten) return answer;
+  if (answer.state != State::complete) return answer;
+  if (rules_.store) {
+    StoreQuiet::Answer store = rules_.store->look(now);
+    return store.quiet ? answer : CompletionAnswer{State::waiting, store.until, std::move(store.reason)};
+  }
+  if (!rules_.unwritten) return answer;
   std::string rest = rules_.unwritten();
   if (rest.empty()) return answer;
   constexpr std::chrono::nanoseconds kLeast = std::chrono::milliseconds(100);  // settle may be 0

@@ -14,12 +14,14 @@
 //           found without its writer, or linked: unchanged for settle
 // An empty file is waited for unless its writer closed or renamed it. A file that is complete by its policy and empty,
 // or of another size than expected, is broken. A plotfile of AMReX is judged by its Header, which may be written before
-// its values: what else it needs is looked for every `settle`.
+// its values: what else it needs is looked for every `settle`. A Zarr hierarchy in a directory is complete when nothing
+// in it has changed for `settle` (store_quiet.h), with the policy marker when its marker is there.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +29,7 @@
 #include "daemon/config/config.h"
 #include "daemon/store/job.h"
 #include "daemon/watch/file_event.h"
+#include "daemon/watch/store_quiet.h"
 
 namespace weir {
 
@@ -40,6 +43,8 @@ struct CompletionRules {
   std::string marker;                           ///< of the policy marker, for messages
   /// Of a source in several files, asked once its own is whole: what is not written yet, in words; empty where all is.
   std::function<std::string()> unwritten;
+  /// Of a source in files that nothing lists, asked like that.
+  std::shared_ptr<StoreQuiet> store;
 };
 
 /// The rules for `path`, a source of `watch`. The expected size is that of a raw file: NAME_XxYxZ_TYPE.raw or
@@ -48,7 +53,9 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
 
 /// What a path looks like now.
 struct FileSample {
-  bool exists = false;  ///< as a regular file, behind links too; a Header as that of a plotfile
+  /// As a regular file, behind links too; a Header as that of a plotfile, a file of Zarr as the one that format_of
+  /// takes.
+  bool exists = false;
   FileIdentity identity;
   bool marked = false;  ///< path + marker exists
 };

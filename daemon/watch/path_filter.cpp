@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/watch/glob.h"
+#include "daemon/watch/store_quiet.h"
 #include "format/base/ascii.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
@@ -31,15 +32,16 @@ bool is_no_plotfile_yet(std::string_view path) {
   return name.ends_with(".temp") || name.find(".old.") != std::string_view::npos;
 }
 
-// A plotfile goes by its directory's name.
+// A plotfile goes by its directory's name, and so does a Zarr hierarchy.
 bool matches(const std::vector<std::string>& patterns, std::string_view path) {
-  if (is_plotfile_head(path)) path = named_by_head(path);
+  if (is_plotfile_head(path) || is_store_head(path)) path = named_by_head(path);
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
     return matches_glob(pattern, pattern.find('/') == std::string::npos ? name_of(path) : path);
   });
 }
 
 bool is_known_format(std::string_view path, bool any_raw) {
+  if (is_store_head(path)) return !name_of(named_by_head(path)).starts_with('.');
   const std::string_view name = name_of(path);
   if (name.starts_with('.')) return false;
   if (is_plotfile_head(path)) return true;
@@ -82,12 +84,14 @@ bool PathFilter::accepts_file(std::string_view path) const {
   }
   if (!marker_.empty() && path.ends_with(marker_)) return false;
   if (is_no_plotfile_yet(path)) return false;
+  if ((is_in_store(path) || (is_head(path) && !is_plotfile_head(path))) && !is_store_head(path)) return false;
   if (!(include_.empty() ? is_known_format(path, any_raw_) : matches(include_, path))) return false;
   return !matches(exclude_, path) && !is_excluded(path);
 }
 
 bool PathFilter::enters_directory(std::string_view path) const {
-  return recursive_ && !name_of(path).starts_with('.') && !matches(exclude_, path) && !is_excluded(path);
+  return recursive_ && !name_of(path).starts_with('.') && !is_in_store(path) && !matches(exclude_, path) &&
+         !is_excluded(path);
 }
 
 std::optional<std::string> PathFilter::marked_source(std::string_view path) const {

@@ -16,10 +16,14 @@ namespace weir {
 /// whole path ("run*/out/*.h5"): see glob.h. Hidden directories are never entered; hidden files are for
 /// patterns whose last component begins with a dot. Without include, sources are the names of formats weir
 /// reads: NAME_XxYxZ_TYPE.raw (any .raw where the watch's options say dims and type), .nrrd .nhdr .mhd .mha
-/// .nii .nii.gz .h5 .hdf5 .he5 .nc .nc4 .cdf .vti .vtk .vdb .zarr.zip .ozx, and the Header of a plotfile of AMReX.
+/// .nii .nii.gz .h5 .hdf5 .he5 .nc .nc4 .cdf .vti .vtk .vdb .zarr.zip .ozx, the Header of a plotfile of AMReX, and the
+/// zarr.json, .zgroup or .zarray of a directory NAME.zarr.
 ///
 /// A plotfile is the directory that its Header lies in, and patterns are for that: "plt*" for plt00042/Header. What
 /// AMReX has not finished (plt00042.temp) or set aside (plt00042.old.1234) is no source.
+///
+/// A Zarr hierarchy is the directory NAME.zarr, in no other one, and patterns are for that; nothing else in it is a
+/// source, and directories in it are not entered: there may be as many as chunks.
 ///
 /// Never sources: WatchConfig::excluded_paths and what lies below them, X.nvdb.json and what a conversion is in the
 /// middle of writing (*.partial, *.nvdb.json.previous), markers of the policy `marker`.

@@ -98,6 +98,15 @@ NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const 
   return statistics;
 }
 
+NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const LeafMask& mask) {
+  NodeStatistics statistics;
+  for (std::size_t n = 0; n < mask.size(); ++n) {
+    if (mask[n]) statistics.add(values[n]);
+  }
+  statistics.add_box(box_of(mask, node));
+  return statistics;
+}
+
 void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Box> nodes,
                           std::span<NodeStatistics> statistics) {
   const NodeStatistics fresh;

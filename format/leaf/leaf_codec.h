@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +9,7 @@
 #include "format/base/index.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/layout/node_statistics.h"
+#include "format/leaf/leaf_head.h"
 
 namespace weir {
 
@@ -24,6 +24,9 @@ void gather_leaf(std::span<const float> values, const Box& box, const Box& node,
 
 /// Statistics of the active values (those in `inside`) in mask order.
 NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const Box& inside);
+
+/// The same of the voxels of `mask`, which has some.
+NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const LeafMask& mask);
 
 /// Leaves whose statistics are computed together: each one's arithmetic is a chain of divisions that
 /// wait for each other, eight chains at a time keep the machine busy.

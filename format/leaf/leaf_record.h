@@ -12,7 +12,7 @@ namespace weir {
 struct LeafRecord {
   double mean = 0;
   double m2 = 0;
-  MinMax bounds = kNoBounds;  ///< of the active values, NaN left out
+  MinMax bounds = kNoBounds;  ///< of the in-domain values, NaN left out
   /// Bounds of the layer that faces out of the leaf's macrocell: entry d - 1, bit 0 of d for the x side,
   /// bit 1 for y, bit 2 for z. A leaf of an even coordinate faces down, of an odd one up.
   std::array<MinMax, 7> outward{kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds};
@@ -21,7 +21,12 @@ struct LeafRecord {
   double max_abs = 0;
   std::uint32_t exact = 1;       ///< 0: some voxel reads other bits than it should
   std::uint32_t zeros_lost = 0;  ///< zeros that read another value
+  // Where not all in-domain voxels are active: mean and m2 are those of the active ones, bounds those of all.
+  MinMax active = kNoBounds;                 ///< bounds of the active values
+  std::uint16_t inactive = 0;                ///< how many in-domain voxels are not
+  std::array<std::uint8_t, 3> active_lo{};   ///< of the box of active voxels, from the leaf's corner
+  std::array<std::uint8_t, 3> active_end{};  ///< the same, one beyond the last
 };
-static_assert(sizeof(LeafRecord) == 104, "records are spilled as they are");
+static_assert(sizeof(LeafRecord) == 120, "records are spilled as they are");
 
 }  // namespace weir

@@ -48,6 +48,10 @@ void describe(Archive& archive, S& s) {
     archive.optional_field("files_digest", s.source.files_digest);
     archive.optional_field("long_name", s.source.long_name);
     archive.optional_field("component", s.source.component);
+    archive.optional_object("level", s.source.level, [&](auto& level) {
+      archive.field("number", level.number);
+      archive.field("count", level.count);
+    });
     archive.optional_object("time", s.source.time, [&](auto& time) {
       archive.field("value", time.value);
       archive.field("units", time.units);

@@ -25,6 +25,11 @@ struct Sidecar {
     std::string units;     ///< "seconds since 2000-01-01", "s"; else empty
     std::string calendar;  ///< of CF; empty, and no key, where the file names none
   };
+  /// The level of refinement that the volume is, of several.
+  struct Level {
+    std::int64_t number = 0;  ///< 0 the coarsest
+    std::int64_t count = 0;   ///< of levels: cells that one of them above `number` has are missing
+  };
   /// Coordinates of index 0, 1, ... of the source along an axis; empty, and no key, where they are equally spaced.
   struct IrregularAxes {
     std::vector<double> x;
@@ -51,6 +56,7 @@ struct Sidecar {
     // Each with a key where the file says it.
     std::string long_name;                        ///< "cloud water mixing ratio"
     std::string component;                        ///< of an array of vectors: "0", "1" ... or "magnitude"
+    std::optional<Level> level;                   ///< of --levels separate
     std::optional<Time> time;                     ///< at which the volume is
     std::array<std::string, 3> axis_units;        ///< of the coordinates of x, y, z
     std::optional<IrregularAxes> irregular_axes;  ///< those without a spacing

@@ -26,8 +26,11 @@ class AmrexSource final : public VolumeSource {
   AmrexSource(Plotfile plotfile, std::size_t component, SourceInfo info, const SourceOptions& options)
       : plotfile_(std::move(plotfile)),
         info_(std::move(info)),
-        composite_(plotfile_, component, info_.mapping, options.upsampling.value_or(Upsampling::constant),
-                   options.direct_io) {}
+        composite_(info_.details.level
+                       ? Composite(plotfile_, component, info_.mapping,
+                                   static_cast<std::size_t>(info_.details.level->number), options.direct_io)
+                       : Composite(plotfile_, component, info_.mapping,
+                                   options.upsampling.value_or(Upsampling::constant), options.direct_io)) {}
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {scalar_bytes(info_.type), {}, {}}; }
@@ -92,6 +95,27 @@ std::size_t chosen_level(const std::string& path, const AmrexHeader& header, con
                             finest == 0 ? "0" : cat("0, the coarsest, to ", finest)));
 }
 
+// Of Levels::separate the one that is this volume.
+std::size_t own_level(const std::string& path, std::size_t finest, const SourceOptions& options) {
+  if (finest == 0) return 0;
+  if (options.own_level && *options.own_level >= 0 && std::cmp_less_equal(*options.own_level, finest))
+    return static_cast<std::size_t>(*options.own_level);
+  throw usage_error(compose(path, ": ", option("levels", "separate"), " stands for ", finest + 1,
+                            " volumes, and one is read here; leave it out"));
+}
+
+void refuse_upsampling(const std::string& path, const SourceOptions& options) {
+  if (!options.upsampling) return;
+  throw usage_error(compose(path, ": ", option("upsample"), " is for ", option("levels", "composite"),
+                            "; with separate levels leave it out"));
+}
+
+Box bounds_of(const std::vector<CellBox>& boxes) {
+  Box bounds = boxes.front().box();
+  for (const CellBox& box : boxes) bounds = {min(bounds.lo, box.box().lo), max(bounds.hi, box.box().hi)};
+  return bounds;
+}
+
 void refuse_index(const std::string& path, const SourceOptions& options) {
   if (options.index.empty()) return;
   throw usage_error(compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
@@ -144,8 +168,11 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
   refuse_index(path, options);
   const AmrexHeader header = read_amrex_header(path);
   const std::size_t component = chosen_component(path, header.components, options.dataset);
-  const std::size_t level = chosen_level(path, header, options);
-  Plotfile plotfile = open_plotfile(path, {level + 1, options.memory / kMemoryShare, false});
+  const std::size_t finest = chosen_level(path, header, options);
+  const bool separate = options.levels == Levels::separate;
+  if (separate) refuse_upsampling(path, options);
+  const std::size_t level = separate ? own_level(path, finest, options) : finest;
+  Plotfile plotfile = open_plotfile(path, {finest + 1, options.memory / kMemoryShare, false});
   SourceInfo info;
   info.path = path;
   info.format = "amrex";
@@ -156,7 +183,17 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
   info.spacing = header.levels[level].spacing;
   info.origin = first_centre(header, level);
   info.details.time = TimePoint{header.time, {}, {}};
-  info.details.levels = cat("up to ", level, ", ", upsampling_name(options.upsampling.value_or(Upsampling::constant)));
+  if (separate) {
+    const Box bounds = bounds_of(plotfile.levels[level].boxes);
+    info.extent = bounds.extent();
+    info.index_origin = bounds.lo;
+    info.mapping.gaps = true;
+    info.details.level = RefinementLevel{static_cast<std::int64_t>(level), static_cast<std::int64_t>(finest + 1)};
+    info.details.levels = cat(level, " of up to ", finest, ", separate");
+  } else {
+    info.details.levels =
+        cat("up to ", level, ", ", upsampling_name(options.upsampling.value_or(Upsampling::constant)));
+  }
   info.file_bytes = plotfile.bytes;
   info.mtime_ns = plotfile.mtime_ns;
   info.files_digest = plotfile.files.digest();
@@ -187,6 +224,10 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
     list.push_back(std::move(info));
   }
   return list;
+}
+
+std::int64_t count_amrex_levels(const std::string& path, const SourceOptions& options) {
+  return static_cast<std::int64_t>(chosen_level(path, read_amrex_header(path), options)) + 1;
 }
 
 std::string unwritten_part(const std::string& header_path) {

@@ -70,14 +70,30 @@ Composite::Composite(const Plotfile& plotfile, std::size_t component, const Valu
       upsampling_(upsampling),
       reader_(plotfile, component, mapping, mode) {}
 
+Composite::Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, std::size_t own,
+                     DirectIo mode)
+    : plotfile_(plotfile), wanted_(own), own_(true), reader_(plotfile, component, mapping, mode) {}
+
 ConversionLoss Composite::read(const Box& box, std::span<float> values) {
   return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);
 }
 
+std::vector<CoverPart> Composite::parts_of(const Box& box, std::span<float> values) const {
+  if (!own_) {
+    LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
+    if (!cover.rest.empty()) throw uncovered(plotfile_, cover.rest.front());
+    return std::move(cover.parts);
+  }
+  std::vector<CoverPart> parts = own_parts(plotfile_.levels, wanted_, plotfile_.levels.size() - 1, box);
+  std::int64_t cells = 0;
+  for (const CoverPart& part : parts) cells += part.box.voxels();
+  if (cells < box.voxels()) std::fill(values.begin(), values.end(), missing_value());
+  return parts;
+}
+
 ConversionLoss Composite::read_constant(const Box& box, std::span<float> values) {
-  const LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
-  if (!cover.rest.empty()) throw uncovered(plotfile_, cover.rest.front());
-  const auto groups = by_fab(cover.parts);
+  const std::vector<CoverPart> parts = parts_of(box, values);
+  const auto groups = by_fab(parts);
   const auto slabs = static_cast<std::int64_t>(threads_for(box));
   ConversionLoss total;
   std::mutex mutex;
@@ -87,11 +103,11 @@ ConversionLoss Composite::read_constant(const Box& box, std::span<float> values)
       Box slab = box;
       slab.lo.z = box.lo.z + box.extent().z * i / slabs;
       slab.hi.z = box.lo.z + box.extent().z * (i + 1) / slabs;
-      const auto part = values.subspan(static_cast<std::size_t>((slab.lo.z - box.lo.z) * plane),
-                                       static_cast<std::size_t>(slab.voxels()));
-      const LevelCover of_slab = cover_box(plotfile_.levels, wanted_, 0, slab);
-      for (const auto& parts : by_fab(of_slab.parts)) {
-        const ConversionLoss loss = reader_.read(wanted_, parts, slab, part);
+      const auto in_slab = values.subspan(static_cast<std::size_t>((slab.lo.z - box.lo.z) * plane),
+                                          static_cast<std::size_t>(slab.voxels()));
+      const std::vector<CoverPart> parts_of_slab = parts_of(slab, in_slab);
+      for (const auto& of_fab : by_fab(parts_of_slab)) {
+        const ConversionLoss loss = reader_.read(wanted_, of_fab, slab, in_slab);
         const std::lock_guard lock(mutex);
         total.add(loss);
       }

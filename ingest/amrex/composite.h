@@ -1,10 +1,11 @@
 // The grid that the levels of a plotfile make together, read box by box: each cell of the wanted level has the value of
-// the finest level that has cells there.
+// the finest level that has cells there. Or the grid of one level, without what finer ones have.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "ingest/amrex/fab_reader.h"
 #include "ingest/amrex/plotfile.h"
@@ -21,6 +22,9 @@ class Composite {
   /// object.
   Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, Upsampling upsampling,
             DirectIo mode);
+  /// Of the level `own` alone: what own_parts leaves out reads missing_value().
+  Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, std::size_t own,
+            DirectIo mode);
 
   /// Reads `box` of the wanted level's domain, which begins at 0; x fastest. Of linear values, loss is that of the
   /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.
@@ -31,6 +35,8 @@ class Composite {
   std::uint64_t bytes_read() const { return reader_.bytes_read(); }
 
  private:
+  /// The parts of `box`, whose `values` are set where no part is.
+  std::vector<CoverPart> parts_of(const Box& box, std::span<float> values) const;
   ConversionLoss read_constant(const Box& box, std::span<float> values);
   ConversionLoss read_linear(const Box& box, std::span<float> values);
   /// One tile of a composite of linear values; by the calling thread alone.
@@ -38,7 +44,8 @@ class Composite {
 
   const Plotfile& plotfile_;
   std::size_t wanted_;
-  Upsampling upsampling_;
+  Upsampling upsampling_ = Upsampling::constant;
+  bool own_ = false;  ///< the wanted level alone
   FabReader reader_;
 };
 

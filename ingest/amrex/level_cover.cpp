@@ -29,10 +29,16 @@ class Coverer {
   Coverer(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest)
       : levels_(levels), wanted_(wanted), coarsest_(coarsest) {}
 
-  /// Covers `box` by the boxes of `level` and of those below it.
+  /// Covers `box`, of cells of the wanted level, by the boxes of `level` and of those below it. Of boxes finer than the
+  /// wanted level count the cells that they have as a whole.
   void cover(std::size_t level, const Box& box) {
     std::vector<std::uint32_t> found;
-    levels_[level].index.find(coarsened(box, refinement(levels_, level, wanted_)), found);
+    if (level <= wanted_) {
+      levels_[level].index.find(coarsened(box, refinement(levels_, level, wanted_)), found);
+    } else {
+      levels_[level].index.find(refined(box, refinement(levels_, wanted_, level)), found);
+      std::erase_if(found, [&](std::uint32_t fab) { return intersect(box_of(level, fab), box).empty(); });
+    }
     cover_by(level, box, found);
   }
 
@@ -48,6 +54,7 @@ class Coverer {
   }
 
   Box box_of(std::size_t level, std::uint32_t fab) const {
+    if (level > wanted_) return inner_cells(levels_[level].boxes[fab].box(), refinement(levels_, wanted_, level));
     return refined(levels_[level].boxes[fab].box(), refinement(levels_, level, wanted_));
   }
 
@@ -116,16 +123,33 @@ Index3 refinement(std::span<const PlotfileLevel> levels, std::size_t coarse, std
   return by;
 }
 
-LevelCover cover_box(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest, const Box& box) {
-  Coverer coverer(levels, wanted, coarsest);
-  coverer.cover(wanted, box);
-  LevelCover cover = coverer.take();
+namespace {
+
+void sort_by_place(std::span<const PlotfileLevel> levels, std::vector<CoverPart>& parts) {
   const auto place = [&](const CoverPart& part) {
     const FabPlace& fab = levels[part.level].places[part.fab];
     return std::tuple(part.level, fab.file, fab.offset, part.fab, part.box.lo.z, part.box.lo.y, part.box.lo.x);
   };
-  std::sort(cover.parts.begin(), cover.parts.end(),
-            [&](const CoverPart& a, const CoverPart& b) { return place(a) < place(b); });
+  std::sort(parts.begin(), parts.end(), [&](const CoverPart& a, const CoverPart& b) { return place(a) < place(b); });
+}
+
+}  // namespace
+
+std::vector<CoverPart> own_parts(std::span<const PlotfileLevel> levels, std::size_t level, std::size_t finest,
+                                 const Box& box) {
+  Coverer coverer(levels, level, level);
+  coverer.cover(finest, box);
+  LevelCover cover = coverer.take();
+  std::erase_if(cover.parts, [&](const CoverPart& part) { return part.level != level; });
+  sort_by_place(levels, cover.parts);
+  return std::move(cover.parts);
+}
+
+LevelCover cover_box(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest, const Box& box) {
+  Coverer coverer(levels, wanted, coarsest);
+  coverer.cover(wanted, box);
+  LevelCover cover = coverer.take();
+  sort_by_place(levels, cover.parts);
   return cover;
 }
 

@@ -29,11 +29,21 @@ Index3 refinement(std::span<const PlotfileLevel> levels, std::size_t coarse, std
 constexpr Box refined(const Box& box, const Index3& by) {
   return {{box.lo.x * by.x, box.lo.y * by.y, box.lo.z * by.z}, {box.hi.x * by.x, box.hi.y * by.y, box.hi.z * by.z}};
 }
+/// The coarse cells all of whose fine ones are in `box`; may be empty.
+constexpr Box inner_cells(const Box& box, const Index3& by) {
+  return {{ceil_div(box.lo.x, by.x), ceil_div(box.lo.y, by.y), ceil_div(box.lo.z, by.z)},
+          {box.hi.x / by.x, box.hi.y / by.y, box.hi.z / by.z}};
+}
 /// The coarse cells that have fine ones in `box`, whose indices are 0 or more.
 constexpr Box coarsened(const Box& box, const Index3& by) {
   return {{box.lo.x / by.x, box.lo.y / by.y, box.lo.z / by.z},
           {ceil_div(box.hi.x, by.x), ceil_div(box.hi.y, by.y), ceil_div(box.hi.z, by.z)}};
 }
+
+/// The cells of `box`, of cells of level `level`, that are its own: its boxes have them, and no box of a level from the
+/// next finer one to `finest` has all of one. In the order in which they lie on disk; takes time as cover_box.
+std::vector<CoverPart> own_parts(std::span<const PlotfileLevel> levels, std::size_t level, std::size_t finest,
+                                 const Box& box);
 
 /// Cuts `box`, of cells of level `wanted`, into parts of which each is of one box of the finest level from `wanted`
 /// down to `coarsest` that has cells there; in the order in which they lie on disk. Takes time by the number of parts,

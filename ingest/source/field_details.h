@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,16 +24,23 @@ struct AxisDetails {
   bool reversed = false;            ///< the file has the elements in the other order, by falling coordinates
 };
 
+/// One of several levels of refinement.
+struct RefinementLevel {
+  std::int64_t number = 0;  ///< 0 the coarsest
+  std::int64_t count = 1;   ///< how many there are
+};
+
 struct FieldDetails {
-  std::string long_name;            ///< "cloud water mixing ratio"; else empty
-  std::string component;            ///< of an array of vectors: component_text(); else empty
-  std::string levels;               ///< of levels of refinement: which make the volume, and how; else empty
-  std::optional<TimePoint> time;    ///< at which the volume is
-  std::array<AxisDetails, 3> axes;  ///< x, y, z
-  std::string order_note;           ///< where the file names its axes in another order than z, y, x; else empty
-  std::string values_note;          ///< what the file says of its values and weir does not apply; else empty
-  std::string chunks_note;          ///< how many chunks are not stored, and what they read as; else empty
-  std::string units_note;           ///< which axis is in which units, where spacings are in several; else empty
+  std::string long_name;                 ///< "cloud water mixing ratio"; else empty
+  std::string component;                 ///< of an array of vectors: component_text(); else empty
+  std::string levels;                    ///< of levels of refinement: which make the volume, and how; else empty
+  std::optional<RefinementLevel> level;  ///< where one alone makes the volume
+  std::optional<TimePoint> time;         ///< at which the volume is
+  std::array<AxisDetails, 3> axes;       ///< x, y, z
+  std::string order_note;                ///< where the file names its axes in another order than z, y, x; else empty
+  std::string values_note;               ///< what the file says of its values and weir does not apply; else empty
+  std::string chunks_note;               ///< how many chunks are not stored, and what they read as; else empty
+  std::string units_note;                ///< which axis is in which units, where spacings are in several; else empty
 };
 
 }  // namespace weir

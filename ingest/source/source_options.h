@@ -13,6 +13,7 @@
 #include "ingest/files/input_file.h"
 #include "ingest/source/component_choice.h"
 #include "ingest/source/index_choice.h"
+#include "ingest/source/levels.h"
 #include "ingest/source/missing_chunks.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/upsampling.h"
@@ -45,6 +46,9 @@ struct SourceOptions {
   // Of levels of refinement.
   std::optional<std::int64_t> level;     ///< --level: the finest one that is read, 0 the coarsest; the finest there is
   std::optional<Upsampling> upsampling;  ///< --upsample: of what only coarser levels have; constant
+  Levels levels = Levels::composite;     ///< --levels
+  /// Of Levels::separate the one that is this volume, 0 the coarsest; none where the file has one level.
+  std::optional<std::int64_t> own_level;
 
   MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: of Zarr arrays
 

@@ -35,17 +35,18 @@ struct ValueMapping {
   double offset = 0;
   std::vector<StoredValue> missing;
   bool keeps_missing = false;  ///< stored values that stand for "no data" are taken as data
+  bool gaps = false;           ///< there are voxels without a stored value, which read as missing_value() in any case
 
   bool scales() const { return scale != 1 || offset != 0; }
-  bool identity() const { return !scales() && missing.empty(); }
+  bool identity() const { return !scales() && missing.empty() && !gaps; }
   /// Whether voxels may read as missing_value().
-  bool marks_missing() const { return !missing.empty() && !keeps_missing; }
+  bool marks_missing() const { return gaps || (!missing.empty() && !keeps_missing); }
 };
 
 /// What a missing voxel reads as: a quiet NaN that no arithmetic makes, told from the NaN a simulation
 /// writes. The background takes its place unless non-finite voxels are kept. It means that only in volumes whose
-/// mapping names missing values: there decode_values gives stored NaN of these bits other bits; elsewhere it is an
-/// ordinary NaN.
+/// mapping names missing values or has gaps: there decode_values gives stored NaN of these bits other bits; elsewhere
+/// it is an ordinary NaN.
 inline constexpr std::uint32_t kMissingBits = 0x7FE0DA7AU;
 inline float missing_value() { return std::bit_cast<float>(kMissingBits); }
 inline bool is_missing(float value) { return std::bit_cast<std::uint32_t>(value) == kMissingBits; }

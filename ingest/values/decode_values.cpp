@@ -23,11 +23,12 @@ using MissingMask = std::array<bool, kAtOnce>;
 template <typename T>
 class Decoder {
  public:
-  Decoder(ScalarType type, const ValueMapping& mapping) : type_(type), mapping_(mapping) {
+  Decoder(ScalarType type, const ValueMapping& mapping) : type_(type), mapping_(mapping), guards_(mapping.gaps) {
     for (const StoredValue& value : mapping.missing) {
       if (!holds(type, value)) continue;
       std::visit([this](const auto v) { missing_.push_back(static_cast<T>(v)); }, value);
     }
+    guards_ = guards_ || !missing_.empty();
   }
 
   ConversionLoss decode(std::span<T> stored, std::span<float> values) const {
@@ -42,7 +43,7 @@ class Decoder {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (missing[i]) {
         std::memcpy(&values[i], &mark, sizeof mark);
-      } else if (!missing_.empty() && is_missing(values[i])) {
+      } else if (guards_ && is_missing(values[i])) {
         std::memcpy(&values[i], &other, sizeof other);
       }
     }
@@ -82,6 +83,7 @@ class Decoder {
   ScalarType type_;
   const ValueMapping& mapping_;
   std::vector<T> missing_;
+  bool guards_;  // whether a stored NaN could be taken for missing_value()
 };
 
 template <typename T>
@@ -124,11 +126,24 @@ ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bo
   return loss;
 }
 
+// Gives stored NaN of the bits of missing_value() other bits.
+void tell_from_missing(std::span<float> values) {
+  for (float& value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    value = std::bit_cast<float>(bits ^ static_cast<std::uint32_t>(bits == kMissingBits));
+  }
+}
+
 }  // namespace
 
 ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                              const ValueMapping& mapping, std::span<float> values) {
   if (mapping.identity()) return convert_values(bytes, type, big_endian, values);
+  if (!mapping.scales() && mapping.missing.empty()) {  // the usual level of a plotfile
+    const ConversionLoss loss = convert_values(bytes, type, big_endian, values);
+    tell_from_missing(values);
+    return loss;
+  }
   const bool swap = big_endian != kNativeIsBig;
   switch (type) {
     case ScalarType::uint8:

@@ -45,6 +45,23 @@ void write(const std::string& path, const std::string& content) {
   if (!file.flush()) throw std::runtime_error(path + " cannot be written");
 }
 
+/// Where a box lies, which yt reads.
+std::string place_of(const PlotfilePlan& plan, std::size_t level, const Box& box) {
+  std::ostringstream text;
+  text.precision(17);
+  const Index3 r = plan.ratio(0, level);
+  const Index3 first = plan.domain_of(level).lo;
+  const auto axis = [&](std::size_t a, std::int64_t lo, std::int64_t hi, std::int64_t ratio) {
+    const double cell = plan.spacing.at(a) / static_cast<double>(ratio);
+    text << plan.corner.at(a) + cell * static_cast<double>(lo) << ' '
+         << plan.corner.at(a) + cell * static_cast<double>(hi) << '\n';
+  };
+  axis(0, box.lo.x - first.x, box.hi.x - first.x, r.x);
+  axis(1, box.lo.y - first.y, box.hi.y - first.y, r.y);
+  axis(2, box.lo.z - first.z, box.hi.z - first.z, r.z);
+  return text.str();
+}
+
 std::string header_of(const PlotfilePlan& plan) {
   std::ostringstream text;
   text.precision(17);
@@ -73,7 +90,7 @@ std::string header_of(const PlotfilePlan& plan) {
   text << "0\n0\n";
   for (std::size_t l = 0; l < plan.levels(); ++l) {
     text << l << ' ' << plan.boxes[l].size() << ' ' << plan.time << "\n10\n";
-    for (std::size_t i = 0; i < 3 * plan.boxes[l].size(); ++i) text << "0 1\n";  // nobody reads where they are
+    for (const Box& box : plan.boxes[l]) text << place_of(plan, l, box);
     text << "Level_" << l << "/Cell\n";
   }
   return text.str();
@@ -235,6 +252,34 @@ std::vector<Box> random_boxes(const Box& domain, std::int64_t longest, int kept,
   }
   std::shuffle(boxes.begin(), boxes.end(), random);
   return boxes;
+}
+
+PlotfilePlan generated_plotfile(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto between = [&](std::int64_t lo, std::int64_t hi) {
+    return lo + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(hi - lo + 1));
+  };
+  PlotfilePlan plan;
+  plan.components = {"density", "x_velocity", "Temp"};
+  const Index3 lo{between(-9, 9), between(-9, 9), between(-9, 9)};
+  plan.domain = {lo, lo + Index3{between(3, 9), between(3, 9), between(3, 9)}};
+  plan.boxes = {random_boxes(plan.domain, between(3, 9), 100, seed)};
+  const std::vector<Index3> ratios{{2, 2, 2}, {4, 4, 4}, {2, 2, 1}, {1, 4, 2}, {3, 2, 2}};
+  const std::size_t levels = 1 + seed % 4;
+  for (std::size_t l = 1; l < levels && volume(plan.domain_of(l - 1).extent()) < 4'000; ++l) {
+    plan.ratios.push_back(ratios[random() % ratios.size()]);
+    std::vector<Box> boxes;
+    const int kept = static_cast<int>(between(10, 90));
+    plan.boxes.emplace_back();
+    boxes = random_boxes(plan.domain_of(l), between(4, 20), kept, seed + 1000 * l);
+    if (boxes.empty()) boxes = {{plan.domain_of(l).lo, plan.domain_of(l).lo + Index3{1, 1, 1}}};
+    plan.boxes.back() = std::move(boxes);
+  }
+  plan.single = random() % 2 == 0;
+  plan.big_endian = random() % 2 == 0;
+  plan.fabs_per_file = static_cast<std::size_t>(between(1, 7));
+  plan.version = static_cast<int>(between(1, 4));
+  return plan;
 }
 
 }  // namespace weir::test

@@ -50,4 +50,8 @@ double composite_value(const PlotfilePlan& plan, std::size_t component, std::siz
 /// `kept` / 100; the same for the same seed.
 std::vector<Box> random_boxes(const Box& domain, std::int64_t longest, int kept, std::uint64_t seed);
 
+/// A plotfile of the components density, x_velocity and Temp on 1 to 4 levels, by its number: ratios of 2, 3 and 4,
+/// other ones along other axes, boxes of any size anywhere, each byte order, precision and version.
+PlotfilePlan generated_plotfile(std::uint64_t seed);
+
 }  // namespace weir::test

@@ -142,10 +142,8 @@ void say_sizes(std::span<const SeriesStep> steps, std::span<const Sidecar> made,
   }
 }
 
-std::unique_ptr<VolumeSource> open_step(const SeriesStep& step, SourceOptions options) {
-  options.dataset = step.dataset;
-  options.index = step.index;
-  return open_source(step.path, options);
+std::unique_ptr<VolumeSource> open_step(const SeriesStep& step, const SourceOptions& options) {
+  return open_source(step.path, options_of_step(options, step));
 }
 
 // What the steps of one call have in common.

@@ -1,5 +1,6 @@
 #include "tools/report/finished_output.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -70,8 +71,10 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
   if (found.source.files_digest != expected.source.files_digest) {
     return cat("made of other files of ", source.path, ", or as they were before");
   }
+  const std::int64_t level = source.details.level ? source.details.level->number : -1;
   if (found.source.dataset != expected.source.dataset || found.source.index != source.index ||
-      found.source.format != source.format || found.source.extent != source.extent) {
+      (found.source.level ? found.source.level->number : -1) != level || found.source.format != source.format ||
+      found.source.extent != source.extent) {
     return cat("made of another volume of ", source.path);
   }
   if (!same_place(found.grid, source)) return "made of another region, or with another spacing or origin";

@@ -61,6 +61,11 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
     options.component = parse_component(record->source.component);
     note("--component", record->source.component);
   }
+  if (record->source.level && (!given.contains("levels") || options.levels == Levels::separate)) {
+    options.levels = Levels::separate;
+    options.own_level = record->source.level->number;
+    note("--levels", cat("separate (level ", record->source.level->number, ")"));
+  }
   for (const char* const key : {"level", "upsample"}) {
     const auto said = record->weir.options.find(key);
     if (said == record->weir.options.end() || given.contains(key)) continue;

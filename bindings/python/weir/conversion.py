@@ -61,6 +61,7 @@ def convert(
     component: Union[int, str, None] = None,
     magnitude: Union[str, Sequence[str], None] = None,
     level: Optional[int] = None,
+    levels: Optional[str] = None,
     upsample: Optional[str] = None,
     missing_chunks: Optional[str] = None,
     dims: Optional[Sequence[int]] = None,
@@ -123,7 +124,9 @@ def convert(
     position on each leading axis, (3, 0), or a text as `--index` takes it, "time=3"; one with a range, "0:2" or "*",
     converts each and returns a list, too; component (0, 1, ..., "x", "y", "z" or "magnitude" of vectors in HDF5,
     VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets that are the components of the vectors whose
-    length is the volume), level (of an AMReX plotfile, 0 the coarsest) and upsample ("constant", "linear"),
+    length is the volume), level (of an AMReX plotfile, 0 the coarsest) and upsample ("constant", "linear"), levels
+    ("composite", or "separate", which converts each level to a file of its own, named _level_N with N from 0, the
+    finest, on, and returns a list),
     missing_chunks (of a Zarr array: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
@@ -165,7 +168,7 @@ def convert(
         dataset = labelled.name if dataset is None else dataset
     ranges = index is not None and any(letter in text_of(index) for letter in ":*")
     listed = dataset is not None and not isinstance(dataset, str)
-    several = ranges or listed
+    several = ranges or listed or levels == "separate"
     if listed and not dataset:
         raise UsageError("dataset is an empty list; name a dataset in it")
     options = given_options(
@@ -196,6 +199,7 @@ def convert(
         component=component,
         magnitude=magnitude,
         level=level,
+        levels=levels,
         upsample=upsample,
         missing_chunks=missing_chunks,
         dims=dims,

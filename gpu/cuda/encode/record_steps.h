@@ -103,6 +103,10 @@ WEIR_HOST_DEVICE void add_statistics(const Warp& warp, const RecordCall& call, s
     record.mean = mean(lane);
     record.m2 = squares(lane);
     record.bounds = MinMax{low(lane), high(lane)};
+    record.active = MinMax{kNoBounds.min, kNoBounds.max};  // all voxels are active
+    record.inactive = 0;
+    record.active_lo = {};
+    record.active_end = {};
   });
 }
 

@@ -185,6 +185,7 @@ static void inputs(void) {
   REFUSE_INPUT("level is 1, and has_level is 0; set it", i.level = 1);
   REFUSE_INPUT("level is \"-1\", it must be a whole number from 0, the coarsest level, to 99",
                (i.level = -1, i.has_level = 1));
+  REFUSE_INPUT("levels is 2, it must be 0 to 1", i.levels = 2);
   REFUSE_INPUT("upsample is 2, it must be 0 to 1", i.upsample = 2);
   REFUSE_INPUT("missing_chunks is 2, it must be 0 to 1", i.missing_chunks = 2);
   REFUSE_INPUT("component is empty; give a position, x, y, z or magnitude, or NULL", i.component = "");

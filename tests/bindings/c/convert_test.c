@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <math.h>
+#include <sys/stat.h>
 
 static weir_error error;
 
@@ -214,8 +215,9 @@ static void values_that_are_none(const float* values) {
   options.missing_policy = WEIR_MISSING_POLICY_ERROR;
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
   CHECK(strstr(error.message, " holds no data (stored as -9999), the first at ") != NULL);
-  CHECK(strstr(error.message, "; choose WEIR_MISSING_POLICY_BACKGROUND or, to take -9999 for data, "
-                              "WEIR_MISSING_POLICY_KEEP") != NULL);
+  CHECK(strstr(error.message,
+               "; choose WEIR_MISSING_POLICY_BACKGROUND or, to take -9999 for data, "
+               "WEIR_MISSING_POLICY_KEEP") != NULL);
   options.missing_policy = WEIR_MISSING_POLICY_KEEP;
   CHECK_OK(weir_convert(&volume, holed, NULL, &options, path_of("holed.nvdb"), &error));
   CHECK(info_of(path_of("holed.nvdb")).missing == 1);
@@ -297,6 +299,71 @@ static void components(const float* values) {
   CHECK(strstr(error.message, "array 'v': has 3 components a voxel, and component is 3; give 0 to 2"));
 }
 
+static void write_text(const char* path, const char* text) { write_raw(path, text, strlen(text)); }
+
+/* A plotfile of 8^3 cells of 1, the middle 4^3 of them refined by 2, of 2. */
+static void write_levels(const char* path) {
+  static const char* const kBoxes[] = {"((0,0,0) (7,7,7) (0,0,0))", "((4,4,4) (11,11,11) (0,0,0))"};
+  char name[1200];
+  char text[1200];
+  mkdir(path, 0777);
+  snprintf(name, sizeof name, "%s/Header", path);
+  write_text(
+      name,
+      "HyperCLaw-V1.1\n1\nrho\n3\n0\n1\n0 0 0\n8 8 8\n2\n((0,0,0) (7,7,7) (0,0,0)) ((0,0,0) (15,15,15) (0,0,0))\n"
+      "1 1\n1 1 1\n0.5 0.5 0.5\n0\n0\n0 1 0\n1\n0 8\n0 8\n0 8\nLevel_0/Cell\n1 1 0\n1\n2 6\n2 6\n2 6\n"
+      "Level_1/Cell\n");
+  for (int level = 0; level < 2; ++level) {
+    snprintf(name, sizeof name, "%s/Level_%d", path, level);
+    mkdir(name, 0777);
+    snprintf(name, sizeof name, "%s/Level_%d/Cell_H", path, level);
+    snprintf(text, sizeof text, "1\n1\n1\n0\n(1 0\n%s\n)\n1\nFabOnDisk: Cell_D_00000 0\n\n1,1\n1,\n\n1,1\n1,\n\n",
+             kBoxes[level]);
+    write_text(name, text);
+    snprintf(name, sizeof name, "%s/Level_%d/Cell_D_00000", path, level);
+    FILE* const fab = fopen(name, "wb");
+    if (fab == NULL) abort();
+    fprintf(fab, "FAB ((8, (32 8 23 0 1 9 0 127)),(4, (4 3 2 1)))%s 1\n", kBoxes[level]);
+    for (int i = 0; i < 512; ++i) {
+      const float value = (float)(level + 1);
+      fwrite(&value, sizeof value, 1, fab);
+    }
+    if (fclose(fab) != 0) abort();
+  }
+}
+
+static void separate_levels(void) {
+  const char* const path = path_of("plt00001");
+  write_levels(path);
+  weir_input_options input;
+  CHECK(weir_input_options_init(&input, sizeof input) == WEIR_OK);
+  input.levels = WEIR_LEVELS_SEPARATE;
+  weir_convert_options options = default_options();
+  options.has_background = 1;
+  options.background = -1;
+  CHECK_OK(weir_convert_file(path, &input, &options, path_of("rho.nvdb"), &error));
+  static const int64_t kPlaces[2][3] = {{4, 7, 11}, {1, 3, 6}}; /* of the coarse level the middle one is refined */
+  static const float kExpected[2][3] = {{2, 2, 2}, {1, -1, 1}};
+  for (int n = 0; n < 2; ++n) {
+    weir_grid* grid = NULL;
+    CHECK_OK(weir_open(path_of(n == 0 ? "rho_level_0.nvdb" : "rho_level_1.nvdb"), &grid, &error));
+    for (int i = 0; i < 3; ++i) {
+      const int64_t at = kPlaces[n][i];
+      const int64_t index[3] = {at, at, at};
+      float value = 0;
+      CHECK_OK(weir_value(grid, index, &value, &error));
+      CHECK(value == kExpected[n][i]);
+    }
+    weir_close(grid);
+  }
+  CHECK(!exists(path_of("rho.nvdb")));
+  options.nonfinite = WEIR_NONFINITE_KEEP;
+  CHECK_USAGE(
+      "WEIR_NONFINITE_KEEP does not go with WEIR_LEVELS_SEPARATE, whose voxels without a value become the "
+      "background; use background",
+      weir_convert_file(path, &input, &options, path_of("other.nvdb"), &error));
+}
+
 static void places(const float* values) {
   const weir_volume volume = pattern_volume(WEIR_FLOAT32);
   weir_convert_options options = default_options();
@@ -326,6 +393,7 @@ int main(void) {
   values_that_are_none(values);
   callbacks(values);
   components(values);
+  separate_levels();
   places(values);
   free(values);
   return finish();

@@ -4,6 +4,9 @@ import json
 import logging
 import math
 import os
+import pathlib
+import subprocess
+import sys
 import unittest
 
 import numpy
@@ -225,6 +228,34 @@ class SeveralPositions(FolderTest):
         for index, step in ((1, 1), ("-1", 2), ([0], 0)):
             record = weir.convert(self.folder / "run.nrrd", self.folder / "a.nvdb", index=index, lossless=True, overwrite=True)
             self.assertEqual(record["source"]["index"], [step])
+
+
+class SeparateLevels(FolderTest):
+    """A plotfile of two levels: the middle half of 64^3 cells is refined by 2."""
+
+    def setUp(self):
+        super().setUp()
+        script = pathlib.Path(os.environ["WEIR_SOURCE"]) / "tests/tools/project/document_plotfile.py"
+        subprocess.run([sys.executable, script, self.folder / "plt00042"], check=True)
+
+    def test_each_level_is_a_file_and_a_record(self):
+        records = weir.convert(self.folder / "plt00042", f"{self.folder}/out/", dataset="density", levels="separate",
+                               psnr=50, encoding="float", background=-1)
+        self.assertEqual([record["source"]["level"] for record in records],
+                         [{"number": 1, "count": 2}, {"number": 0, "count": 2}])
+        self.assertEqual([record["missing"]["count"] for record in records], [0, 32**3])
+        with weir.open(self.folder / "out/plt00042_density_level_0.nvdb") as fine:
+            self.assertEqual(fine.to_numpy().shape, (64, 64, 64))
+            self.assertEqual(tuple(fine.spacing), (1 / 128, 1 / 128, 1 / 128))
+        with weir.open(self.folder / "out/plt00042_density_level_1.nvdb") as coarse:
+            values = coarse.to_numpy()
+            self.assertEqual(values.shape, (64, 64, 64))
+            self.assertTrue((values[16:48, 16:48, 16:48] == -1).all())
+            self.assertTrue((values[:16] > 0).all())
+
+    def test_what_keeps_voxels_without_a_value_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "nonfinite keep does not go with levels separate"):
+            weir.convert(self.folder / "plt00042", dataset="density", levels="separate", nonfinite="keep")
 
 
 class SeveralDatasets(FolderTest):

@@ -24,6 +24,7 @@ const std::map<std::string, std::vector<std::string>> kSameTexts{
     {"component", {"x", "0"}},
     {"magnitude", {"u,v,w"}},
     {"level", {"1", "01"}},
+    {"levels", {"separate"}},
     {"upsample", {"linear"}},
     {"missing-chunks", {"error"}},
     {"stack", {"true"}},

@@ -109,8 +109,20 @@ TEST(InputOptions, AllGiven) {
   EXPECT_EQ(options.component, (ComponentChoice{false, 1}));
   EXPECT_EQ(options.level, 2);
   EXPECT_EQ(options.upsampling, Upsampling::linear);
+  EXPECT_EQ(options.levels, Levels::composite);
   EXPECT_EQ(options.missing_chunks, MissingChunks::error);
   EXPECT_EQ(options.missing, StoredValue{std::int64_t{-9999}});
+}
+
+TEST(InputOptions, SeparateLevels_MakeVoxelsWithoutAValueTheBackground) {
+  const ConversionRequest request = read_conversion_request({{"levels", "separate"}});
+  EXPECT_EQ(request.source.levels, Levels::separate);
+  EXPECT_EQ(request.conversion.missing, MissingPolicy::background);
+  EXPECT_EQ(message_of([&] {
+              read_conversion_request({{"levels", "separate"}, {"nonfinite", "keep"}});
+            }),
+            "--nonfinite keep does not go with --levels separate, whose voxels without a value become the background; "
+            "use background");
 }
 
 TEST(InputOptions, MissingPolicy_KeepTellsTheSourceToo) {

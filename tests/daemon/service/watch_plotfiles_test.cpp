@@ -2,9 +2,11 @@
 // is there, whichever of its files comes first.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "format/base/text.h"
 #include "tests/daemon/support/service_harness.h"
@@ -64,6 +66,26 @@ TEST_P(WatchPlotfiles, RenamedDirectories_AreTakenAndCheckpointsAreNot) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(service.difference("plt00001", "plt00001.nvdb", {"--dataset", "Temp", "--lossless"}), "");
   EXPECT_EQ(service.logged("discovered"), 1U);
+}
+
+TEST_P(WatchPlotfiles, SeparateLevels_AreTheOutputsOfOneJob) {
+  ServiceHarness service("", keys() + "levels = \"separate\"\n");
+  test::write_plotfile(service.in("plt00042"), plan());
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  const auto made = run_weir({"convert", service.in("plt00042"), "--dataset", "Temp", "--levels", "separate",
+                              "--lossless", "-o", service.path("alone.nvdb")});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  std::vector<std::string> outputs;
+  const ServiceHarness::Json job = service.job("plt00042/Header");
+  for (const auto& output : job["outputs"]) outputs.push_back(output["path"]);
+  ASSERT_EQ(outputs.size(), 2U);
+  for (const std::string level : {"0", "1"}) {
+    const std::string output = service.out("plt00042_level_" + level + ".nvdb");
+    EXPECT_NE(std::find(outputs.begin(), outputs.end(), output), outputs.end()) << output;
+    EXPECT_EQ(read_file(output), read_file(service.path("alone_level_" + level + ".nvdb")));
+  }
+  EXPECT_EQ(service.leftovers(), std::vector<std::string>{});
 }
 
 }  // namespace

@@ -251,5 +251,21 @@ TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
   EXPECT_FALSE(sample_file(header, "").exists);
 }
 
+TEST(ZarrCompletion, SamplesAreOfTheFileThatSaysWhatItIs) {
+  const TemporaryDirectory directory;
+  const std::string store = directory / "run.zarr";
+  std::filesystem::create_directory(store);
+  const WatchConfig watch;
+  std::ofstream(store + "/.zgroup") << "{}";
+  EXPECT_TRUE(sample_file(store + "/.zgroup", "").exists);
+  EXPECT_TRUE(completion_rules(watch, store + "/.zgroup").store);
+  std::ofstream(store + "/zarr.json") << "{}";  // metadata of both versions: one input
+  EXPECT_FALSE(sample_file(store + "/.zgroup", "").exists);
+  EXPECT_TRUE(sample_file(store + "/zarr.json", "").exists);
+  WatchConfig by_marker;
+  by_marker.complete = Completion::marker;
+  EXPECT_FALSE(completion_rules(by_marker, store + "/zarr.json").store);
+}
+
 }  // namespace
 }  // namespace weir::completion_test

@@ -96,6 +96,26 @@ TEST_F(PathFilterTest, FilesOfWeirItselfAreNeverSources) {
   EXPECT_TRUE(accepts("weir.db2"));
 }
 
+TEST_F(PathFilterTest, ZarrHierarchiesGoByTheNamesOfTheirDirectories) {
+  for (const char* head : {"zarr.json", ".zgroup", ".zarray"}) {
+    EXPECT_TRUE(accepts(std::string("run.zarr/") + head)) << head;
+    EXPECT_TRUE(accepts(std::string("a/run.ome.zarr/") + head)) << head;
+    EXPECT_FALSE(accepts(std::string("run.zarr/rho/") + head)) << head;
+    EXPECT_FALSE(accepts(std::string("run/") + head)) << head;
+  }
+  EXPECT_TRUE(enters("run.zarr"));
+  EXPECT_FALSE(enters("run.zarr/c"));
+  watch.include = {"step_*"};
+  EXPECT_TRUE(accepts("step_7.zarr/zarr.json"));
+  EXPECT_FALSE(accepts("run.zarr/zarr.json"));
+  EXPECT_FALSE(accepts("run.zarr/step_7"));  // a chunk
+  watch.exclude = {"*_tmp.zarr"};
+  EXPECT_FALSE(accepts("step_7_tmp.zarr/.zgroup"));
+  EXPECT_FALSE(enters("step_7_tmp.zarr"));
+  watch.recursive = false;
+  EXPECT_FALSE(accepts("step_7.zarr/zarr.json"));
+}
+
 TEST_F(PathFilterTest, ExcludedPathsAreComparedWithLinksResolved) {
   fs::create_directory_symlink(directory / "in", directory / "link");
   watch.directory = directory / "link";

@@ -39,6 +39,7 @@ Sidecar sample() {
               "00112233445566778899aabbccddeeff",
               "cloud water",
               "magnitude",
+              Sidecar::Level{1, 4},
               Sidecar::Time{1200, "seconds since 2000-01-01", "noleap"},
               {"km", "", "m"},
               Sidecar::IrregularAxes{{}, {}, {0.1, 0.3, 0.6}},

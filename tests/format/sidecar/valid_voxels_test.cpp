@@ -41,6 +41,14 @@ TEST(ValidVoxels, MissingInALossyFile_ReadAsTheBackgroundOnlyInExactBlocks) {
             "and its error is not counted");
 }
 
+TEST(ValidVoxels, OfALevel_MissingAreTheCellsThatAreNotItsOwn) {
+  Sidecar s = lossless(250, "background");
+  s.error.lossless = false;
+  s.source.level = Sidecar::Level{0, 3};
+  EXPECT_EQ(valid_voxels(s), 750U);
+  EXPECT_EQ(missing_text(s), "250 of 1000 voxels (25 %) are not of this level, and inactive");
+}
+
 TEST(ValidVoxels, MissingKeptAsData_AreVoxelsLikeOthers) {
   const Sidecar s = lossless(1, "keep");
   EXPECT_EQ(valid_voxels(s), 1000U);

@@ -14,35 +14,6 @@ namespace {
 
 using test::PlotfilePlan;
 
-/// A plotfile of three components on 1 to 4 levels, by its number.
-PlotfilePlan generated_plan(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto between = [&](std::int64_t lo, std::int64_t hi) {
-    return lo + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(hi - lo + 1));
-  };
-  PlotfilePlan plan;
-  plan.components = {"density", "x_velocity", "Temp"};
-  const Index3 lo{between(-9, 9), between(-9, 9), between(-9, 9)};
-  plan.domain = {lo, lo + Index3{between(3, 9), between(3, 9), between(3, 9)}};
-  plan.boxes = {test::random_boxes(plan.domain, between(3, 9), 100, seed)};
-  const std::vector<Index3> ratios{{2, 2, 2}, {4, 4, 4}, {2, 2, 1}, {1, 4, 2}, {3, 2, 2}};
-  const std::size_t levels = 1 + seed % 4;
-  for (std::size_t l = 1; l < levels && volume(plan.domain_of(l - 1).extent()) < 4'000; ++l) {
-    plan.ratios.push_back(ratios[random() % ratios.size()]);
-    std::vector<Box> boxes;
-    const int kept = static_cast<int>(between(10, 90));
-    plan.boxes.emplace_back();
-    boxes = test::random_boxes(plan.domain_of(l), between(4, 20), kept, seed + 1000 * l);
-    if (boxes.empty()) boxes = {{plan.domain_of(l).lo, plan.domain_of(l).lo + Index3{1, 1, 1}}};
-    plan.boxes.back() = std::move(boxes);
-  }
-  plan.single = random() % 2 == 0;
-  plan.big_endian = random() % 2 == 0;
-  plan.fabs_per_file = static_cast<std::size_t>(between(1, 7));
-  plan.version = static_cast<int>(between(1, 4));
-  return plan;
-}
-
 std::vector<float> expected_values(const PlotfilePlan& plan, std::size_t component, std::size_t level, const Box& box) {
   std::vector<float> values;
   const Index3 lo = plan.domain_of(level).lo;
@@ -62,7 +33,7 @@ TEST(AmrexComposite, GeneratedPlotfiles_HaveTheValueOfTheFinestLevelInEachCell) 
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     const Scratch scratch;
-    const PlotfilePlan plan = generated_plan(seed);
+    const PlotfilePlan plan = test::generated_plotfile(seed);
     const std::string path = scratch.path("plt00042");
     test::write_plotfile(path, plan);
     std::mt19937_64 random(seed);
@@ -149,7 +120,7 @@ TEST(AmrexComposite, LinearValues_AreTrilinearBetweenTheCentresOfCoarseCells) {
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     SCOPED_TRACE(seed);
     const Scratch scratch;
-    PlotfilePlan plan = generated_plan(seed);
+    PlotfilePlan plan = test::generated_plotfile(seed);
     for (std::size_t i = 0; i < plan.ratios.size(); ++i) {
       if (plan.ratios[i].x != 3) continue;
       plan.ratios.resize(i);  // thirds are not exact

@@ -9,6 +9,7 @@
 
 #include "ingest/hdf5/file/hdf5_lock.h"
 #include "ingest/series.h"
+#include "ingest/series_names.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 #include "tests/support/sanitized.h"
 
@@ -140,6 +141,23 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(datasets("*", {{{}, false, -1, {}}}), "/series ");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { datasets("x*"); }),
             scratch_.path("a.h5") + ": no dataset's name matches x*; weir inspect lists what there is");
+}
+
+TEST_F(Hdf5Choice, DefaultNames_HaveThePositionsOfAnArrayOfComponents) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f: f["v"] = np.zeros((12, 5, 6, 3), "f4")
+)");
+  const auto name = [&](const SourceOptions& options) {
+    const auto steps = expand_series(std::vector{scratch_.path("a.h5")}, options);
+    return std::filesystem::path(series_outputs(steps, "out/", options).front()).filename().string();
+  };
+  SourceOptions options;
+  options.index = {7};
+  EXPECT_EQ(name(options), "a_07.nvdb");
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), options)->info().extent, (Index3{3, 6, 5}));
+  options.index.clear();
+  options.component = ComponentChoice{false, 1};
+  EXPECT_EQ(name(options), "a_y.nvdb");
 }
 
 TEST_F(Hdf5Choice, IndexByName_BelowZeroAndRanges) {

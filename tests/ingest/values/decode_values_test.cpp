@@ -165,5 +165,26 @@ TEST(DecodeValues, StoredNaNOfTheMissingBits_IsNotMissing) {
   EXPECT_FALSE(is_missing(values[2]));
 }
 
+TEST(DecodeValues, OfAVolumeWithGaps_NoStoredValueIsOne) {
+  const std::vector<std::uint32_t> bits{kMissingBits, 0x3F800000U, 0x7F800000U, 0x7F800001U};
+  ValueMapping mapping;
+  mapping.gaps = true;
+  for (const double scale : {1.0, 2.0}) {
+    mapping.scale = scale;
+    std::vector<float> values(4);
+    decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
+    EXPECT_TRUE(std::isnan(values[0]) && !is_missing(values[0])) << scale;
+    EXPECT_EQ(values[1], static_cast<float>(scale));
+    EXPECT_TRUE(std::isinf(values[2]));
+    EXPECT_TRUE(std::isnan(values[3]));
+  }
+  mapping.scale = 1;
+  mapping.missing = {StoredValue{1.0}};
+  std::vector<float> values(4);
+  decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
+  EXPECT_FALSE(is_missing(values[0]));
+  EXPECT_TRUE(is_missing(values[1]));
+}
+
 }  // namespace
 }  // namespace weir::decode_values_test

@@ -1,3 +1,5 @@
+#include "ingest/series.h"
+#include "ingest/series_names.h"
 #include "ingest/zarr/zarr_source.h"
 #include "tests/ingest/zarr/support/zarr_files.h"
 
@@ -54,6 +56,29 @@ TEST(OmeZarr, FinestLevelIsRead_WithItsSpacingOriginUnitsAndTime) {
     options.index.clear();
     options.index_choices = {*parse_axis_choice("t=-1")};
     EXPECT_EQ(open_source(files.path(), options)->info().index, (std::vector<std::int64_t>{1, 0}));
+  }
+}
+
+TEST(OmeZarr, DefaultNames_HaveThePositionsThatWereChosen) {
+  for (const bool v3 : {false, true}) {
+    const ZarrFiles files;
+    write_image(files, v3);
+    const auto names = [&](const std::string& index, const std::string& dataset = "") {
+      SourceOptions options;
+      options.dataset = dataset;
+      for (const std::string& choice : split(index, ',')) options.index_choices.push_back(*parse_axis_choice(choice));
+      std::vector<std::string> found;
+      for (const std::string& path :
+           series_outputs(expand_series(std::vector{files.path()}, options), "out/", options)) {
+        found.push_back(std::filesystem::path(path).filename());
+      }
+      return found;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(names("t=0"), Names{"run_0.nvdb"});
+    EXPECT_EQ(names("t=-1,c=0"), Names{"run_1.nvdb"}) << "the one channel leaves no choice";
+    EXPECT_EQ(names("1,0", "1"), Names{"run_1_1.nvdb"}) << "a coarser scale, and its time";
+    EXPECT_EQ(names("t=*"), (Names{"run_0.nvdb", "run_1.nvdb"}));
   }
 }
 

@@ -1,0 +1,117 @@
+#include "daemon/watch/store_quiet.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/support/temporary_directory.h"
+
+namespace weir::store_quiet_test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using Time = StoreQuiet::Time;
+
+Time at(double seconds) {
+  return Time{} + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(seconds));
+}
+
+double seconds(Time time) { return std::chrono::duration<double>(time - Time{}).count(); }
+
+class StoreQuietTest : public testing::Test {
+ protected:
+  StoreQuietTest() {
+    fs::create_directories(store_ + "/c/0");
+    write("zarr.json", "{}");
+    write("c/0/0", "1234");
+  }
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(store_ + '/' + name, std::ios::binary) << content;
+  }
+  /// Answers at `when`, however many parts the look takes.
+  StoreQuiet::Answer look(double when) {
+    StoreQuiet::Answer answer = quiet_.look(at(when));
+    while (!answer.quiet && answer.until == at(when)) answer = quiet_.look(at(when));
+    return answer;
+  }
+
+  TemporaryDirectory directory_;
+  std::string store_ = directory_ / "run.zarr";
+  StoreQuiet quiet_{store_, 2s};
+};
+
+TEST_F(StoreQuietTest, TwoLooksWithSettleBetweenThemThatFindTheSame_AreQuiet) {
+  const StoreQuiet::Answer first = look(10);
+  EXPECT_FALSE(first.quiet);
+  EXPECT_DOUBLE_EQ(seconds(first.until), 12);
+  EXPECT_EQ(first.reason, "it has 2 files, 6 B, and may still be written");
+  const StoreQuiet::Answer early = look(11);
+  EXPECT_FALSE(early.quiet);
+  EXPECT_DOUBLE_EQ(seconds(early.until), 12);
+  EXPECT_TRUE(look(12).quiet);
+}
+
+TEST_F(StoreQuietTest, AnythingThatChangesInIt_BeginsTheTimeAnew) {
+  look(0);
+  double now = 2;
+  const auto expect_changed = [&](const char* what) {
+    const StoreQuiet::Answer answer = look(now);
+    EXPECT_FALSE(answer.quiet) << what;
+    EXPECT_DOUBLE_EQ(seconds(answer.until), now + 2) << what;
+    EXPECT_NE(answer.reason.find("changed a moment ago"), std::string::npos) << answer.reason;
+    now += 2;
+  };
+  write("c/0/1", "");
+  expect_changed("a new chunk");
+  write("c/0/1", "12");
+  expect_changed("a longer one");
+  const auto time = fs::last_write_time(store_ + "/c/0/0");
+  write("c/0/0", "abcd");
+  fs::last_write_time(store_ + "/c/0/0", time);
+  expect_changed("as many other bytes, and the time set back");
+  fs::rename(store_ + "/c/0/0", store_ + "/c/0/7");
+  expect_changed("another name");
+  fs::remove(store_ + "/c/0/7");
+  expect_changed("one less");
+  fs::create_directory(store_ + "/c/1");
+  expect_changed("a directory");
+  EXPECT_TRUE(look(now).quiet);
+}
+
+TEST_F(StoreQuietTest, ManyFiles_AreLookedThroughInParts) {
+  for (int i = 0; i < 1500; ++i) fs::create_hard_link(store_ + "/c/0/0", store_ + "/c/" + std::to_string(100 + i));
+  const StoreQuiet::Answer part = quiet_.look(at(0));
+  EXPECT_FALSE(part.quiet);
+  EXPECT_DOUBLE_EQ(seconds(part.until), 0);
+  EXPECT_TRUE(part.reason.starts_with("its files are looked through, ")) << part.reason;
+  EXPECT_EQ(quiet_.look(at(0.5)).reason, "it has 1502 files, 5.9 KiB, and may still be written");
+  EXPECT_FALSE(look(1).quiet);
+  EXPECT_TRUE(look(2.5).quiet);
+}
+
+TEST_F(StoreQuietTest, ADirectoryThatCannotBeListed_IsSaid) {
+  fs::remove_all(store_);
+  const StoreQuiet::Answer answer = quiet_.look(at(0));
+  EXPECT_FALSE(answer.quiet);
+  EXPECT_DOUBLE_EQ(seconds(answer.until), 2);
+  EXPECT_EQ(answer.reason, "cannot be listed: No such file or directory");
+}
+
+TEST(StoreHead, IsThatOfTheOuterDirectoryOfSuchAName) {
+  for (const char* path : {"run.zarr/zarr.json", "a/run.zarr/.zgroup", "/x/run.ome.zarr/.zarray"}) {
+    EXPECT_TRUE(is_store_head(path)) << path;
+  }
+  for (const char* path : {"run.zarr/rho/zarr.json", "run.zarr/in.zarr/zarr.json", "run/zarr.json", "run.zarr/Header",
+                           "run.zarr/.zattrs", "zarr.json", ".zarr/zarr.json"}) {
+    EXPECT_FALSE(is_store_head(path)) << path;
+  }
+  EXPECT_TRUE(is_in_store("run.zarr/c"));
+  EXPECT_TRUE(is_in_store("a/run.zarr/c/0/0"));
+  EXPECT_FALSE(is_in_store("a/run.zarr"));
+}
+
+}  // namespace
+}  // namespace weir::store_quiet_test
