@@ -65,9 +65,8 @@ std::optional<HttpResponse> refuse_now(const AccessRules& rules, const HttpReque
     if (refuse(rules, request, false)) told.reason.clear();  // names files, which are for who has the token
     return page_without_viewer(told);
   }
-  if (viewer.connections >= kMostViewerConnections) {
-    return error_response(503,
-                          cat("the viewer has ", viewer.connections, " connections, as many as it may; close one"));
+  if (request.upgrade && viewer.sockets >= kMostViewerSockets) {
+    return error_response(503, cat("the viewer has ", viewer.sockets, " pages open, as many as it may; close one"));
   }
   return std::nullopt;
 }

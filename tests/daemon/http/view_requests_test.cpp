@@ -99,9 +99,12 @@ TEST(ViewRequests, WithoutAViewer_SaySo) {
   EXPECT_NE(page.find("<p>&lt;a> &amp; b; open it again with View on the service's page.</p>"), std::string::npos)
       << page;
   ViewerView full = kReady;
-  full.connections = kMostViewerConnections;
-  EXPECT_EQ(refusal({}, ask("/view/"), full),
-            "503 {\"error\":\"the viewer has 64 connections, as many as it may; close one\"}\n");
+  full.sockets = kMostViewerSockets;
+  EXPECT_EQ(refusal({}, ask_socket("", ""), full),
+            "503 {\"error\":\"the viewer has 16 pages open, as many as it may; close one\"}\n");
+  full.sockets = 0;
+  full.connections = 1000;
+  EXPECT_EQ(refusal({}, ask_socket("", ""), full), "") << "files of the page are counted for themselves";
 }
 
 TEST(ViewRequests, ForwardedRequest_HasTheViewersTokenAndNoOtherHeaders) {
