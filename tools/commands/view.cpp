@@ -107,7 +107,9 @@ void view(const ViewArguments& arguments) {
   if (preview) files.key = viewed_key({arguments.input}, arguments.against);  // its file's name is another each time
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
-  if (!files.summary.difference.empty()) spdlog::warn("{}", files.summary.difference);
+  if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
+    spdlog::warn("{}", difference);
+  }
 
   boost::asio::io_context io;
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);

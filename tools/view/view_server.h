@@ -86,7 +86,7 @@ class ViewServer {
   void handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe);
   void handle(ViewerId id, Viewer& viewer, const ConvertRequest& request);
   void tell_facts(ViewerId id, Viewer& viewer);
-  void tell_facts(ViewerId id, std::size_t step, const SeenValues& values, const std::vector<std::string>& texts);
+  void tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const std::vector<std::string>& texts);
   std::string count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel);
   std::vector<int> sides() const;
   void answer_probe(ViewerId id, Viewer& viewer);
@@ -94,12 +94,13 @@ class ViewServer {
   RenderEvents render_events();
   std::string file_of(std::size_t step, int side) const;
   std::size_t first_step() const;
-  SeenValues seen_values() const;
+  SeenValues common_values() const { return seen_values(summary_); }
   void tell_steps(const SeriesSummary& summary);
 
   boost::asio::io_context& io_;
   const ViewSettings settings_;
-  ViewedFiles files_;  // its steps are those of the beginning
+  const ViewedFiles files_;  // of the beginning
+  SeriesSummary summary_;    // of all steps that were seen since
   StepList steps_;
   const AccessRules rules_;
   std::string state_text_;  // of /api/state, but for what changes
