@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,12 +45,13 @@ struct ProbeRequest {
   int side = 0;  ///< 1: of the file that is compared with
 };
 
-/// "convert": the command that converts the source for a scene, or its run.
+/// "convert": the command that converts the source for a scene and what it would come to, or its run.
 struct ConvertRequest {
   std::int64_t id = 0;
   std::string scene_text;
-  std::string encoding;  ///< "packed" or "auto"
-  double rate = 8;
+  std::string encoding;        ///< "packed" or "auto"
+  std::optional<double> rate;  ///< the file's size, as `weir convert --rate` has it
+  double psnr_db = 0;          ///< where there is no rate: of what the scene shows, at least
   bool run = false;
 };
 

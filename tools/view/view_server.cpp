@@ -6,7 +6,6 @@
 #include <utility>
 #include <variant>
 
-#include "compressor/select/file_size.h"
 #include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"
 #include "daemon/http/socket_token.h"
@@ -69,7 +68,8 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       rules_(rules_of(settings_)),
       backend_(backend),
       shelf_(backend, volumes_held(files_)),
-      converter_(io, settings_.program) {
+      scene_requests_(io, {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast},
+                      [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
   state_text_ = line({{"title", files_.title},
                       {"series", files_.key},
                       {"version", settings_.version},
@@ -151,7 +151,7 @@ std::optional<HttpResponse> ViewServer::refuse_viewer(const HttpRequest& request
     return error_response(409, cat("this viewer shows another series now: ", files_.title));
   }
   if (viewers_.size() >= settings_.viewers) {
-    return error_response(503, cat("there are ", viewers_.size(), " viewers, as many as there may be; close one"));
+    return error_response(503, cat("there are ", viewers_.size(), " pages, as many as there may be; close one"));
   }
   return std::nullopt;
 }
@@ -176,6 +176,7 @@ void ViewServer::remove_viewer(ViewerId id) {
   loop_->remove(id);
   histograms_->forget(id);
   viewers_.erase(id);
+  scene_requests_.forget(id);
 }
 
 void ViewServer::send(ViewerId id, std::string text) {
@@ -329,23 +330,7 @@ void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& reque
   if (!sidecar) {
     throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
   }
-  const SceneConversion conversion = scene_conversion(volume, settings_.preview_of, *sidecar, request);
-  const Json reply{{"type", "conversion"},
-                   {"id", request.id},
-                   {"command", conversion.text},
-                   {"bytes", bytes_at_rate(sidecar->budget.dense_float32_bytes, request.rate)}};
-  const auto tell = [this, id, reply](const std::string& state, const std::string& message) {
-    Json told = reply;
-    told["state"] = state;
-    told["message"] = message;
-    send(id, line(told));
-  };
-  if (!request.run) return tell("shown", "");
-  if (!settings_.allow_convert) return tell("failed", "this server runs no conversion; start it with --allow-convert");
-  converter_.start(conversion, request.scene_text, [tell](const std::string& output, const std::string& message) {
-    tell(message.empty() ? "done" : "failed", message.empty() ? output : message);
-  });
-  tell("running", "");
+  scene_requests_.handle(id, volume, *sidecar, request);
 }
 
 RenderEvents ViewServer::render_events() {

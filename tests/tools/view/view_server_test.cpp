@@ -9,6 +9,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/sidecar/sidecar.h"
 #include "tests/tools/support/converted_volume.h"
 #include "tests/tools/view/served_view.h"
 #include "tests/tools/view/view_client.h"
@@ -298,7 +299,7 @@ TEST_F(ViewServerTest, OneViewerTooMany_IsRefused) {
   ViewClient one(served.port());
   ViewClient two(served.port());
   wait_for_viewers(served, 2);
-  EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 viewers, as many as there may be; close one\"}\n");
+  EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 pages, as many as there may be; close one\"}\n");
 }
 
 TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
@@ -319,6 +320,49 @@ TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_EQ(failed["message"], "this server runs no conversion; start it with --allow-convert");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
+}
+
+TEST_F(ViewServerTest, Convert_IsForecast) {
+  ViewSettings settings;
+  settings.program = WEIR_COMMAND;
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());
+  const std::string scene = "mode = \"dvr\"\n[volume]\nrange = [0, 250]\nopacity = [[0, 0], [0.5, 0], [1, 1]]\n";
+  write_file(directory_ / "s.toml", scene);
+  Json request{{"type", "convert"}, {"id", 1}, {"scene", scene}, {"psnr", 45}, {"encoding", "packed"}};
+  client.send(request);
+  EXPECT_TRUE(client.text("conversion").value()["bytes"].is_null());
+  const Json forecast = client.text("forecast").value();
+  EXPECT_EQ(forecast["state"], "done") << forecast;
+  EXPECT_EQ(forecast["id"], 1);
+  // As it is once it is made.
+  const std::string made = directory_ / "made.nvdb";
+  ASSERT_EQ(run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "--encoding", "packed", "--psnr", "45",
+                      "--scene", directory_ / "s.toml", "-o", made})
+                .exit_code,
+            0);
+  const Sidecar sidecar = read_sidecar(sidecar_path(made));
+  EXPECT_EQ(forecast["exact"], true);
+  EXPECT_EQ(forecast["bytes"]["value"], sidecar.file.bytes);
+  EXPECT_EQ(forecast["psnr_db"]["value"], sidecar.error.psnr_db.value());
+  EXPECT_EQ(forecast["max_abs"], sidecar.error.max_abs);
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
+  request["id"] = 2;
+  request["scene"] = "mode = \"dvr\"\n";
+  client.send(request);
+  const Json failed = client.text("forecast").value();
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_NE(failed["message"].get<std::string>().find("opacity"), std::string::npos) << failed;
+}
+
+TEST_F(ViewServerTest, Convert_WithoutMemoryForForecasts_SaysSo) {
+  ViewSettings settings;
+  settings.forecast = false;
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());
+  client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
+  EXPECT_EQ(client.text("forecast").value()["message"],
+            "no memory is set aside for a forecast here; run the command with --dry-run");
 }
 
 TEST_F(ViewServerTest, Convert_OfASourceThatIsAnother_IsRefused) {

@@ -21,4 +21,7 @@ struct SceneConversion {
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request);
 
+/// The program's name and arguments, with the scene at that path.
+std::vector<std::string> conversion_command(const SceneConversion& conversion, const std::string& scene);
+
 }  // namespace weir

@@ -1,4 +1,4 @@
-#include "tools/view/scene_conversion.h"
+#include "tools/view/convert/scene_conversion.h"
 
 #include <sys/stat.h>
 
@@ -59,11 +59,19 @@ SceneConversion scene_conversion(const std::string& volume, const std::string& s
     if (!option.row.flag()) words.push_back(given->second);
   }
   if (sidecar.nonfinite.count > 0) words.insert(words.end(), {"--nonfinite", sidecar.nonfinite.policy});
-  words.insert(words.end(), {"--encoding", request.encoding, "--rate", short_number(request.rate), "-o",
-                             conversion.output, "--scene", "scene.toml"});
+  words.insert(words.end(), {"--encoding", request.encoding, request.rate ? "--rate" : "--psnr",
+                             short_number(request.rate ? *request.rate : request.psnr_db), "-o", conversion.output,
+                             "--scene", "scene.toml"});
   conversion.text = "weir";
   for (const std::string& word : words) conversion.text += cat(' ', shell_word(word));
   return conversion;
+}
+
+std::vector<std::string> conversion_command(const SceneConversion& conversion, const std::string& scene) {
+  std::vector<std::string> words{"weir"};
+  words.insert(words.end(), conversion.arguments.begin(), conversion.arguments.end());
+  words.back() = scene;
+  return words;
 }
 
 }  // namespace weir
