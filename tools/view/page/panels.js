@@ -26,9 +26,16 @@ export function show_transfer(editor, look, facts, histogram, colormaps) {
   by_id("log").checked = look.log;
 }
 
-/** `other`: of the file that is compared with, where there is one. */
-export function show_file(facts, other) {
-  set_text(by_id("file-name"), facts.file);
+/** Of the window, and of the page, which is `more`: what was named on the command line, too. */
+export function show_title(file, more) {
+  document.title = `${file} \u2013 weir view`;
+  set_text(by_id("title"), more);
+}
+
+/** Of the file of that name, whose own facts may come later; `other`: of what it is compared with, where there is one. */
+export function show_file(name, facts, other) {
+  set_text(by_id("file-name"), name);
+  for (const id of ["certificate", "kinds"]) by_id(id).classList.toggle("awaited", facts.file !== name);
   certificate.show_rows(by_id("certificate"), facts);
   certificate.show_kinds(by_id("kinds"), facts.kinds);
   by_id("against-facts").hidden = !other;
