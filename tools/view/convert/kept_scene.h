@@ -7,7 +7,7 @@
 #include <string>
 
 #include "format/base/error.h"
-#include "tools/view/temporary_folder.h"
+#include "tools/view/base/temporary_folder.h"
 
 namespace weir {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "format/sidecar/sidecar.h"
-#include "tools/view/view_message.h"
+#include "tools/view/base/view_message.h"
 
 namespace weir {
 

@@ -9,7 +9,7 @@
 #include "daemon/jobs/worker_reason.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "tools/view/file_identity.h"
+#include "tools/view/base/file_identity.h"
 
 namespace weir {
 namespace {

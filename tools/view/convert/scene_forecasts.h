@@ -11,9 +11,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "tools/view/base/view_message.h"
 #include "tools/view/convert/kept_scene.h"
 #include "tools/view/convert/scene_conversion.h"
-#include "tools/view/render_loop.h"
 
 namespace weir {
 

@@ -8,10 +8,9 @@
 #include <string>
 
 #include "format/sidecar/sidecar.h"
+#include "tools/view/base/view_message.h"
 #include "tools/view/convert/scene_converter.h"
 #include "tools/view/convert/scene_forecasts.h"
-#include "tools/view/render_loop.h"
-#include "tools/view/view_message.h"
 
 namespace weir {
 

@@ -1,7 +1,7 @@
 #include "tools/view/steps/series_heads.h"
 
 #include "format/base/error.h"
-#include "tools/view/file_identity.h"
+#include "tools/view/base/file_identity.h"
 
 namespace weir {
 

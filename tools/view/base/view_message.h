@@ -14,6 +14,9 @@
 
 namespace weir {
 
+/// One of the pages that look, for as long as it is connected.
+using ViewerId = std::int64_t;
+
 /// Pixels of a picture, of two files together, at most: its sums take 12 bytes each.
 inline constexpr std::int64_t kMostViewPixels = 4 << 20;
 inline constexpr std::int32_t kLongestViewEdge = 8192;  ///< pixels
