@@ -54,14 +54,14 @@ HttpResponse answer_without_viewer(const ViewerView& viewer) {
 }
 
 // For a person who opens the address by hand, or reads it after the viewer has ended. While one is being started, the
-// browser asks again by itself.
+// browser asks again by itself: with the part behind #, which a refresh in the page's head would make a jump within it.
 HttpResponse page_without_viewer(const ViewerView& viewer) {
   std::string text;
   for (const char c : why_none(viewer)) text += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
   return {503,
           "text/html; charset=utf-8",
           cat("<!doctype html>\n<html lang=\"en\">\n",
-              viewer.state == ViewerState::starting ? "<meta http-equiv=\"refresh\" content=\"1\">\n" : "",
+              viewer.state == ViewerState::starting ? "<script src=\"../page/again.js\"></script>\n" : "",
               "<title>weir</title>\n<p>", text, ".</p>\n<p><a href=\"../\">The service's page</a></p>\n</html>\n"),
           {}};
 }

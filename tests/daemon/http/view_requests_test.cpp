@@ -97,11 +97,11 @@ TEST(ViewRequests, WithoutAViewer_SaySo) {
   EXPECT_EQ(refusal({}, ask_socket("", ""), in_state(ViewerState::starting)),
             "503 {\"error\":\"the viewer is being started; ask again in a moment\",\"state\":\"starting\"}\n");
   const std::string starting = refusal({}, ask("/view/"), in_state(ViewerState::starting));
-  EXPECT_NE(starting.find("<meta http-equiv=\"refresh\" content=\"1\">\n"), std::string::npos) << starting;
+  EXPECT_NE(starting.find("<script src=\"../page/again.js\"></script>\n"), std::string::npos) << starting;
   const std::string page = refusal({}, ask("/view/"), in_state(ViewerState::failed, "<a> & b"));
   EXPECT_NE(page.find("<p>&lt;a> &amp; b; open it again with View on the service's page.</p>"), std::string::npos)
       << page;
-  EXPECT_EQ(page.find("refresh"), std::string::npos) << page;
+  EXPECT_EQ(page.find("script"), std::string::npos) << page;
   ViewerView full = kReady;
   full.sockets = kMostViewerSockets;
   EXPECT_EQ(refusal({}, ask_socket("", ""), full),

@@ -161,6 +161,13 @@ def works_with_keys(browser, url):
     browser.press("3")
     equal(browser.visible("#iso-field"), True)
     converged(browser)
+    controls = {"button", "slider", "spinbutton", "checkbox", "radio", "combobox", "application", "progressbar", "textbox"}
+    for panel in ("light-panel", "box-panel", "convert-panel"):
+        browser.script("document.getElementById(arguments[0]).open = true", panel)
+    named = [(node["role"]["value"], node["name"]["value"]) for node in browser.devtools("Accessibility.getFullAXTree")["nodes"]
+             if not node["ignored"] and node["role"]["value"] in controls]
+    assert len(named) > 30, named
+    equal([role for role, name in named if not name], [])
     focus = "const e = document.activeElement; return e.id || e.name || e.className"
     seen = []
     browser.script("document.activeElement.blur()")
@@ -172,9 +179,10 @@ def works_with_keys(browser, url):
                 const marked = e.name === 'mode' ? e.nextElementSibling : e;
                 return getComputedStyle(marked).outlineStyle""")
             equal((seen[-1], shown), (seen[-1], "solid" if seen[-1] else shown))
-        if seen[-1] == "show-command" or (len(seen) > 1 and seen[-1] == "frame"):
+        if {"frame", "show-command"} <= set(seen):
             break
-    for wanted in ["frame", "mode", "undo", "handle", "colormap", "iso", "save-picture", "save-scene"]:
+    for wanted in ["frame", "mode", "undo", "handle", "colormap", "iso", "light-az", "reset-box", "save-picture", "save-scene",
+                   "budget", "rate", "encoding", "show-command"]:
         assert wanted in seen, f"{wanted} is not reached: {seen}"
 
 

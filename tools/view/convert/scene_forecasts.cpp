@@ -1,6 +1,7 @@
 #include "tools/view/convert/scene_forecasts.h"
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostKept = 256;  // answers, some 300 bytes each
 constexpr int kNice = 10;               // pictures come first
+constexpr std::chrono::milliseconds kReapWait{100};
 
 Json failure(const std::string& message) { return {{"state", "failed"}, {"message", message}}; }
 
@@ -89,7 +91,7 @@ void SceneForecasts::start(const Question& question) {
     // An output of before is not in the way of a forecast.
     arguments.insert(arguments.end(), {"--overwrite", "--dry-run", "--json", "--quiet"});
     worker_ = std::make_unique<WorkerProcess>(
-        io_, WorkerCommand{program_, arguments, kNice, IoClass::none}, [](std::string_view) {},
+        io_, WorkerCommand{program_, arguments, kNice, IoClass::none, kReapWait}, [](std::string_view) {},
         [this](const WorkerEnd& end) {
           worker_.reset();
           keep(running_, end.exit_code == 0 ? answer_of(end.log) : failure(worker_reason("convert", end)));
