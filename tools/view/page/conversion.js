@@ -2,6 +2,7 @@
 
 import {by_id, set_text} from "./dom.js";
 import * as format from "./format.js";
+import {show_command} from "./panels.js";
 
 const kRest_ms = 600;  // of the look, before it is asked for again
 
@@ -63,7 +64,7 @@ export class Conversion {
   }
 
   receive({command, bytes, state, message}) {
-    set_text(by_id("convert-command"), command);
+    show_command(by_id("convert-command"), command);
     set_text(by_id("convert-size"), bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
                                                    : `${format.count(bytes)} bytes, whatever the scene.`);
     by_id("run-convert").disabled = state === "running";

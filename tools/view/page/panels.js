@@ -1,6 +1,6 @@
 // What the panels beside the picture show of a look, and what is said of the picture and the connection.
 
-import {by_id, set_text} from "./dom.js";
+import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
 import * as certificate from "./certificate.js";
 import {start_iso} from "./look.js";
@@ -67,6 +67,12 @@ export function show_quality(header, awaited) {
   if (awaited) return;
   const done = header.samples >= header.of ? ", done" : "";
   set_text(by_id("quality"), `${size}, ${header.samples} of ${header.of} samples a pixel${done}`);
+}
+
+/** Each word stays whole where there is room for it: a line must not end within "--scene". */
+export function show_command(target, text) {
+  if (target.textContent === text) return;  // a selection in it survives
+  target.replaceChildren(...text.split(" ").flatMap((word, i) => [i > 0 ? " " : "", element("span", "word", word)]));
 }
 
 export function show_banner(text) {

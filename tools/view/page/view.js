@@ -11,7 +11,7 @@ import {Keep} from "./keep.js";
 import {listen_to_keys} from "./keys.js";
 import {KnownFiles} from "./known_files.js";
 import * as looks from "./look.js";
-import {curve_of, show_banner, show_file, show_mode, show_quality, show_title, show_transfer} from "./panels.js";
+import {curve_of, show_banner, show_command, show_file, show_mode, show_quality, show_title, show_transfer} from "./panels.js";
 import {Session} from "./session.js";
 import {Steps} from "./steps.js";
 import {TransferEditor, simplified} from "./transfer_editor.js";
@@ -103,8 +103,8 @@ function show_look() {
   for (const side of ["side-left", "side-right"]) by_id(side).hidden = look.split === null;
   show_undo();
   const [width, height] = picture_size();
-  set_text(by_id("render-command"),
-           `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
+  show_command(by_id("render-command"),
+               `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
 }
 
 // ---- What comes in
@@ -140,7 +140,7 @@ function receive(message) {
     show_look();
     if (message.type === "facts") show_shown_file();
     // A picture that was asked for without these facts may have been of another box or range.
-    if (!drawn_first || scene() !== before) ask_picture(false);
+    if (!drawn_first || scene() !== before) ask_picture(steps.playing);
   } else if (message.type === "steps") {
     receive_steps(message);
   } else if (message.type === "value") {
