@@ -16,7 +16,7 @@ class KeptScene {
   /// The path of the file, which has that text from now on. Throws Error(io).
   std::string write(const std::string& text) {
     if (!folder_) folder_.emplace();
-    const std::string path = (folder_->path() / "scene.toml").string();
+    std::string path = (folder_->path() / "scene.toml").string();
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file << text;
     file.close();

@@ -31,7 +31,7 @@ std::string named_source(const std::string& volume, const Sidecar& sidecar) {
       static_cast<std::uint64_t>(status.st_size) == sidecar.source.bytes) {
     return recorded;
   }
-  const std::string path = (fs::path(volume).parent_path() / recorded).string();
+  std::string path = (fs::path(volume).parent_path() / recorded).string();
   const bool directory = fs::is_directory(path, failure);
   if (!is_there(path) || (!directory && fs::file_size(path, failure) != sidecar.source.bytes)) {
     throw input_error(path, cat("is not the source of ", volume, ", which had ", sidecar.source.bytes,

@@ -19,7 +19,7 @@ function forecast_text({exact, share, none, bytes, lossless, psnr_db, max_abs, t
   if (!lossless && max_abs !== null) parts.push(`largest error ${format.number(max_abs)}`);
   if (total_s !== null) parts.push(`in about ${format.seconds(total_s)}`);
   const text = parts.join(", ");
-  if (none) return `${text}. Nothing was tried: ${none}.`;
+  if (none) return `${text ? `${text}; ` : ""}nothing was tried: ${none}.`;
   if (exact) return `${text}.`;
   const error = lossless || psnr_db ? "" : " It does not tell the error where a scene decides what is kept.";
   return `${text}, by a sample of ${Number((100 * share).toPrecision(2))} % of the voxels.${error}`;
