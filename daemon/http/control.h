@@ -141,6 +141,7 @@ struct ViewerView {
   std::string reason;              ///< why it is off, or failed; else empty
   std::string file;                ///< the output that it was started with; else empty
   std::uint64_t connections = 0;   ///< of browsers
+  std::uint64_t sockets = 0;       ///< of those, pages that are open
   std::uint64_t rss_bytes = 0;     ///< of its process now
   std::uint64_t memory_bytes = 0;  ///< that it may take; 0: off
 };

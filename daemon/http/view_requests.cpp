@@ -2,6 +2,7 @@
 
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -45,14 +46,23 @@ std::string why_none(const ViewerView& viewer) {
   return viewer.state == ViewerState::off ? why : cat(why, "; open it again with View on the service's page");
 }
 
-// For a person who opens the address by hand, or reads it after the viewer has ended.
+// For the page of a viewer, which waits for one that is being started.
+HttpResponse answer_without_viewer(const ViewerView& viewer) {
+  const nlohmann::json body{{"error", why_none(viewer)},
+                            {"state", kViewerStateNames.at(static_cast<std::size_t>(viewer.state))}};
+  return {503, "application/json", body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", {}};
+}
+
+// For a person who opens the address by hand, or reads it after the viewer has ended. While one is being started, the
+// browser asks again by itself: with the part behind #, which a refresh in the page's head would make a jump within it.
 HttpResponse page_without_viewer(const ViewerView& viewer) {
   std::string text;
   for (const char c : why_none(viewer)) text += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
   return {503,
           "text/html; charset=utf-8",
-          cat("<!doctype html>\n<html lang=\"en\">\n<title>weir</title>\n<p>", text,
-              ".</p>\n<p><a href=\"../\">The service's page</a></p>\n</html>\n"),
+          cat("<!doctype html>\n<html lang=\"en\">\n",
+              viewer.state == ViewerState::starting ? "<script src=\"../page/again.js\"></script>\n" : "",
+              "<title>weir</title>\n<p>", text, ".</p>\n<p><a href=\"../\">The service's page</a></p>\n</html>\n"),
           {}};
 }
 
@@ -60,14 +70,13 @@ std::optional<HttpResponse> refuse_now(const AccessRules& rules, const HttpReque
   const bool file = is_page_file(request);
   if (auto refused = refuse_access(rules, request, file)) return refused;
   if (viewer.state != ViewerState::ready) {
-    if (!file) return error_response(503, why_none(viewer));
+    if (!file) return answer_without_viewer(viewer);
     ViewerView told = viewer;
     if (refuse(rules, request, false)) told.reason.clear();  // names files, which are for who has the token
     return page_without_viewer(told);
   }
-  if (viewer.connections >= kMostViewerConnections) {
-    return error_response(503,
-                          cat("the viewer has ", viewer.connections, " connections, as many as it may; close one"));
+  if (request.upgrade && viewer.sockets >= kMostViewerSockets) {
+    return error_response(503, cat("the viewer has ", viewer.sockets, " pages open, as many as it may; close one"));
   }
   return std::nullopt;
 }

@@ -12,8 +12,10 @@
 
 namespace weir {
 
-/// Connections to the viewer at a time: each holds two pieces of its bytes.
-inline constexpr std::size_t kMostViewerConnections = 64;
+/// Connections to the viewer at a time: each holds two pieces of its bytes. Those for files of the page are counted for
+/// themselves, so that they keep nobody from looking: for one more, the oldest of them is closed.
+inline constexpr std::size_t kMostViewerSockets = 16;
+inline constexpr std::size_t kMostViewerFiles = 48;
 
 bool is_view_request(const HttpRequest& request);
 

@@ -110,6 +110,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
 
   void start(const WorkerCommand& command) {
     const std::string& program = command.program;
+    reap_wait_ = command.reap_wait;
     Pipe log = make_pipe(program);
     Pipe announce = make_pipe(program);
     Pipe failure = make_pipe(program);
@@ -135,6 +136,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (exit < 0) {
       if (told == 0) reason = errno;
       kill_and_reap();
+      pid_ = -1;
       throw io_error(program, "start it", reason);
     }
     exit_.assign(exit);
@@ -161,8 +163,8 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
   void abandon() {
     ended_ = nullptr;
     line_ = nullptr;
-    kill_and_reap();
-    close();
+    if (kill_and_reap()) return close();
+    close_pipes();  // finish() comes when it has ended
   }
 
   pid_t pid() const { return pid_; }
@@ -229,22 +231,30 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (const Ended ended = std::exchange(ended_, nullptr)) ended(end);
   }
 
-  // A child that a hanging file system holds does not end: after a while it is left to whoever reaps the daemon's own.
-  void kill_and_reap() {
-    if (pid_ <= 0) return;
+  // Whether there is no child from here on.
+  bool kill_and_reap() {
+    if (pid_ <= 0) return true;
     ::kill(pid_, SIGKILL);
-    constexpr int kTries = 1000;  // of 2 ms
-    for (int i = 0; i < kTries; ++i) {
+    const auto end = std::chrono::steady_clock::now() + reap_wait_;
+    do {
       const pid_t reaped = ::waitpid(pid_, nullptr, WNOHANG);
-      if (reaped == pid_ || (reaped < 0 && errno != EINTR)) break;
+      if (reaped == pid_ || (reaped < 0 && errno != EINTR)) {
+        pid_ = -1;
+        return true;
+      }
       ::usleep(2000);
-    }
-    pid_ = -1;
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
   }
 
   void close() {
     error_code ignored;
     exit_.close(ignored);
+    close_pipes();
+  }
+
+  void close_pipes() {
+    error_code ignored;
     log_pipe_.close(ignored);
     announce_pipe_.close(ignored);
     kill_timer_.cancel();
@@ -259,6 +269,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
   std::string log_;
   std::string announced_;  ///< begin of a line
   pid_t pid_ = -1;
+  std::chrono::milliseconds reap_wait_{0};
 };
 
 WorkerProcess::WorkerProcess(asio::io_context& io, const WorkerCommand& command, Line line, Ended ended)

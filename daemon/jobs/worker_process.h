@@ -26,6 +26,9 @@ struct WorkerCommand {
   std::vector<std::string> arguments;  ///< the first is the name it goes by
   int nice = 0;
   IoClass io_class = IoClass::none;
+  /// How long the end of a worker waits for a child that was killed; one that a hanging file system holds for longer is
+  /// reaped when it ends, as long as the io_context runs.
+  std::chrono::milliseconds reap_wait{2000};
 };
 
 struct WorkerEnd {

@@ -7,11 +7,11 @@ export function set_token(text) {
   sessionStorage.setItem("weir-token", text);
 }
 
-/** What went wrong; status 0: no answer came. */
+/** What went wrong; status 0: no answer came. `answer`: what else the service said. */
 export class ApiError extends Error {
-  constructor(status, message) {
+  constructor(status, message, answer = {}) {
     super(message);
-    this.status = status;
+    Object.assign(this, {status, answer});
   }
 }
 
@@ -33,7 +33,7 @@ async function json_of(method, path) {
   } catch {
     throw new ApiError(response.status, `The service answered ${response.status} without JSON.`);
   }
-  if (!response.ok) throw new ApiError(response.status, body.error);
+  if (!response.ok) throw new ApiError(response.status, body.error, body);
   return body;
 }
 

@@ -133,9 +133,12 @@ void JobViewer::stop() {
   token_.clear();
 }
 
-bool JobViewer::looked_at() const {
-  return std::any_of(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; });
+std::size_t JobViewer::sockets() const {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(), [](const Connection& c) { return c.looks; }));
 }
+
+bool JobViewer::looked_at() const { return sockets() > 0; }
 
 // Who has asked for it is not overtaken on the way.
 bool JobViewer::taken() const {
@@ -174,6 +177,7 @@ void JobViewer::look_at_memory() {
 void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
   if (state_ != ViewerState::ready) return;  // it ended a moment ago; the client asks again
   const bool looks = boost::beast::websocket::is_upgrade(request);
+  if (!looks) make_room_for_a_file();
   const auto relay = std::make_shared<Relay>(std::move(client), forwarded_request(request, token_),
                                              [this](Relay& over) { remove(over); });
   connections_.push_back({relay, looks});
@@ -182,6 +186,15 @@ void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
     awaited_until_ = {};
   }
   relay->start(address_, looks ? std::nullopt : std::optional(times_.page));
+}
+
+// Whoever takes files of the page slowly, or not at all, keeps them from nobody.
+void JobViewer::make_room_for_a_file() {
+  if (connections_.size() - sockets() < kMostViewerFiles) return;
+  const auto oldest =
+      std::find_if(connections_.begin(), connections_.end(), [](const Connection& c) { return !c.looks; });
+  oldest->relay->close();
+  connections_.erase(oldest);
 }
 
 void JobViewer::remove(const Relay& relay) {
@@ -202,6 +215,7 @@ ViewerView JobViewer::view() const {
   view.reason = reason_;
   view.file = state_ == ViewerState::none ? "" : file_;
   view.connections = connections_.size();
+  view.sockets = sockets();
   view.rss_bytes = worker_ ? worker_->resident_bytes() : 0;
   return view;
 }

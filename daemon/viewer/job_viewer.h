@@ -67,6 +67,8 @@ class JobViewer {
   void end_when_idle();
   void look_at_memory();
   void remove(const Relay& relay);
+  void make_room_for_a_file();
+  std::size_t sockets() const;
   bool looked_at() const;
   bool taken() const;
 

@@ -73,6 +73,7 @@ ViewSettings settings_of(const ViewArguments& arguments) {
   settings.viewers = arguments.viewers;
   settings.pixels = arguments.pixels;
   settings.allow_convert = arguments.allow_convert;
+  settings.forecast = !arguments.for_program;  // whoever started it counts on its memory
   settings.program = "/proc/self/exe";
   settings.version = WEIR_VERSION;
   return settings;
@@ -107,7 +108,9 @@ void view(const ViewArguments& arguments) {
   if (preview) files.key = viewed_key({arguments.input}, arguments.against);  // its file's name is another each time
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
-  if (!files.summary.difference.empty()) spdlog::warn("{}", files.summary.difference);
+  if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
+    spdlog::warn("{}", difference);
+  }
 
   boost::asio::io_context io;
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
@@ -117,7 +120,7 @@ void view(const ViewArguments& arguments) {
   signals.async_wait([&](boost::system::error_code error, int) {
     if (!error) io.stop();
   });
-  const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a viewer's patience
+  const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a person's patience
   ListenAddress address = settings.address;
   const std::string token = arguments.for_program ? settings.token : "";
   ViewServer server(io, std::move(settings), std::move(files), *backend);
@@ -153,14 +156,14 @@ void add_view(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--token-file", arguments->token_file,
-                   "file of a token that viewers must enter; needed where other machines can reach the address")
+                   "file of a token that pages ask for; needed where other machines can reach the address")
       ->type_name("FILE");
-  command->add_option("--viewers", arguments->viewers, "that may look at a time")
+  command->add_option("--viewers", arguments->viewers, "pages that may be open at a time")
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1}, kMostViewers))
       ->capture_default_str();
   command
-      ->add_option("--pixels", arguments->pixels, "of a picture, at most; the sums of each viewer's take 12 bytes each")
+      ->add_option("--pixels", arguments->pixels, "of a picture, at most; the sums of each page's take 12 bytes each")
       ->type_name("N")
       ->check(CLI::Range(kLeastViewPixels, kMostViewPixels))
       ->capture_default_str();
@@ -168,7 +171,7 @@ void add_view(CLI::App& app) {
                     "with the files beside it whose names differ from its own in numbers alone, as steps");
   command->add_flag("--open", arguments->open, "opens the page in a browser");
   command->add_flag("--allow-convert", arguments->allow_convert,
-                    "lets viewers have the source converted for the scene they see, beside the file");
+                    "lets pages have the source converted for the scene they show, beside the file");
   command->add_flag("--private", arguments->for_program,
                     "makes a token, told with the address to --progress-fd alone: for a program that stands before it");
   command->add_option("--work-dir", arguments->work_dir, "where that of an input of convert is kept until the end")

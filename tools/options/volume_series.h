@@ -23,8 +23,12 @@ struct SeriesSummary {
   std::optional<Box> box{};  ///< its index box
 };
 
-/// Adds a file's head to it. Throws as NvdbFile where it cannot be read, and changes nothing then.
+/// Adds a file's head to it, which is read alone. Throws Error(input) where the head is missing, damaged or says more
+/// bytes than the file has, and changes nothing then.
 void add_to_summary(SeriesSummary& summary, const std::string& path);
+
+/// Adds a file's background and range of values, as its root has them: finite or not.
+void add_values(SeriesSummary& summary, float background, const MinMax& range);
 
 /// Reads the heads of all files. Those that cannot be read are left out: they are errors when their turn comes.
 SeriesSummary summarise_series(std::span<const std::string> files);

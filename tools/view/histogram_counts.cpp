@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "format/base/text.h"
-#include "tools/view/file_identity.h"
-#include "tools/view/view_message.h"
+#include "tools/view/base/file_identity.h"
+#include "tools/view/base/view_message.h"
 
 namespace weir {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "format/nanovdb/nvdb_file.h"
-#include "tools/view/file_identity.h"
+#include "tools/view/base/file_identity.h"
 
 namespace weir {
 

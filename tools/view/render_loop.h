@@ -17,15 +17,13 @@
 #include <vector>
 
 #include "gpu/render/backend.h"
+#include "tools/view/base/view_message.h"
 #include "tools/view/frame_pace.h"
 #include "tools/view/refinement.h"
 #include "tools/view/steps/step_list.h"
-#include "tools/view/view_message.h"
 #include "tools/view/volume_shelf.h"
 
 namespace weir {
-
-using ViewerId = std::int64_t;
 
 /// What is rendered: the files of each step, and what all pictures have in common.
 struct RenderedSeries {

@@ -9,7 +9,7 @@
 
 #include "format/base/option_row.h"
 #include "tools/report/progress.h"
-#include "tools/view/temporary_folder.h"
+#include "tools/view/base/temporary_folder.h"
 
 namespace weir {
 

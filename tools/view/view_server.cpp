@@ -6,14 +6,13 @@
 #include <utility>
 #include <variant>
 
-#include "compressor/select/file_size.h"
 #include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"
 #include "daemon/http/socket_token.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "tools/report/read_sidecar.h"
-#include "tools/view/file_identity.h"
+#include "tools/view/base/file_identity.h"
 #include "tools/view/jpeg_picture.h"
 #include "tools/view/value_probe.h"
 #include "tools/view/view_access.h"
@@ -46,8 +45,7 @@ Json names_of(const std::vector<std::string>& paths) {
 
 RenderedSeries rendered_series_of(const StepList& steps, const ViewedFiles& files) {
   // As weir render has it where there is one file: that file's own.
-  const bool series = files.steps.size() > 1 || files.grow;
-  return {steps, files.against, series ? files.summary.background : std::nullopt};
+  return {steps, files.against, files.series() ? files.heads.summary().background : std::nullopt};
 }
 
 bool is_page_file(const RequestTarget& target) {
@@ -57,7 +55,7 @@ bool is_page_file(const RequestTarget& target) {
 }  // namespace
 
 std::size_t volumes_held(const ViewedFiles& files) {
-  const std::size_t steps = files.steps.size() > 1 || files.grow ? 2 : 1;  // that is seen, and the next
+  const std::size_t steps = files.series() ? 2 : 1;  // that is seen, and the next
   return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
 }
 
@@ -65,11 +63,13 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
     : io_(io),
       settings_(std::move(settings)),
       files_(std::move(files)),
+      summary_(files_.heads.summary()),
       steps_(files_.steps),
       rules_(rules_of(settings_)),
       backend_(backend),
       shelf_(backend, volumes_held(files_)),
-      converter_(io, settings_.program) {
+      scene_requests_(io, {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast},
+                      [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
   state_text_ = line({{"title", files_.title},
                       {"series", files_.key},
                       {"version", settings_.version},
@@ -151,7 +151,7 @@ std::optional<HttpResponse> ViewServer::refuse_viewer(const HttpRequest& request
     return error_response(409, cat("this viewer shows another series now: ", files_.title));
   }
   if (viewers_.size() >= settings_.viewers) {
-    return error_response(503, cat("there are ", viewers_.size(), " viewers, as many as there may be; close one"));
+    return error_response(503, cat("there are ", viewers_.size(), " pages, as many as there may be; close one"));
   }
   return std::nullopt;
 }
@@ -176,6 +176,7 @@ void ViewServer::remove_viewer(ViewerId id) {
   loop_->remove(id);
   histograms_->forget(id);
   viewers_.erase(id);
+  scene_requests_.forget(id);
 }
 
 void ViewServer::send(ViewerId id, std::string text) {
@@ -224,18 +225,12 @@ std::size_t ViewServer::first_step() const {
   return *std::min_element(order.begin(), order.end());
 }
 
-SeenValues ViewServer::seen_values() const {
-  const MinMax range = files_.summary.range.value_or(MinMax{0, 1});
-  return {range, files_.summary.background.value_or(range.min)};
-}
-
 // All have the steps before all have values from a wider range: what a page knows of a file is of the range it had
 // then.
 void ViewServer::tell_steps(const SeriesSummary& summary) {
-  files_.summary = summary;
-  const SeenValues values = seen_values();
+  summary_ = summary;
   Json told{{"type", "steps"}, {"steps", names_of(steps_.paths())}, {"order", steps_.order()}};
-  told.update(values_facts(values));
+  told.update(values_facts(common_values()));
   const std::string text = line(told);
   std::vector<ViewerId> ids;  // one that reads nothing is gone after a text too many
   for (const auto& [id, viewer] : viewers_) ids.push_back(id);
@@ -249,11 +244,12 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   viewer.told = step;
   viewer.told_of = file_identity(file_of(step, 0));
   viewer.telling = true;
-  boost::asio::post(side_, [this, id, step, values = seen_values(), alive = std::weak_ptr(alive_)] {
+  boost::asio::post(side_, [this, id, step, common = common_values(), alive = std::weak_ptr(alive_)] {
     std::vector<std::string> texts;
     for (const int side : sides()) {
       const std::string path = file_of(step, side);
       try {
+        const SeenValues values = files_.series() ? common : seen_values(open_files_.get(file_of(step, 0))->grid());
         const std::string key = cat(step, ' ', side, ' ', values.range.min, ' ', values.range.max, ' ');
         texts.push_back(facts_cache_.get(key + file_identity(path), [&] {
           Json facts{{"type", "facts"}, {"step", step}, {"side", side}};
@@ -264,21 +260,21 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
         texts.push_back(error_message(0, error.what()));
       }
     }
-    boost::asio::post(io_, [this, id, step, values, texts, alive] {
-      if (alive.lock()) tell_facts(id, step, values, texts);
+    boost::asio::post(io_, [this, id, step, common, texts, alive] {
+      if (alive.lock()) tell_facts(id, step, common, texts);
     });
   });
 }
 
-// The facts of a step, made with `values`, are there; a histogram may take longer.
-void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& values,
+// The facts of a step, made with what was `common` then, are there; a histogram may take longer.
+void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& common,
                             const std::vector<std::string>& texts) {
   for (const std::string& text : texts) send(id, text);
   for (const int side : sides()) histograms_->ask(id, {step, side, file_of(step, side)});
   const auto found = viewers_.find(id);
   if (found == viewers_.end()) return histograms_->forget(id);
-  const MinMax now = seen_values().range;
-  const bool older = now.min != values.range.min || now.max != values.range.max;  // a wider one was told meanwhile
+  const MinMax now = common_values().range;
+  const bool older = now.min != common.range.min || now.max != common.range.max;  // a wider one was told meanwhile
   if (older && !found->second.wanted) found->second.wanted = step;
   found->second.telling = false;
   tell_facts(id, found->second);
@@ -296,35 +292,36 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
   if (!viewer.probe || !viewer.view) return;
   const ProbeRequest probe = *std::exchange(viewer.probe, std::nullopt);
   viewer.probing = true;
-  boost::asio::post(side_, [this, id, probe, view = viewer.view, background = seen_values().background,
-                            alive = std::weak_ptr(alive_)] {
-    Json answer{{"type", "value"}, {"id", probe.id}, {"found", false}};
-    try {
-      const auto file = open_files_.get(file_of(view->step, probe.side));
-      const double aspect = static_cast<double>(view->width) / view->height;
-      if (const auto found = probe_voxel(file->grid(), view->scene, background, aspect, probe.x, probe.y)) {
-        answer["found"] = true;
-        answer["value"] = found->value;
-        answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};
-        answer["world"] = found->world;
-        if (view->against) {
-          const auto other = open_files_.get(file_of(view->step, 1 - probe.side));
-          answer["against"] = other->grid().value(found->voxel);
+  boost::asio::post(
+      side_, [this, id, probe, view = viewer.view, common = common_values(), alive = std::weak_ptr(alive_)] {
+        Json answer{{"type", "value"}, {"id", probe.id}, {"found", false}};
+        try {
+          const auto file = open_files_.get(file_of(view->step, probe.side));
+          const double aspect = static_cast<double>(view->width) / view->height;
+          const float background = (files_.series() ? common : seen_values(file->grid())).background;
+          if (const auto found = probe_voxel(file->grid(), view->scene, background, aspect, probe.x, probe.y)) {
+            answer["found"] = true;
+            answer["value"] = found->value;
+            answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};
+            answer["world"] = found->world;
+            if (view->against) {
+              const auto other = open_files_.get(file_of(view->step, 1 - probe.side));
+              answer["against"] = other->grid().value(found->voxel);
+            }
+          }
+        } catch (const std::exception& error) {
+          answer["message"] = error.what();
         }
-      }
-    } catch (const std::exception& error) {
-      answer["message"] = error.what();
-    }
-    boost::asio::post(io_, [this, id, alive, text = line(answer)] {
-      if (!alive.lock()) return;
-      const auto found = viewers_.find(id);
-      if (found == viewers_.end()) return;
-      const auto socket = found->second.socket;
-      found->second.probing = false;
-      answer_probe(id, found->second);
-      socket->send_text(text);  // last: a viewer that reads nothing is gone after it
-    });
-  });
+        boost::asio::post(io_, [this, id, alive, text = line(answer)] {
+          if (!alive.lock()) return;
+          const auto found = viewers_.find(id);
+          if (found == viewers_.end()) return;
+          const auto socket = found->second.socket;
+          found->second.probing = false;
+          answer_probe(id, found->second);
+          socket->send_text(text);  // last: a viewer that reads nothing is gone after it
+        });
+      });
 }
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
@@ -333,23 +330,7 @@ void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& reque
   if (!sidecar) {
     throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
   }
-  const SceneConversion conversion = scene_conversion(volume, settings_.preview_of, *sidecar, request);
-  const Json reply{{"type", "conversion"},
-                   {"id", request.id},
-                   {"command", conversion.text},
-                   {"bytes", bytes_at_rate(sidecar->budget.dense_float32_bytes, request.rate)}};
-  const auto tell = [this, id, reply](const std::string& state, const std::string& message) {
-    Json told = reply;
-    told["state"] = state;
-    told["message"] = message;
-    send(id, line(told));
-  };
-  if (!request.run) return tell("shown", "");
-  if (!settings_.allow_convert) return tell("failed", "this server runs no conversion; start it with --allow-convert");
-  converter_.start(conversion, request.scene_text, [tell](const std::string& output, const std::string& message) {
-    tell(message.empty() ? "done" : "failed", message.empty() ? output : message);
-  });
-  tell("running", "");
+  scene_requests_.handle(id, volume, *sidecar, request);
 }
 
 RenderEvents ViewServer::render_events() {

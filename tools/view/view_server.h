@@ -19,11 +19,11 @@
 #include "daemon/http/access.h"
 #include "daemon/http/http_server.h"
 #include "gpu/render/backend.h"
+#include "tools/view/convert/scene_requests.h"
 #include "tools/view/histogram_counts.h"
 #include "tools/view/kept_texts.h"
 #include "tools/view/open_files.h"
 #include "tools/view/render_loop.h"
-#include "tools/view/scene_converter.h"
 #include "tools/view/steps/step_list.h"
 #include "tools/view/steps/step_watch.h"
 #include "tools/view/steps/viewed_files.h"
@@ -38,7 +38,8 @@ struct ViewSettings {
   std::size_t viewers = 8;                ///< at once
   std::int64_t pixels = kMostViewPixels;  ///< of a picture, at most
   bool allow_convert = false;             ///< a viewer may have the source converted
-  std::string program;                    ///< path of weir, for that
+  bool forecast = true;                   ///< a viewer may have a conversion forecast
+  std::string program;                    ///< path of weir, for both
   std::string version;                    ///< of weir, shown on the page
   std::string preview_of = {};  ///< the source that the file was made from for this, shown on the page; empty: none
   bool any_host = false;        ///< a Host header may name anything: who asks has a token that no web page can know
@@ -86,7 +87,7 @@ class ViewServer {
   void handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe);
   void handle(ViewerId id, Viewer& viewer, const ConvertRequest& request);
   void tell_facts(ViewerId id, Viewer& viewer);
-  void tell_facts(ViewerId id, std::size_t step, const SeenValues& values, const std::vector<std::string>& texts);
+  void tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const std::vector<std::string>& texts);
   std::string count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel);
   std::vector<int> sides() const;
   void answer_probe(ViewerId id, Viewer& viewer);
@@ -94,12 +95,13 @@ class ViewServer {
   RenderEvents render_events();
   std::string file_of(std::size_t step, int side) const;
   std::size_t first_step() const;
-  SeenValues seen_values() const;
+  SeenValues common_values() const { return seen_values(summary_); }
   void tell_steps(const SeriesSummary& summary);
 
   boost::asio::io_context& io_;
   const ViewSettings settings_;
-  ViewedFiles files_;  // its steps are those of the beginning
+  const ViewedFiles files_;  // of the beginning
+  SeriesSummary summary_;    // of all steps that were seen since
   StepList steps_;
   const AccessRules rules_;
   std::string state_text_;  // of /api/state, but for what changes
@@ -112,7 +114,7 @@ class ViewServer {
   VolumeShelf shelf_;
   std::optional<HistogramCounts> histograms_;
   std::optional<RenderLoop> loop_;
-  SceneConverter converter_;
+  SceneRequests scene_requests_;
   boost::asio::thread_pool side_{2};  // looks facts and values up, looks for steps
   std::optional<StepWatch> step_watch_;
   std::unique_ptr<HttpServer> http_;

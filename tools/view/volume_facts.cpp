@@ -72,6 +72,17 @@ std::string hex_colour(const Float3& linear) {
 
 }  // namespace
 
+SeenValues seen_values(const SeriesSummary& series) {
+  const MinMax range = series.range.value_or(MinMax{0, 1});
+  return {range, series.background.value_or(range.min)};
+}
+
+SeenValues seen_values(const NvdbGrid& grid) {
+  SeriesSummary one;
+  add_values(one, grid.background(), {grid.value_min(), grid.value_max()});
+  return seen_values(one);
+}
+
 Json values_facts(const SeenValues& values) {
   const TransferFunction transfer = make_transfer_function({}, values.range, values.background, "gray");
   Json opacity = Json::array();

@@ -6,17 +6,20 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "format/nanovdb/nvdb_file.h"
+#include "tools/options/volume_series.h"
 
 namespace weir {
 
 /// Bins of a histogram that is sent: a page has no more pixels for it.
 inline constexpr std::size_t kViewBins = 256;
 
-/// What all steps of a series have in common.
+/// Of a file, or what all steps of a series have in common.
 struct SeenValues {
   MinMax range{0, 1};    ///< at the ends of colours and opacity
   float background = 0;  ///< as RenderOptions has it
 };
+SeenValues seen_values(const SeriesSummary& series);
+SeenValues seen_values(const NvdbGrid& grid);
 
 /// {"range", "background", "opacity"}, the opacity where a scene gives none.
 nlohmann::ordered_json values_facts(const SeenValues& values);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "format/base/error.h"
-#include "tools/view/file_identity.h"
+#include "tools/view/base/file_identity.h"
 
 namespace weir {
 

@@ -121,6 +121,11 @@ TEST_F(PageTest, SaysWhyThereIsNoViewer) {
   run("says_why_there_is_no_viewer");
 }
 
+TEST_F(PageTest, WaitsForTheViewer) {
+  control_.now.viewer.state = ViewerState::starting;
+  run("waits_for_the_viewer");
+}
+
 TEST_F(PageTest, SaysWhenTheServiceIsGone) {
   show_sample_jobs(control_, directory_.path());
   run("says_when_the_service_is_gone");

@@ -91,17 +91,24 @@ TEST(ViewRequests, ChangeNothing_AndAreNotAnsweredWhereNothingMayBeChanged) {
 }
 
 TEST(ViewRequests, WithoutAViewer_SaySo) {
-  EXPECT_EQ(refusal({}, ask("/view/api/state"), in_state(ViewerState::none)),
-            "503 {\"error\":\"no viewer runs now; open it again with View on the service's page\"}\n");
+  EXPECT_EQ(
+      refusal({}, ask("/view/api/state"), in_state(ViewerState::none)),
+      "503 {\"error\":\"no viewer runs now; open it again with View on the service's page\",\"state\":\"none\"}\n");
   EXPECT_EQ(refusal({}, ask_socket("", ""), in_state(ViewerState::starting)),
-            "503 {\"error\":\"the viewer is being started; ask again in a moment\"}\n");
+            "503 {\"error\":\"the viewer is being started; ask again in a moment\",\"state\":\"starting\"}\n");
+  const std::string starting = refusal({}, ask("/view/"), in_state(ViewerState::starting));
+  EXPECT_NE(starting.find("<script src=\"../page/again.js\"></script>\n"), std::string::npos) << starting;
   const std::string page = refusal({}, ask("/view/"), in_state(ViewerState::failed, "<a> & b"));
   EXPECT_NE(page.find("<p>&lt;a> &amp; b; open it again with View on the service's page.</p>"), std::string::npos)
       << page;
+  EXPECT_EQ(page.find("script"), std::string::npos) << page;
   ViewerView full = kReady;
-  full.connections = kMostViewerConnections;
-  EXPECT_EQ(refusal({}, ask("/view/"), full),
-            "503 {\"error\":\"the viewer has 64 connections, as many as it may; close one\"}\n");
+  full.sockets = kMostViewerSockets;
+  EXPECT_EQ(refusal({}, ask_socket("", ""), full),
+            "503 {\"error\":\"the viewer has 16 pages open, as many as it may; close one\"}\n");
+  full.sockets = 0;
+  full.connections = 1000;
+  EXPECT_EQ(refusal({}, ask_socket("", ""), full), "") << "files of the page are counted for themselves";
 }
 
 TEST(ViewRequests, ForwardedRequest_HasTheViewersTokenAndNoOtherHeaders) {

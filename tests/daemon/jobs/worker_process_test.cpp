@@ -27,9 +27,9 @@ struct ShellRun {
   std::optional<WorkerEnd> end;
   std::unique_ptr<WorkerProcess> worker;
 
-  explicit ShellRun(const std::string& script, int nice = 0) {
+  explicit ShellRun(const std::string& script, int nice = 0, milliseconds reap_wait = std::chrono::seconds(2)) {
     worker = std::make_unique<WorkerProcess>(
-        io, WorkerCommand{"/bin/sh", {"sh", "-c", script}, nice, IoClass::none},
+        io, WorkerCommand{"/bin/sh", {"sh", "-c", script}, nice, IoClass::none, reap_wait},
         [this](std::string_view line) { lines.emplace_back(line); },
         [this](const WorkerEnd& ended) {
           end = ended;
@@ -145,6 +145,20 @@ TEST(WorkerProcess, DestructionKillsTheProcessWithoutACallback) {
   EXPECT_EQ(::kill(pid, 0), -1) << "neither running nor a zombie";
   shell.run();
   EXPECT_FALSE(shell.end);
+}
+
+TEST(WorkerProcess, KilledProcessThatEndsLater_IsReapedThen) {
+  const std::size_t before = open_descriptors();
+  {
+    ShellRun shell("echo $$ >&3; exec sleep 60", 0, milliseconds(0));
+    while (shell.lines.empty()) shell.io.run_one();
+    const auto pid = static_cast<pid_t>(std::stoi(shell.lines.front()));
+    shell.worker.reset();
+    shell.run();
+    EXPECT_EQ(::kill(pid, 0), -1) << "neither running nor a zombie";
+    EXPECT_FALSE(shell.end);
+  }
+  EXPECT_EQ(open_descriptors(), before);
 }
 
 TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoInheritedDescriptors) {

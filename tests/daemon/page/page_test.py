@@ -602,6 +602,16 @@ def has_large_targets(browser):
     equal(small("#job"), [])
 
 
+def waits_for_the_viewer(browser):
+    place = url + "/view/?job=1#f=s_2.nvdb&az=3"
+    browser.open(place)
+    equal(browser.text("p"), "the viewer is being started; ask again in a moment.")
+    browser.wait("it asks again",
+                 lambda: browser.script("return performance.getEntriesByType('navigation')[0]?.type") == "reload")
+    equal(browser.script("return location.href"), place)
+    browser.complaints()  # it was refused, as it should be
+
+
 with Browser() as chromium:
     globals()[case](chromium)
     equal(chromium.complaints(), [])

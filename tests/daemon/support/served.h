@@ -19,7 +19,7 @@ class Served {
  public:
   explicit Served(Control& control, const std::string& token = "", const HttpLimits& limits = {},
                   const std::string& control_socket = "")
-      : server_(std::make_unique<ControlServer>(io_, settings(token, limits, control_socket), control)),
+      : server_(std::make_unique<ControlServer>(io_, settings(token, limits, control_socket), control, no_viewer)),
         port_(server_->port()),
         thread_([this] { io_.run(); }) {}
   ~Served() {
@@ -53,6 +53,7 @@ class Served {
   }
 
  private:
+  static void no_viewer(boost::asio::generic::stream_protocol::socket, const UpgradeRequest&) {}
   static ControlServerSettings settings(const std::string& token, const HttpLimits& limits,
                                         const std::string& control_socket) {
     ControlServerSettings result;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "daemon/http/view_requests.h"
 #include "format/base/text.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
@@ -146,6 +147,30 @@ TEST_F(JobViewerTest, SeriesThatIsLookedAt_IsLeftUnlessForced) {
   std::array<char, 1> byte{};
   socket.read_some(asio::buffer(byte), error);
   EXPECT_EQ(error, asio::error::eof) << "who looked is told by the end of the connection";
+}
+
+TEST_F(JobViewerTest, FilesThatAreNotTaken_KeepNobodyFromLooking) {
+  answering_program();
+  JobViewer viewer(io_, log_, program_);
+  viewer.configure(service());
+  viewer.open("/out/s_1.nvdb", false);
+  ASSERT_TRUE(comes_to(viewer, ViewerState::ready));
+  auto looking = connect(viewer, true);
+  std::vector<asio::local::stream_protocol::socket> files;
+  for (std::size_t i = 0; i < kMostViewerFiles; ++i) files.push_back(connect(viewer, false));
+  EXPECT_EQ(viewer.view().connections, kMostViewerFiles + 1);
+  auto another = connect(viewer, false);
+  EXPECT_EQ(viewer.view().connections, kMostViewerFiles + 1) << "the oldest file has made room";
+  EXPECT_EQ(viewer.view().sockets, 1U);
+  boost::system::error_code error;
+  std::array<char, 1> byte{};
+  files.front().read_some(asio::buffer(byte), error);
+  EXPECT_EQ(error, asio::error::eof);
+  for (auto* open : {&looking, &files[1], &another}) {
+    open->non_blocking(true);
+    open->read_some(asio::buffer(byte), error);
+    EXPECT_EQ(error, asio::error::would_block);
+  }
 }
 
 TEST_F(JobViewerTest, Connection_CarriesBytesBothWays) {

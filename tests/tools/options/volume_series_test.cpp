@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/nanovdb/nvdb_file.h"
 #include "tests/support/run_command.h"
 
 namespace weir::volume_series_test {
@@ -61,6 +63,23 @@ TEST(SummariseSeries, RangeBackgroundAndBoxes) {
   summary = summarise_series(std::vector<std::string>{broken});
   EXPECT_FALSE(summary.range);
   EXPECT_FALSE(summary.background);
+}
+
+TEST(SummariseSeries, ReadsHeadsAlone) {
+  const TemporaryDirectory directory;
+  const std::string raw = directory / "v_9x8x7_float32.raw";
+  ASSERT_EQ(run_weir({"sample", "gradient", "-o", raw}).exit_code, 0);
+  ASSERT_EQ(run_weir({"convert", raw, "--lossless", "-o", directory / "v.nvdb"}).exit_code, 0);
+  // All behind the second page, which ends past the root: nodes and leaves.
+  std::string bytes = read_file(directory / "v.nvdb");
+  ASSERT_GT(bytes.size(), 100'000U);
+  std::fill(bytes.begin() + 8192, bytes.end(), '\xFF');
+  write_file(directory / "v.nvdb", bytes);
+  EXPECT_THROW(NvdbFile(directory / "v.nvdb"), Error);
+  const SeriesSummary summary = summarise_series(std::vector<std::string>{directory / "v.nvdb"});
+  ASSERT_TRUE(summary.range);
+  EXPECT_EQ(summary.range->max, 1);
+  EXPECT_EQ(summary.box, (Box{{0, 0, 0}, {9, 8, 7}}));
 }
 
 }  // namespace

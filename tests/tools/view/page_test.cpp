@@ -59,6 +59,8 @@ TEST_F(ViewPageTest, TurnsAndRefines) { run("turns_and_refines", {cloud("a.nvdb"
 
 TEST_F(ViewPageTest, WorksWithKeys) { run("works_with_keys", {cloud("a.nvdb")}); }
 
+TEST_F(ViewPageTest, WorksByTouch) { run("works_by_touch", {cloud("a.nvdb")}); }
+
 TEST_F(ViewPageTest, EditsTheTransferFunction) { run("edits_the_transfer_function", {cloud("a.nvdb")}); }
 
 TEST_F(ViewPageTest, TakesExtremeValues) { run("takes_extreme_values", {cloud("a.nvdb")}); }

@@ -2,6 +2,7 @@
 Screenshots go to WEIR_PAGE_SCREENSHOTS, where that is set. Exits with 0 where all holds."""
 
 import base64
+import json
 import math
 import os
 import pathlib
@@ -160,6 +161,13 @@ def works_with_keys(browser, url):
     browser.press("3")
     equal(browser.visible("#iso-field"), True)
     converged(browser)
+    controls = {"button", "slider", "spinbutton", "checkbox", "radio", "combobox", "application", "progressbar", "textbox"}
+    for panel in ("light-panel", "box-panel", "convert-panel"):
+        browser.script("document.getElementById(arguments[0]).open = true", panel)
+    named = [(node["role"]["value"], node["name"]["value"]) for node in browser.devtools("Accessibility.getFullAXTree")["nodes"]
+             if not node["ignored"] and node["role"]["value"] in controls]
+    assert len(named) > 30, named
+    equal([role for role, name in named if not name], [])
     focus = "const e = document.activeElement; return e.id || e.name || e.className"
     seen = []
     browser.script("document.activeElement.blur()")
@@ -171,9 +179,10 @@ def works_with_keys(browser, url):
                 const marked = e.name === 'mode' ? e.nextElementSibling : e;
                 return getComputedStyle(marked).outlineStyle""")
             equal((seen[-1], shown), (seen[-1], "solid" if seen[-1] else shown))
-        if seen[-1] == "show-command" or (len(seen) > 1 and seen[-1] == "frame"):
+        if {"frame", "show-command"} <= set(seen):
             break
-    for wanted in ["frame", "mode", "undo", "handle", "colormap", "iso", "save-picture", "save-scene"]:
+    for wanted in ["frame", "mode", "undo", "handle", "colormap", "iso", "light-az", "reset-box", "save-picture", "save-scene",
+                   "budget", "rate", "encoding", "show-command"]:
         assert wanted in seen, f"{wanted} is not reached: {seen}"
 
 
@@ -216,8 +225,69 @@ def takes_extreme_values(browser, url):
     equal(browser.visible("#banner"), False)
 
 
+def touch(browser, kind, *points):
+    """A touch of the screen, as a browser gets it of a finger at each (x, y) of the window."""
+    browser.devtools("Input.dispatchTouchEvent", type=kind,
+                     touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+
+
+def slide(browser, *fingers):
+    """Each finger goes from its first point to its second one."""
+    at = lambda share: [(a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share) for a, b in fingers]
+    touch(browser, "touchStart", *at(0))
+    for i in range(1, 6):
+        touch(browser, "touchMove", *at(i / 5))
+    touch(browser, "touchEnd")
+
+
+def works_by_touch(browser, url):
+    browser.set_width(390, 560)
+    browser.devtools("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+    loaded(browser, url)
+    left, top, width, height = browser.script("""
+        const box = document.querySelector('#frame').getBoundingClientRect();
+        return [box.left, box.top, box.width, box.height]""")
+    x, y = left + width / 2, top + height / 2
+    slide(browser, ((x, y), (x + 60, y + 20)))
+    turned = state(browser)
+    equal((turned["az"], turned["el"]), ("14", "27"))  # 0.35 degrees a pixel
+    equal(browser.text("#value"), "")  # that was no tap
+    equal(browser.visible(".for-touch"), True)
+    slide(browser, ((x - 30, y), (x - 60, y)), ((x + 30, y), (x + 60, y)))
+    pinched = state(browser)
+    equal({**pinched, "at": ""}, {**turned, "z": "2", "at": ""})
+    slide(browser, ((x - 30, y), (x - 30, y + 40)), ((x + 30, y), (x + 30, y + 40)))
+    panned = state(browser)
+    equal(panned["z"], "2")
+    before, after = ([float(v) for v in place["at"].split(",")] for place in (pinched, panned))
+    assert after[2] > before[2] + 1, f"the volume follows the fingers down: {before}, {after}"
+    equal(browser.script("return scrollY"), 0)
+    browser.press("0")
+    converged(browser)
+    touch(browser, "touchStart", (x, y))
+    touch(browser, "touchEnd")
+    text = browser.wait("the value at a tap", lambda: browser.text("#value"))
+    assert " at " in text, text
+    # A point of the opacity.
+    handle = browser.script("""
+        document.querySelector('.handle:last-child').scrollIntoView({block: 'center'});
+        const box = document.querySelector('.handle:last-child').getBoundingClientRect();
+        return [box.left + box.width / 2, box.top + box.height / 2]""")
+    slide(browser, (handle, (handle[0] - 40, handle[1] + 30)))
+    assert "o" in state(browser), state(browser)
+
+
 def tells_values(browser, url):
     loaded(browser, url)
+    description = browser.text("#picture-text")
+    assert re.fullmatch(r"Volume of a\.nvdb, 64 \u00d7 64 \u00d7 64 voxels with values from 0 to [\d.]+, seen from 35\u00b0 around and "
+                        r"20\u00b0 above, 1 times, PSNR [\d.]+ dB, largest error [\d.e-]+\.", description), description
+    browser.script("document.querySelector('#frame').focus()")
+    browser.press("ENTER")
+    text = browser.wait("the value in the middle", lambda: browser.text("#value"))
+    assert re.match(r"-?[\d.e-]+ \u00b1 [\d.e-]+ at \d+, \d+, \d+", text), text
+    browser.press(*["+"] * 12, "LEFT")
+    equal(browser.text("#value"), "")
     browser.script("""
         const frame = document.querySelector('#frame');
         const box = frame.getBoundingClientRect();
@@ -238,7 +308,10 @@ def scrubs_a_series(browser, url):
         slider.dispatchEvent(new Event('change'))""")
     equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
     converged(browser)
-    browser.wait("its facts", lambda: browser.text("#file-name") == "s_3.nvdb")
+    equal(browser.text("#file-name"), "s_3.nvdb")
+    equal(browser.text("#title"), "s_*.nvdb: s_3.nvdb")
+    equal(browser.script("return document.title"), "s_3.nvdb \u2013 weir view")
+    browser.wait("its facts", lambda: not browser.script("return document.querySelector('#certificate.awaited')"))
     assert canvas_bytes(browser) != before, "the picture is the same"
     equal(state(browser), {"f": "s_3.nvdb"})
     browser.script("document.activeElement.blur()")
@@ -264,6 +337,7 @@ def shows_steps_that_come(browser, url):
     before = canvas_bytes(browser)
     browser.click("#follow")
     browser.wait("it is shown", lambda: browser.text("#step-name") == "2 of 2: s_2.nvdb")
+    equal((browser.text("#title"), browser.text("#file-name")), ("s_2.nvdb", "s_2.nvdb"))
     equal(browser.text("#step-news"), "")
     converged(browser)
     assert canvas_bytes(browser) != before, "the picture is the same"
@@ -315,7 +389,36 @@ def converts(browser, url):
     command = browser.wait("the command", lambda: browser.text("#convert-command"))
     assert command.startswith("weir convert ") and command.endswith(" --scene scene.toml"), command
     equal(browser.visible("#run-convert"), False)
-    equal(browser.text("#convert-size"), "At most 128.0 KiB; the error of a scene is known when it is made.")
+    equal(browser.text("#convert-size"), "131\u202f072 bytes, whatever the scene.")
+    forecast = lambda: browser.wait("a forecast", lambda: (browser.text("#convert-forecast") or "").startswith("Expected: ") and
+                                    browser.text("#convert-forecast"), 30)
+    of_rate = forecast()
+    told = re.fullmatch(r"Expected: 128\.0 KiB, PSNR of all voxels ([\d.]+) dB, largest error [\d.e-]+, in about [\d.]+ s\.", of_rate)
+    assert told, of_rate
+    scene = os.path.join(directory, "scene.toml")
+    with open(scene, "w", encoding="utf-8") as file:
+        file.write(browser.script("""
+            return new Promise((done) => {
+                const sent = WebSocket.prototype.send;
+                WebSocket.prototype.send = function(text) { done(JSON.parse(text).scene); sent.call(this, text); };
+                document.querySelector('#show-command').click();
+                WebSocket.prototype.send = sent;
+            })"""))
+    words = [scene if word == "scene.toml" else word for word in command.split()]
+    subprocess.run([weir, *words[1:], "--quiet"], check=True)
+    with open(words[words.index("-o") + 1] + ".json", encoding="utf-8") as file:
+        equal(told[1], f"{json.load(file)['error']['psnr_db']:.1f}")
+    # Of a size for an error; another look is tried out anew.
+    browser.script("""
+        const budget = document.querySelector('#budget');
+        budget.value = 'psnr';
+        budget.dispatchEvent(new Event('change'))""")
+    equal((browser.visible("#rate"), browser.visible("#psnr")), (False, True))
+    of_psnr = forecast()
+    assert of_psnr != of_rate and "KiB, PSNR of all voxels " in of_psnr, of_psnr
+    assert " --psnr 50 " in browser.text("#convert-command"), browser.text("#convert-command")
+    drag(browser, ".handle:last-child", -60, 50)
+    browser.wait("another forecast", lambda: forecast() != of_psnr)
 
 
 def saved_scene_gives_the_same_picture(browser, url):
@@ -396,12 +499,26 @@ def asks_for_the_token(browser, url):
 
 
 def says_when_the_server_is_gone(browser, url):
-    loaded(browser, url)
+    loaded(browser, url + "?job=3")
+    # Behind weir watch, which answers for a viewer that is not there.
+    browser.script("""
+        window.state = 'starting';
+        window.real_fetch = window.fetch;
+        window.fetch = async () => new Response(JSON.stringify({error: 'no', state: window.state}), {status: 503})""")
     server.process.send_signal(signal.SIGINT)
+    browser.wait("it waits", lambda: browser.text("#other-series-note") == "The viewer is being started.")
+    equal(browser.text("#link"), "starting")
+    equal((browser.visible("#take-back"), browser.visible("#banner")), (False, False))
+    browser.script("window.state = 'none'")
+    browser.wait("it offers one", lambda: browser.text("#other-series-note") == "No viewer runs for this page now.")
+    equal((browser.visible("#take-back"), browser.text("#banner")), (True, "no"))
+    browser.script("window.fetch = window.real_fetch")
     browser.wait("it says so", lambda: browser.text("#link") == "not connected")
     browser.wait("and why", lambda: browser.text("#banner") == "The server does not answer; it may have ended.")
 
 
 server = Server()
 with server as address, Browser(1200, 900) as opened:
+    if not pictures:
+        opened.set_width(1200, 480)  # a small picture, soon done
     globals()[case](opened, address)

@@ -16,7 +16,18 @@ namespace {
 using Json = nlohmann::json;
 using std::chrono::milliseconds;
 
-class ViewSeriesTest : public ConvertedVolume {};
+class ViewSeriesTest : public ConvertedVolume {
+ protected:
+  /// A volume of 24 x 20 x 16 values from 0 to `most`.
+  std::string ramp(const std::string& name, float most) {
+    const std::string raw = directory_ / "w_24x20x16_float32.raw";
+    std::vector<float> values(24 * 20 * 16);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = most * static_cast<float>(i) / (24 * 20 * 16 - 1);
+    write_file(raw, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+    EXPECT_EQ(run_weir({"convert", raw, "-o", directory_ / name, "--lossless"}).exit_code, 0);
+    return directory_ / name;
+  }
+};
 
 TEST_F(ViewSeriesTest, Series_ShowsEachStep) {
   const std::string second = directory_ / "v2.nvdb";
@@ -32,12 +43,7 @@ TEST_F(ViewSeriesTest, Series_ShowsEachStep) {
 TEST_F(ViewSeriesTest, GrowingSeries_TellsNewStepsAndThoseThatAreGone) {
   ViewSettings settings;
   settings.look_again = milliseconds(30);
-  const std::string wide = directory_ / "w.nvdb";  // values from 0 to 1000, more than those of volume_
-  const std::string raw = directory_ / "w_24x20x16_float32.raw";
-  std::vector<float> values(24 * 20 * 16);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1000 * static_cast<float>(i) / (24 * 20 * 16 - 1);
-  write_file(raw, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
-  ASSERT_EQ(run_weir({"convert", raw, "-o", wide, "--lossless"}).exit_code, 0);
+  const std::string wide = ramp("w.nvdb", 1000);  // more values than those of volume_
   std::filesystem::create_directory(directory_ / "steps");
   const auto step = [&](int number) { return cat(directory_ / "steps", "/s_", number, ".nvdb"); };
   std::filesystem::copy(volume_, step(2));
@@ -70,6 +76,35 @@ TEST_F(ViewSeriesTest, GrowingSeries_TellsNewStepsAndThoseThatAreGone) {
   EXPECT_EQ(client.text("error").value()["message"], cat(step(1), ": cannot open: No such file or directory"));
   client.show(3, true, {{"step", 0}});
   EXPECT_EQ(client.frame().value().header["step"], 0) << "the server goes on";
+}
+
+TEST_F(ViewSeriesTest, StepThatBecomesReadableOrIsReplaced_WidensTheRange) {
+  ViewSettings settings;
+  settings.look_again = milliseconds(30);
+  std::filesystem::create_directory(directory_ / "steps");
+  const auto step = [&](int number) { return cat(directory_ / "steps", "/s_", number, ".nvdb"); };
+  std::filesystem::copy(volume_, step(1));
+  write_file(step(2), "no volume yet");
+  ServedView served(directory_ / "steps", "", settings);
+  ViewClient client(served.port());
+  const Json facts = client.text("facts").value();
+  EXPECT_LT(facts["range"][1], 1000);
+  std::filesystem::rename(ramp("w.nvdb", 1000), step(2));
+  Json told = client.text("steps").value();
+  EXPECT_EQ(told["order"], Json::parse("[0, 1]"));
+  EXPECT_EQ(told["range"], Json::parse(cat("[", facts["range"][0].dump(), ", 1000.0]")));
+  std::filesystem::rename(ramp("x.nvdb", 2000), step(1));
+  told = client.text("steps").value();
+  EXPECT_EQ(told["range"][1], 2000);
+}
+
+TEST_F(ViewSeriesTest, SingleFileThatIsReplaced_HasItsOwnRange) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  EXPECT_NE(client.text("facts").value()["range"][1], 7);
+  std::filesystem::rename(ramp("w.nvdb", 7), volume_);
+  client.show(1, true);
+  EXPECT_EQ(client.text("facts").value()["range"], Json::parse("[0, 7]"));
 }
 
 TEST_F(ViewSeriesTest, SeriesOfAFile_BeginsAtThatFile) {

@@ -298,38 +298,7 @@ TEST_F(ViewServerTest, OneViewerTooMany_IsRefused) {
   ViewClient one(served.port());
   ViewClient two(served.port());
   wait_for_viewers(served, 2);
-  EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 viewers, as many as there may be; close one\"}\n");
-}
-
-TEST_F(ViewServerTest, Convert_ShowsTheCommandAndRunsItOnlyWhereAllowed) {
-  ServedView served(volume_);
-  ViewClient client(served.port());
-  client.show(1, true);
-  Json request{{"type", "convert"}, {"id", 1}, {"scene", "mode = \"mip\"\n"}, {"rate", 4}, {"encoding", "packed"}};
-  client.send(request);
-  const Json shown = client.text("conversion").value();
-  EXPECT_EQ(shown["state"], "shown");
-  EXPECT_EQ(shown["bytes"], 40 * 30 * 20) << "a quarter of the float32 bytes";
-  EXPECT_EQ(shown["command"],
-            cat("weir convert ", directory_ / "v_40x30x20_float32.raw", " --encoding packed --rate 4 -o ",
-                directory_ / "v_scene.nvdb", " --scene scene.toml"));
-  request["run"] = true;
-  client.send(request);
-  const Json failed = client.text("conversion").value();
-  EXPECT_EQ(failed["state"], "failed");
-  EXPECT_EQ(failed["message"], "this server runs no conversion; start it with --allow-convert");
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
-}
-
-TEST_F(ViewServerTest, Convert_OfASourceThatIsAnother_IsRefused) {
-  const std::string source = directory_ / "v_40x30x20_float32.raw";
-  std::filesystem::resize_file(source, 100);
-  ServedView served(volume_);
-  ViewClient client(served.port());
-  client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
-  EXPECT_EQ(client.text("error").value()["message"],
-            cat(source, ": is not the source of ", volume_,
-                ", which had 96000 bytes; put it there, or convert it again from where it is"));
+  EXPECT_EQ(answer_to(served, {}), "503 {\"error\":\"there are 2 pages, as many as there may be; close one\"}\n");
 }
 
 TEST_F(ViewServerTest, FileThatIsCut_IsSaidAndTheServerGoesOn) {
@@ -343,25 +312,6 @@ TEST_F(ViewServerTest, FileThatIsCut_IsSaidAndTheServerGoesOn) {
   EXPECT_NE(client.text("error").value()["message"].get<std::string>().find(volume_), std::string::npos);
   client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}});
   EXPECT_EQ(client.text("value").value()["found"], false);
-}
-
-TEST_F(ViewServerTest, Convert_MakesTheFileWhereAllowed) {
-  ViewSettings settings;
-  settings.allow_convert = true;
-  settings.program = WEIR_COMMAND;
-  ServedView served(volume_, "", settings);
-  ViewClient client(served.port());
-  client.send({{"type", "convert"},
-               {"id", 1},
-               {"scene", "mode = \"dvr\"\n[volume]\nrange = [0, 250]\nopacity = [[0, 0], [1, 1]]\n"},
-               {"rate", 4},
-               {"encoding", "packed"},
-               {"run", true}});
-  EXPECT_EQ(client.text("conversion").value()["state"], "running");
-  const Json done = client.text("conversion").value();
-  EXPECT_EQ(done["state"], "done") << done;
-  EXPECT_EQ(done["message"], directory_ / "v_scene.nvdb");
-  EXPECT_TRUE(std::filesystem::exists(directory_ / "v_scene.nvdb"));
 }
 
 TEST_F(ViewServerTest, PackedFileLargerThanTheMemory_OpensAndTurns) {

@@ -17,6 +17,7 @@ export class ClipBox {
         return made;
       });
       const text = element("output");
+      text.setAttribute("aria-hidden", "true");  // the sliders say the same
       root.append(element("div", "axis", element("span", "", axis), ...sliders, text));
       return {sliders, text};
     });

@@ -1,18 +1,39 @@
-// "Convert for this scene": the command, and its run where the server allows it.
+// "Convert for this scene": the command, what it would come to, and its run where the server allows it.
 
 import {by_id, set_text} from "./dom.js";
 import * as format from "./format.js";
+import {show_command} from "./panels.js";
+
+const kRest_ms = 600;  // of the look, before it is asked for again
+
+const decibels = (value) => `${value.toFixed(1)} dB`;
+const expected = ({value, low, high}, text) => low === null ? text(value) : `${text(value)} (${text(low)} to ${text(high)})`;
+
+/** "8.0 MiB, PSNR of all voxels 33.0 dB, largest error 0.365, in about 1.2 s.", of a forecast of the server. */
+function forecast_text({exact, share, none, bytes, lossless, psnr_db, max_abs, total_s}) {
+  const about = exact ? "" : "about ";
+  const parts = [];
+  if (bytes) parts.push(`${bytes.exact ? "" : about}${expected(bytes, format.bytes)}`);
+  if (lossless) parts.push("no error");
+  else if (psnr_db) parts.push(`PSNR of all voxels ${about}${expected(psnr_db, decibels)}`);
+  if (!lossless && max_abs !== null) parts.push(`largest error ${format.number(max_abs)}`);
+  if (total_s !== null) parts.push(`in about ${format.seconds(total_s)}`);
+  const text = parts.join(", ");
+  if (none) return `${text ? `${text}; ` : ""}nothing was tried: ${none}.`;
+  if (exact) return `${text}.`;
+  const error = lossless || psnr_db ? "" : " It does not tell the error where a scene decides what is kept.";
+  return `${text}, by a sample of ${Number((100 * share).toPrecision(2))} % of the voxels.${error}`;
+}
 
 export class Conversion {
-  /** `scene()` as text, or null; `send(message)` to the server. */
-  constructor({scene, send}) {
-    this.scene = scene;
-    this.send = send;
+  /** `scene()` as text, or null; `kept()`: what of the look decides what is kept, as text; `send(message)` to the server. */
+  constructor({scene, kept, send}) {
+    Object.assign(this, {scene, kept, send});
     this.id = 0;
     by_id("show-command").addEventListener("click", () => this.ask(false));
     by_id("run-convert").addEventListener("click", () => this.ask(true));
     by_id("convert-panel").addEventListener("toggle", (event) => event.target.open && this.ask(false));
-    for (const id of ["rate", "encoding"]) by_id(id).addEventListener("change", () => this.ask(false));
+    for (const id of ["budget", "rate", "psnr", "encoding"]) by_id(id).addEventListener("change", () => this.ask(false));
   }
 
   set_up(allowed) {
@@ -20,19 +41,32 @@ export class Conversion {
     this.allowed = allowed;
   }
 
+  /** The look is another: so may be what is kept. */
+  changed() {
+    if (!by_id("convert-panel").open || this.kept() === this.asked) return;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.ask(false), kRest_ms);
+  }
+
   ask(run) {
+    clearTimeout(this.timer);
+    const budget = by_id("budget").value;
+    for (const each of ["rate", "psnr"]) by_id(`${each}-field`).hidden = each !== budget;
     const scene = this.scene();
-    const rate = Number(by_id("rate").value);
-    if (!scene || !(rate >= 1)) {
-      set_text(by_id("convert-note"), "The rate is a number from 1 on.");
+    const amount = Number(by_id(budget).value);
+    if (!scene || !(amount >= 1)) {
+      set_text(by_id("convert-note"), `The ${budget === "rate" ? "rate" : "PSNR"} is a number from 1 on.`);
       return;
     }
-    this.send({type: "convert", id: ++this.id, scene, rate, encoding: by_id("encoding").value, run});
+    this.asked = this.kept();
+    if (!run) set_text(by_id("convert-forecast"), "Being tried out \u2026");
+    this.send({type: "convert", id: ++this.id, scene, [budget]: amount, encoding: by_id("encoding").value, run});
   }
 
   receive({command, bytes, state, message}) {
-    set_text(by_id("convert-command"), command);
-    set_text(by_id("convert-size"), `At most ${format.bytes(bytes)}; the error of a scene is known when it is made.`);
+    show_command(by_id("convert-command"), command);
+    set_text(by_id("convert-size"), bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
+                                                   : `${format.count(bytes)} bytes, whatever the scene.`);
     by_id("run-convert").disabled = state === "running";
     const note = {
       shown: this.allowed ? "" : "Save the scene beside it; or start weir view with --allow-convert to run it here.",
@@ -42,5 +76,12 @@ export class Conversion {
     }[state];
     by_id("convert-note").className = state === "failed" ? "bad" : "quiet";
     set_text(by_id("convert-note"), note);
+  }
+
+  /** An answer to an earlier question is of no use. */
+  receive_forecast(message) {
+    if (message.id !== this.id) return;
+    set_text(by_id("convert-forecast"), message.state === "done" ? `Expected: ${forecast_text(message)}`
+                                                                 : `No forecast: ${message.message}.`);
   }
 }

@@ -1,6 +1,6 @@
 // What the panels beside the picture show of a look, and what is said of the picture and the connection.
 
-import {by_id, set_text} from "./dom.js";
+import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
 import * as certificate from "./certificate.js";
 import {start_iso} from "./look.js";
@@ -26,9 +26,16 @@ export function show_transfer(editor, look, facts, histogram, colormaps) {
   by_id("log").checked = look.log;
 }
 
-/** `other`: of the file that is compared with, where there is one. */
-export function show_file(facts, other) {
-  set_text(by_id("file-name"), facts.file);
+/** Of the window, and of the page, which is `more`: what was named on the command line, too. */
+export function show_title(file, more) {
+  document.title = `${file} \u2013 weir view`;
+  set_text(by_id("title"), more);
+}
+
+/** Of the file of that name, whose own facts may come later; `other`: of what it is compared with, where there is one. */
+export function show_file(name, facts, other) {
+  set_text(by_id("file-name"), name);
+  for (const id of ["certificate", "kinds"]) by_id(id).classList.toggle("awaited", facts.file !== name);
   certificate.show_rows(by_id("certificate"), facts);
   certificate.show_kinds(by_id("kinds"), facts.kinds);
   by_id("against-facts").hidden = !other;
@@ -60,6 +67,12 @@ export function show_quality(header, awaited) {
   if (awaited) return;
   const done = header.samples >= header.of ? ", done" : "";
   set_text(by_id("quality"), `${size}, ${header.samples} of ${header.of} samples a pixel${done}`);
+}
+
+/** Each word stays whole where there is room for it: a line must not end within "--scene". */
+export function show_command(target, text) {
+  if (target.textContent === text) return;  // a selection in it survives
+  target.replaceChildren(...text.split(" ").flatMap((word, i) => [i > 0 ? " " : "", element("span", "word", word)]));
 }
 
 export function show_banner(text) {

@@ -10,7 +10,7 @@ const asked = new URLSearchParams(location.search);
 const job = asked.get("job");
 
 let key = asked.get("series");  // null: of whatever is shown at first
-let name = null;                // of a file of it, where one is known
+let name = null;                // of the file of it that is shown, where one is known
 let forced = false;             // the next click takes it from whoever looks
 
 function show(text, {back = false, there = false} = {}) {
@@ -24,7 +24,7 @@ async function take_back() {
   try {
     await post(`../api/jobs/${encodeURIComponent(job)}/view?output=${asked.get("output") ?? 0}${forced ? "&force=1" : ""}`);
     forced = false;
-    show("The viewer is being started for this page.");
+    show("The viewer is being started.");
   } catch (error) {
     forced = error.status === kTaken;
     set_text(by_id("take-back"), forced ? "Take it all the same" : "Take it back");
@@ -38,7 +38,7 @@ export const series_key = () => key;
 /** Whether `state`, of the server, is of this page's series; where it is not, the page says so. `file`: of this page. */
 export function is_own_series(state, file) {
   key ??= state.series;
-  name ??= file;
+  name = file ?? name;
   const own = state.series === key;
   if (own) {
     forced = false;
@@ -53,9 +53,11 @@ export function is_own_series(state, file) {
   return false;
 }
 
-/** No viewer runs: where a job is known, it can be started again. */
-export function offer_again() {
-  if (job && !forced) show("No viewer runs for this page now.", {back: true});
+/** No viewer answers, and `state` says why: where none runs and a job is known, it can be started again. */
+export function show_no_viewer(state) {
+  if (forced) return;
+  if (state === "starting") show("The viewer is being started.");
+  else if (job) show("No viewer runs for this page now.", {back: true});
 }
 
 by_id("take-back").addEventListener("click", take_back);

@@ -1,38 +1,35 @@
 // The page of weir view: puts the parts together. The look is one object (look.js); whatever changes it calls change().
 
-import {ApiError, get, set_token} from "./api.js";
 import {by_id, offer, set_text} from "./dom.js";
 import * as camera from "./camera.js";
-import * as certificate from "./certificate.js";
 import {ClipBox, roi_text} from "./clip_box.js";
-import {Connection} from "./connection.js";
 import {Controls} from "./controls.js";
 import {Conversion} from "./conversion.js";
+import {picture_text} from "./description.js";
 import {History} from "./history.js";
-import {save} from "./keep.js";
+import {Keep} from "./keep.js";
 import {listen_to_keys} from "./keys.js";
 import {KnownFiles} from "./known_files.js";
 import * as looks from "./look.js";
-import {curve_of, show_banner, show_file, show_link, show_mode, show_quality, show_transfer} from "./panels.js";
-import {is_own_series, offer_again, series_key} from "./shown_series.js";
+import {curve_of, show_banner, show_command, show_file, show_mode, show_quality, show_title, show_transfer} from "./panels.js";
+import {Session} from "./session.js";
 import {Steps} from "./steps.js";
 import {TransferEditor, simplified} from "./transfer_editor.js";
+import {Value} from "./value.js";
 import {Viewport} from "./viewport.js";
 
 const kStill_ms = 150;   // without a change, then the picture is refined
-const kProbe_ms = 80;
-const kHash_ms = 300;
 
 let server = null;       // /api/state
 let look = looks.from_hash(location.hash);
 let history = new History(look);
 let view_id = 0;
 let drawn_first = false;  // since the server was asked for its state, a picture was asked for
-let probe = {id: 0};      // the newest question for a value: id, step and side
-let still_timer, hash_timer, probe_timer;
+let still_timer;
 let wanted_file = null;    // name of a step that the address asks for and that has not come yet
 const files = new KnownFiles();
 const facts = () => files.facts(look.step);
+const aspect = () => viewport.width / viewport.height;
 
 // ---- What goes out
 
@@ -53,41 +50,19 @@ function ask_picture(moving) {
                 step: look.step, moving};
   if (look.split !== null) view.against = true;
   set_text(by_id("quality"), "drawing");
-  connection.show(view);
-}
-
-/** What is under the pointer is another value; an answer that is on its way is of the one before. */
-function forget_value() {
-  clearTimeout(probe_timer);
-  probe = {id: probe.id + 1};
-  set_text(by_id("value"), "");
-}
-
-function ask_value(at) {
-  const [x, y] = [at.x, at.y].map((share) => Math.min(1, Math.max(0, share)));
-  probe = {id: probe.id + 1, step: look.step, side: look.split !== null && x > look.split ? 1 : 0};
-  connection.send({type: "probe", id: probe.id, x, y, side: probe.side});
+  session.connection.show(view);
 }
 
 /** The look is another: everything shows it, and the picture follows, at once and small, whole when it stands still. */
 function change(next, moving = true) {
   look = next;
-  forget_value();
+  value.forget();
   show_look();
+  conversion.changed();
   ask_picture(moving);
   clearTimeout(still_timer);
   if (moving) still_timer = setTimeout(() => ask_picture(false), kStill_ms);
-  keep_soon();
-}
-
-function keep_soon() {
-  clearTimeout(hash_timer);
-  hash_timer = setTimeout(keep_in_url, kHash_ms);
-}
-
-function keep_in_url() {
-  const hash = looks.to_hash(look, steps.names[look.step]);
-  window.history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
+  keep.soon();
 }
 
 /** A change is over. */
@@ -101,6 +76,14 @@ function done() {
 function show_undo() {
   by_id("undo").disabled = history.past.length === 0;
   by_id("redo").disabled = history.future.length === 0;
+}
+
+const scene = () => facts() && looks.to_scene(look, facts(), aspect());
+
+/** Says what the picture shows, now that it is done. */
+function describe() {
+  const shown = facts();
+  set_text(by_id("picture-text"), picture_text(look, shown, looks.shown_box(look, shown)));
 }
 
 const limits = (shown) => shown.box[0].map((lo, i) => [lo, shown.box[1][i]]);
@@ -120,19 +103,23 @@ function show_look() {
   for (const side of ["side-left", "side-right"]) by_id(side).hidden = look.split === null;
   show_undo();
   const [width, height] = picture_size();
-  set_text(by_id("render-command"),
-           `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
+  show_command(by_id("render-command"),
+               `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
 }
 
 // ---- What comes in
 
-const show_file_of_step = () => facts() && show_file(facts(), files.facts(look.step, 1));
+/** The file's own facts may come later. */
+function show_shown_file() {
+  const name = steps.names[look.step];
+  show_title(name, steps.names.includes(server.title) ? name : `${server.title}: ${name}`);
+  if (facts()) show_file(name, facts(), files.facts(look.step, 1));
+}
 
-/** Another step, whose own facts may come later. */
 function go_to_step(step, moving) {
   wanted_file = null;
   change({...look, step}, moving);
-  show_file_of_step();
+  show_shown_file();
 }
 
 function receive_steps(message) {
@@ -148,16 +135,16 @@ function receive_steps(message) {
 
 function receive(message) {
   if (message.type === "facts" || message.type === "histogram") {
+    const before = scene();
     files.add(message);
     show_look();
-    if (message.type === "facts") show_file_of_step();
-    if (!drawn_first) ask_picture(false);
+    if (message.type === "facts") show_shown_file();
+    // A picture that was asked for without these facts may have been of another box or range.
+    if (!drawn_first || scene() !== before) ask_picture(steps.playing);
   } else if (message.type === "steps") {
     receive_steps(message);
   } else if (message.type === "value") {
-    if (message.id !== probe.id) return;
-    const at = files.facts(probe.step, probe.side);
-    if (at) set_text(by_id("value"), certificate.value_text(message, at));
+    value.receive(message, (step, side) => files.facts(step, side));
   } else if (message.type === "progress") {
     if (message.what === "load") set_text(by_id("quality"), "loading the volume");
     else set_text(by_id("quality"), `${Math.round(message.share * 100)} % of a pass`);
@@ -166,43 +153,37 @@ function receive(message) {
     if (message.view === view_id) steps.drawn(look.step);  // a series that plays goes on
   } else if (message.type === "conversion") {
     conversion.receive(message);
+  } else if (message.type === "forecast") {
+    conversion.receive_forecast(message);
   }
 }
 
 const viewport = new Viewport(by_id("frame"), by_id("canvas"), by_id("divider"), {
   turn: (az, el) => change(camera.turned(look, az, el)),
   zoom: (times) => change(camera.zoomed(look, times)),
-  pan: (x, y) => facts() && change(camera.panned(look, facts(), viewport.width / viewport.height, x, y)),
+  pan: (x, y) => facts() && change(camera.panned(look, facts(), aspect(), x, y)),
   split: (share) => {  // both pictures are here
     look = {...look, split: share};
     viewport.set_split(share);
-    keep_soon();
+    keep.soon();
   },
-  point: (at) => {
-    clearTimeout(probe_timer);
-    if (at) probe_timer = setTimeout(() => ask_value(at), kProbe_ms);
-    else forget_value();
-  },
+  point: (at, none) => at ? value.ask(at, look, none) : value.forget(),
 });
 
-const connection = new Connection({
-  opened: () => {
-    show_link("connected", "good");
-    show_banner("");
-  },
-  closed: () => {
-    show_link("not connected", "bad");
-    connection.retry(begin);
-  },
+const session = new Session({
+  file: () => look.file ?? steps.names[look.step] ?? null,
+  ready: set_up,
   message: receive,
   picture: async (header, blob) => {
     await viewport.draw(header, blob);
     show_quality(header, header.view !== view_id);
+    if (header.view === view_id && !header.moving && header.samples >= header.of) describe();
     if (header.view === view_id && steps.place() >= 0) show_banner("");
     steps.drawn(header.step);
   },
 });
 
+const value = new Value((message) => session.connection.send(message));
 const editor = new TransferEditor(by_id("curve"), {
   changed: (points) => change({...look, opacity: points}),
   done,
@@ -214,11 +195,22 @@ const conversion = new Conversion({
     const shown = facts();
     if (!shown) return null;
     // What can be seen has to be said: the curve of a look that has no points.
-    return looks.to_scene({...look, opacity: look.opacity ?? simplified(curve_of(shown))}, shown, viewport.width / viewport.height);
+    return looks.to_scene({...look, opacity: look.opacity ?? simplified(curve_of(shown))}, shown, aspect());
   },
-  send: (message) => connection.send(message),
+  kept: () => JSON.stringify([look.mode, look.opacity, look.range, look.iso, look.box, look.step]),
+  send: (message) => session.connection.send(message),
 });
 const steps = new Steps(go_to_step);
+const keep = new Keep({
+  file: () => steps.names[look.step],
+  scene: () => {
+    const [width, height] = picture_size();
+    // Of a series the curve depends on all of its steps, which weir render of one file does not know.
+    const opacity = look.opacity ?? (steps.names.length > 1 ? curve_of(facts()) : null);
+    return looks.to_scene({...look, opacity}, facts(), width / height);
+  },
+  hash: () => looks.to_hash(look, steps.names[look.step]),
+});
 
 function set_mode(mode) {
   change({...look, mode}, false);
@@ -250,29 +242,6 @@ function listen() {
   by_id("colormap").addEventListener("change", () => reset({colormap: by_id("colormap").value || null})());
   by_id("compare").addEventListener("change", () => {
     change({...look, split: by_id("compare").checked ? look.split ?? 0.5 : null}, false);
-  });
-  const stem = () => facts()?.file.replace(/\.nvdb$/, "") ?? "volume";
-  press("save-picture", () => by_id("canvas").toBlob((blob) => save(`${stem()}.png`, blob)));
-  press("save-scene", () => {
-    const [width, height] = picture_size();
-    // Of a series the curve depends on all of its steps, which weir render of one file does not know.
-    const opacity = look.opacity ?? (steps.names.length > 1 ? curve_of(facts()) : null);
-    save("scene.toml", new Blob([looks.to_scene({...look, opacity}, facts(), width / height)], {type: "text/plain"}));
-  });
-  press("copy-link", async () => {
-    keep_in_url();
-    try {
-      await navigator.clipboard.writeText(location.href);
-      set_text(by_id("keep-note"), "copied");
-    } catch {
-      set_text(by_id("keep-note"), location.href);
-    }
-  });
-  by_id("login").addEventListener("submit", (event) => {
-    event.preventDefault();
-    set_token(by_id("token").value);
-    by_id("token").value = "";
-    begin();
   });
   listen_to_keys({
     mode: set_mode,
@@ -307,9 +276,9 @@ function known(wanted) {
   };
 }
 
-function set_up() {
-  document.title = `${server.title} \u2013 weir view`;
-  set_text(by_id("title"), server.title);
+/** A server is there, perhaps another one than before. */
+function set_up(state) {
+  server = state;
   set_text(by_id("version"), `weir ${server.version}, ${server.backend}.`);
   by_id("preview").hidden = server.preview_of === null;
   set_text(by_id("preview"), "preview");
@@ -324,46 +293,8 @@ function set_up() {
   look = known({...look, file});
   by_id("compare-field").hidden = server.against.length === 0;
   conversion.set_up(server.allow_convert);
-}
-
-async function begin() {
-  let state;
-  try {
-    state = await get("api/state");
-  } catch (error) {
-    if (error instanceof ApiError && error.status === 401) {
-      by_id("login").hidden = false;
-      by_id("main").hidden = true;
-      set_text(by_id("login-error"), sessionStorage.getItem("weir-token") ? error.message : "");
-      show_link("token needed", "warn");
-      return;
-    }
-    show_link("not connected", "bad");
-    show_banner(error.status === 0 ? "The server does not answer; it may have ended." : error.message);
-    if (error.status === 503) offer_again();
-    connection.retry(begin);
-    return;
-  }
-  if (!is_own_series(state, look.file ?? steps.names[look.step] ?? null)) {
-    show_link("another file", "warn");
-    show_banner("");
-    by_id("login").hidden = true;
-    connection.retry(begin);
-    return;
-  }
-  server = state;
-  by_id("login").hidden = true;
-  by_id("main").hidden = false;
-  show_banner("");
-  set_up();
-  if (server.viewers >= server.most_viewers) {
-    show_link("waiting", "warn");
-    show_banner(`${server.viewers} viewers look already, as many as may; this page waits for one to leave.`);
-    connection.retry(begin);
-    return;
-  }
-  connection.open(sessionStorage.getItem("weir-token") ?? "", series_key());
+  show_shown_file();
 }
 
 listen();
-begin();
+session.begin();

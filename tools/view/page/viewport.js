@@ -8,7 +8,8 @@ const kWheel = 0.0015;
 const kKeyZoom = 1.15;
 
 export class Viewport {
-  /** `on`: turn(az, el), pan(x, y) in heights, zoom(times), point(x, y) in [0, 1] or null, split(share). */
+  /** `on`: turn(az, el), pan(x, y) in heights, zoom(times), split(share), point(at, none): {x, y} in
+   *  [0, 1] or null, and what is said where nothing is seen there. */
   constructor(frame, canvas, divider, on) {
     this.frame = frame;
     this.canvas = canvas;
@@ -60,7 +61,8 @@ export class Viewport {
     frame.addEventListener("pointerdown", (event) => this.press(event));
     frame.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) frame.addEventListener(name, (event) => this.release(event));
-    frame.addEventListener("pointerleave", () => this.on.point(null));
+    // A finger that is lifted leaves, too, and the value at its tap stays.
+    frame.addEventListener("pointerleave", (event) => event.pointerType !== "touch" && this.on.point(null));
     frame.addEventListener("contextmenu", (event) => event.preventDefault());
     frame.addEventListener("wheel", (event) => {
       event.preventDefault();
@@ -139,6 +141,7 @@ export class Viewport {
     else if (along) this.on.turn(along[0] * kKeyTurn, -along[1] * kKeyTurn);
     else if (event.key === "+" || event.key === "=") this.on.zoom(kKeyZoom);
     else if (event.key === "-") this.on.zoom(1 / kKeyZoom);
+    else if (event.key === "Enter") this.on.point({x: 0.5, y: 0.5}, "No value in the middle of the picture.");
     else return;
     event.preventDefault();
   }

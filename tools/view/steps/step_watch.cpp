@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,22 +15,26 @@ namespace {
 
 constexpr int kRest = 19;  // so many times as long as a look took
 
-// The steps there are now, of which those that are new are added to `summary`; none where they cannot be seen.
-std::vector<std::string> seen_steps(const StepChoice& choice, const StepList& steps, SeriesSummary& summary) {
+// The steps there are now, whose heads `heads` has seen; none where they cannot be seen.
+std::vector<std::string> seen_steps(const StepChoice& choice, const StepList& steps, SeriesHeads& heads) {
   const std::vector<std::string> paths = steps.paths();
   const std::set<std::string> known(paths.begin(), paths.end());
   std::vector<std::string> seen;
   try {
     for (std::string& path : find_steps(choice)) {
-      try {
-        if (!known.contains(path)) add_to_summary(summary, path);
-        seen.push_back(std::move(path));
-      } catch (const Error&) {  // not whole yet
-      }
+      const bool whole = heads.look_at(path);
+      if (whole || known.contains(path)) seen.push_back(std::move(path));
     }
   } catch (const Error&) {
   }
   return seen;
+}
+
+bool same_values(const SeriesSummary& a, const SeriesSummary& b) {
+  const auto ends = [](const SeriesSummary& s) {
+    return s.range ? std::optional(std::pair(s.range->min, s.range->max)) : std::nullopt;
+  };
+  return ends(a) == ends(b) && a.background == b.background;
 }
 
 }  // namespace
@@ -42,7 +47,7 @@ StepWatch::StepWatch(boost::asio::io_context& io, boost::asio::thread_pool& pool
       choice_(files.choice),
       period_(period),
       changed_(std::move(changed)),
-      summary_(std::make_shared<SeriesSummary>(files.summary)),
+      heads_(std::make_shared<SeriesHeads>(files.heads)),
       timer_(io) {
   wait(period_);
 }
@@ -56,13 +61,15 @@ void StepWatch::wait(std::chrono::steady_clock::duration pause) {
 
 void StepWatch::look() {
   boost::asio::post(
-      pool_, [this, &io = io_, &steps = steps_, choice = choice_, summary = summary_, alive = std::weak_ptr(alive_)] {
+      pool_, [this, &io = io_, &steps = steps_, choice = choice_, heads = heads_, alive = std::weak_ptr(alive_)] {
         const auto begin = std::chrono::steady_clock::now();
-        const bool other = steps.update(seen_steps(choice, steps, *summary));
+        const SeriesSummary before = heads->summary();
+        const bool others = steps.update(seen_steps(choice, steps, *heads));
+        const bool other = others || !same_values(before, heads->summary());
         const auto took = std::chrono::steady_clock::now() - begin;
         boost::asio::post(io, [this, other, took, alive] {
           if (!alive.lock()) return;
-          if (other) changed_(*summary_);
+          if (other) changed_(heads_->summary());
           wait(std::max<std::chrono::steady_clock::duration>(period_, kRest * took));
         });
       });

@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 
-#include "tools/options/volume_series.h"
 #include "tools/view/steps/step_list.h"
 #include "tools/view/steps/viewed_files.h"
 
@@ -20,8 +19,9 @@ class StepWatch {
   using Changed = std::function<void(const SeriesSummary& summary)>;
 
   /// Brings `steps` up to date every `period`, later where a look takes long, so that it costs a twentieth of a core at
-  /// most; `changed` is called afterwards, with the summary of all steps that were seen. A file whose head cannot be
-  /// read yet is no step yet. `pool` and `steps` must outlive the object and what it has asked of `pool`.
+  /// most; `changed` is called where other ones are there or have other values in common, with the summary of all that
+  /// were seen. A file whose head cannot be read yet is no step yet. `pool` and `steps` must outlive the object and
+  /// what it has asked of `pool`.
   StepWatch(boost::asio::io_context& io, boost::asio::thread_pool& pool, StepList& steps, const ViewedFiles& files,
             std::chrono::milliseconds period, Changed changed);
 
@@ -35,7 +35,7 @@ class StepWatch {
   const StepChoice choice_;
   const std::chrono::milliseconds period_;
   Changed changed_;
-  std::shared_ptr<SeriesSummary> summary_;  // of the look that is under way, while there is one
+  std::shared_ptr<SeriesHeads> heads_;  // of the look that is under way, while there is one
   boost::asio::steady_timer timer_;
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);
 };

@@ -72,7 +72,7 @@ ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& again
                 compose(option("against", against), cat(" has ", files.against.size(), " files, ", choice.input,
                                                         " has ", files.steps.size(), "; give one file, or as many")));
   }
-  files.summary = summarise_series(files.steps);
+  for (const std::string& step : files.steps) files.heads.look_at(step);
   const bool single = !choice.series && files.steps == std::vector{choice.input};
   files.grow = !single && files.against.size() <= 1;
   // Its own number is the first one: what a viewer sees at first.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/options/volume_series.h"
+#include "tools/view/steps/series_heads.h"
 
 namespace weir {
 
@@ -24,9 +24,12 @@ struct ViewedFiles {
   std::string key;                   ///< the same text for what is the same, and for nothing else; tells no path
   std::vector<std::string> steps;    ///< the file of a `series` first, then those beside it; else in natural order
   std::vector<std::string> against;  ///< none, one for all steps, or one for each
-  SeriesSummary summary;             ///< of the steps
+  SeriesHeads heads;                 ///< of the steps
   StepChoice choice{};
   bool grow = false;  ///< more steps may come: `choice` names no single file, and `against` not one for each
+
+  /// All steps have one range of values and one background; else a file has its own.
+  bool series() const { return steps.size() > 1 || grow; }
 };
 
 /// ViewedFiles::key of what is named so.

@@ -5,11 +5,10 @@
 #include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
-#include "tools/view/scene_conversion.h"
-#include "tools/view/temporary_folder.h"
+#include "tools/view/convert/kept_scene.h"
+#include "tools/view/convert/scene_conversion.h"
 
 namespace weir {
 
@@ -27,12 +26,12 @@ class SceneConverter {
 
   bool running() const { return worker_ != nullptr; }
   /// Throws Error(io) where it cannot be started, Error(usage) where one runs.
-  void start(SceneConversion conversion, const std::string& scene_text, Ended ended);
+  void start(const SceneConversion& conversion, const std::string& scene_text, Ended ended);
 
  private:
   boost::asio::io_context& io_;
   std::string program_;
-  std::optional<TemporaryFolder> folder_;  // of the scene's file
+  KeptScene kept_scene_;
   std::unique_ptr<WorkerProcess> worker_;
 };
 

@@ -1,4 +1,4 @@
-#include "tools/view/view_message.h"
+#include "tools/view/base/view_message.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -82,7 +82,11 @@ ConvertRequest read_convert(const nlohmann::json& message) {
   request.scene_text = text(message, "scene");
   const Scene scene = parse_scene(request.scene_text, "scene");
   if (!scene.lighting.environment.empty()) refuse_key("scene", "names an environment; no page may open files");
-  request.rate = number(message, "rate", 1, 1e6);
+  if (message.contains("psnr")) {
+    request.psnr_db = number(message, "psnr", 1, 300);
+  } else {
+    request.rate = number(message, "rate", 1, 1e6);
+  }
   request.encoding = text(message, "encoding");
   if (request.encoding != "packed" && request.encoding != "auto") refuse_key("encoding", "must be packed or auto");
   request.run = flag(message, "run");

@@ -1,4 +1,4 @@
-#include "tools/view/scene_conversion.h"
+#include "tools/view/convert/scene_conversion.h"
 
 #include <sys/stat.h>
 
@@ -31,7 +31,7 @@ std::string named_source(const std::string& volume, const Sidecar& sidecar) {
       static_cast<std::uint64_t>(status.st_size) == sidecar.source.bytes) {
     return recorded;
   }
-  const std::string path = (fs::path(volume).parent_path() / recorded).string();
+  std::string path = (fs::path(volume).parent_path() / recorded).string();
   const bool directory = fs::is_directory(path, failure);
   if (!is_there(path) || (!directory && fs::file_size(path, failure) != sidecar.source.bytes)) {
     throw input_error(path, cat("is not the source of ", volume, ", which had ", sidecar.source.bytes,
@@ -59,11 +59,19 @@ SceneConversion scene_conversion(const std::string& volume, const std::string& s
     if (!option.row.flag()) words.push_back(given->second);
   }
   if (sidecar.nonfinite.count > 0) words.insert(words.end(), {"--nonfinite", sidecar.nonfinite.policy});
-  words.insert(words.end(), {"--encoding", request.encoding, "--rate", short_number(request.rate), "-o",
-                             conversion.output, "--scene", "scene.toml"});
+  words.insert(words.end(), {"--encoding", request.encoding, request.rate ? "--rate" : "--psnr",
+                             short_number(request.rate ? *request.rate : request.psnr_db), "-o", conversion.output,
+                             "--scene", "scene.toml"});
   conversion.text = "weir";
   for (const std::string& word : words) conversion.text += cat(' ', shell_word(word));
   return conversion;
+}
+
+std::vector<std::string> conversion_command(const SceneConversion& conversion, const std::string& scene) {
+  std::vector<std::string> words{"weir"};
+  words.insert(words.end(), conversion.arguments.begin(), conversion.arguments.end());
+  words.back() = scene;
+  return words;
 }
 
 }  // namespace weir

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include "format/sidecar/scene.h"
 
 namespace weir {
+
+/// One of the pages that look, for as long as it is connected.
+using ViewerId = std::int64_t;
 
 /// Pixels of a picture, of two files together, at most: its sums take 12 bytes each.
 inline constexpr std::int64_t kMostViewPixels = 4 << 20;
@@ -44,12 +48,13 @@ struct ProbeRequest {
   int side = 0;  ///< 1: of the file that is compared with
 };
 
-/// "convert": the command that converts the source for a scene, or its run.
+/// "convert": the command that converts the source for a scene and what it would come to, or its run.
 struct ConvertRequest {
   std::int64_t id = 0;
   std::string scene_text;
-  std::string encoding;  ///< "packed" or "auto"
-  double rate = 8;
+  std::string encoding;        ///< "packed" or "auto"
+  std::optional<double> rate;  ///< the file's size, as `weir convert --rate` has it
+  double psnr_db = 0;          ///< where there is no rate: of what the scene shows, at least
   bool run = false;
 };
 

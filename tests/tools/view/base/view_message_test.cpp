@@ -1,4 +1,4 @@
-#include "tools/view/view_message.h"
+#include "tools/view/base/view_message.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "format/sidecar/sidecar.h"
-#include "tools/view/view_message.h"
+#include "tools/view/base/view_message.h"
 
 namespace weir {
 
@@ -20,5 +20,8 @@ struct SceneConversion {
 /// sidecar says. Throws Error(input) where that source is not there, or of another size.
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request);
+
+/// The program's name and arguments, with the scene at that path.
+std::vector<std::string> conversion_command(const SceneConversion& conversion, const std::string& scene);
 
 }  // namespace weir

@@ -1,0 +1,45 @@
+// What pages ask of the conversion for a scene: its command, what that would come to, and its run. Lives on the
+// io_context's thread.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "format/sidecar/sidecar.h"
+#include "tools/view/base/view_message.h"
+#include "tools/view/convert/scene_converter.h"
+#include "tools/view/convert/scene_forecasts.h"
+
+namespace weir {
+
+struct SceneRequestRules {
+  std::string program;     ///< path of weir
+  std::string preview_of;  ///< the source that the volume is a preview of; empty: its sidecar names it
+  bool run = false;        ///< a page may have the conversion run
+  bool forecast = true;    ///< a page may have it forecast, which takes the memory of a conversion
+};
+
+class SceneRequests {
+ public:
+  using Send = std::function<void(ViewerId viewer, const nlohmann::ordered_json& message)>;
+
+  SceneRequests(boost::asio::io_context& io, SceneRequestRules rules, Send send);
+
+  /// Answers by `send`, now and as more is known. Throws Error(input) where the source of `volume`, which has that
+  /// sidecar, is not there.
+  void handle(ViewerId viewer, const std::string& volume, const Sidecar& sidecar, const ConvertRequest& request);
+  /// The viewer is gone.
+  void forget(ViewerId viewer) { forecasts_.forget(viewer); }
+
+ private:
+  void forecast(ViewerId viewer, const SceneConversion& conversion, const ConvertRequest& request);
+
+  const SceneRequestRules rules_;
+  const Send send_;
+  SceneConverter converter_;
+  SceneForecasts forecasts_;
+};
+
+}  // namespace weir
