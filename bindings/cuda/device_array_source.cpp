@@ -126,11 +126,15 @@ class DeviceArraySource final : public VolumeSource {
 }  // namespace
 
 int device_of(const void* address) {
-  if (device_count() == 0) throw Error(ErrorKind::usage, "no CUDA device answers");
+  if (device_count() == 0)
+    throw Error(ErrorKind::usage,
+                "source lies on a CUDA device, and none answers here; copy it to a numpy array first");
   cudaPointerAttributes attributes{};
   check_cuda(cudaPointerGetAttributes(&attributes, address), "asking where an array's values are");
   if (attributes.type != cudaMemoryTypeDevice && attributes.type != cudaMemoryTypeManaged) {
-    throw Error(ErrorKind::usage, "the array's address is no memory of a CUDA device");
+    throw Error(
+        ErrorKind::usage,
+        "source says that it lies on a CUDA device, and its address is no memory of one; give the array itself");
   }
   return attributes.device;
 }

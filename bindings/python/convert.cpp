@@ -155,7 +155,7 @@ namespace {
 
 using Axes = std::array<std::int64_t, 3>;
 using OpenArray =
-    std::function<std::unique_ptr<VolumeSource>(const DenseArray&, const ConversionOptions&, const Notice&)>;
+    std::function<std::unique_ptr<VolumeSource>(const DenseArray&, const ConversionRequest&, const Notice&)>;
 
 std::string convert_dense(const void* data, const Axes& shape, const Axes& strides, const std::string& type,
                           const std::string& output, const GivenOptions& options, const py::dict& meaning,
@@ -173,7 +173,7 @@ std::string convert_dense(const void* data, const Axes& shape, const Axes& strid
   return to_json_text(convert(
       request.conversion,
       [&](const Notice& notice) {
-        std::unique_ptr<VolumeSource> all = open(array, request.conversion, notice);
+        std::unique_ptr<VolumeSource> all = open(array, request, notice);
         if (!request.source.roi) return all;
         return crop_to(std::move(all), *request.source.roi);
       },
@@ -188,7 +188,7 @@ std::string convert_array(const py::array& source, const std::string& type, cons
   return convert_dense(
       source.data(), {source.shape(0), source.shape(1), source.shape(2)},
       {source.strides(0), source.strides(1), source.strides(2)}, type, output, options, meaning, progress,
-      [](const DenseArray& array, const ConversionOptions&, const Notice&) { return open_array(array); });
+      [](const DenseArray& array, const ConversionRequest&, const Notice&) { return open_array(array); });
 }
 
 std::string convert_device_array(std::uint64_t address, const std::array<std::int64_t, 3>& shape,
@@ -196,8 +196,8 @@ std::string convert_device_array(std::uint64_t address, const std::array<std::in
                                  const std::optional<std::uint64_t>& stream, const std::string& output,
                                  const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
   return convert_dense(reinterpret_cast<const void*>(address), shape, strides, type, output, options, meaning, progress,
-                       [&](const DenseArray& array, const ConversionOptions& conversion, const Notice& notice) {
-                         return open_device_source(array, stream, conversion, notice);
+                       [&](const DenseArray& array, const ConversionRequest& request, const Notice& notice) {
+                         return open_device_source(array, stream, request, notice);
                        });
 }
 

@@ -58,8 +58,8 @@ class Candidate {
 
   // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
   FilePlan plan_exact() {
-    const double most = encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error;
-    const double target = std::min(most, request_.planned_error);
+    const double planned = request_.planned_error;
+    const double target = encoding_ == Encoding::float32 ? std::min(request_.squared_error, planned) : planned;
     FilePlan file = plan_expected(target);
     for (double slack = 0x1p-48; file.plan.expected_error > target; slack *= 256) {
       tree_ = std::move(file.tree);

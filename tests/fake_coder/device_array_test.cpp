@@ -142,10 +142,10 @@ TEST_F(DeviceArraySource, FilesHaveTheBytesOfTheHost) {
 TEST_F(DeviceArraySource, WhatIsNoArrayOfADeviceIsRefused) {
   const std::vector<float> host(8);
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { device_of(host.data()); }),
-            "the array's address is no memory of a CUDA device");
+            "source says that it lies on a CUDA device, and its address is no memory of one; give the array itself");
   const Both both(ScalarType::float32, {4, 4, 4}, {6, 16, 64});
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_device_array(both.in_device, 0); }),
-            "on a device, a slab's address and strides must be multiples of the 4 bytes of a value");
+            "on a device, the address and the strides of values must be multiples of the 4 bytes of a value");
 }
 
 TEST_F(DeviceArraySource, AFailedCopyEndsTheConversionAndLeavesNothing) {

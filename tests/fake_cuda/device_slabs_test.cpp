@@ -115,7 +115,8 @@ TEST_F(DeviceSlabsTest, RefusesWhatAKernelCannotReadAndTooLittleMemory) {
   DeviceSlabs slabs(kExtent, 4, 0, keep());
   DeviceValues odd = from(0);
   odd.first += 2;
-  const std::string message = "on a device, a slab's address and strides must be multiples of the 4 bytes of a value";
+  const std::string message =
+      "on a device, the address and the strides of values must be multiples of the 4 bytes of a value";
   EXPECT_EQ(refusal([&] { slabs.add(0, 1, odd, nullptr); }, ErrorKind::usage), message);
   odd = from(0);
   odd.stride[1] = 1202;

@@ -34,7 +34,8 @@ class Peers(Experiment):
         wanted = volumes.few_bytes_set(48)[:2] if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
         for peer in bench.peers:
             if not peer.command:
-                kept = kept_records(bench.kept, peer.name)
+                names = {f"{volume.file_name}_{peer.name}" for volume in wanted}
+                kept = [record for record in kept_records(bench.kept) if record["name"] in names]
                 print(f"peers: {peer.title} skipped, the command {peer.program} is not found"
                       + ("; its figures are those that are kept" if kept else ""), file=sys.stderr)
                 for record in kept:
@@ -197,10 +198,9 @@ class _Theirs:
         return {"threads": threads, "compress_s": min(there), "decompress_s": min(back)}
 
 
-def kept_records(path, method=None):
-    """The records of other methods than weir's in a file by keep_records(); of one of them where it is named."""
-    records = json.loads(path.read_text()) if path.exists() else []
-    return [record for record in records if method in (None, record["result"]["method"])]
+def kept_records(path):
+    """Of other methods than weir's, in a file by keep_records()."""
+    return json.loads(path.read_text()) if path.exists() else []
 
 
 def keep_records(measured, path):

@@ -87,8 +87,8 @@ def convert(
         numpy.memmap too. An array is read where it is and not copied; it must not change before the call returns.
         Or an array of another library, [z, y, x] too, that has DLPack or __cuda_array_interface__ (CuPy, PyTorch, Numba,
         JAX): of the host's memory as one of numpy's; on a CUDA device it is read there, after the work that the library
-        has queued, and float32 without gaps is coded there where encoding is "packed", backend not "cpu" and memory
-        1 GiB or more: then only what becomes of the values crosses the bus. bfloat16 is known as well.
+        has queued, and float32 without gaps is coded there where encoding is "packed", backend not "cpu", memory 1 GiB
+        or more and no roi given: then only what becomes of the values crosses the bus. There bfloat16 is known as well.
         Or an xarray.DataArray of three axes: in the order z, y, x where their names (x, y, lat, lon ...) or attributes
         "axis" say which they are, else as they are. Its name, units, long_name and time are kept, its coordinates become
         spacing and origin; an axis whose coordinates fall is turned round.

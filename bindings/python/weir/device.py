@@ -48,7 +48,7 @@ def array_of(source: Any) -> Union[DeviceArray, NDArray[Any]]:
         try:
             return numpy.from_dlpack(source)
         except (BufferError, RuntimeError, TypeError) as error:
-            raise UsageError(f"source cannot be read as an array of numpy ({error}); give one") from None
+            raise UsageError(f"source has values that numpy does not read ({error}); convert them to float32 first") from None
     if kind not in _CUDA:
         raise UsageError(f"source lies on a device of DLPack's kind {kind}; copy it to the host first")
     return _of_dlpack(source)

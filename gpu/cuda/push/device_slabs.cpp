@@ -95,8 +95,8 @@ void check_slab(const DeviceValues& values, int device) {
   const bool aligned = reinterpret_cast<std::uintptr_t>(values.first) % values.value_bytes == 0 &&
                        std::ranges::all_of(values.stride, [&](std::int64_t s) { return s % bytes == 0; });
   if (!aligned) {
-    throw Error(ErrorKind::usage,
-                cat("on a device, a slab's address and strides must be multiples of the ", bytes, " bytes of a value"));
+    throw Error(ErrorKind::usage, cat("on a device, the address and the strides of values must be multiples of the ",
+                                      bytes, " bytes of a value"));
   }
 }
 

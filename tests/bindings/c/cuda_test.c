@@ -105,7 +105,7 @@ static void pushes(int device) {
   CHECK_USAGE("data is a null pointer", weir_push_slab_device(push, 0, 1, NULL, NULL, NULL, &error));
   if (device) {
     const int64_t odd[3] = {2, 2 * NX + 1, 2 * NX * NY};
-    CHECK_USAGE("on a device, a slab's address and strides must be multiples of the 2 bytes of a value",
+    CHECK_USAGE("on a device, the address and the strides of values must be multiples of the 2 bytes of a value",
                 weir_push_slab_device(push, 0, 1, packed, odd, NULL, &error));
     CHECK_USAGE("device memory is granted before the first slab of a device, which has come",
                 weir_push_device_memory(push, 1 << 20, &error));

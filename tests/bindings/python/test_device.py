@@ -161,7 +161,7 @@ def cuda():
 def without_a_device():
     """What a conversion says of an array on a device that there is not, by a build with CUDA and by one without."""
     return (
-        "no CUDA device answers",
+        "source lies on a CUDA device, and none answers here; copy it to a numpy array first",
         "source lies on a CUDA device, and this weir was built without CUDA; copy it to a numpy array first",
     )
 
@@ -212,7 +212,7 @@ class OnADevice(FolderTest):
 
     def test_an_address_of_the_host_is_refused(self):
         values = noise((9, 9, 9), numpy.float32)
-        with self.assertRaisesRegex(weir.UsageError, "the array's address is no memory of a CUDA device"):
+        with self.assertRaisesRegex(weir.UsageError, "source says that it lies on a CUDA device, and its address is no memory of one"):
             weir.convert(Interface(values.ctypes.data, values.shape, "<f4"), self.folder / "a.nvdb")
 
 

@@ -19,6 +19,7 @@ Converted convert(VolumeSource& volume, ConversionOptions options) {
   Converted converted;
   ConversionControl control;
   control.notice = [&](const Message& line) { converted.notices.push_back(line.text()); };
+  control.planned = [&](std::uint64_t /*bytes*/) { ++converted.files_made; };
   converted.sidecar = convert_volume(volume, options, control, files);
   EXPECT_EQ(files.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
   converted.file = files.content("out.nvdb");

@@ -15,6 +15,7 @@ struct Converted {
   Sidecar sidecar;
   std::vector<std::byte> file;
   std::vector<std::string> notices;
+  int files_made = 0;  ///< the last one is kept; others missed what was asked
 
   NvdbGrid grid() const { return NvdbGrid::open(file, "out.nvdb"); }
 };

@@ -110,6 +110,15 @@ TEST(PackedConversion, ThePsnrOfASparseCloudIsNoLargerThanNeedBe) {
     const Converted converted = test::convert(volume, packed(Budget::Kind::psnr, target));
     EXPECT_GE(*converted.sidecar.error.psnr_db, target);
     EXPECT_LE(*converted.sidecar.error.psnr_db, target + 0.1);
+    EXPECT_EQ(converted.files_made, 2) << target;
+  }
+}
+
+TEST(PackedConversion, AFileOfDenseTurbulenceReachesItsPsnrAtOnce) {
+  const auto source = open_synthetic("turbulence", {{80, 72, 64}, 1});
+  MemoryVolume volume(*source);
+  for (const double target : {50.0, 60.0, 80.0, 100.0}) {
+    EXPECT_EQ(test::convert(volume, packed(Budget::Kind::psnr, target)).files_made, 1) << target;
   }
 }
 

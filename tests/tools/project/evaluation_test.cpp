@@ -193,15 +193,23 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   EXPECT_NE(report().find("SZ3 9.9.9 of 0123456789ab"), std::string::npos);
 
   // As --publish leaves them, for a directory that has none.
-  Json kept = Json::array();
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path() / "state/peers")) {
-    if (entry.path().string().ends_with("_sz3.json")) kept.push_back(Json::parse(read_file(entry.path())));
-  }
-  ASSERT_EQ(kept.size(), 2U);
-  write_file(directory_ / "kept.json", kept.dump());
+  const std::string source = WEIR_SOURCE_DIR;
+  const CommandResult keep =
+      run_command({kPython, "-B", "-c",
+                   "import pathlib, sys; sys.path.insert(0, sys.argv[1])\n"
+                   "from experiments.peers import keep_records\nfrom store import Store\n"
+                   "keep_records(Store(sys.argv[2]), pathlib.Path(sys.argv[3]))",
+                   source + "/bench/evaluate", directory_.path().string(), directory_ / "kept.json"});
+  ASSERT_EQ(keep.exit_code, 0) << keep.err;
+  const Json kept = Json::parse(read_file(directory_ / "kept.json"));
+  std::size_t removed = 0;
   for (const Json& record : kept) {
+    EXPECT_NE(record["result"]["method"], "packed");
+    if (record["result"]["method"] != "sz3") continue;
     fs::remove(directory_.path() / "state/peers" / (record["name"].get<std::string>() + ".json"));
+    ++removed;
   }
+  ASSERT_EQ(removed, 2U);
   const CommandResult without = evaluate(quick);
   ASSERT_EQ(without.exit_code, 0) << without.err;
   EXPECT_NE(without.err.find("peers: SZ3 skipped, the command sz3 is not found; its figures are those that are kept\n"),

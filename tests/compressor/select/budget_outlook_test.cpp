@@ -1,0 +1,62 @@
+// Which blocks a budget will buy near rungs for: judged by a sample, which is all of these small volumes.
+#include "compressor/select/budget_outlook.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "compressor/packed/ladder_builder.h"
+#include "compressor/survey/survey.h"
+#include "ingest/synthetic/synthetic.h"
+#include "tests/compressor/support/crash_file_system.h"
+#include "tests/compressor/support/memory_volume.h"
+
+namespace weir::budget_outlook_test {
+namespace {
+
+// Of a volume of 96^3 voxels, for a PSNR.
+NearBlocks bought_at(const char* kind, double psnr) {
+  const auto source = open_synthetic(kind, {{96, 96, 96}, 1});
+  test::MemoryVolume volume(*source);
+  const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
+  test::CrashFileSystem files;
+  RowStore rows(files.create_unnamed("rows"), plan.lattice, 64);
+  rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(files.create_unnamed("ladders"), plan.lattice));
+  LadderAim aim;
+  aim.near_rungs = true;
+  survey_volume(volume, plan, rows, {}, Reading::ahead, false, nullptr, nullptr, {}, aim);
+  FileRequest request;
+  request.budget.kind = Budget::Kind::psnr;
+  request.budget.target = psnr;
+  request.domain = volume.info().domain();
+  return outlook_of(request, rows).near;
+}
+
+TEST(BudgetOutlook, NearRungsOfASparseCloudAreForItsSparseBlocksUntilNearlyAllIsKept) {
+  EXPECT_EQ(bought_at("cloud", 60), NearBlocks::sparse);
+  EXPECT_EQ(bought_at("cloud", 130), NearBlocks::all);
+}
+
+TEST(BudgetOutlook, DenseTurbulenceHasThemWhereNearlyAllIsKeptAlone) {
+  EXPECT_EQ(bought_at("turbulence", 60), NearBlocks::none);
+  EXPECT_EQ(bought_at("turbulence", 140), NearBlocks::all);
+}
+
+TEST(BudgetOutlook, SparseBlocksAreThoseThatAreMostlyZero) {
+  LeafRow row{};
+  row.finite = 512;
+  row.zeros = 257;
+  LadderAim aim;
+  aim.near_rungs = true;
+  EXPECT_EQ(aim.near_for(row, false), NearRungs::no);
+  EXPECT_EQ(aim.near_for(row, true), NearRungs::yes) << "sampled";
+  aim.near = NearBlocks::sparse;
+  EXPECT_EQ(aim.near_for(row, false), NearRungs::yes);
+  row.zeros = 256;
+  EXPECT_EQ(aim.near_for(row, false), NearRungs::no);
+  aim.near = NearBlocks::all;
+  EXPECT_EQ(aim.near_for(row, false), NearRungs::yes);
+}
+
+}  // namespace
+}  // namespace weir::budget_outlook_test
