@@ -82,6 +82,24 @@ TEST_P(WatchZarr, WithMarkers_TheMarkerSaysIt) {
   EXPECT_EQ(service.difference("a.zarr", "a.nvdb", {"--lossless"}), "");
 }
 
+TEST(WatchZarrDeletion, AStoreWhoseMetadataAreItsNewestFile_IsKeptWhole) {
+  ServiceHarness service("", keys("inotify", "settle = 0.2\nsource = \"delete-after-verify\"\ndelete_after = 0.1\n"));
+  for (const int version : {2, 3}) {
+    const std::string store = service.in(cat("v", version, ".zarr"));
+    for (int chunk = 0; chunk < kChunks; ++chunk) add_chunk(store, version, chunk);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a tick of the clock of files
+    begin(store, version);
+  }
+  service.start();
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] {
+    return service.logged(" not-deleted ") + service.logged(" deleted ") == 2;
+  })) << service.log();
+  EXPECT_EQ(service.logged(" deleted "), 0U) << service.log();
+  EXPECT_TRUE(fs::exists(service.in("v2.zarr/.zarray")));
+  EXPECT_TRUE(fs::exists(service.in("v3.zarr/zarr.json")));
+}
+
 TEST(WatchZarrAgain, AStoreThatIsAppendedTo_IsConvertedAgain) {
   ServiceHarness service("", keys("inotify", "settle = 0.3\n"));
   const std::string store = service.in("a.zarr");
