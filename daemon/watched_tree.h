@@ -26,6 +26,7 @@
 #include "daemon/store/job_store.h"
 #include "daemon/watch/completion.h"
 #include "daemon/watch/directory_watch.h"
+#include "daemon/watch/store_poll.h"
 
 namespace weir {
 
@@ -105,6 +106,7 @@ class WatchedTree {
   bool scheduled_ = false;
   bool ready_ = false;                    ///< to report after the transaction
   std::vector<std::int64_t> superseded_;  ///< the same
+  StorePoll stores_;
   boost::asio::steady_timer timer_;
   std::unique_ptr<DirectoryWatch> watch_;
   std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a wait that has ended may be called yet

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
@@ -81,15 +82,22 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   return rules;
 }
 
-FileSample sample_file(const std::string& path, const std::string& marker) {
+FileSample sample_file(const std::string& path, const std::string& marker,
+                       const std::vector<std::string>& convert_options) {
   FileSample sample;
   struct stat status {};
   if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
   if (is_plotfile_head(path) && !is_plotfile_header(path)) return sample;
   // A hierarchy may have the metadata of both versions.
-  if (is_store_head(path) && head_in_directory(std::string(named_by_head(path))) != path) return sample;
+  if (is_store_head(path)) {
+    if (head_in_directory(std::string(named_by_head(path))) != path) return sample;
+    const auto identity = identify_source(path, convert_options);
+    if (!identity) throw Error(ErrorKind::io, cat(path, ": its metadata cannot be looked at; looked at again"));
+    sample.identity = *identity;
+  } else {
+    sample.identity = identity_of(status);
+  }
   sample.exists = true;
-  sample.identity = identity_of(status);
   sample.marked = !marker.empty() && look_at(path + marker, status);
   return sample;
 }

@@ -25,6 +25,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "daemon/config/config.h"
 #include "daemon/store/job.h"
@@ -60,9 +61,11 @@ struct FileSample {
   bool marked = false;  ///< path + marker exists
 };
 
-/// Looks at the file system. `marker` empty: not looked for. Throws Error(io) where it cannot be looked at for
-/// another reason than that nothing is there.
-FileSample sample_file(const std::string& path, const std::string& marker);
+/// Looks at the file system. `marker` empty: not looked for. `convert_options` say which metadata of a Zarr hierarchy
+/// belong to the source (identify_source). Throws Error(io) where it cannot be looked at for another reason than that
+/// nothing is there.
+FileSample sample_file(const std::string& path, const std::string& marker,
+                       const std::vector<std::string>& convert_options = {});
 
 struct CompletionAnswer {
   enum class State {

@@ -251,6 +251,35 @@ TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
   EXPECT_FALSE(sample_file(header, "").exists);
 }
 
+TEST(ZarrCompletion, IdentityIsOfTheMetadataOnTheWayToTheDataset) {
+  const TemporaryDirectory directory;
+  const std::string store = directory / "run.zarr";
+  const std::string head = store + "/.zgroup";
+  std::filesystem::create_directories(store + "/a/rho");
+  std::filesystem::create_directories(store + "/b");
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(store + '/' + name) << text;
+  };
+  write(".zgroup", "{}");
+  const auto identity = [&](const std::string& option) { return sample_file(head, "", {option}).identity; };
+  const auto changes = [&](const std::string& option, const std::string& name, const std::string& text) {
+    const FileIdentity before = identity(option);
+    EXPECT_EQ(identity(option), before);
+    write(name, text);
+    return !(identity(option) == before);
+  };
+  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 2U);
+  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/.zgroup", "{ }"));
+  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/rho/.zarray", "1234"));
+  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 9U);
+  EXPECT_TRUE(changes("--dataset=a/rho", "a/rho/.zattrs", "1"));
+  EXPECT_TRUE(changes("--dataset=a/rho", ".zmetadata", "1"));
+  EXPECT_FALSE(changes("--dataset=a/rho", "b/.zarray", "1"));
+  EXPECT_FALSE(changes("--dataset=a/rho", "a/rho/0.0.0", "1"));
+  EXPECT_TRUE(changes("--magnitude=a/rho,b", "b/.zarray", "12"));
+  EXPECT_FALSE(changes("--lossless", "a/rho/.zarray", "1"));
+}
+
 TEST(ZarrCompletion, SamplesAreOfTheFileThatSaysWhatItIs) {
   const TemporaryDirectory directory;
   const std::string store = directory / "run.zarr";
