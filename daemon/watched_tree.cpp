@@ -195,7 +195,9 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       default: {
         auto at = tracked_.find(event.path);
         if (at == tracked_.end()) {
-          at = tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path))}).first;
+          at =
+              tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path, store_turns_))})
+                  .first;
         }
         Tracked& tracked = at->second;
         tracked.completion.happened(event.kind, now);
@@ -296,11 +298,17 @@ void WatchedTree::track_until(const std::string& path, Time until) {
   if (until != Time::max()) agenda_.insert({until, path});
 }
 
+void WatchedTree::has_turn(const std::string& head) {
+  if (!tracked_.contains(head)) return;
+  track_until(head, Clock::now());
+  if (store_fault_.empty()) schedule(milliseconds(0));
+}
+
 void WatchedTree::forget(const std::string& path) {
   const auto at = tracked_.find(path);
   if (at == tracked_.end()) return;
   agenda_.erase({at->second.look, path});
-  tracked_.erase(at);
+  const auto ended = tracked_.extract(at);  // its end may give a turn to another one
 }
 
 void WatchedTree::gone(const std::string& path) {

@@ -63,6 +63,7 @@ class WatchedTree {
  private:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kArrivalWindow{600};
+  static constexpr std::size_t kStoresAtOnce = 2;
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
@@ -84,6 +85,7 @@ class WatchedTree {
   bool tries_again(const std::string& path, const Job& job);
   void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);
   void track_until(const std::string& path, Time until);
+  void has_turn(const std::string& head);
   void forget(const std::string& path);
   void gone(const std::string& path);
 
@@ -106,6 +108,9 @@ class WatchedTree {
   bool scheduled_ = false;
   bool ready_ = false;                    ///< to report after the transaction
   std::vector<std::int64_t> superseded_;  ///< the same
+  /// Not outlived by what is tracked, whose ends would give turns to others.
+  std::shared_ptr<StoreTurns> store_turns_ =
+      std::make_shared<StoreTurns>(kStoresAtOnce, [this](const std::string& head) { has_turn(head); });
   StorePoll stores_;
   boost::asio::steady_timer timer_;
   std::unique_ptr<DirectoryWatch> watch_;

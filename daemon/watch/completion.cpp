@@ -69,7 +69,8 @@ bool look_at(const std::string& path, struct stat& status) {
 
 }  // namespace
 
-CompletionRules completion_rules(const WatchConfig& watch, const std::string& path) {
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path,
+                                 const std::shared_ptr<StoreTurns>& turns) {
   CompletionRules rules;
   rules.policy = watch.complete;
   rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
@@ -77,7 +78,7 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.marker = watch.marker;
   if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
   if (is_store_head(path) && rules.policy != Completion::marker) {
-    rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle);
+    rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle, StoreTurn(turns, path));
   }
   return rules;
 }
@@ -131,7 +132,10 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
 
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
   CompletionAnswer answer = by_policy(sample, now);
-  if (answer.state != State::complete) return answer;
+  if (answer.state != State::complete) {
+    if (rules_.store) rules_.store->stop();  // others may take its turn
+    return answer;
+  }
   if (rules_.store) {
     StoreQuiet::Answer store = rules_.store->look(now);
     return store.quiet ? answer : CompletionAnswer{State::waiting, store.until, std::move(store.reason)};

@@ -50,7 +50,9 @@ struct CompletionRules {
 
 /// The rules for `path`, a source of `watch`. The expected size is that of a raw file: NAME_XxYxZ_TYPE.raw or
 /// dims and type (and offset) among the convert options.
-CompletionRules completion_rules(const WatchConfig& watch, const std::string& path);
+/// `turns`: where there are several Zarr hierarchies.
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path,
+                                 const std::shared_ptr<StoreTurns>& turns = {});
 
 /// What a path looks like now.
 struct FileSample {
