@@ -166,6 +166,7 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
       return when_unchanged(kCloseSettle, now);
     case Completion::size:
+      if (rules_.store || rules_.unwritten) return when_unchanged(rules_.settle, now);  // a directory
       if (!rules_.expected_bytes) {
         return {State::broken, {}, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type"};
       }

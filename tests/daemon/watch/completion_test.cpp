@@ -235,6 +235,26 @@ TEST_F(CompletionTest, APlotfileIsWaitedForUntilAllOfItIsWritten) {
   EXPECT_EQ(at(4.2).state, State::complete);
 }
 
+TEST_F(CompletionTest, BySize_DirectoriesHaveNoneAndAreTakenWhenNothingChanges) {
+  rules.policy = Completion::size;
+  bool written = false;
+  rules.unwritten = [&] { return std::string(written ? "" : "Level_1/Cell_H is not there"); };
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::closed)), 2);
+  EXPECT_EQ(at(2).reason, "Level_1/Cell_H is not there");
+  written = true;
+  EXPECT_EQ(at(4).state, State::complete);
+  const TemporaryDirectory directory;
+  WatchConfig watch;
+  watch.complete = Completion::size;
+  const std::string head = directory / "run.zarr/zarr.json";
+  std::filesystem::create_directory(directory / "run.zarr");
+  std::ofstream(head) << "{}";
+  FileCompletion store(completion_rules(watch, head));
+  EXPECT_EQ(store.look(sample_file(head, ""), start).reason, "it changed a moment ago");
+  EXPECT_EQ(store.look(sample_file(head, ""), start + 2s).reason, "it has 1 files, 2 B, and may still be written");
+  EXPECT_EQ(store.look(sample_file(head, ""), start + 4s).state, State::complete);
+}
+
 TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
   const TemporaryDirectory directory;
   const std::string header = directory / "plt00042/Header";
