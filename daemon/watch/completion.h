@@ -6,9 +6,8 @@
 //   close   a writer closed it; found without its writer: unchanged for settle
 //   rename  it has its name by a rename; found without its writer: at once
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
-//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; a
-//   directory,
-//           which has none: as stable
+//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; of a
+//           directory, which has none: as stable
 //   stable  unchanged for settle
 //   auto    renamed: at once
 //           closed: at once where its expected size is known and reached, else unchanged for kCloseSettle
