@@ -55,6 +55,10 @@ WatchedTree::WatchedTree(boost::asio::io_context& io, DiskTurns& turns, WatchCon
       store_(store),
       log_(log),
       reports_(std::move(reports)),
+      stores_(io, config_,
+              [this](const std::string& head) {
+                if (!tracked_.contains(head)) take({FileEventKind::found, head});  // else it is looked at anyway
+              }),
       timer_(io) {
   watch_ = make_directory_watch(io, config_,
                                 {[this](const FileEvent& event) { take(event); },
@@ -191,7 +195,9 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       default: {
         auto at = tracked_.find(event.path);
         if (at == tracked_.end()) {
-          at = tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path))}).first;
+          at =
+              tracked_.emplace(event.path, Tracked{FileCompletion(completion_rules(config_, event.path, store_turns_))})
+                  .first;
         }
         Tracked& tracked = at->second;
         tracked.completion.happened(event.kind, now);
@@ -215,7 +221,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
 void WatchedTree::look(const std::string& path, Time now) {
   FileSample sample;
   try {
-    sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "");
+    sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "", config_.convert_options);
   } catch (const Error& error) {  // of this file; the others go on
     if (!std::exchange(tracked_.at(path).unreachable, true)) {
       log_.warn("watch", {{"watch", config_.label}, {"notice", error.what()}});
@@ -228,6 +234,7 @@ void WatchedTree::look(const std::string& path, Time now) {
     gone(path);
     return;
   }
+  if (is_store_head(path)) stores_.seen(path, sample.identity);
   const JobStore::Observation seen = store_.observe(config_.label, path, sample.identity, options_);
   if (seen.change == JobStore::Change::created) {
     log_.info("discovered", {{"job", seen.job.id}, {"source", path}, {"bytes", sample.identity.bytes}});
@@ -291,14 +298,21 @@ void WatchedTree::track_until(const std::string& path, Time until) {
   if (until != Time::max()) agenda_.insert({until, path});
 }
 
+void WatchedTree::has_turn(const std::string& head) {
+  if (!tracked_.contains(head)) return;
+  track_until(head, Clock::now());
+  if (store_fault_.empty()) schedule(milliseconds(0));
+}
+
 void WatchedTree::forget(const std::string& path) {
   const auto at = tracked_.find(path);
   if (at == tracked_.end()) return;
   agenda_.erase({at->second.look, path});
-  tracked_.erase(at);
+  const auto ended = tracked_.extract(at);  // its end may give a turn to another one
 }
 
 void WatchedTree::gone(const std::string& path) {
+  stores_.forget(path);
   forget(path);
   const auto job = store_.find(config_.label, path);
   // A done job is the record of its result; a running one finds out by itself.

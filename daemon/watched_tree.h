@@ -26,6 +26,7 @@
 #include "daemon/store/job_store.h"
 #include "daemon/watch/completion.h"
 #include "daemon/watch/directory_watch.h"
+#include "daemon/watch/store_poll.h"
 
 namespace weir {
 
@@ -62,6 +63,7 @@ class WatchedTree {
  private:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kArrivalWindow{600};
+  static constexpr std::size_t kStoresAtOnce = 2;
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
@@ -83,6 +85,7 @@ class WatchedTree {
   bool tries_again(const std::string& path, const Job& job);
   void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);
   void track_until(const std::string& path, Time until);
+  void has_turn(const std::string& head);
   void forget(const std::string& path);
   void gone(const std::string& path);
 
@@ -105,6 +108,10 @@ class WatchedTree {
   bool scheduled_ = false;
   bool ready_ = false;                    ///< to report after the transaction
   std::vector<std::int64_t> superseded_;  ///< the same
+  /// Not outlived by what is tracked, whose ends would give turns to others.
+  std::shared_ptr<StoreTurns> store_turns_ =
+      std::make_shared<StoreTurns>(kStoresAtOnce, [this](const std::string& head) { has_turn(head); });
+  StorePoll stores_;
   boost::asio::steady_timer timer_;
   std::unique_ptr<DirectoryWatch> watch_;
   std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a wait that has ended may be called yet

@@ -13,6 +13,7 @@
 
 #include "daemon/jobs/worker_reason.h"
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
@@ -194,7 +195,7 @@ void ConversionJob::converted(const WorkerEnd& end) {
     fail(static_cast<int>(ErrorKind::internal), "convert ended well and announced no output");
   } else if (end.exit_code != 0) {
     fail(end.exit_code, failed_.empty() ? worker_reason(step_, end) : failed_);
-  } else if (const auto now = identify(task_.source); now && *now != task_.identity) {
+  } else if (const auto now = identify_source(task_.source, task_.convert_options); now && *now != task_.identity) {
     this->end(TaskEnd::source_changed);
   } else {
     next_ = 0;
@@ -232,7 +233,7 @@ void ConversionJob::verified(const WorkerEnd& end) {
 
 // The result is there: a picture of it, which takes longer than a small conversion, keeps nobody waiting for it.
 void ConversionJob::all_verified() {
-  const auto now = identify(task_.source);
+  const auto now = identify_source(task_.source, task_.convert_options);
   if (now && *now != task_.identity) {
     end(TaskEnd::source_changed);
     return;
@@ -307,7 +308,7 @@ void ConversionJob::fail(int exit_code, const std::string& reason) {
   }
   report_.result.exit_code = exit_code;
   report_.result.reason = reason;
-  const auto now = identify(task_.source);
+  const auto now = identify_source(task_.source, task_.convert_options);
   if (stopping_) {
     end(TaskEnd::stopped);
   } else if (is_gone(task_.source)) {

@@ -10,6 +10,7 @@
 #include "daemon/jobs/output_cleaning.h"
 #include "daemon/jobs/process_usage.h"
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 
@@ -143,7 +144,7 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
     return;
   }
   scheduler_.started(watch.label);
-  const auto now = identify(job.source);
+  const auto now = identify_source(job.source, watch.convert_options);
   if (now ? *now != job.identity : is_gone(job.source)) {
     source_changed(job);
     return;
@@ -231,7 +232,9 @@ std::int64_t JobRunner::settle_ms(const Job& job) const {
 
 // The job waits; from here on it is discovered with what is there now, or forgotten where nothing is.
 void JobRunner::source_changed(const Job& job) {
-  if (const auto now = identify(job.source)) {
+  const WatchConfig* watch = watch_of(job.watch);
+  if (const auto now =
+          identify_source(job.source, watch == nullptr ? std::vector<std::string>() : watch->convert_options)) {
     store_.observe(job.watch, job.source, *now, job.options);
   } else if (is_gone(job.source)) {
     store_.remove(job.id);

@@ -14,6 +14,7 @@
 #include "format/base/text.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/files/file_state.h"
+#include "ingest/files/input_directory.h"
 
 namespace weir {
 namespace {
@@ -166,6 +167,10 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   if (!lies_in(watch, job.source) || job.options != options_text(watch) ||
       !PathFilter(watch).accepts_file(job.source.substr(watch.directory.size() + 1))) {
     keep(job, "the watch does not take it any more, or converts it otherwise");
+    return Outcome::over;
+  }
+  if (is_head(job.source)) {
+    keep(job, "it stands for a directory, whose files are never deleted");
     return Outcome::over;
   }
   const auto identity = identify(job.source);

@@ -5,7 +5,8 @@
 //   2. `delete_after` seconds have passed since, in this process, and the source is the file that was converted:
 //      by size, time and inode (FileIdentity), and no status of it is younger than its certificate;
 //   3. every output is there with the size it had, and its certificate is of this source, and of this file alone:
-//      data that a header names may be another header's, too, so that such sources stay;
+//      data that a header names may be another header's, too, so that such sources stay, and a source that stands for
+//      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says;
 //   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
 //      Where that cannot be known, the writer must say itself that it is done (says_when_done).
 // Jobs of an earlier process are taken up a few at a time. One thread, that of the io_context.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
@@ -68,7 +69,8 @@ bool look_at(const std::string& path, struct stat& status) {
 
 }  // namespace
 
-CompletionRules completion_rules(const WatchConfig& watch, const std::string& path) {
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path,
+                                 const std::shared_ptr<StoreTurns>& turns) {
   CompletionRules rules;
   rules.policy = watch.complete;
   rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
@@ -76,20 +78,27 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.marker = watch.marker;
   if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
   if (is_store_head(path) && rules.policy != Completion::marker) {
-    rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle);
+    rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle, StoreTurn(turns, path));
   }
   return rules;
 }
 
-FileSample sample_file(const std::string& path, const std::string& marker) {
+FileSample sample_file(const std::string& path, const std::string& marker,
+                       const std::vector<std::string>& convert_options) {
   FileSample sample;
   struct stat status {};
   if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
   if (is_plotfile_head(path) && !is_plotfile_header(path)) return sample;
   // A hierarchy may have the metadata of both versions.
-  if (is_store_head(path) && head_in_directory(std::string(named_by_head(path))) != path) return sample;
+  if (is_store_head(path)) {
+    if (head_in_directory(std::string(named_by_head(path))) != path) return sample;
+    const auto identity = identify_source(path, convert_options);
+    if (!identity) throw Error(ErrorKind::io, cat(path, ": its metadata cannot be looked at; looked at again"));
+    sample.identity = *identity;
+  } else {
+    sample.identity = identity_of(status);
+  }
   sample.exists = true;
-  sample.identity = identity_of(status);
   sample.marked = !marker.empty() && look_at(path + marker, status);
   return sample;
 }
@@ -123,7 +132,10 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
 
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
   CompletionAnswer answer = by_policy(sample, now);
-  if (answer.state != State::complete) return answer;
+  if (answer.state != State::complete) {
+    if (rules_.store) rules_.store->stop();  // others may take its turn
+    return answer;
+  }
   if (rules_.store) {
     StoreQuiet::Answer store = rules_.store->look(now);
     return store.quiet ? answer : CompletionAnswer{State::waiting, store.until, std::move(store.reason)};
@@ -154,6 +166,7 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
       return when_unchanged(kCloseSettle, now);
     case Completion::size:
+      if (rules_.store || rules_.unwritten) return when_unchanged(rules_.settle, now);  // a directory
       if (!rules_.expected_bytes) {
         return {State::broken, {}, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type"};
       }

@@ -6,7 +6,8 @@
 //   close   a writer closed it; found without its writer: unchanged for settle
 //   rename  it has its name by a rename; found without its writer: at once
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
-//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle
+//   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; of a
+//           directory, which has none: as stable
 //   stable  unchanged for settle
 //   auto    renamed: at once
 //           closed: at once where its expected size is known and reached, else unchanged for kCloseSettle
@@ -25,6 +26,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "daemon/config/config.h"
 #include "daemon/store/job.h"
@@ -49,7 +51,9 @@ struct CompletionRules {
 
 /// The rules for `path`, a source of `watch`. The expected size is that of a raw file: NAME_XxYxZ_TYPE.raw or
 /// dims and type (and offset) among the convert options.
-CompletionRules completion_rules(const WatchConfig& watch, const std::string& path);
+/// `turns`: where there are several Zarr hierarchies.
+CompletionRules completion_rules(const WatchConfig& watch, const std::string& path,
+                                 const std::shared_ptr<StoreTurns>& turns = {});
 
 /// What a path looks like now.
 struct FileSample {
@@ -60,9 +64,11 @@ struct FileSample {
   bool marked = false;  ///< path + marker exists
 };
 
-/// Looks at the file system. `marker` empty: not looked for. Throws Error(io) where it cannot be looked at for
-/// another reason than that nothing is there.
-FileSample sample_file(const std::string& path, const std::string& marker);
+/// Looks at the file system. `marker` empty: not looked for. `convert_options` say which metadata of a Zarr hierarchy
+/// belong to the source (identify_source). Throws Error(io) where it cannot be looked at for another reason than that
+/// nothing is there.
+FileSample sample_file(const std::string& path, const std::string& marker,
+                       const std::vector<std::string>& convert_options = {});
 
 struct CompletionAnswer {
   enum class State {

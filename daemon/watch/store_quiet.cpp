@@ -1,9 +1,7 @@
 #include "daemon/watch/store_quiet.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <system_error>
+#include <utility>
 
 #include "format/base/text.h"
 #include "ingest/files/input_directory.h"
@@ -11,10 +9,8 @@
 namespace weir {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::size_t kFilesAtOnce = 1024;
 constexpr std::chrono::nanoseconds kLeastSettle = std::chrono::milliseconds(100);  // settle may be 0
+constexpr std::chrono::seconds kQueued{10};  // it is told when its turn comes; this is for where that is lost
 
 bool names_store(std::string_view component) { return component.size() > 5 && component.ends_with(".zarr"); }
 
@@ -24,18 +20,6 @@ std::string_view directory_of_path(std::string_view path) {
 }
 
 std::string_view last_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
-
-// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014 (the mixer of SplitMix64).
-std::uint64_t mixed(std::uint64_t value) {
-  value += 0x9E3779B97F4A7C15U;
-  value = (value ^ value >> 30U) * 0xBF58476D1CE4E5B9U;
-  value = (value ^ value >> 27U) * 0x94D049BB133111EBU;
-  return value ^ value >> 31U;
-}
-
-std::uint64_t nanoseconds(const struct timespec& time) {
-  return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(time.tv_nsec);
-}
 
 }  // namespace
 
@@ -55,59 +39,36 @@ bool is_store_head(std::string_view path) {
 
 StoreQuiet::Answer StoreQuiet::look(Time now) {
   const auto pause = std::chrono::duration_cast<Time::duration>(std::max(settle_, kLeastSettle));
-  if (!at_) {
-    std::error_code error;
-    at_.emplace(directory_, fs::directory_options::skip_permission_denied, error);
-    if (error) at_.reset();
-    if (error) return {false, now + pause, cat("cannot be listed: ", error.message())};
-    found_ = {};
+  if (!look_) {
+    if (!turn_.take())
+      return {false, now + std::max<Time::duration>(pause, kQueued), "others are looked through before"};
+    look_.emplace(directory_);
     begun_ = now;
   }
-  if (!step()) return {false, now, cat("its files are looked through, ", found_.files, " so far")};
-  const bool same = before_ == found_;
+  if (look_->step()) return {false, now, cat("its files are looked through, ", look_->found().files, " so far")};
+  const StoreLook::Found found = look_->found();
+  std::string fault = look_->fault();
+  stop();
+  if (!fault.empty()) {  // what was not seen may be what changes
+    before_.reset();
+    return {false, now + pause, std::move(fault)};
+  }
+  const bool same = before_ == found;
   const bool long_enough = same && begun_ - before_end_ >= pause;
   if (long_enough) return {true, {}, {}};
   const bool first = !before_;
   if (!same) {
-    before_ = found_;
+    before_ = found;
     before_end_ = now;
   }
   return {false, before_end_ + pause,
-          cat("it has ", found_.files, " files, ", format_bytes(found_.bytes),
+          cat("it has ", found.files, " files, ", format_bytes(found.bytes),
               first ? ", and may still be written" : ", and changed a moment ago")};
 }
 
-// Whether all is looked through. What vanishes meanwhile is a change, which the next look finds.
-bool StoreQuiet::step() {
-  std::error_code error;
-  for (std::size_t n = 0; n < kFilesAtOnce; ++n) {
-    if (*at_ == fs::recursive_directory_iterator()) {
-      at_.reset();
-      return true;
-    }
-    add((*at_)->path());
-    at_->increment(error);
-    if (!error) continue;
-    at_.reset();
-    found_.states = ~found_.states;
-    return true;
-  }
-  return false;
-}
-
-void StoreQuiet::add(const fs::path& path) {
-  struct stat status {};
-  if (::lstat(path.c_str(), &status) != 0) return;
-  const bool directory = S_ISDIR(status.st_mode);
-  std::uint64_t state = mixed(status.st_ino);
-  for (const std::uint64_t part :
-       {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim), nanoseconds(status.st_ctim)}) {
-    state = mixed(state ^ part);
-  }
-  found_.states += state;
-  if (directory) return;
-  ++found_.files;
-  found_.bytes += static_cast<std::uint64_t>(status.st_size);
+void StoreQuiet::stop() {
+  look_.reset();
+  turn_.give_back();
 }
 
 }  // namespace weir

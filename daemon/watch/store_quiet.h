@@ -3,13 +3,13 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "daemon/watch/store_look.h"
+#include "daemon/watch/store_turns.h"
 
 namespace weir {
 
@@ -25,8 +25,8 @@ class StoreQuiet {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  StoreQuiet(std::string directory, std::chrono::nanoseconds settle)
-      : directory_(std::move(directory)), settle_(settle) {}
+  StoreQuiet(std::string directory, std::chrono::nanoseconds settle, StoreTurn turn = {})
+      : directory_(std::move(directory)), settle_(settle), turn_(std::move(turn)) {}
 
   struct Answer {
     bool quiet = false;  ///< two looks, `settle` or more between them, found the same files, sizes and times
@@ -34,26 +34,16 @@ class StoreQuiet {
     std::string reason;  ///< else, in words
   };
   Answer look(Time now);
+  /// Ends a look in progress, which then has found nothing.
+  void stop();
 
  private:
-  /// Of all files and directories: sums, whatever the order they are listed in.
-  struct Found {
-    std::uint64_t files = 0;
-    std::uint64_t bytes = 0;
-    std::uint64_t states = 0;
-
-    bool operator==(const Found&) const = default;
-  };
-
-  bool step();
-  void add(const std::filesystem::path& path);
-
   std::string directory_;
   std::chrono::nanoseconds settle_;
-  std::optional<std::filesystem::recursive_directory_iterator> at_;  ///< of a look in progress
-  Found found_;                                                      ///< in it
+  StoreTurn turn_;
+  std::optional<StoreLook> look_;  ///< in progress
   Time begun_{};
-  std::optional<Found> before_;  ///< of the last whole look
+  std::optional<StoreLook::Found> before_;  ///< of the last look, where it was a whole one
   Time before_end_{};
 };
 

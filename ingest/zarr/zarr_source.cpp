@@ -80,10 +80,9 @@ class ZarrSource final : public VolumeSource {
 
   void note_files(const ChosenArray& chosen) {
     FileStates files;
-    const std::string document = store_->file_of(chosen.node.document);
-    files.add(document, chunks_.scan().digest);
+    files.add(store_->file_of(chosen.node.document), chunks_.scan().digest);
     const FileState& state = files.files().front();
-    const bool alone = document == info_.path;  // a zip file: its chunks lie in it
+    const bool alone = store_->is_one_file();
     info_.file_bytes = alone ? state.bytes : state.bytes + chunks_.scan().bytes;
     info_.mtime_ns = std::max(state.mtime_ns, chunks_.scan().mtime_ns);
     info_.files_digest = alone ? std::string() : files.digest();

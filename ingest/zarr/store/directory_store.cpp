@@ -36,6 +36,7 @@ class DirectoryStore final : public ZarrStore {
 
   std::string shown(std::string_view key) const override { return joined_key(directory_, key); }
   std::string file_of(const std::string& key) const override { return shown(key); }
+  bool is_one_file() const override { return false; }
 
   std::optional<ZarrObjectState> look(const std::string& key) override {
     const std::string path = shown(key);

@@ -48,6 +48,8 @@ class ZarrStore {
   virtual std::vector<std::string> groups_in(const std::string& key) = 0;
   /// The file that the object at `key` lies in.
   virtual std::string file_of(const std::string& key) const = 0;
+  /// Whether all objects lie in one file, the zip file.
+  virtual bool is_one_file() const = 0;
   /// Memory that it holds, in bytes.
   virtual std::uint64_t held_bytes() const { return 0; }
 

@@ -107,6 +107,7 @@ class ZipStore final : public ZarrStore {
     return key.empty() ? file_.path() : cat(file_.path(), ": ", key);
   }
   std::string file_of(const std::string&) const override { return file_.path(); }
+  bool is_one_file() const override { return true; }
   std::uint64_t held_bytes() const override { return held_; }
 
   std::optional<ZarrObjectState> look(const std::string& key) override {

@@ -207,6 +207,21 @@ TEST_F(SourceDeletionTest, ValuesInSeveralFiles_Stay) {
   EXPECT_TRUE(logged("its values lie in several files, which other headers may name"));
 }
 
+// Its certificate may be of one file: where the hierarchy has no chunk yet.
+TEST_F(SourceDeletionTest, HeadOfADirectory_Stays) {
+  config_.watches[0].recursive = true;
+  fs::create_directory(directory_ / "in/a.zarr");
+  for (const char* head : {"zarr.json", ".zgroup", ".zarray"}) {
+    source_ = directory_ / "in/a.zarr/" + head;
+    write_file(source_, "values");
+    std::this_thread::sleep_for(milliseconds(20));
+    write_output("");
+    delete_done();
+    EXPECT_TRUE(stays()) << head;
+    EXPECT_TRUE(logged(source_ + " reason=\"it stands for a directory, whose files are never deleted\"")) << head;
+  }
+}
+
 TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsDeleted) {
   convert();
   deletion_.configure(config_);

@@ -82,6 +82,24 @@ TEST_P(WatchZarr, WithMarkers_TheMarkerSaysIt) {
   EXPECT_EQ(service.difference("a.zarr", "a.nvdb", {"--lossless"}), "");
 }
 
+TEST(WatchZarrDeletion, AStoreWhoseMetadataAreItsNewestFile_IsKeptWhole) {
+  ServiceHarness service("", keys("inotify", "settle = 0.2\nsource = \"delete-after-verify\"\ndelete_after = 0.1\n"));
+  for (const int version : {2, 3}) {
+    const std::string store = service.in(cat("v", version, ".zarr"));
+    for (int chunk = 0; chunk < kChunks; ++chunk) add_chunk(store, version, chunk);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a tick of the clock of files
+    begin(store, version);
+  }
+  service.start();
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] {
+    return service.logged(" not-deleted ") + service.logged(" deleted ") == 2;
+  })) << service.log();
+  EXPECT_EQ(service.logged(" deleted "), 0U) << service.log();
+  EXPECT_TRUE(fs::exists(service.in("v2.zarr/.zarray")));
+  EXPECT_TRUE(fs::exists(service.in("v3.zarr/zarr.json")));
+}
+
 TEST(WatchZarrAgain, AStoreThatIsAppendedTo_IsConvertedAgain) {
   ServiceHarness service("", keys("inotify", "settle = 0.3\n"));
   const std::string store = service.in("a.zarr");
@@ -94,6 +112,38 @@ TEST(WatchZarrAgain, AStoreThatIsAppendedTo_IsConvertedAgain) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" start ") == 2; })) << service.log();
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(service.difference("a.zarr", "a.nvdb", {"--lossless"}), "");
+}
+
+/// A group of version 2 with one array, density, of `steps` steps of 8 x 16 x 16 bytes; the last one is written anew.
+void write_steps(const std::string& group, int steps) {
+  const std::string array = group + "/density";
+  fs::create_directories(array);
+  if (!fs::exists(group + "/.zgroup")) std::ofstream(group + "/.zgroup") << R"({"zarr_format": 2})";
+  std::string values(8 * 16 * 16, '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<char>(static_cast<int>(i % 11) * steps);
+  std::ofstream(cat(array, '/', steps - 1, ".0.0.0"), std::ios::binary) << values;
+  std::ofstream(array + "/.zarray") << R"({"zarr_format": 2, "shape": [)" << steps
+                                    << R"(, 8, 16, 16], "chunks": [1, 8, 16, 16], "dtype": "|u1", )"
+                                    << R"("compressor": null, "fill_value": 0, "order": "C", "filters": null})";
+}
+
+TEST_P(WatchZarr, AStepAppendedToAnArrayOfAGroup_IsConvertedWhileItRunsAndAfterARestart) {
+  ServiceHarness service("", keys(GetParam(), "settle = 0.3\ndataset = \"density\"\nindex = \"-1\"\n"));
+  const std::string group = service.in("run.zarr");
+  const auto expect_converted = [&](std::size_t times) {
+    ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" start ") == times; })) << service.log();
+    ASSERT_TRUE(service.eventually_done(1)) << service.log();
+    EXPECT_EQ(service.difference("run.zarr", "run.nvdb", {"--lossless", "--dataset=density", "--index=-1"}), "");
+  };
+  write_steps(group, 1);
+  service.start();
+  expect_converted(1);
+  write_steps(group, 2);
+  expect_converted(2);
+  service.stop();
+  write_steps(group, 3);
+  service.start();
+  expect_converted(3);
 }
 
 }  // namespace

@@ -235,6 +235,26 @@ TEST_F(CompletionTest, APlotfileIsWaitedForUntilAllOfItIsWritten) {
   EXPECT_EQ(at(4.2).state, State::complete);
 }
 
+TEST_F(CompletionTest, BySize_DirectoriesHaveNoneAndAreTakenWhenNothingChanges) {
+  rules.policy = Completion::size;
+  bool written = false;
+  rules.unwritten = [&] { return std::string(written ? "" : "Level_1/Cell_H is not there"); };
+  EXPECT_DOUBLE_EQ(again(at(0, Kind::closed)), 2);
+  EXPECT_EQ(at(2).reason, "Level_1/Cell_H is not there");
+  written = true;
+  EXPECT_EQ(at(4).state, State::complete);
+  const TemporaryDirectory directory;
+  WatchConfig watch;
+  watch.complete = Completion::size;
+  const std::string head = directory / "run.zarr/zarr.json";
+  std::filesystem::create_directory(directory / "run.zarr");
+  std::ofstream(head) << "{}";
+  FileCompletion store(completion_rules(watch, head));
+  EXPECT_EQ(store.look(sample_file(head, ""), start).reason, "it changed a moment ago");
+  EXPECT_EQ(store.look(sample_file(head, ""), start + 2s).reason, "it has 1 files, 2 B, and may still be written");
+  EXPECT_EQ(store.look(sample_file(head, ""), start + 4s).state, State::complete);
+}
+
 TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
   const TemporaryDirectory directory;
   const std::string header = directory / "plt00042/Header";
@@ -249,6 +269,35 @@ TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
             directory / "plt00042/Level_0/Cell_H: cannot open for reading: No such file or directory");
   std::ofstream(header) << "CheckPointVersion_1.0\n";
   EXPECT_FALSE(sample_file(header, "").exists);
+}
+
+TEST(ZarrCompletion, IdentityIsOfTheMetadataOnTheWayToTheDataset) {
+  const TemporaryDirectory directory;
+  const std::string store = directory / "run.zarr";
+  const std::string head = store + "/.zgroup";
+  std::filesystem::create_directories(store + "/a/rho");
+  std::filesystem::create_directories(store + "/b");
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(store + '/' + name) << text;
+  };
+  write(".zgroup", "{}");
+  const auto identity = [&](const std::string& option) { return sample_file(head, "", {option}).identity; };
+  const auto changes = [&](const std::string& option, const std::string& name, const std::string& text) {
+    const FileIdentity before = identity(option);
+    EXPECT_EQ(identity(option), before);
+    write(name, text);
+    return !(identity(option) == before);
+  };
+  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 2U);
+  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/.zgroup", "{ }"));
+  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/rho/.zarray", "1234"));
+  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 9U);
+  EXPECT_TRUE(changes("--dataset=a/rho", "a/rho/.zattrs", "1"));
+  EXPECT_TRUE(changes("--dataset=a/rho", ".zmetadata", "1"));
+  EXPECT_FALSE(changes("--dataset=a/rho", "b/.zarray", "1"));
+  EXPECT_FALSE(changes("--dataset=a/rho", "a/rho/0.0.0", "1"));
+  EXPECT_TRUE(changes("--magnitude=a/rho,b", "b/.zarray", "12"));
+  EXPECT_FALSE(changes("--lossless", "a/rho/.zarray", "1"));
 }
 
 TEST(ZarrCompletion, SamplesAreOfTheFileThatSaysWhatItIs) {

@@ -1,10 +1,14 @@
 #include "daemon/watch/store_quiet.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/support/temporary_directory.h"
 
@@ -98,6 +102,54 @@ TEST_F(StoreQuietTest, ADirectoryThatCannotBeListed_IsSaid) {
   EXPECT_FALSE(answer.quiet);
   EXPECT_DOUBLE_EQ(seconds(answer.until), 2);
   EXPECT_EQ(answer.reason, "cannot be listed: No such file or directory");
+}
+
+TEST_F(StoreQuietTest, ChunksBehindALink_AreLookedThrough) {
+  fs::create_directories(directory_ / "elsewhere/deep");
+  fs::create_directory_symlink(directory_ / "elsewhere", store_ + "/linked");
+  fs::create_symlink(directory_ / "one", store_ + "/c/0/1");
+  EXPECT_EQ(look(0).reason, "it has 3 files, 6 B, and may still be written")
+      << "what the link leads to is not there yet";
+  std::ofstream(directory_ / "one") << "12";
+  EXPECT_EQ(look(2).reason, "it has 3 files, 8 B, and changed a moment ago");
+  std::ofstream(directory_ / "elsewhere/deep/chunk") << "123";
+  EXPECT_EQ(look(4).reason, "it has 4 files, 11 B, and changed a moment ago");
+  std::ofstream(directory_ / "elsewhere/deep/chunk") << "1234";
+  EXPECT_EQ(look(6).reason, "it has 4 files, 12 B, and changed a moment ago");
+  EXPECT_TRUE(look(8).quiet);
+}
+
+TEST_F(StoreQuietTest, LinksThatLeadBack_AreFollowedOnce) {
+  for (const char* name : {"/self", "/c/up", "/c/0/root"}) fs::create_directory_symlink(store_, store_ + name);
+  fs::create_directory(directory_ / "elsewhere");
+  for (const char* name : {"elsewhere/a", "elsewhere/b"}) {
+    fs::create_directory_symlink(directory_ / "elsewhere", directory_ / name);
+  }
+  for (const char* name : {"/x", "/y"}) fs::create_directory_symlink(directory_ / "elsewhere", store_ + name);
+  std::ofstream(directory_ / "elsewhere/chunk") << "123";
+  EXPECT_EQ(look(0).reason, "it has 3 files, 9 B, and may still be written");
+  EXPECT_TRUE(look(2).quiet);
+}
+
+// Of a server that fails, or of a process that may open no more files.
+TEST_F(StoreQuietTest, ADirectoryInItThatCannotBeListed_IsNeverQuiet) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int next = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(next, 0);
+  ::close(next);
+  const rlimit one_more{static_cast<rlim_t>(next) + 1, before.rlim_max};  // the hierarchy, and nothing in it
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &one_more), 0);
+  std::vector<StoreQuiet::Answer> answers;
+  for (int i = 0; i < 3; ++i) answers.push_back(look(2 * i));
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    EXPECT_FALSE(answers[i].quiet) << i;
+    EXPECT_DOUBLE_EQ(seconds(answers[i].until), 2.0 * static_cast<double>(i) + 2) << i;
+    EXPECT_EQ(answers[i].reason, "c cannot be listed: Too many open files") << i;
+  }
+  EXPECT_EQ(look(6).reason, "it has 2 files, 6 B, and may still be written") << "from the beginning";
+  EXPECT_TRUE(look(8).quiet);
 }
 
 TEST(StoreHead, IsThatOfTheOuterDirectoryOfSuchAName) {

@@ -31,6 +31,23 @@ TEST(ZarrSource, ChunksThatAreNotStored_ReadAsTheFillValueAndAreCounted) {
   EXPECT_EQ(files.read(options), (std::vector<float>{0, 1, 100, 2, 3, 102, 4, 5, 104, 6, 7, 106}));
 }
 
+TEST(ZarrSource, HierarchyNamedByItsHead_HasTheSameRecordAsByItsDirectory) {
+  for (const char* head : {"zarr.json", ".zarray"}) {
+    const ZarrFiles files;
+    const bool old = std::string_view(head) == ".zarray";
+    files.write(head, old ? zarray("[1,1,4]", "[1,1,2]") : zarr_json("[1,1,4]", "[1,1,2]"));
+    files.write_values(old ? "0.0.0" : "c/0/0/0", counted(2));
+    files.write_values(old ? "0.0.1" : "c/0/0/1", counted(2));
+    const auto by_directory = open_source(files.path(), {});
+    const auto by_head = open_source(files.path(head), {});
+    EXPECT_EQ(by_head->info().file_bytes, std::filesystem::file_size(files.path(head)) + 4) << head;
+    EXPECT_EQ(by_head->info().file_bytes, by_directory->info().file_bytes) << head;
+    EXPECT_EQ(by_head->info().files_digest.size(), 32U) << head;
+    EXPECT_EQ(by_head->info().files_digest, by_directory->info().files_digest) << head;
+    EXPECT_EQ(by_head->info().mtime_ns, by_directory->info().mtime_ns) << head;
+  }
+}
+
 TEST(ZarrSource, FillValueNull_IsRefusedWhereAChunkIsNotStored) {
   const ZarrFiles files;
   files.write(".zarray", zarray("[1,1,4]", "[1,1,2]", "|u1", "null"));

@@ -1,0 +1,18 @@
+// The identity of a source: of a file, or of the metadata of a Zarr hierarchy in a directory.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/store/job.h"
+
+namespace weir {
+
+/// That of the file at `path`, as identify() says. Where the file is the head of a Zarr hierarchy: also of the metadata
+/// of the groups and arrays on the way to what --dataset or --magnitude among `convert_options` name: the total size,
+/// the newest time, and an inode that is another one wherever a state of those files is. So a step that is appended to
+/// an array of a group makes another identity. None where one of the files cannot be looked at.
+std::optional<FileIdentity> identify_source(const std::string& path, const std::vector<std::string>& convert_options);
+
+}  // namespace weir
