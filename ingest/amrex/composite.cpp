@@ -78,6 +78,14 @@ ConversionLoss Composite::read(const Box& box, std::span<float> values) {
   return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);
 }
 
+std::vector<Box> Composite::voxels_with_values(const Box& box) const {
+  if (!own_) return {box};
+  std::vector<Box> boxes;
+  for (const CoverPart& part : own_parts(plotfile_.levels, wanted_, plotfile_.levels.size() - 1, box))
+    boxes.push_back(part.box);
+  return boxes;
+}
+
 std::vector<CoverPart> Composite::parts_of(const Box& box, std::span<float> values) const {
   if (!own_) {
     LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
