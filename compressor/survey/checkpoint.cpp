@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 4 ";
+constexpr std::string_view kFormat = "weir checkpoint 5 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }

@@ -99,7 +99,7 @@ TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
 
 TEST(Checkpoint, DamagedCheckpointIsRejected) {
   const std::string text = to_text(sample());
-  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 4 ");
+  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 5 ");
   for (std::size_t length = 0; length < text.size(); ++length) {
     EXPECT_FALSE(parse_checkpoint(std::string_view(text).substr(0, length))) << length;
   }
