@@ -167,6 +167,8 @@ ConversionLoss Composite::read_tile(std::size_t level, const Box& box, std::span
 std::uint64_t Composite::working_bytes() const {
   std::uint64_t boxes = 0;
   for (const PlotfileLevel& level : plotfile_.levels) boxes += level.boxes.size() * kBytesPerBox;
+  for (std::size_t level = wanted_ + 1; level < plotfile_.levels.size(); ++level)
+    boxes += plotfile_.levels[level].boxes.size() * kBytesPerFinerBox;
   constexpr std::uint64_t kParts = std::uint64_t{2} << 20U;  // of a block of the smallest boxes there are
   constexpr std::uint64_t kTileBytes = kTile * kTile * kTile * sizeof(float);
   return boxes + kParts + (upsampling_ == Upsampling::linear ? 2 * kIoThreads * kTileBytes : 0);
