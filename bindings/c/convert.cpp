@@ -7,6 +7,7 @@
 #include "bindings/c/status.h"
 #include "bindings/c/versioned_struct.h"
 #include "bindings/c/weir.h"
+#include "compressor/levels/level_budgets.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/surveyed_conversion.h"
@@ -129,10 +130,13 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     }
     const std::vector<SeriesStep> levels = expand_series(std::vector{path}, source_options);
     const std::vector<std::string> outputs = series_outputs(levels, conversion.output, source_options);
+    const auto open = [&](const SeriesStep& level) {
+      return open_source(path, options_of_step(source_options, level));
+    };
     for (std::size_t i = 0; i < levels.size(); ++i) {
+      check_level_budgets(levels, outputs, i, conversion, open);
       conversion.output = outputs[i];
-      convert(*open_source(path, options_of_step(source_options, levels[i])), conversion, given,
-              *make_posix_file_system());
+      convert(*open(levels[i]), conversion, given, *make_posix_file_system());
     }
   });
 }

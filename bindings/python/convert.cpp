@@ -13,6 +13,7 @@
 #include "bindings/python/watch.h"
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
+#include "compressor/levels/level_budgets.h"
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
@@ -140,6 +141,7 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
     request.source.spool_directory =
         request.conversion.work_dir.empty() ? directory_of(outputs[i]) : request.conversion.work_dir;
     const auto open = [&](const Notice&) {
+      check_level_budgets(steps, outputs, i, request.conversion, open_step);
       std::unique_ptr<VolumeSource> opened = open_step(steps[i]);
       extents.check(steps[i], opened->info());
       return opened;

@@ -108,7 +108,7 @@ class LowerWriter {
           if (width == LeafWidth::tile) {
             const LeafRow& row = rows.at(leaf);
             const float value = parts_.fill.leaf_value(row);
-            const bool active = parts_.fill.active(row.finite) && voxels == leaf_node;
+            const bool active = parts_.fill.active(row.valued()) && voxels == leaf_node;
             image.set_tile(entry, value, active);
             if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
             cells.add_tile(voxels, value);
@@ -180,7 +180,7 @@ class LowerWriter {
       }
       const LeafRow& row = rows.at(leaf);
       const float value = parts_.fill.leaf_value(row);
-      const bool active = voxels == leaf_node && parts_.fill.active(row.finite);
+      const bool active = voxels == leaf_node && parts_.fill.active(row.valued());
       image.set_tile(entry, value, active);
       if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
     });
@@ -236,7 +236,7 @@ NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std
     }
     const Index3 at = tree.region_lattice.position(r);
     const float value = tile_value(parts.fill, region.sums);
-    const bool active = parts.fill.active(region.sums.finite) && !tree.region_lattice.overhangs(at);
+    const bool active = parts.fill.active(region.sums.valued) && !tree.region_lattice.overhangs(at);
     image.set_tile(entry, value, active);
     if (active) table.add_tile(value, kLowerDim, tree.region_lattice.node_box(at).lo);
   });
@@ -268,7 +268,7 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
       total.add(write_upper(parts, u, lowers.statistics, image, out, head.active_tiles[1]));
     } else {
       tile.value = tile_value(parts.fill, upper.sums);
-      tile.active = has_nodes && parts.fill.active(upper.sums.finite) && !tree.upper_lattice.overhangs(at);
+      tile.active = has_nodes && parts.fill.active(upper.sums.valued) && !tree.upper_lattice.overhangs(at);
       if (tile.active) {
         total.add_tile(tile.value, static_cast<std::uint64_t>(kUpperDim * kUpperDim * kUpperDim),
                        tree.upper_lattice.node_box(at));

@@ -21,7 +21,7 @@ struct Fill {
   float background = 0;
   NonFinitePolicy non_finite = NonFinitePolicy::error;
   /// Missing voxels are inactive, and read the background (ValueMapping::gaps): no tile stands for some of them and for
-  /// others.
+  /// others. NaN and infinite values that are stored are active: their leaves are always kept.
   bool gaps = false;
 
   /// Value of the tile that replaces a leaf.
@@ -36,13 +36,16 @@ struct Fill {
     if (row.finite > 0 && !(row.uniform() && same(row.mean, value))) return false;
     return row.finite == voxels || (non_finite != NonFinitePolicy::keep && same(background, value));
   }
+  /// Whether a leaf has to be kept for its active voxels that are not finite.
+  bool keeps_active(const LeafRow& row) const { return gaps && row.non_finite != 0; }
   /// Whether a node over `voxels`, in the domain or not, `finite` of which have values, must not become one tile.
   bool splits(std::uint64_t finite, std::int64_t voxels) const {
     return gaps && finite > 0 && std::cmp_less(finite, voxels);
   }
   /// Dropped blocks inside the domain are active tiles where they carry a mean; background is inactive.
   bool active() const { return mode == FillMode::mean; }
-  bool active(std::uint64_t finite) const { return active() && !(gaps && finite == 0); }
+  /// `valued`: whether any voxel has a value.
+  bool active(bool valued) const { return active() && (valued || !gaps); }
 };
 
 }  // namespace weir

@@ -31,7 +31,7 @@ struct Sums {
   double code_values = 0;  // code * deviation
 };
 
-struct Levels {
+struct CodeLevels {
   float minimum;
   float quantum;
   float reciprocal;
@@ -61,7 +61,7 @@ double sum(const Floats16& lanes) {
 }
 
 // The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats16& v, const Levels& l, Floats16& code) {
+[[gnu::always_inline]] inline void nearest(const Floats16& v, const CodeLevels& l, Floats16& code) {
   const Floats16 zero{};
   const Floats16 top = l.top - zero;
   Floats16 t = (v - l.minimum) * l.reciprocal;
@@ -84,8 +84,8 @@ WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, flo
 }
 
 // All but the squares.
-WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const Levels& levels) {
-  const Levels l = levels;
+WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
+  const CodeLevels l = levels;
   Floats16 codes{};
   Floats16 code_squares{};
   Floats16 code_values{};
@@ -104,8 +104,8 @@ WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t 
 }
 
 // The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
-WEIR_SIMD double measure(const float* values, std::size_t count, const Levels& levels, float scale) {
-  const Levels l = levels;
+WEIR_SIMD double measure(const float* values, std::size_t count, const CodeLevels& levels, float scale) {
+  const CodeLevels l = levels;
   Floats16 squares{};
   for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
     Floats16 v;
@@ -118,8 +118,8 @@ WEIR_SIMD double measure(const float* values, std::size_t count, const Levels& l
   return sum(squares);
 }
 
-WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const Levels& levels, std::uint16_t* codes) {
-  const Levels l = levels;
+WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes) {
+  const CodeLevels l = levels;
   for (std::size_t i = 0; i < count; ++i) {
     float t = (values[i] - l.minimum) * l.reciprocal;
     t = t > 0.0F ? t : 0.0F;
@@ -130,7 +130,7 @@ WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const Level
 
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
-Levels levels_of(const Quantiser& q) {
+CodeLevels levels_of(const Quantiser& q) {
   return {q.minimum, q.quantum, q.quantum > 0 ? 1 / q.quantum : 0.0F, static_cast<float>(q.top)};
 }
 
@@ -237,7 +237,7 @@ class Fitter {
 
  private:
   Sums assigned(const Quantiser& q) const {
-    const Levels levels = levels_of(q);
+    const CodeLevels levels = levels_of(q);
     Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
     if (bits_ >= 8) {
       sums.squares = measure(values_.data(), values_.size(), levels, scale_);

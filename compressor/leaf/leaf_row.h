@@ -13,10 +13,14 @@ struct LeafRow : BlockSummary {
   /// Squared error at 1, 2 and 4 bits a voxel, estimated, in parts of `sse`; 1 where it was not looked at.
   std::array<float, 3> quantised{1, 1, 1};
   /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the values without loss; 0: more, or not looked at.
-  std::uint16_t exact_bits = 0;
+  std::uint8_t exact_bits = 0;
+  /// 1 where a voxel is NaN or infinite as it is stored, and not missing.
+  std::uint8_t non_finite = 0;
   /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at.
   std::uint16_t at_ends = 0;
 
+  /// Whether any voxel has a value, finite or not.
+  bool valued() const { return finite > 0 || non_finite != 0; }
   /// Sum over the finite values of (value - fill)^2; exact up to double rounding.
   double sse_about(float fill) const {
     const double shift = static_cast<double>(mean) - static_cast<double>(fill);

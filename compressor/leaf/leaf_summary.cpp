@@ -194,7 +194,7 @@ void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
   if (row.uniform()) row.exact_bits = all ? 1 : 0;
   if (!(row.min < row.max)) return;
   if (const auto lattice = all ? find_lattice(values, row.min, row.max) : std::nullopt) {
-    row.exact_bits = static_cast<std::uint16_t>(bits_for(lattice->largest));
+    row.exact_bits = static_cast<std::uint8_t>(bits_for(lattice->largest));
   }
   if (row.exact_bits == 0 || row.exact_bits > 8) {
     row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));

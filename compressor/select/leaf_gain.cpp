@@ -360,7 +360,8 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     gain.exact = fill.exact(row, voxels, tile);
     gain.required = (corner && (!packed || packed->preview)) ||
                     (fill.non_finite == NonFinitePolicy::keep && row.finite < voxels) ||
-                    (row.finite == 0 && !gain.exact) || (!packed && fill.splits(row.finite, kLeafVoxels));
+                    (row.finite == 0 && !gain.exact) ||
+                    (!packed && (fill.splits(row.finite, kLeafVoxels) || fill.keeps_active(row)));
     const MinMax* const reach = visibility == nullptr ? nullptr : &rows.reach(leaf);
     out.begin(gain);
     if (packed) {

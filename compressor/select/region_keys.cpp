@@ -50,6 +50,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   rows.for_each([&](const Index3&, const LeafRow& row) {
     builder.add_mean(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.min, row.max);
     builder.sums.zeros += row.zeros;
+    builder.sums.valued = builder.sums.valued || row.valued();
   });
   builder.close_mean(rule_.fill.background);
   // A region of one value keeps its very bits: a mean of -0.0 would be +0.0.
@@ -128,6 +129,7 @@ void RegionKeys::summarize_uppers() {
       first = first == nullptr ? &sums : first;
       builder.add_mean(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.min, sums.max);
       builder.sums.zeros += sums.zeros;
+      builder.sums.valued = builder.sums.valued || sums.valued;
     });
     builder.close_mean(rule_.fill.background);
     if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;

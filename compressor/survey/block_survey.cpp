@@ -192,7 +192,9 @@ class BlockSurvey::Leaves {
       }
     }
     tally.missing += missing;
-    tally.non_finite += values.size() - kept - missing;
+    const std::size_t non_finite = values.size() - kept - missing;
+    tally.non_finite += non_finite;
+    row.non_finite = non_finite > 0 ? 1 : 0;
     if (kept == 0) return;
     count_values(std::span(finite.data(), kept), row, tally);
     if (widths_) summarize_widths(std::span(finite.data(), kept), false, row);

@@ -57,7 +57,11 @@ std::string missing_text(const Sidecar& s) {
   if (count == 0) return "";
   const std::string policy = policy_of(s);
   const bool one = count == 1;
-  if (s.source.level) return counted(s, count, "is", "are") + " not of this level, and inactive";
+  if (s.source.level) {
+    const bool marked = !s.missing.values.empty();
+    return cat(counted(s, count, "is", "are"), " not of this level", marked ? " or without data" : "",
+               ", and inactive");
+  }
   const std::string without = counted(s, count, "holds no data", "hold no data");
   if (policy == "keep") return without + (one ? " and is kept as data" : " and are kept as data");
   if (policy == "nan") return without + (one ? " and reads NaN" : " and read NaN");

@@ -20,8 +20,8 @@ bool lossless_everywhere(const Sidecar& sidecar);
 std::string lossless_text(const Sidecar& sidecar);
 
 /// "1234 of 8000 voxels (15.4 %) hold no data and read as the background"; of one level of several that they are not of
-/// it; of a file that is not lossless, in whose inexact blocks they may read as anything, what is true of them there.
-/// Empty where none does.
+/// it, or, where values stand for "no data", are without data; of a file that is not lossless, in whose inexact blocks
+/// they may read as anything, what is true of them there. Empty where none does.
 std::string missing_text(const Sidecar& sidecar);
 
 /// The same of voxels that are NaN or infinite, where the background takes their place; empty where they are kept.

@@ -78,6 +78,14 @@ ConversionLoss Composite::read(const Box& box, std::span<float> values) {
   return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);
 }
 
+std::vector<Box> Composite::voxels_with_values(const Box& box) const {
+  if (!own_) return {box};
+  std::vector<Box> boxes;
+  for (const CoverPart& part : own_parts(plotfile_.levels, wanted_, plotfile_.levels.size() - 1, box))
+    boxes.push_back(part.box);
+  return boxes;
+}
+
 std::vector<CoverPart> Composite::parts_of(const Box& box, std::span<float> values) const {
   if (!own_) {
     LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
@@ -159,6 +167,8 @@ ConversionLoss Composite::read_tile(std::size_t level, const Box& box, std::span
 std::uint64_t Composite::working_bytes() const {
   std::uint64_t boxes = 0;
   for (const PlotfileLevel& level : plotfile_.levels) boxes += level.boxes.size() * kBytesPerBox;
+  for (std::size_t level = wanted_ + 1; level < plotfile_.levels.size(); ++level)
+    boxes += plotfile_.levels[level].boxes.size() * kBytesPerFinerBox;
   constexpr std::uint64_t kParts = std::uint64_t{2} << 20U;  // of a block of the smallest boxes there are
   constexpr std::uint64_t kTileBytes = kTile * kTile * kTile * sizeof(float);
   return boxes + kParts + (upsampling_ == Upsampling::linear ? 2 * kIoThreads * kTileBytes : 0);

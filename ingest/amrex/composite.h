@@ -30,6 +30,9 @@ class Composite {
   /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.
   ConversionLoss read(const Box& box, std::span<float> values);
 
+  /// As VolumeSource has it.
+  std::vector<Box> voxels_with_values(const Box& box) const;
+
   /// What a read takes at most besides the caller's values and kStagingBytes.
   std::uint64_t working_bytes() const;
   std::uint64_t bytes_read() const { return reader_.bytes_read(); }

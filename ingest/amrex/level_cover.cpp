@@ -26,8 +26,8 @@ std::array<Box, 2> halves(const Box& box, const Cut& cut) {
 
 class Coverer {
  public:
-  Coverer(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest)
-      : levels_(levels), wanted_(wanted), coarsest_(coarsest) {}
+  Coverer(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest, bool keeps_rest)
+      : levels_(levels), wanted_(wanted), coarsest_(coarsest), keeps_rest_(keeps_rest) {}
 
   /// Covers `box`, of cells of the wanted level, by the boxes of `level` and of those below it. Of boxes finer than the
   /// wanted level count the cells that they have as a whole.
@@ -46,11 +46,8 @@ class Coverer {
 
  private:
   void below(std::size_t level, const Box& box) {
-    if (level == coarsest_) {
-      cover_.rest.push_back(box);
-    } else {
-      cover(level - 1, box);
-    }
+    if (level > coarsest_) return cover(level - 1, box);
+    if (keeps_rest_) cover_.rest.push_back(box);
   }
 
   Box box_of(std::size_t level, std::uint32_t fab) const {
@@ -64,7 +61,7 @@ class Coverer {
     if (fabs.size() > 1) return split(level, box, fabs);
     const Box fab = box_of(level, fabs.front());
     const Box part = intersect(fab, box);
-    cover_.parts.push_back({level, fabs.front(), part});
+    if (level <= wanted_) cover_.parts.push_back({level, fabs.front(), part});
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (coordinate(part.lo, axis) > coordinate(box.lo, axis)) {
         const auto [outside, inside] = halves(box, {axis, coordinate(part.lo, axis)});
@@ -109,6 +106,7 @@ class Coverer {
   std::span<const PlotfileLevel> levels_;
   std::size_t wanted_;
   std::size_t coarsest_;
+  bool keeps_rest_;  // of boxes, what no level has
   LevelCover cover_;
 };
 
@@ -137,16 +135,15 @@ void sort_by_place(std::span<const PlotfileLevel> levels, std::vector<CoverPart>
 
 std::vector<CoverPart> own_parts(std::span<const PlotfileLevel> levels, std::size_t level, std::size_t finest,
                                  const Box& box) {
-  Coverer coverer(levels, level, level);
+  Coverer coverer(levels, level, level, false);
   coverer.cover(finest, box);
   LevelCover cover = coverer.take();
-  std::erase_if(cover.parts, [&](const CoverPart& part) { return part.level != level; });
   sort_by_place(levels, cover.parts);
   return std::move(cover.parts);
 }
 
 LevelCover cover_box(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest, const Box& box) {
-  Coverer coverer(levels, wanted, coarsest);
+  Coverer coverer(levels, wanted, coarsest, true);
   coverer.cover(wanted, box);
   LevelCover cover = coverer.take();
   sort_by_place(levels, cover.parts);

@@ -40,6 +40,10 @@ constexpr Box coarsened(const Box& box, const Index3& by) {
           {ceil_div(box.hi.x, by.x), ceil_div(box.hi.y, by.y), ceil_div(box.hi.z, by.z)}};
 }
 
+/// Bytes that own_parts holds for each box of finer levels in its box: their positions, in vectors with room for twice
+/// as many, and those of the halves that it cuts them into.
+inline constexpr std::uint64_t kBytesPerFinerBox = 16;
+
 /// The cells of `box`, of cells of level `level`, that are its own: its boxes have them, and no box of a level from the
 /// next finer one to `finest` has all of one. In the order in which they lie on disk; takes time as cover_box.
 std::vector<CoverPart> own_parts(std::span<const PlotfileLevel> levels, std::size_t level, std::size_t finest,

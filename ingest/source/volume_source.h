@@ -97,6 +97,10 @@ class VolumeSource {
   /// source.
   virtual ResidentVolume* resident() { return nullptr; }
 
+  /// Boxes without a common voxel, of all voxels of `box` that have a value where info().mapping.gaps; known without
+  /// reading any. `box` is as for read.
+  virtual std::vector<Box> voxels_with_values(const Box& box) const { return {box}; }
+
   /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
   virtual std::uint64_t working_bytes() const { return 0; }
 

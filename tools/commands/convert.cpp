@@ -16,6 +16,7 @@
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
 #include "compressor/forecast/forecast.h"
+#include "compressor/levels/level_budgets.h"
 #include "compressor/options/conversion_request.h"
 #include "compressor/resume.h"
 #include "format/base/error.h"
@@ -260,7 +261,8 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
                  steps.size());
   }
   SeriesExtents extents(options.budget);
-  extents.check_all(steps, [&of = source_options](const SeriesStep& step) { return open_step(step, of); });
+  const auto open = [&of = source_options](const SeriesStep& step) { return open_step(step, of); };
+  extents.check_all(steps, open);
   std::optional<Bandwidth> bandwidth;
   if (const auto bytes_per_s = parse_bandwidth(a.bandwidth)) bandwidth.emplace(*bytes_per_s, &interrupt_flag());
   std::vector<std::string> places;
@@ -278,6 +280,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];
     source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
+    check_level_budgets(steps, outputs, i, options, open);
     if (a.dry_run) {
       forecasts.push_back(forecast_step(steps[i], source_options, options, work));
     } else {

@@ -11,7 +11,7 @@
 
 #include "compressor/push/pushed_volume.h"
 #include "format/base/process_memory.h"
-#include "tests/compressor/support/child_answer.h"
+#include "tests/support/child_answer.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 

@@ -11,7 +11,7 @@
 #include "compressor/select/tree_plan.h"
 #include "format/base/process_memory.h"
 #include "format/io/file_system.h"
-#include "tests/compressor/support/child_answer.h"
+#include "tests/support/child_answer.h"
 #include "tests/support/sanitized.h"
 
 namespace weir::selection_memory_test {

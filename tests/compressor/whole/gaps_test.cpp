@@ -160,6 +160,58 @@ TEST(Gaps, AVolumeOfNothingElse_IsInactive) {
   EXPECT_TRUE(converted.sidecar.error.lossless);
 }
 
+/// NaN that is stored: one in a block of values, a whole block of it, what a gap leaves of a block, and all that a
+/// region has of the domain.
+bool is_stored_nan(const Index3& i) {
+  const Box boxes[] = {{{50, 1, 20}, {51, 2, 21}},
+                       {{80, 8, 16}, {88, 16, 24}},
+                       {{-133, -9, 3}, {-128, 0, 11}},
+                       {{256, -9, 3}, {261, 0, 45}}};
+  return !in_gap(i) && std::any_of(std::begin(boxes), std::end(boxes), [&](const Box& box) { return box.contains(i); });
+}
+
+MemoryVolume volume_with_nan() {
+  MemoryVolume volume(kDomain, [](const Index3& i) {
+    return in_gap(i) ? missing_value() : is_stored_nan(i) ? std::nanf("") : value_at(i);
+  });
+  volume.info().mapping.gaps = true;
+  return volume;
+}
+
+TEST(Gaps, StoredNaNThatReadsTheBackground_IsActiveWhateverItsBlockHolds) {
+  MemoryVolume volume = volume_with_nan();
+  for (const Encoding encoding : {Encoding::float32, Encoding::fpn}) {
+    ConversionOptions options = options_for(encoding, FillMode::mean);
+    options.non_finite = NonFinitePolicy::background;
+    const std::uint64_t minimum = test::minimum_size(volume, options);
+    for (const std::uint64_t more : {0U, 20'000'000U}) {
+      SCOPED_TRACE(encoding_name(encoding) + " " + std::to_string(more));
+      const Converted converted = test::convert_to(volume, options, minimum + more);
+      expect_gaps(converted, FillMode::mean, encoding == Encoding::float32);
+      const test::StockReader stock(converted.file);
+      for_each_index(kDomain, [&](const Index3& i) {
+        if (is_stored_nan(i) && encoding == Encoding::float32) {
+          EXPECT_EQ(stock.value(i), -7.5F);
+        }
+      });
+      EXPECT_EQ(converted.sidecar.missing.count, gap_voxels());
+    }
+  }
+}
+
+TEST(Gaps, APackedFilesTreeHasActiveTilesWhereNaNIsStored) {
+  MemoryVolume volume = volume_with_nan();
+  ConversionOptions options = options_for(Encoding::packed, FillMode::mean);
+  options.non_finite = NonFinitePolicy::background;
+  options.preview = Preview::on;
+  options.budget.kind = Budget::Kind::lossless;
+  const Converted converted = test::convert(volume, options);
+  const test::StockReader stock(converted.file);
+  EXPECT_TRUE(stock.active({84, 12, 20}));
+  EXPECT_EQ(stock.value({84, 12, 20}), -7.5F);
+  EXPECT_FALSE(stock.active({-40, 8, 24}));
+}
+
 /// NaN that the source stores is not taken for a gap, and is refused as anywhere.
 TEST(Gaps, StoredNaN_IsRefused) {
   MemoryVolume volume(kDomain, [](const Index3& i) {

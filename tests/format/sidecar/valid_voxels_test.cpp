@@ -47,6 +47,10 @@ TEST(ValidVoxels, OfALevel_MissingAreTheCellsThatAreNotItsOwn) {
   s.source.level = Sidecar::Level{0, 3};
   EXPECT_EQ(valid_voxels(s), 750U);
   EXPECT_EQ(missing_text(s), "250 of 1000 voxels (25 %) are not of this level, and inactive");
+  s.missing.values = {"-999"};  // the count does not tell them apart
+  EXPECT_EQ(missing_text(s), "250 of 1000 voxels (25 %) are not of this level or without data, and inactive");
+  s.missing.count = 1;
+  EXPECT_EQ(missing_text(s), "1 of 1000 voxels (0.1 %) is not of this level or without data, and inactive");
 }
 
 TEST(ValidVoxels, MissingKeptAsData_AreVoxelsLikeOthers) {

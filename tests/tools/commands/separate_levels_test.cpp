@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -105,6 +106,41 @@ TEST_F(SeparateLevels, ASizeIsThatOfEachFile) {
   const CommandResult made = convert({"--size", "600000"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   for (const std::size_t n : {0U, 1U, 2U}) EXPECT_EQ(fs::file_size(out(n)), 600'000U);
+}
+
+/// A large finest level may take hours: what the others need is known before.
+TEST_F(SeparateLevels, ARateBelowTheSmallestTreeOfOne_ConvertsNone_AndWhatTheErrorNamesSuitsAll) {
+  test::PlotfilePlan plan;
+  plan.domain = {{0, 0, 0}, {64, 64, 64}};
+  plan.ratios = {{2, 2, 2}};
+  plan.boxes = {{plan.domain}, {{{4, 4, 4}, {124, 124, 124}}}};
+  plan.single = true;
+  test::write_plotfile(path_, plan);
+  const CommandResult refused = convert({"--rate", "8"});
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_FALSE(fs::exists(directory_.path() / "out"));
+  std::smatch named;
+  const std::regex wording(
+      "weir: (.*): 131072 bytes asked, the smallest tree for this level takes ([0-9]+); nothing is converted; ask for "
+      "--rate ([0-9.]+) or less, --size ([0-9]+) or more, or for --encoding packed\n");
+  ASSERT_TRUE(std::regex_match(refused.err, named, wording)) << refused.err;
+  EXPECT_EQ(named[1], out(1));
+  EXPECT_GT(std::stoull(named[4]), std::stoull(named[2]));  // that of the finest level
+  const CommandResult dry = convert({"--rate", "8", "--dry-run"});
+  EXPECT_EQ(dry.exit_code, 4);
+  EXPECT_EQ(dry.err, refused.err);
+  for (const std::vector<std::string>& budget :
+       {std::vector<std::string>{"--rate", named[3]}, std::vector<std::string>{"--size", named[4]},
+        std::vector<std::string>{"--rate", "8", "--encoding", "packed"}}) {
+    SCOPED_TRACE(budget.back());
+    std::vector<std::string> arguments = budget;
+    arguments.emplace_back("--overwrite");
+    const CommandResult made = convert(arguments);
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+  }
+  EXPECT_EQ(fs::file_size(out(1)), 131'072U);
+  const std::string less = std::to_string(std::stoull(named[4]) - 1);
+  EXPECT_EQ(convert({"--size", less, "--overwrite"}).exit_code, 4);
 }
 
 TEST_F(SeparateLevels, KilledBetweenTwoLevels_LeavesWholeFilesAndTheNextRunMakesTheRest) {

@@ -1,4 +1,4 @@
-#include "tests/compressor/support/child_answer.h"
+#include "tests/support/child_answer.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
