@@ -418,7 +418,7 @@ def converts(browser, url):
     assert of_psnr != of_rate and "KiB, PSNR of all voxels " in of_psnr, of_psnr
     assert " --psnr 50 " in browser.text("#convert-command"), browser.text("#convert-command")
     drag(browser, ".handle:last-child", -60, 50)
-    browser.wait("another forecast", lambda: forecast() != of_psnr)
+    browser.wait("another forecast", lambda: forecast() != of_psnr, 60)  # of a process that gives way to all others
 
 
 def saved_scene_gives_the_same_picture(browser, url):
