@@ -72,8 +72,6 @@ FilePlan select_file(const EncodeJob& job, FileRequest& request) {
   }
 }
 
-constexpr double kPackedShare = 0.999;  // of the error asked, that a packed file is planned for: 0.004 dB
-
 EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   EncodedFile encoded;
   encoded.file = select_file(job, request);
@@ -209,6 +207,8 @@ struct Attempts {
     request.encoding = Encoding::float32;
   }
 };
+
+constexpr double kPackedShare = 0.999;  // of the error asked, that a packed file is planned for: 0.004 dB
 
 }  // namespace
 

@@ -54,9 +54,9 @@ struct FileRequest {
   GainRule rule;                          ///< but for its encoding
   Budget budget;
   double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels that can be seen may come to
-  /// For a PSNR: the error to plan quantised leaves and packed blocks for, since theirs is estimated. At first the same
-  /// as squared_error, then adjusted by what their files lose. Float leaves are never planned for more than
-  /// squared_error.
+  /// For a PSNR: the error to plan quantised leaves and packed blocks for, since theirs is estimated. At first
+  /// squared_error, of packed blocks a little less, then adjusted by what their files lose. Float leaves are never
+  /// planned for more than squared_error.
   double planned_error = std::numeric_limits<double>::infinity();
   PackedRequest packed;  ///< for Encoding::packed
   Box domain;
