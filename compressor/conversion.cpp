@@ -83,10 +83,16 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
 
   MemoryPlan memory;
   ReadingPlan reading;
-  team.run([&] {
-    memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options));
+  const auto plan_with = [&](std::uint64_t records) {
+    memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options), records);
     reading = plan_reading(source, memory);
+  };
+  team.run([&] {
+    const bool may_hold = journal == nullptr && team.alone();  // no other process is to read them
+    plan_with(may_hold ? record_bytes(options, domain) : 0);
+    if (memory.record_bytes > 0 && reading.encode.amplification > 1) plan_with(0);
   });
+  if (memory.record_bytes > 0) work.hold_records();
   const StreamOptions stream = stream_options(control);
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
@@ -108,9 +114,9 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const std::optional<Visibility> visibility = visibility_of(options, domain);
   const auto spill = [&](const char* name) -> std::shared_ptr<File> {
     if (journal != nullptr) return journal->open(name);
-    return work.spill();
+    return work.spill_records();
   };
-  SurveyStores stores{RowStore(spill("rows"), leaves, memory.segment_regions, team), {}, {}};
+  SurveyStores stores{RowStore(spill("rows"), leaves, memory.selection, team), {}, {}};
   if (visibility) stores.faces.emplace(spill("faces"), leaves);
   std::optional<LadderAim> ladders = surveyed_ladders(options, info);
   if (ladders) {

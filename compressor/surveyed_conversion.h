@@ -51,6 +51,9 @@ std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, cons
 /// Of the rows of a region that selection holds (memory_plan.h).
 std::uint64_t region_bytes(const ConversionOptions& options);
 
+/// Most bytes that the records of all leaves of a conversion take at a time: rows, and what selection and encoding add.
+std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain);
+
 /// The files that a survey fills.
 struct SurveyStores {
   RowStore rows;

@@ -49,7 +49,7 @@ std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   if (job.journal == nullptr) {
     job.rows.team().publish(job.output.volume());  // nothing of an earlier attempt comes after this one's
     job.output.volume().clear();
-    return job.work.spill();
+    return job.work.spill_records();
   }
   adopt_plan(*job.journal, plan_digest(file));
   job.output.write_to(job.journal->open("volume"));

@@ -59,7 +59,7 @@ Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::u
 }
 
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
-                       std::uint64_t region_bytes) {
+                       std::uint64_t region_bytes, std::uint64_t records) {
   const std::uint64_t fixed = shared_bytes(resident, domain) + threads * kWorkerBytes;
   const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * region_bytes;
   if (ceiling < least) {
@@ -67,13 +67,16 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
                         " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
   }
-  const std::uint64_t free = ceiling - fixed;
   MemoryPlan plan;
+  if (records <= (ceiling - least) / 4) plan.record_bytes = records;
+  const std::uint64_t free = ceiling - fixed - plan.record_bytes;
   plan.fixed_bytes = fixed;
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
   plan.worker_bytes = 2 * plan.block_bytes / threads;
-  plan.segment_regions =
+  // Blocks are given back by then.
+  plan.selection.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * region_bytes)), 1, 64);
+  plan.selection.step_bytes = free / 4;
   return plan;
 }
 

@@ -13,18 +13,20 @@
 namespace weir {
 
 struct MemoryPlan {
-  std::uint64_t block_bytes = 0;     ///< float32 bytes of one block; two are held at a time
-  std::uint64_t worker_bytes = 0;    ///< of one worker's block where each reads its own
-  std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
-  std::size_t digest_threads = 1;    ///< file pieces hashed at a time
-  std::uint64_t fixed_bytes = 0;     ///< taken however long the blocks are
+  std::uint64_t block_bytes = 0;   ///< float32 bytes of one block; two are held at a time
+  std::uint64_t worker_bytes = 0;  ///< of one worker's block where each reads its own
+  SelectionRoom selection;
+  std::size_t digest_threads = 1;  ///< file pieces hashed at a time
+  std::uint64_t fixed_bytes = 0;   ///< taken however long the blocks are
+  std::uint64_t record_bytes = 0;  ///< of the records of all leaves, which are not spilled; 0: they are
 };
 
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
-/// A walk over regions holds `region_bytes` of rows for each. Throws Error(usage) naming a sufficient --memory where it
-/// is too small.
+/// A walk over regions holds `region_bytes` of rows for each. Records of all leaves stay in memory where they take
+/// `records` bytes, more than 0, and no more than a quarter of what is there to divide. Throws Error(usage) naming a
+/// sufficient --memory where it is too small.
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
-                       std::uint64_t region_bytes = kRegionRowsBytes);
+                       std::uint64_t region_bytes = kRegionRowsBytes, std::uint64_t records = 0);
 
 /// `given`, or where that is 0 those of the machine; at least 1.
 std::size_t processors_or_all(std::size_t given);

@@ -43,7 +43,7 @@ SourceInfo as_pushed(SourceInfo info) {
 
 // What the process holds besides is the simulation's, and no part of the ceiling.
 MemoryPlan memory_for(const ConversionOptions& options, std::size_t threads, const Box& domain) {
-  return plan_memory(options.memory, 0, threads, domain, region_bytes(options));
+  return plan_memory(options.memory, 0, threads, domain, region_bytes(options), record_bytes(options, domain));
 }
 
 // Slices that a worker's cache holds, of which some fit `bytes`: whole rows of leaves where that is so.
@@ -66,18 +66,19 @@ BlockPlan plan_slices(const Box& domain, std::size_t value_bytes, std::uint64_t 
 // What a push keeps on the disk until it ends, one way or the other.
 struct PushedFiles {
   PushedFiles(const SourceInfo& info, const ConversionOptions& options, const ConversionControl& control, bool faces,
-              std::int64_t segment_regions, FileSystem& files)
+              const MemoryPlan& memory, FileSystem& files)
       : output(files, options.output, options.overwrite), work(files, options.output, options.work_dir) {
     if (remove_leftovers(files, options.output) && control.notice) {
       control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
     }
+    if (memory.record_bytes > 0) work.hold_records();
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
-    stores.emplace(SurveyStores{RowStore(work.spill(), leaves, segment_regions), {}, {}});
-    if (faces) stores->faces.emplace(work.spill(), leaves);
+    stores.emplace(SurveyStores{RowStore(work.spill_records(), leaves, memory.selection), {}, {}});
+    if (faces) stores->faces.emplace(work.spill_records(), leaves);
     spool.emplace(work.spill(), work.spill(), leaves, info.type);
     std::optional<LadderAim> ladders = surveyed_ladders(options, info);
     if (ladders) {
-      stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill(), leaves));
+      stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill_records(), leaves));
       ladders->coder = control.coder;
     }
     survey.emplace(info, stores->rows, faces ? &*stores->faces : nullptr, surveys_widths(options), control.trace,
@@ -104,7 +105,7 @@ class PushedVolume::State {
                                 info_.domain(), region_bytes(options))),
         memory_(memory_for(options, std::max(threads_, workers), info_.domain())),
         seen_(visibility_of(options, info_.domain())),
-        files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_.segment_regions, files),
+        files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_, files),
         slices_(plan_slices(info_.domain(), scalar_bytes(info_.type), room_bytes())),
         floats_([this] { return PageBuffer(slice_voxels() * sizeof(float)); }) {
     // Its workers use all of the above: they start when that is there, and end before it goes.

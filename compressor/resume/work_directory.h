@@ -1,12 +1,14 @@
 // Where spill files go: a hidden directory beside the output, made for one
 // conversion, or the directory the user names. Spill files have no names, so that nothing of them outlives the process;
-// files that are to outlive it belong to the journal.
+// files that are to outlive it belong to the journal. Where the memory ceiling has room for them, the records of leaves
+// are not spilled.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "format/io/file_system.h"
+#include "format/io/memory_file_system.h"
 
 namespace weir {
 
@@ -27,11 +29,17 @@ class WorkDirectory {
 
   const std::string& path() const { return path_; }
   std::unique_ptr<File> spill() { return files_.create_unnamed(path_); }
+  /// For the records of a conversion's leaves.
+  std::unique_ptr<File> spill_records() { return records_in_memory_ ? memory_.create_unnamed(path_) : spill(); }
+  /// From now on those files are memory, which the conversion's ceiling has to hold (MemoryPlan::record_bytes).
+  void hold_records() { records_in_memory_ = true; }
 
  private:
   FileSystem& files_;
   std::string path_;
   bool made_ = false;
+  MemoryFileSystem memory_;
+  bool records_in_memory_ = false;
 };
 
 }  // namespace weir

@@ -1,17 +1,25 @@
 #include "compressor/select/cut_search.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "format/base/error.h"
 #include "format/layout/nanovdb_layout.h"
 
 namespace weir {
+namespace {
+
+// Everything that can be bought but for what is required.
+constexpr KeyRange kAllKeys{std::bit_cast<std::uint64_t>(kLastKey), std::bit_cast<std::uint64_t>(kRequiredKey)};
+
+}  // namespace
 
 PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) const {
   return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
@@ -55,17 +63,17 @@ struct CutSearch::Counted {
     return {first, std::min(range.end, first + (std::uint64_t{1} << shift))};
   }
 
+  static Bucket as_bucket(const HeldSteps::Sum& sum) { return {sum.bytes, sum.count}; }
+
   KeyRange range;
   unsigned shift = 0;
   std::vector<Bucket> buckets;
   std::array<Bucket, 3> outside{};
 };
 
-CutSearch::KeyRange CutSearch::all_keys() { return {key_bits(kLastKey), key_bits(kRequiredKey)}; }
-
-CutSearch::KeyRange CutSearch::likely_keys() const {
-  if (!rule_.packed || !rule_.packed->window) return all_keys();
-  return {key_bits(rule_.packed->window->low()), key_bits(rule_.packed->window->high()) + 1};
+KeyRange CutSearch::likely_keys(const GainRule& rule) {
+  if (!rule.packed || !rule.packed->window) return kAllKeys;
+  return {key_bits(rule.packed->window->low()), key_bits(rule.packed->window->high()) + 1};
 }
 
 template <typename Begin>
@@ -85,14 +93,31 @@ void CutSearch::for_each_key(const Begin& begin) const {
   });
 }
 
+template <typename Begin>
+void CutSearch::for_each_held(const Begin& begin) const {
+  const std::vector<std::span<const HeldSteps::Step>> chunks = held_->chunks();
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+    const auto visit = begin();
+    for (const HeldSteps::Step& step : chunks[i]) visit(step.region, step.key, step.bytes, step.gain);
+  });
+}
+
 CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) const {
   tbb::enumerable_thread_specific<Counted> local{Counted(range)};
-  for_each_key([&] {
+  const auto begin = [&] {
     return [&goal, &counted = local.local()](std::int64_t, double key, std::uint64_t bytes, double gain) {
       counted.add(key, goal.weight(bytes, gain));
     };
-  });
+  };
   Counted total(range);
+  if (holds(range) && goal.unit == 0) {
+    for_each_held(begin);
+    const HeldSteps::Outside outside = held_->outside();
+    total.outside = {Counted::as_bucket(outside.required), Counted::as_bucket(outside.above),
+                     Counted::as_bucket(outside.below)};
+  } else {
+    for_each_key(begin);
+  }
   for (const Counted& counted : local) {
     for (std::size_t i = 0; i < total.buckets.size(); ++i) total.buckets[i] += counted.buckets[i];
     for (std::size_t i = 0; i < total.outside.size(); ++i) total.outside[i] += counted.outside[i];
@@ -105,7 +130,7 @@ CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& g
 
 Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
   constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
-  KeyRange range = likely_keys();
+  KeyRange range = likely_keys(rule_);
   for (bool first = true;; first = false) {
     const Counted counted = count(range, goal);
     if (first && goal.left) {
@@ -117,7 +142,7 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
     if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
     const Counted::Bucket& higher = counted.outside[Counted::kAbove];
     if (higher.items > 0 && !goal.admits_all(above, higher.weight)) {
-      range = {range.end, all_keys().end};
+      range = {range.end, kAllKeys.end};
       continue;
     }
     above += higher.weight;
@@ -127,7 +152,7 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
     }
     if (bucket == 0) {
       if (counted.outside[Counted::kBelow].items == 0) return {0, above};  // everything may be bought
-      range = {all_keys().first, range.first};
+      range = {kAllKeys.first, range.first};
       continue;
     }
     const bool few = counted.buckets[bucket - 1].items <= kSortedItems;
@@ -145,11 +170,12 @@ Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::We
     PurchaseGoal::Weight weight;
   };
   tbb::enumerable_thread_specific<std::vector<Purchase>> local;
-  for_each_key([&] {
+  const auto begin = [&] {
     return [&, &found = local.local()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
       if (range.holds(key)) found.push_back({key, region, goal.weight(bytes, gain)});
     };
-  });
+  };
+  holds(range) ? for_each_held(begin) : for_each_key(begin);
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);

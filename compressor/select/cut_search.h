@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "compressor/select/held_steps.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/select/step_keys.h"
@@ -46,26 +47,20 @@ struct Threshold {
 
 class CutSearch {
  public:
-  /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object.
-  CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree)
-      : rule_(rule), rows_(rows), tree_(tree) {}
+  /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object. `held`: the steps
+  /// of likely_keys(), or null.
+  CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held)
+      : rule_(rule), rows_(rows), tree_(tree), held_(held) {}
+
+  /// Where the cut is looked for first.
+  static KeyRange likely_keys(const GainRule& rule);
 
   /// The smallest key for which everything above it can be bought for `goal`.
   Threshold find_threshold(PurchaseGoal& goal) const;
 
  private:
-  // Keys whose bits are in [first, end).
-  struct KeyRange {
-    std::uint64_t first;
-    std::uint64_t end;
-    bool holds(double key) const { return key_bits(key) - first < end - first; }
-  };
   struct Counted;
 
-  // Everything that can be bought but for what is required.
-  static KeyRange all_keys();
-  // Where the cut is looked for first.
-  KeyRange likely_keys() const;
   // Of all that can be bought, by the range.
   Counted count(const KeyRange& range, const PurchaseGoal& goal) const;
   Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above, const KeyRange& range) const;
@@ -73,10 +68,15 @@ class CutSearch {
   // upper nodes that can be bought there.
   template <typename Begin>
   void for_each_key(const Begin& begin) const;
+  // The same with the parts of the held steps, of their range.
+  template <typename Begin>
+  void for_each_held(const Begin& begin) const;
+  bool holds(const KeyRange& range) const { return held_ != nullptr && held_->range().holds(range); }
 
   const GainRule& rule_;
   const RowStore& rows_;
   const TreeRegions& tree_;
+  const HeldSteps* held_;
   mutable tbb::enumerable_thread_specific<RegionGains> gains_;  // of the region that a thread looks at
 };
 

@@ -79,10 +79,10 @@ class Candidate {
     file.encoding = encoding_;
     file.fill = request_.rule.fill;
     file.cut = selection_.cut_key();
-    file.choices = std::make_unique<ChoiceStore>(work_.spill(), tree_->region_lattice.size());
+    file.choices = std::make_unique<ChoiceStore>(work_.spill_records(), tree_->region_lattice.size());
     file.packed = selection_.rule().packed;
     if (file.packed) {
-      file.streams = std::make_unique<PlannedStreamsStore>(work_.spill(), tree_->region_lattice.size());
+      file.streams = std::make_unique<PlannedStreamsStore>(work_.spill_records(), tree_->region_lattice.size());
     }
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices, file.streams.get());
     file.size = size;

@@ -57,7 +57,7 @@ class Reaches {
 Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibility, const Fill& fill,
                    WorkDirectory& work, RowStore& rows) {
   const NodeLattice& leaves = rows.leaves();
-  auto store = std::make_unique<LeafStore<MinMax>>(work.spill(), leaves);
+  auto store = std::make_unique<LeafStore<MinMax>>(work.spill_records(), leaves);
   const Box all{{0, 0, 0}, leaves.count};
   const Index3 regions = floor_div(leaves.count - Index3{1, 1, 1}, kLowerLeaves) + Index3{1, 1, 1};
   const Reaches reaches(leaves, fill);

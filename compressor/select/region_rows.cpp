@@ -12,25 +12,53 @@ namespace weir {
 
 namespace {
 
-void read_box(const RowStore& store, const Box& box, RowBuffers& buffers) {
-  store.read_box(box, buffers.rows);
-  if (store.reaches() != nullptr) store.reaches()->read_box(box, buffers.reaches);
-  if (store.ladders() != nullptr) store.ladders()->read_box(box, buffers.ladders);
+bool all_held(const RowStore& store) {
+  return store.held() != nullptr && (store.reaches() == nullptr || store.reaches()->held() != nullptr) &&
+         (store.ladders() == nullptr || store.ladders()->held() != nullptr);
 }
 
-// Of the leaf `first` in boxes of rows.
-RegionRows rows_from(const RowStore& store, const RowBuffers& buffers, std::size_t first, const Index3& row_extent,
-                     const Box& leaf_box) {
-  return {buffers.rows.data() + first, row_extent, leaf_box,
-          store.reaches() == nullptr ? nullptr : buffers.reaches.data() + first,
-          store.ladders() == nullptr ? nullptr : buffers.ladders.data() + first};
-}
+// The rows of a box of leaves, where they lie or read into buffers.
+class BoxRows {
+ public:
+  BoxRows(const RowStore& store, const Box& box, RowBuffers& buffers) : first_(box.lo), extent_(box.extent()) {
+    if (all_held(store)) {
+      first_ = {0, 0, 0};
+      extent_ = store.leaves().count;
+      rows_ = store.held();
+      if (store.reaches() != nullptr) reaches_ = store.reaches()->held();
+      if (store.ladders() != nullptr) ladders_ = store.ladders()->held();
+      return;
+    }
+    store.read_box(box, buffers.rows);
+    rows_ = buffers.rows.data();
+    if (store.reaches() != nullptr) {
+      store.reaches()->read_box(box, buffers.reaches);
+      reaches_ = buffers.reaches.data();
+    }
+    if (store.ladders() != nullptr) {
+      store.ladders()->read_box(box, buffers.ladders);
+      ladders_ = buffers.ladders.data();
+    }
+  }
+
+  RegionRows of(const Box& leaf_box) const {
+    const std::int64_t at = linear_index(leaf_box.lo - first_, extent_);
+    return {rows_ + at, extent_, leaf_box, reaches_ == nullptr ? nullptr : reaches_ + at,
+            ladders_ == nullptr ? nullptr : ladders_ + at};
+  }
+
+ private:
+  Index3 first_;  // leaf of the first row
+  Index3 extent_;
+  const LeafRow* rows_ = nullptr;
+  const MinMax* reaches_ = nullptr;
+  const PackedLadder* ladders_ = nullptr;
+};
 
 }  // namespace
 
 RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers) {
-  read_box(store, leaf_box, buffers);
-  return rows_from(store, buffers, 0, leaf_box.extent(), leaf_box);
+  return BoxRows(store, leaf_box, buffers).of(leaf_box);
 }
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
@@ -38,7 +66,7 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
   // One task: a segment of regions along x, whose rows are read in long runs; shorter where threads would have no work.
   const Index3 extent = regions.extent();
   const std::int64_t busy = 4 * static_cast<std::int64_t>(tbb::this_task_arena::max_concurrency());
-  const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, store.segment_regions());
+  const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, store.room().segment_regions);
   const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
   tbb::enumerable_thread_specific<RowBuffers> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
@@ -48,13 +76,8 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
     const std::int64_t begin = tree.region_lattice.linear(first);
     const std::int64_t last = tree.region_lattice.linear({end_x - 1, first.y, first.z});
     const Box box{tree.leaf_box(begin).lo, tree.leaf_box(last).hi};
-    RowBuffers& local = buffers.local();
-    read_box(store, box, local);
-    for (std::int64_t region = begin; region <= last; ++region) {
-      const Box leaf_box = tree.leaf_box(region);
-      const auto first_row = static_cast<std::size_t>(leaf_box.lo.x - box.lo.x);
-      visit(region, rows_from(store, local, first_row, box.extent(), leaf_box));
-    }
+    const BoxRows rows(store, box, buffers.local());
+    for (std::int64_t region = begin; region <= last; ++region) visit(region, rows.of(tree.leaf_box(region)));
   });
 }
 

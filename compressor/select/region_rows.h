@@ -1,4 +1,4 @@
-// Walks the spilled rows region by region, in parallel, with bounded memory.
+// Walks the rows region by region, in parallel, with bounded memory.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +60,7 @@ struct RowBuffers {
   std::vector<PackedLadder> ladders;
 };
 
-/// The rows of one region, read into `buffers`.
+/// The rows of one region, read into `buffers` where they do not lie in memory.
 RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers);
 
 /// Calls visit(region index, rows) once for each region of a box of region-lattice positions; regions

@@ -26,13 +26,24 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   };
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
+  if (rows_.team().alone()) {
+    held_ = std::make_unique<HeldSteps>(CutSearch::likely_keys(rule_), rows_.room().step_bytes);
+  }
   tbb::enumerable_thread_specific<RegionGains> local_gains;
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
     RegionGains& gains = local_gains.local();
     rule_.gains(tree_, region_rows, gains);
     keys.summarize_region(region, region_rows, gains);
     Totals& total = totals.local();
+    const double region_key = tree_.regions[static_cast<std::size_t>(region)].key;
+    HeldSteps::Part* const held = held_ && held_->complete() ? &held_->part() : nullptr;
+    if (held != nullptr) {
+      held->add(region, region_key, rule_.region_bytes(), tree_.regions[static_cast<std::size_t>(region)].opening_gain);
+    }
     for (const LeafGain& leaf : gains) {
+      for (std::uint32_t i = 0; held != nullptr && region_key > 0 && i < leaf.step_count; ++i) {
+        held->add(region, step_key(leaf, i, region_key), leaf.steps[i].bytes, leaf.steps[i].gain);
+      }
       total.lossy += leaf.lossless ? 0 : 1;
       if (leaf.step_count == 0) continue;
       ++total.full.leaves;
@@ -42,6 +53,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
       total.minimum.leaf_bytes += leaf.steps[0].bytes;
     }
   });
+  if (held_ && !held_->complete()) held_.reset();
   rows_.team().gather(tree_.regions);
   keys.summarize_uppers();
 
@@ -177,7 +189,8 @@ void Selection::choose_error(double squared_error) {
 }
 
 void Selection::buy_for(PurchaseGoal goal) {
-  const Threshold threshold = CutSearch(rule_, rows_, tree_).find_threshold(goal);
+  const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get()).find_threshold(goal);
+  held_.reset();
   cut_.threshold = threshold.key;
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
   for (Upper& upper : tree_.uppers) upper.open = upper.key > cut_.threshold;

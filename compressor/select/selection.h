@@ -11,14 +11,17 @@
 // with size. An error to be met instead of a size ends the same way, with the error
 // saved counted in place of the bytes. The steps: region_keys.h gives regions and upper nodes their keys, cut_search.h
 // finds the cut, and of what has the cut's own key as much is bought as fits: by region index, then by key, then by
-// leaf index (step_keys.h). Memory is that of TreeRegions, for any number of leaves.
+// leaf index (step_keys.h). Memory is that of TreeRegions, for any number of leaves, and that of the steps that are
+// held where there is room (held_steps.h).
 #pragma once
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "compressor/select/cut_search.h"
+#include "compressor/select/held_steps.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
@@ -85,6 +88,7 @@ class Selection {
   TreeRegions& tree_;
   SelectionBytes bytes_;
   std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
+  std::unique_ptr<HeldSteps> held_;   // until the cut is found
   Cut cut_;
 };
 

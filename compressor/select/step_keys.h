@@ -19,6 +19,14 @@ inline constexpr double kLastKey = std::numeric_limits<double>::denorm_min();
 /// Keys are not negative, so that their bits sort as they do.
 inline std::uint64_t key_bits(double key) { return std::bit_cast<std::uint64_t>(key); }
 
+/// Keys whose bits are in [first, end).
+struct KeyRange {
+  std::uint64_t first;
+  std::uint64_t end;
+  bool holds(double key) const { return key_bits(key) - first < end - first; }
+  bool holds(const KeyRange& range) const { return first <= range.first && range.end <= end; }
+};
+
 /// Key of step `i` of a leaf in a region of `region_key`: never above it, and falling from step to step.
 double step_key(const LeafGain& leaf, std::uint32_t i, double region_key);
 

@@ -1,5 +1,5 @@
-// One fixed-size record per leaf of a lattice, in a spill file in linear order (x
-// fastest), so that 10^12 voxels take disk, not memory.
+// One fixed-size record per leaf of a lattice, in a file in linear order (x fastest), so that 10^12 voxels take disk,
+// not memory; the file itself lies in memory where there is room for it.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,13 @@ class LeafStore {
   /// Reserves the records of `leaves` in `file`; a full disk is known here.
   LeafStore(std::shared_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
     file_->preallocate(static_cast<std::uint64_t>(leaves.size()) * sizeof(Record));
+    if (!file_->memory().empty()) held_ = reinterpret_cast<const Record*>(file_->memory().data());
   }
 
   const NodeLattice& leaves() const { return leaves_; }
   File& file() { return *file_; }
+  /// All of them, in linear order, where they lie in memory; else null.
+  const Record* held() const { return held_; }
 
   /// Consecutive leaves, from linear index `first` on.
   void write(std::int64_t first, std::span<const Record> records) {
@@ -66,6 +69,7 @@ class LeafStore {
 
   std::shared_ptr<File> file_;
   NodeLattice leaves_;
+  const Record* held_ = nullptr;
 };
 
 }  // namespace weir

@@ -14,15 +14,21 @@
 
 namespace weir {
 
+/// Memory that selection may take.
+struct SelectionRoom {
+  std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
+  std::uint64_t step_bytes = 0;      ///< of steps that are held instead of being found again (held_steps.h)
+};
+
 /// Thread-safe but for set_reaches and set_ladders.
 class RowStore : public LeafStore<LeafRow> {
  public:
-  /// A walk over regions holds the rows of up to `segment_regions` of them per thread. `team` are the processes that
-  /// fill the store together, each the rows of its own leaves (region_share.h), and decide what comes of them.
-  RowStore(std::shared_ptr<File> file, const NodeLattice& leaves, std::int64_t segment_regions, Team& team = no_team())
-      : LeafStore(std::move(file), leaves), segment_regions_(segment_regions), team_(team) {}
+  /// `team` are the processes that fill the store together, each the rows of its own leaves (region_share.h), and
+  /// decide what comes of them.
+  RowStore(std::shared_ptr<File> file, const NodeLattice& leaves, const SelectionRoom& room, Team& team = no_team())
+      : LeafStore(std::move(file), leaves), room_(room), team_(team) {}
 
-  std::int64_t segment_regions() const { return segment_regions_; }
+  const SelectionRoom& room() const { return room_; }
   Team& team() const { return team_; }
 
   /// Of each leaf (leaf_reach.h); null where everything counts alike.
@@ -34,7 +40,7 @@ class RowStore : public LeafStore<LeafRow> {
   void set_ladders(std::unique_ptr<LeafStore<PackedLadder>> ladders) { ladders_ = std::move(ladders); }
 
  private:
-  std::int64_t segment_regions_;
+  SelectionRoom room_;
   Team& team_;
   std::unique_ptr<LeafStore<MinMax>> reaches_;
   std::unique_ptr<LeafStore<PackedLadder>> ladders_;

@@ -21,13 +21,13 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
       for (const std::uint64_t resident : {10 * kMiB, 60 * kMiB}) {
         const MemoryPlan plan = plan_memory(ceiling, resident, threads, kLarge);
         const std::uint64_t rows =
-            threads * static_cast<std::uint64_t>(plan.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
+            threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
         // The passes follow each other: blocks, rows and digests are never held together.
         EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
-        EXPECT_LT(resident + kStagingBytes + rows, ceiling);
+        EXPECT_LT(resident + kStagingBytes + rows + plan.selection.step_bytes, ceiling);
         EXPECT_LT(resident + plan.digest_threads * kDigestPieceBytes, ceiling);
         EXPECT_GE(plan.block_bytes, kMiB);
-        EXPECT_GE(plan.segment_regions, 1);
+        EXPECT_GE(plan.selection.segment_regions, 1);
         EXPECT_GE(plan.digest_threads, 1U);
         EXPECT_LE(plan.digest_threads, threads);
       }
@@ -35,15 +35,35 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
   }
 }
 
+TEST(MemoryPlan, RecordsStayInMemoryWhereTheyTakeNoMoreThanAQuarter) {
+  const std::uint64_t records = 100 * kMiB;
+  std::uint64_t least = 0;  // ceiling that holds them
+  for (std::uint64_t ceiling = 200 * kMiB; ceiling < 1024 * kMiB; ceiling += kMiB) {
+    const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge, kRegionRowsBytes, records);
+    const MemoryPlan without = plan_memory(ceiling, 30 * kMiB, 4, kLarge);
+    if (plan.record_bytes == 0) {
+      EXPECT_EQ(least, 0U) << ceiling;
+      EXPECT_EQ(plan.block_bytes, without.block_bytes);
+      continue;
+    }
+    if (least == 0) least = ceiling;
+    EXPECT_EQ(plan.record_bytes, records);
+    EXPECT_LT(30 * kMiB + kStagingBytes + 2 * plan.block_bytes + records, ceiling);
+    EXPECT_GE(plan.block_bytes, without.block_bytes / 4 * 3 - kMiB);
+  }
+  EXPECT_GT(least, 4 * records);
+  EXPECT_LT(least, 6 * records);
+}
+
 TEST(MemoryPlan, MoreMemoryNeverMeansSmallerShares) {
   MemoryPlan before;
   before.block_bytes = 0;
-  before.segment_regions = 0;
+  before.selection.segment_regions = 0;
   before.digest_threads = 0;
   for (std::uint64_t ceiling = 200 * kMiB; ceiling < 8192 * kMiB; ceiling += 97 * kMiB) {
     const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge);
     EXPECT_GE(plan.block_bytes, before.block_bytes);
-    EXPECT_GE(plan.segment_regions, before.segment_regions);
+    EXPECT_GE(plan.selection.segment_regions, before.selection.segment_regions);
     EXPECT_GE(plan.digest_threads, before.digest_threads);
     before = plan;
   }

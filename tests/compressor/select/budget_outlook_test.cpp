@@ -20,7 +20,7 @@ NearBlocks bought_at(const char* kind, double psnr) {
   test::MemoryVolume volume(*source);
   const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
   test::CrashFileSystem files;
-  RowStore rows(files.create_unnamed("rows"), plan.lattice, 64);
+  RowStore rows(files.create_unnamed("rows"), plan.lattice, {64, 0});
   rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(files.create_unnamed("ladders"), plan.lattice));
   LadderAim aim;
   aim.near_rungs = true;

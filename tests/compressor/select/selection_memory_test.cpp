@@ -47,7 +47,7 @@ std::string measure() {
   const auto files = make_posix_file_system();
   const MemoryPlan memory = plan_memory(kMemory, resident_bytes(), kThreads, domain);
   TreeRegions tree(domain);
-  RowStore rows(files->create_unnamed(::testing::TempDir()), tree.leaves, memory.segment_regions);
+  RowStore rows(files->create_unnamed(::testing::TempDir()), tree.leaves, memory.selection);
   const auto row_bytes = static_cast<std::uint64_t>(tree.leaves.size()) * sizeof(LeafRow);
   if (row_bytes < 16 * kMemory) return "the row file is too small";
   fill_rows(rows);

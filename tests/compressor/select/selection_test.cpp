@@ -221,7 +221,7 @@ TEST(Selection, FindsTheCutAmongKeysThatDifferInTheirLastBits) {
   // More leaves than are sorted at once, in every region: half of the keys share their first 16 bits, the
   // other half their first 32, and every fourth of those are one value.
   const Box domain{{0, 0, 0}, {512, 512, 640}};
-  RowStore rows(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), 64);
+  RowStore rows(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), {64, 0});
   std::vector<LeafRow> all(static_cast<std::size_t>(rows.leaves().size()));
   std::mt19937_64 random(13);
   for (std::size_t i = 0; i < all.size(); ++i) {

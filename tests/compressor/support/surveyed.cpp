@@ -8,10 +8,10 @@
 
 namespace weir::test {
 
-Surveyed::Surveyed(MemoryVolume& of, std::uint64_t block_bytes, std::int64_t segment_regions)
+Surveyed::Surveyed(MemoryVolume& of, std::uint64_t block_bytes, const SelectionRoom& room)
     : volume(of),
       plan(plan_blocks(of.info().domain(), of.access(), block_bytes)),
-      rows(CrashFileSystem().create_unnamed("rows"), plan.lattice, segment_regions),
+      rows(CrashFileSystem().create_unnamed("rows"), plan.lattice, room),
       survey(survey_volume(of, plan, rows, {})) {}
 
 std::vector<LeafRow> Surveyed::all_rows() const {

@@ -15,9 +15,9 @@
 namespace weir::test {
 
 struct Surveyed {
-  /// Blocks of up to `block_bytes`, row segments of `segment_regions`.
+  /// Blocks of up to `block_bytes`, and what selection has of memory.
   explicit Surveyed(MemoryVolume& of, std::uint64_t block_bytes = std::uint64_t{1} << 30U,
-                    std::int64_t segment_regions = 64);
+                    const SelectionRoom& room = {64, std::uint64_t{1} << 24U});
 
   MemoryVolume& volume;
   BlockPlan plan;

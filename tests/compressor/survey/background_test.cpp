@@ -166,7 +166,7 @@ TEST(Background, DoesNotDependOnTheBlocks) {
     const auto source = open_synthetic(kind, {{140, 140, 140}, 1});
     MemoryVolume volume(*source);
     const Surveyed whole(volume);
-    const Surveyed pieces(volume, 70'000, 1);
+    const Surveyed pieces(volume, 70'000, {1, 0});
     ASSERT_GT(pieces.plan.size(), 40);
     const Background a = find_background(whole.survey, whole.rows, volume, whole.plan, {});
     const Background b = find_background(pieces.survey, pieces.rows, volume, pieces.plan, {});

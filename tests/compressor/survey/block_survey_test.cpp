@@ -33,7 +33,7 @@ TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   ASSERT_GT(order.size(), 20U);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  RowStore rows(test::CrashFileSystem().create_unnamed("rows"), plan.lattice, 1);
+  RowStore rows(test::CrashFileSystem().create_unnamed("rows"), plan.lattice, {});
   LeafStore<LeafFaces> faces(test::CrashFileSystem().create_unnamed("faces"), plan.lattice);
   BlockSurvey first(volume.info(), rows, &faces, false, nullptr);
   BlockSurvey second(volume.info(), rows, &faces, false, nullptr);

@@ -14,7 +14,7 @@ namespace {
 
 // Rows whose `sse` is their linear index.
 RowStore numbered_rows(const Box& domain, std::int64_t segment_regions) {
-  RowStore store(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), segment_regions);
+  RowStore store(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), {segment_regions, 0});
   std::vector<LeafRow> rows(static_cast<std::size_t>(store.leaves().size()));
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].sse = static_cast<double>(i);
   // In two writes.

@@ -49,7 +49,7 @@ TEST(Survey, CountsFiniteValuesAndFindsTheFirstOther) {
                                     : static_cast<float>(at.x);
   });
   for (const std::uint64_t block_bytes : {std::uint64_t{1} << 30U, std::uint64_t{20'000}, std::uint64_t{2'048}}) {
-    const Surveyed surveyed(volume, block_bytes, 1);
+    const Surveyed surveyed(volume, block_bytes, {1, 0});
     EXPECT_EQ(surveyed.survey.non_finite, 4U);
     EXPECT_EQ(surveyed.survey.finite, static_cast<std::uint64_t>(kDomain.voxels()) - 4);
     EXPECT_EQ(surveyed.survey.first_non_finite, (kDomain.lo + Index3{52, 2, 1}));
@@ -104,7 +104,7 @@ TEST(Survey, DoesNotDependOnTheBlocks) {
     MemoryVolume volume(*source);
     const Surveyed whole(volume);
     for (const std::uint64_t block_bytes : {std::uint64_t{2'048}, std::uint64_t{9'000}, std::uint64_t{150'000}}) {
-      const Surveyed pieces(volume, block_bytes, 1);
+      const Surveyed pieces(volume, block_bytes, {1, 0});
       const auto a = whole.all_rows();
       const auto b = pieces.all_rows();
       EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(LeafRow)), 0) << kind;

@@ -79,7 +79,7 @@ constexpr Box kDomain{{0, 0, 0}, {1024, 1024, 1024}};
 
 // The volume, surveyed.
 struct Billion {
-  Billion() : tree(kDomain), rows(test::CrashFileSystem().create_unnamed("rows"), tree.leaves, 8), kinds(kKinds) {
+  Billion() : tree(kDomain), rows(test::CrashFileSystem().create_unnamed("rows"), tree.leaves, {8, 0}), kinds(kKinds) {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
       const LeafValues values = values_of(kind);
       kinds[kind] = summarize_leaf(values, 0);

@@ -1,0 +1,88 @@
+// The steps that a selection can buy, held in memory as the first pass over the rows finds them, so that the cut among
+// them is found without further passes.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compressor/select/step_keys.h"
+#include "ingest/plan/page_buffer.h"
+
+namespace weir {
+
+/// Of keys in a range; of others their bytes alone. Steps of one thread lie together.
+class HeldSteps {
+ public:
+  struct Step {
+    double key;
+    double gain;
+    std::int32_t region;
+    std::uint32_t bytes;
+  };
+  struct Sum {
+    std::uint64_t bytes = 0;
+    std::uint64_t count = 0;
+    void operator+=(const Sum& other) {
+      bytes += other.bytes;
+      count += other.count;
+    }
+  };
+  /// Of steps whose keys are not in the range.
+  struct Outside {
+    Sum required;
+    Sum above;
+    Sum below;
+  };
+
+  /// Takes up to `most_bytes` of memory, as it is needed.
+  HeldSteps(const KeyRange& range, std::uint64_t most_bytes) : range_(range), most_chunks_(most_bytes / kChunkBytes) {}
+
+  /// One thread's. Keys of 0 are never bought.
+  class Part {
+   public:
+    explicit Part(HeldSteps& all) : all_(&all) {}
+    void add(std::int64_t region, double key, std::uint64_t bytes, double gain) {
+      if (!(key > 0)) return;
+      if (!all_->range_.holds(key)) {
+        add_outside(key, bytes);
+      } else if (room_ > 0 || grow()) {
+        *next_++ = {key, gain, static_cast<std::int32_t>(region), static_cast<std::uint32_t>(bytes)};
+        --room_;
+      }
+    }
+
+   private:
+    friend class HeldSteps;
+    void add_outside(double key, std::uint64_t bytes);
+    bool grow();
+
+    HeldSteps* all_;
+    std::vector<PageBuffer> chunks_;
+    Step* next_ = nullptr;
+    std::size_t room_ = 0;  // steps that the last chunk still takes
+    Outside outside_;
+  };
+  Part& part() { return parts_.local(); }
+
+  /// Whether every step of the range is held.
+  bool complete() const { return !overflown_; }
+  const KeyRange& range() const { return range_; }
+  Outside outside() const;
+  /// In no order.
+  std::vector<std::span<const Step>> chunks() const;
+
+ private:
+  static constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18U;
+
+  KeyRange range_;
+  std::uint64_t most_chunks_;
+  std::atomic<std::uint64_t> chunk_count_ = 0;
+  std::atomic<bool> overflown_ = false;
+  tbb::enumerable_thread_specific<Part> parts_{[this] { return Part(*this); }};
+};
+
+}  // namespace weir

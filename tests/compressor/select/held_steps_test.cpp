@@ -1,0 +1,97 @@
+#include "compressor/select/held_steps.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ingest/synthetic/synthetic.h"
+#include "tests/compressor/support/surveyed.h"
+
+namespace weir::held_steps_test {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+
+KeyRange keys_between(double first, double last) { return {key_bits(first), key_bits(last) + 1}; }
+
+TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
+  HeldSteps held(keys_between(1, 2), kMiB);
+  HeldSteps::Part& part = held.part();
+  part.add(3, 1, 10, 0.5);
+  part.add(4, 2, 20, 0.25);
+  part.add(5, 0.5, 100, 1);
+  part.add(5, 0.25, 100, 1);
+  part.add(6, 3, 1000, 1);
+  part.add(7, kRequiredKey, 10'000, 1);
+  part.add(8, 0, 7, 0);  // never bought
+  ASSERT_TRUE(held.complete());
+  const auto chunks = held.chunks();
+  ASSERT_EQ(chunks.size(), 1U);
+  ASSERT_EQ(chunks[0].size(), 2U);
+  EXPECT_EQ(chunks[0][0].region, 3);
+  EXPECT_EQ(chunks[0][1].region, 4);
+  EXPECT_EQ(chunks[0][1].bytes, 20U);
+  EXPECT_EQ(chunks[0][1].gain, 0.25);
+  const HeldSteps::Outside outside = held.outside();
+  EXPECT_EQ(outside.below.bytes, 200U);
+  EXPECT_EQ(outside.below.count, 2U);
+  EXPECT_EQ(outside.above.bytes, 1000U);
+  EXPECT_EQ(outside.required.bytes, 10'000U);
+}
+
+TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
+  HeldSteps held(keys_between(1, 2), 64 * kMiB);
+  constexpr std::int64_t kSteps = 100'000;
+  tbb::parallel_for(std::int64_t{0}, kSteps, [&](std::int64_t i) { held.part().add(i, 1.5, 1, 1); });
+  ASSERT_TRUE(held.complete());
+  std::vector<bool> seen(kSteps);
+  std::int64_t count = 0;
+  for (const auto chunk : held.chunks()) {
+    for (const HeldSteps::Step& step : chunk) {
+      EXPECT_FALSE(seen[static_cast<std::size_t>(step.region)]) << step.region;
+      seen[static_cast<std::size_t>(step.region)] = true;
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, kSteps);
+}
+
+TEST(HeldSteps, TakesNoMoreThanItMay) {
+  HeldSteps held(keys_between(1, 2), kMiB);
+  for (std::int64_t i = 0; i < 100'000; ++i) held.part().add(i, 1.5, 1, 1);  // of 24 bytes
+  EXPECT_FALSE(held.complete());
+  EXPECT_TRUE(held.chunks().empty());
+}
+
+// What is chosen does not depend on whether steps are held, all of them, or too few.
+TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
+  for (const std::string kind : {"cloud", "turbulence"}) {
+    const auto source = open_synthetic(kind, {{150, 140, 260}, 3});
+    test::MemoryVolume volume(*source);
+    const test::Surveyed with(volume, 1U << 30U, {64, 16 * kMiB});
+    const test::Surveyed without(volume, 1U << 30U, {64, 0});
+    const test::Surveyed overflowing(volume, 1U << 30U, {64, kMiB / 4});
+    for (const Encoding encoding : {Encoding::float32, Encoding::fpn}) {
+      GainRule rule{Metric::sse, 1, {FillMode::mean, 0.25F, NonFinitePolicy::background}};
+      rule.encoding = encoding;
+      const test::Chooser sizes(without, rule);
+      for (int k = 1; k < 8; ++k) {
+        const std::uint64_t bytes =
+            sizes.minimum() + (sizes.lossless() - sizes.minimum()) / 8 * static_cast<unsigned>(k);
+        const test::Choice expected = test::Chooser(without, rule).choose(bytes);
+        for (const test::Surveyed* const surveyed : {&with, &overflowing}) {
+          const test::Choice chosen = test::Chooser(*surveyed, rule).choose(bytes);
+          EXPECT_EQ(chosen.kept, expected.kept) << kind << ", " << bytes << " bytes";
+          EXPECT_EQ(chosen.region, expected.region);
+          EXPECT_EQ(chosen.plan.layout.content_end, expected.plan.layout.content_end);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weir::held_steps_test
