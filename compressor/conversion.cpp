@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compressor/conversion_control.h"
+#include "compressor/conversion_memory.h"
 #include "compressor/look_ahead.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"

@@ -134,25 +134,6 @@ bool surveys_widths(const ConversionOptions& options) {
   return options.encoding != Encoding::float32 && options.encoding != Encoding::packed && options.metric == Metric::sse;
 }
 
-std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain) {
-  std::uint64_t of_leaf = sizeof(LeafRow) + sizeof(LeafRecord);
-  std::uint64_t of_region = 2 * sizeof(LeafChoices);  // of two plans, between which is chosen
-  if (options.encoding == Encoding::packed) {
-    of_leaf += sizeof(PackedLadder);
-    of_region += 2 * sizeof(PlannedStreams);
-  }
-  if (options.scene) of_leaf += sizeof(LeafFaces) + sizeof(MinMax);
-  const auto leaves = static_cast<std::uint64_t>(make_lattice(domain, kLeafDim).size());
-  const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
-  return leaves * of_leaf + regions * of_region;
-}
-
-std::uint64_t region_bytes(const ConversionOptions& options) {
-  if (options.encoding != Encoding::packed) return kRegionRowsBytes;
-  // A block has many more steps than a leaf; sorted, there are two copies of them.
-  return kRegionRowsBytes + kRegionLaddersBytes + 2 * RegionGains::kMostBytes;
-}
-
 std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source) {
   if (options.encoding != Encoding::packed) return std::nullopt;
   LadderAim aim;

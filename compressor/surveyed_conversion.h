@@ -48,12 +48,6 @@ bool surveys_widths(const ConversionOptions& options);
 /// What the survey is to look for in blocks that are packed; none where none is.
 std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source);
 
-/// Of the rows of a region that selection holds (memory_plan.h).
-std::uint64_t region_bytes(const ConversionOptions& options);
-
-/// Most bytes that the records of all leaves of a conversion take at a time: rows, and what selection and encoding add.
-std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain);
-
 /// The files that a survey fills.
 struct SurveyStores {
   RowStore rows;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "compressor/conversion_memory.h"
 #include "compressor/forecast/forecast_checks.h"
 #include "compressor/forecast/read_probe.h"
 #include "compressor/forecast/sample_copy.h"

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "compressor/conversion_control.h"
+#include "compressor/conversion_memory.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/push/leaf_spool.h"
