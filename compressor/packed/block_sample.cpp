@@ -8,8 +8,8 @@ namespace weir {
 BlockSample::BlockSample(const NodeLattice& leaves) : count_(leaves.count) {
   constexpr std::int64_t kPart = 64;  // one block in so many
   constexpr std::int64_t kLeast = 1024;
-  constexpr std::int64_t kMost = 4096;
-  constexpr std::int64_t kLongestRow = 256;
+  constexpr std::int64_t kMost = 8192;
+  constexpr std::int64_t kLongestRow = 64;  // longer ones are fewer, and tell less of sparse volumes
   row_length_ = std::min(count_.x, kLongestRow);
   rows_along_x_ = (count_.x + row_length_ - 1) / row_length_;
   const std::int64_t all = rows_along_x_ * count_.y * count_.z;

@@ -11,7 +11,7 @@ namespace weir {
 
 class BlockSample {
  public:
-  /// Of a volume with those leaves: one block in 64 or so, but a thousand at least and some four thousand at most.
+  /// Of a volume with those leaves: one block in 64 or so, but a thousand at least and some eight thousand at most.
   explicit BlockSample(const NodeLattice& leaves);
 
   /// Whether the block at that position of the lattice is one of them.

@@ -36,7 +36,13 @@ TEST(BlockSample, RowsHoldTheBlocksThatItHas) {
 TEST(BlockSample, IsAllOfASmallVolumeAndASmallPartOfALargeOne) {
   EXPECT_EQ(BlockSample(lattice_of({60, 70, 80})).size(), lattice_of({60, 70, 80}).size());
   EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {512, 512, 512}}, kLeafDim)).size(), 4096);  // one in 64
-  EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {2048, 2048, 2048}}, kLeafDim)).size(), 4096);
+  EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {2048, 2048, 2048}}, kLeafDim)).size(), 8192);
+}
+
+// What is in a few long rows of a sparse volume may be anything.
+TEST(BlockSample, HasManyRowsOfALongVolume) {
+  EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {768, 768, 768}}, kLeafDim)).rows().size(), 128U);
+  EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {8192, 512, 512}}, kLeafDim)).rows().size(), 128U);
 }
 
 TEST(BlockSample, RowsLieInAllPartsOfTheVolume) {
