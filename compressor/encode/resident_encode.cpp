@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <memory>
@@ -37,8 +38,7 @@ class ResidentEncode {
     for (std::size_t first = 0; first < regions.size(); first += at_once) {
       throw_if_cancelled(options_);
       const std::vector<std::unique_ptr<Part>> group = std::move(next);
-      next = begin(regions, first + at_once, at_once);
-      end(group);
+      tbb::parallel_invoke([&] { next = begin(regions, first + at_once, at_once); }, [&] { end(group); });
     }
   }
 

@@ -253,7 +253,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
       part(first, end, tallies_.local());
     };
     if (sharing == Sharing::alone) return survey(0, volume(extent));
-    constexpr std::int64_t kLeastRun = 16;
+    constexpr std::int64_t kLeastRun = 4;  // rows of a sample are short
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), kLeastRun),
                       [&](const auto& range) { survey(range.begin(), range.end()); });
   };

@@ -89,20 +89,23 @@ class ResidentSurvey {
   }
 
   void end(std::vector<Begun>& group) {
+    std::vector<std::optional<SurveyedBlocks>> found(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (group[i].blocks) found[i] = group[i].blocks->end_survey();
+      if (!found[i]) group[i].blocks.reset();
+    }
+    // All boxes at once: one alone is too little work for many threads.
+    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) {
+      if (!found[i]) return;
+      survey_.take(*found[i], group[i].leaves);
+      get_left(group[i]);
+    });
     std::vector<std::pair<std::size_t, std::size_t>> left;  // box of the group, number among those it leaves
     for (std::size_t i = 0; i < group.size(); ++i) {
-      Begun& begun = group[i];
-      if (!begun.used) continue;
-      const std::optional<SurveyedBlocks> found = begun.blocks ? begun.blocks->end_survey() : std::nullopt;
-      if (!found) {
-        begun.blocks.reset();
-        survey_read(begun.leaves.leaf_box);
-        continue;
-      }
-      survey_.take(*found, begun.leaves);
-      for (std::size_t k = 0; k < begun.leaves.left.size(); ++k) left.emplace_back(i, k);
+      const Begun& begun = group[i];
+      if (begun.used && !begun.blocks) survey_read(begun.leaves.leaf_box);
+      for (std::size_t k = 0; begun.blocks && k < begun.leaves.left.size(); ++k) left.emplace_back(i, k);
     }
-    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) { get_left(group[i]); });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
       const TraceSpan span(options_.trace, "survey");
       for (std::size_t n = range.begin(); n < range.end(); ++n) {
@@ -111,10 +114,11 @@ class ResidentSurvey {
         survey_.survey_left(begun.leaves, begun.leaves.left[k], begun.left.data() + kLeafVoxels * k);
       }
     });
+    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) {
+      if (group[i].blocks) survey_.write(group[i].leaves);
+    });
     for (const Begun& begun : group) {
-      if (!begun.used) continue;
-      if (begun.blocks) survey_.write(begun.leaves);
-      done_ += leaves_.voxels(begun.leaves.leaf_box).voxels();
+      if (begun.used) done_ += leaves_.voxels(begun.leaves.leaf_box).voxels();
     }
     if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
   }
