@@ -84,14 +84,10 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
 
   MemoryPlan memory;
   ReadingPlan reading;
-  const auto plan_with = [&](std::uint64_t records) {
-    memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options), records);
-    reading = plan_reading(source, memory);
-  };
   team.run([&] {
-    const bool may_hold = journal == nullptr && team.alone();  // no other process is to read them
-    plan_with(may_hold ? record_bytes(options, domain) : 0);
-    if (memory.record_bytes > 0 && reading.encode.amplification > 1) plan_with(0);
+    MemoryShares shares = share_memory(source, options, resident, threads, journal == nullptr && team.alone());
+    memory = shares.memory;
+    reading = std::move(shares.reading);
   });
   if (memory.record_bytes > 0) work.hold_records();
   const StreamOptions stream = stream_options(control);

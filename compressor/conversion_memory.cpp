@@ -29,4 +29,16 @@ std::uint64_t region_bytes(const ConversionOptions& options) {
   return kRegionRowsBytes + kRegionLaddersBytes + 2 * RegionGains::kMostBytes;
 }
 
+MemoryShares share_memory(const VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
+                          std::size_t threads, bool may_hold) {
+  const Box domain = source.info().domain();
+  const auto shares_with = [&](std::uint64_t records) {
+    const MemoryPlan memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options), records);
+    return MemoryShares{memory, plan_reading(source, memory)};
+  };
+  MemoryShares shares = shares_with(may_hold ? record_bytes(options, domain) : 0);
+  if (shares.memory.record_bytes > 0 && shares.reading.encode.amplification > 1) shares = shares_with(0);
+  return shares;
+}
+
 }  // namespace weir

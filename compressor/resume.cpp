@@ -18,6 +18,11 @@ bool is_final(const Error& error) {
 
 }  // namespace
 
+bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool in_memory) {
+  const bool large = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float) >= kResumableBytes;
+  return !in_memory && (options.resume == Resume::on || (options.resume == Resume::automatic && large));
+}
+
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files) {
   const bool in_memory = files.is_memory(output.directory());
@@ -26,8 +31,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
                 compose(option("resume", "on"), ": ", options.output,
                         " lies on a memory file system; choose an output on a disk or ", option("resume", "off")));
   }
-  const bool large = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float) >= kResumableBytes;
-  if (options.resume == Resume::off || in_memory || (options.resume == Resume::automatic && !large)) {
+  if (!is_resumable(info, options, in_memory)) {
     if (remove_leftovers(files, options.output) && control.notice) {
       control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
     }

@@ -14,6 +14,9 @@
 
 namespace weir {
 
+/// Whether an interrupted conversion can be continued, with an output on a file system that is memory or not.
+bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool in_memory);
+
 /// The journal of a conversion, with what an interrupted one left in it. Null where `options` or the volume's size rule
 /// out continuing; then what was left is removed, with a notice. Throws Error(usage) for Resume::on where the output's
 /// file system keeps nothing.

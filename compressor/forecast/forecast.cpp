@@ -18,6 +18,7 @@
 #include "compressor/forecast/work_time.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/reading_plan.h"
+#include "compressor/resume.h"
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/fixed_bytes.h"
@@ -68,8 +69,10 @@ class Forecaster {
     const std::uint64_t of_region = region_bytes(options_);
     const std::size_t threads =
         choose_threads(options_.threads, processors, options_.memory, resident, domain_, of_region);
-    const MemoryPlan memory = plan_memory(options_.memory, resident, threads, domain_, of_region);
-    reading_ = plan_reading(source_, memory);
+    const bool keeps_work = is_resumable(source_.info(), options_, files_.is_memory(directory_of(options_.output)));
+    const MemoryShares shares = share_memory(source_, options_, resident, threads, !keeps_work);
+    const MemoryPlan& memory = shares.memory;
+    reading_ = shares.reading;
     if (reading_.encode.amplification > 1 && control_.notice) {
       control_.notice(amplification_notice(source_, memory, options_.memory, reading_.encode));
     }
@@ -81,7 +84,9 @@ class Forecaster {
     const bool chunked = source_.access().chunk != Index3{};
     copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
     forecast_.threads = threads;
-    forecast_.memory_bytes = std::min(options_.memory, memory.fixed_bytes + std::max(blocks, walk));
+    const std::uint64_t held = memory.record_bytes;
+    forecast_.memory_bytes = std::min(options_.memory, memory.fixed_bytes + held + std::max(blocks, walk));
+    forecast_.scratch_bytes = held > 0 ? 0 : record_bytes(options_, domain_);
   }
 
   // The default is a rate for all volumes that are not small.
@@ -123,7 +128,6 @@ class Forecaster {
     f.places = 1;
     f.passes = static_cast<double>(source.voxels_read()) / static_cast<double>(domain_.voxels());
     f.read_bytes = source.bytes_read();
-    f.scratch_bytes = trial.scratch_bytes;
     f.survey_s = trial.survey_s;
     f.encode_s = trial.encode_s;
     const auto bytes = static_cast<double>(trial.sidecar.file.bytes);
@@ -155,7 +159,7 @@ class Forecaster {
     forecast_.sampled_voxels = static_cast<std::uint64_t>(plan_.domain().voxels());
     forecast_.places = plan_.places();
     refuse_sampled_values(options_, trial.sidecar);
-    describe_work(trial, parts, cost, scale.share(), sampled.varied_share());
+    describe_work(trial, parts, cost, sampled.varied_share());
     describe_file(trial.sidecar);
     if (!forecast_.exact_bytes) {
       const double bytes = scale.file_bytes(trial.sidecar);
@@ -203,8 +207,7 @@ class Forecaster {
     return parts;
   }
 
-  void describe_work(const Trial& trial, const std::vector<Part>& parts, const ReadCost& cost, double share,
-                     double varied) {
+  void describe_work(const Trial& trial, const std::vector<Part>& parts, const ReadCost& cost, double varied) {
     Forecast& f = forecast_;
     const auto sampled = static_cast<double>(plan_.domain().voxels());
     const auto voxels = static_cast<double>(domain_.voxels());
@@ -212,7 +215,6 @@ class Forecaster {
     const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
     f.passes = 1 + std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
     f.read_bytes = static_cast<std::uint64_t>(f.passes * cost.bytes * voxels);
-    f.scratch_bytes = static_cast<std::uint64_t>(static_cast<double>(trial.scratch_bytes) / share);
     std::vector<double> survey_s;
     std::vector<double> encode_s;
     for (const Part& part : parts) {

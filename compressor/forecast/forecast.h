@@ -31,7 +31,7 @@ struct Forecast {
   std::string encoding;      ///< "float", "fpn", ... "packed"; that of the sample
   bool exact_bytes = false;  ///< the file has exactly so many
   Expected file_bytes;
-  std::uint64_t scratch_bytes = 0;  ///< in unnamed or hidden files while it is converted
+  std::uint64_t scratch_bytes = 0;  ///< at most, in unnamed or hidden files while it is converted
   std::uint64_t memory_bytes = 0;   ///< the most that the plan of the memory ceiling takes
   std::size_t threads = 0;
   bool on_device = false;

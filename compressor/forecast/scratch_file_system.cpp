@@ -1,6 +1,5 @@
 #include "compressor/forecast/scratch_file_system.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -14,15 +13,10 @@ namespace weir {
 // A file of the system under it, by the name that the conversion gave it.
 class ScratchFileSystem::ScratchFile final : public File {
  public:
-  /// `spilled`, where given, grows with the file.
-  ScratchFile(std::shared_ptr<File> file, std::string path, std::atomic<std::uint64_t>* spilled)
-      : file_(std::move(file)), path_(std::move(path)), spilled_(spilled) {}
+  ScratchFile(std::shared_ptr<File> file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
 
   const std::string& path() const override { return path_; }
-  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    file_->write_at(offset, bytes);
-    count(offset + bytes.size());
-  }
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override { file_->write_at(offset, bytes); }
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) override { file_->read_at(offset, bytes); }
   bool preallocate(std::uint64_t bytes) override { return file_->preallocate(bytes); }
   void clear() override { file_->clear(); }
@@ -32,18 +26,8 @@ class ScratchFileSystem::ScratchFile final : public File {
   int descriptor() const override { return file_->descriptor(); }
 
  private:
-  void count(std::uint64_t end) {
-    if (spilled_ == nullptr) return;
-    std::uint64_t longest = longest_;
-    while (end > longest && !longest_.compare_exchange_weak(longest, end)) {
-    }
-    if (end > longest) *spilled_ += end - longest;
-  }
-
   std::shared_ptr<File> file_;
   std::string path_;
-  std::atomic<std::uint64_t>* spilled_;
-  std::atomic<std::uint64_t> longest_{0};
 };
 
 ScratchFileSystem::ScratchFileSystem(FileSystem& files, const std::string& output)
@@ -53,20 +37,20 @@ std::unique_ptr<File> ScratchFileSystem::create(const std::string& path) {
   std::shared_ptr<File> file = files_.create_unnamed(directory_of(path));
   const std::scoped_lock lock(mutex_);
   named_[path] = file;
-  return std::make_unique<ScratchFile>(std::move(file), path, nullptr);
+  return std::make_unique<ScratchFile>(std::move(file), path);
 }
 
 std::unique_ptr<File> ScratchFileSystem::open(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   const auto found = named_.find(path);
   if (found == named_.end()) throw io_error(path, "open", ENOENT);
-  return std::make_unique<ScratchFile>(found->second, path, nullptr);
+  return std::make_unique<ScratchFile>(found->second, path);
 }
 
 std::unique_ptr<File> ScratchFileSystem::create_unnamed(const std::string& directory) {
   // The hidden directory beside the output is not made.
   const std::string& place = directory == hidden_ ? directory_of(output_) : directory;
-  return std::make_unique<ScratchFile>(files_.create_unnamed(place), directory, &spilled_);
+  return std::make_unique<ScratchFile>(files_.create_unnamed(place), directory);
 }
 
 void ScratchFileSystem::rename(const std::string& from, const std::string& to) {

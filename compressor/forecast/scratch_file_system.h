@@ -1,7 +1,6 @@
 // A file system in which a conversion leaves nothing: its files have no names.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -19,9 +18,6 @@ namespace weir {
 class ScratchFileSystem final : public FileSystem {
  public:
   ScratchFileSystem(FileSystem& files, const std::string& output);
-
-  /// Bytes of all unnamed files that were asked for, each as long as it ever was.
-  std::uint64_t spilled_bytes() const { return spilled_; }
 
   std::unique_ptr<File> create(const std::string& path) override;
   std::unique_ptr<File> open(const std::string& path) override;
@@ -45,7 +41,6 @@ class ScratchFileSystem final : public FileSystem {
   std::string output_;
   std::string sidecar_;
   std::string hidden_;
-  std::atomic<std::uint64_t> spilled_{0};
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<File>> named_;
 };

@@ -16,7 +16,6 @@ Trial run_trial(VolumeSource& source, ConversionOptions options, const Conversio
   trial.sidecar = convert_volume(source, options, control, scratch);
   trial.survey_s = trial.sidecar.timing.survey_s;
   trial.encode_s = seconds_since(started) - trial.survey_s;
-  trial.scratch_bytes = scratch.spilled_bytes();
   return trial;
 }
 

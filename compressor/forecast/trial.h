@@ -1,8 +1,6 @@
 // A conversion that leaves nothing behind it.
 #pragma once
 
-#include <cstdint>
-
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_options.h"
 #include "format/io/file_system.h"
@@ -15,7 +13,6 @@ struct Trial {
   Sidecar sidecar;
   double survey_s = 0;
   double encode_s = 0;  ///< all the rest, the flush of the file to its device with it
-  std::uint64_t scratch_bytes = 0;
 };
 
 /// Converts `source` as convert_volume does, in a ScratchFileSystem over `files`. Throws what that throws.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "compressor/conversion.h"
+#include "compressor/conversion_memory.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/message_of_error.h"
@@ -98,12 +99,24 @@ TEST_F(ForecastTest, SmallVolume_HasExactFigures) {
     EXPECT_EQ(f.max_abs, made.error.max_abs);
     EXPECT_EQ(f.read_bytes, made.timing.bytes_read - read_before);
     EXPECT_EQ(f.volume_bytes, static_cast<std::uint64_t>(200 * 110 * 70 * 4));
-    EXPECT_GT(f.scratch_bytes, 0U);
+    EXPECT_EQ(f.scratch_bytes, 0U);  // memory holds the records
     EXPECT_GT(f.survey_s, 0);
     EXPECT_GT(f.encode_s, 0);
     EXPECT_EQ(f.threads, 2U);
     EXPECT_EQ(f.encoding == "packed", c.encoding == Encoding::packed);
   }
+}
+
+TEST_F(ForecastTest, RecordsThatMemoryDoesNotHold_AreScratch) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
+  ConversionOptions asked = options(Encoding::packed, Budget::Kind::rate);
+  const std::uint64_t records = record_bytes(asked, volume.info().domain());
+  EXPECT_GE(records, 512U * (64 + 120 + 144));
+  const Forecast held = forecast(volume, asked, kForecastBytes);
+  EXPECT_EQ(held.scratch_bytes, 0U);
+  asked.resume = Resume::on;  // then another process has to find them
+  const Forecast spilled = forecast(volume, asked, kForecastBytes);
+  EXPECT_EQ(spilled.scratch_bytes, records);
 }
 
 TEST_F(ForecastTest, SampleOfUnevenParts_BracketsWhatThenComesOut) {
@@ -197,6 +210,7 @@ TEST_F(ForecastTest, FullDisk_IsReported) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
   ConversionOptions asked = options(Encoding::float32, Budget::Kind::size);
   asked.budget.bytes = 600000;
+  asked.resume = Resume::on;  // with records on the disk
   FaultyFileSystem disk(*files_, -1, 0);
   disk.leave_free(600000);
   const std::string message =

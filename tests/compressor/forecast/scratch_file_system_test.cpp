@@ -32,7 +32,6 @@ TEST_F(ScratchFileSystemTest, WholeOutput_LeavesTheDirectoryAsItWas) {
   }
   EXPECT_TRUE(files_.exists(output_));
   EXPECT_TRUE(list_directory(directory_.path()).empty());
-  EXPECT_EQ(files_.spilled_bytes(), 0U);
 }
 
 TEST_F(ScratchFileSystemTest, ExistingOutput_IsRefusedAsByAConversion) {
@@ -50,20 +49,6 @@ TEST_F(ScratchFileSystemTest, WhatAnotherConversionKeepsBesideIt_IsNotShown) {
   EXPECT_FALSE(files_.exists(directory_ / ".out.nvdb.work"));
   OutputFiles(files_, output_, false).commit("{}");
   EXPECT_EQ(read_file(output_ + ".partial"), "half");
-}
-
-TEST_F(ScratchFileSystemTest, SpilledBytes_CountEachFileAsLongAsItEverWas) {
-  const std::array<std::byte, 8> bytes{};
-  const auto one = files_.create_unnamed(directory_.path());
-  one->write_at(0, bytes);
-  one->write_at(0, bytes);
-  one->write_at(92, bytes);
-  one->clear();
-  one->write_at(0, bytes);
-  const auto hidden = files_.create_unnamed(directory_ / ".out.nvdb.work");
-  hidden->write_at(8, bytes);
-  EXPECT_EQ(files_.spilled_bytes(), 116U);
-  EXPECT_TRUE(list_directory(directory_.path()).empty());
 }
 
 }  // namespace
