@@ -89,7 +89,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     memory = shares.memory;
     reading = std::move(shares.reading);
   });
-  if (memory.record_bytes > 0) work.hold_records();
+  work.hold_records(memory.record_bytes > 0);
   const StreamOptions stream = stream_options(control);
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));

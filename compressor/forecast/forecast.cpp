@@ -78,7 +78,8 @@ class Forecaster {
     }
     const std::uint64_t block = std::max(reading_.survey.block_bytes, reading_.encode.block_bytes);
     const std::uint64_t blocks = block * (reading_.reading == Reading::in_place ? threads : 2);
-    const std::uint64_t walk = threads * static_cast<std::uint64_t>(memory.selection.segment_regions) * of_region;
+    const std::uint64_t walk = threads * static_cast<std::uint64_t>(memory.selection.segment_regions) * of_region +
+                               memory.selection.step_bytes;
     // Chunks are decoded whole; rows are read as well in smaller blocks.
     constexpr std::uint64_t kRowsBytes = std::uint64_t{32} << 20U;
     const bool chunked = source_.access().chunk != Index3{};

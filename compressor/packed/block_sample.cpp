@@ -10,8 +10,8 @@ BlockSample::BlockSample(const NodeLattice& leaves) : count_(leaves.count) {
   constexpr std::int64_t kLeast = 1024;
   constexpr std::int64_t kMost = 8192;
   constexpr std::int64_t kLongestRow = 64;  // longer ones are fewer, and tell less of sparse volumes
-  row_length_ = std::min(count_.x, kLongestRow);
-  rows_along_x_ = (count_.x + row_length_ - 1) / row_length_;
+  rows_along_x_ = (count_.x + kLongestRow - 1) / kLongestRow;
+  row_length_ = (count_.x + rows_along_x_ - 1) / rows_along_x_;
   const std::int64_t all = rows_along_x_ * count_.y * count_.z;
   const std::int64_t blocks = std::clamp(leaves.size() / kPart, kLeast, kMost);
   const std::int64_t wanted = std::min(all, (blocks + row_length_ - 1) / row_length_);

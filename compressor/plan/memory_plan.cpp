@@ -76,7 +76,8 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   // Blocks are given back by then.
   plan.selection.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * region_bytes)), 1, 64);
-  plan.selection.step_bytes = free / 4;
+  const std::uint64_t walk = static_cast<std::uint64_t>(plan.selection.segment_regions) * threads * region_bytes;
+  plan.selection.step_bytes = free > walk ? (free - walk) / 2 : 0;
   return plan;
 }
 

@@ -22,9 +22,9 @@ struct MemoryPlan {
 };
 
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
-/// A walk over regions holds `region_bytes` of rows for each. Records of all leaves stay in memory where they take
-/// `records` bytes, more than 0, and no more than a quarter of what is there to divide. Throws Error(usage) naming a
-/// sufficient --memory where it is too small.
+/// A walk over regions holds `region_bytes` of rows for each. The records of all leaves take
+/// `records` bytes, 0: they are spilled; they stay in memory if that is at most a quarter of what is to be divided.
+/// Throws Error(usage) naming a sufficient --memory where it is too small.
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
                        std::uint64_t region_bytes = kRegionRowsBytes, std::uint64_t records = 0);
 

@@ -72,7 +72,7 @@ struct PushedFiles {
     if (remove_leftovers(files, options.output) && control.notice) {
       control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
     }
-    if (memory.record_bytes > 0) work.hold_records();
+    work.hold_records(memory.record_bytes > 0);
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
     stores.emplace(SurveyStores{RowStore(work.spill_records(), leaves, memory.selection), {}, {}});
     if (faces) stores->faces.emplace(work.spill_records(), leaves);

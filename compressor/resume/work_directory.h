@@ -31,8 +31,8 @@ class WorkDirectory {
   std::unique_ptr<File> spill() { return files_.create_unnamed(path_); }
   /// For the records of a conversion's leaves.
   std::unique_ptr<File> spill_records() { return records_in_memory_ ? memory_.create_unnamed(path_) : spill(); }
-  /// From now on those files are memory, which the conversion's ceiling has to hold (MemoryPlan::record_bytes).
-  void hold_records() { records_in_memory_ = true; }
+  /// Whether the next of those files are memory, which the conversion's ceiling has to hold (MemoryPlan::record_bytes).
+  void hold_records(bool in_memory) { records_in_memory_ = in_memory; }
 
  private:
   FileSystem& files_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "format/base/text.h"
@@ -19,7 +20,7 @@ class Candidate {
         work_(work),
         encoding_(encoding),
         tree_(std::make_unique<TreeRegions>(request.domain)),
-        selection_(rule_of(request, encoding, preview), rows, *tree_) {}
+        selection_(rule_of(request, encoding, preview), rows, *tree_, search_of(request.budget)) {}
 
   const SelectionBytes& bytes() const { return bytes_; }
   bool lossless() const { return bytes_.lossy_leaves == 0; }
@@ -92,6 +93,12 @@ class Candidate {
     return file;
   }
 
+  // Of an error that every voxel must be within, and of what is kept without loss, there is nothing to choose.
+  static Selection::Search search_of(const Budget& budget) {
+    const bool given = budget.kind == Budget::Kind::lossless || budget.kind == Budget::Kind::max_error;
+    return given ? Selection::Search::no : Selection::Search::yes;
+  }
+
   static GainRule rule_of(const FileRequest& request, Encoding encoding, bool preview) {
     GainRule rule = request.rule;
     rule.encoding = encoding;
@@ -162,14 +169,15 @@ FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirec
     return plan_by_budget(request, Encoding::packed, candidate);
   };
   if (request.packed.preview == Preview::automatic) {
-    Candidate candidate(request, Encoding::packed, rows, work, true);
+    std::optional<Candidate> candidate(std::in_place, request, Encoding::packed, rows, work, true);
     const bool asks_size = request.budget.kind == Budget::Kind::size || request.budget.kind == Budget::Kind::rate ||
                            request.budget.kind == Budget::Kind::automatic;
-    const bool fits = !asks_size || candidate.fits(request.budget);
+    const bool fits = !asks_size || candidate->fits(request.budget);
     if (fits) {
-      FilePlan file = plan_by_budget(request, Encoding::packed, candidate);
+      FilePlan file = plan_by_budget(request, Encoding::packed, *candidate);
       if (file.size.bytes >= kLeastOfPreview * preview_bytes(file.plan.layout)) return file;
     }
+    candidate.reset();  // gives back what it holds
     return plan_with(false);
   }
   return plan_with(request.packed.preview == Preview::on);

@@ -17,7 +17,7 @@
 
 namespace weir {
 
-Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree)
+Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree, Search search)
     : rule_(rule), rows_(rows), tree_(tree) {
   struct Totals {
     NodeCounts minimum;
@@ -26,7 +26,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   };
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
-  if (rows_.team().alone()) {
+  if (search == Search::yes && rows_.team().alone()) {
     held_ = std::make_unique<HeldSteps>(CutSearch::likely_keys(rule_), rows_.room().step_bytes);
   }
   tbb::enumerable_thread_specific<RegionGains> local_gains;
@@ -160,6 +160,7 @@ void Selection::choose(std::uint64_t file_bytes) {
   }
   cut_ = Cut{};
   if (file_bytes >= bytes_.full.file_bytes) {
+    held_.reset();
     for (Region& region : tree_.regions) region.open = region.key > 0;
     for (Upper& upper : tree_.uppers) upper.open = upper.key > 0;
     return;

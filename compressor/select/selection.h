@@ -48,8 +48,11 @@ struct SelectionBytes {
 
 class Selection {
  public:
+  /// Whether a cut will be searched for: steps are held for it then, where there is room.
+  enum class Search { no, yes };
+
   /// Computes sums and keys of all regions and upper nodes: one pass over the rows.
-  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree);
+  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree, Search search = Search::yes);
 
   SelectionBytes bytes() const { return bytes_; }
 

@@ -69,7 +69,7 @@ class LeafStore {
 
   std::shared_ptr<File> file_;
   NodeLattice leaves_;
-  const Record* held_ = nullptr;
+  const Record* held_ = nullptr;  // stays: the file is as long as it will be
 };
 
 }  // namespace weir

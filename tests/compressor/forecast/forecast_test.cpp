@@ -215,7 +215,7 @@ TEST_F(ForecastTest, FullDisk_IsReported) {
   disk.leave_free(600000);
   const std::string message =
       message_of_error(ErrorKind::io, [&] { forecast_conversion(volume, asked, {}, disk, kForecastBytes); });
-  EXPECT_TRUE(message.starts_with(asked.output + ": takes 6")) << message;
+  EXPECT_TRUE(message.starts_with(asked.output + ": takes 702400")) << message;
   EXPECT_TRUE(message.ends_with(" bytes of " + directory_.path().string() +
                                 ", which has 600000 free; free space on that file system or choose another with -o or "
                                 "--work-dir"))

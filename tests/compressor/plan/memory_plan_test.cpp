@@ -24,12 +24,31 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
             threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
         // The passes follow each other: blocks, rows and digests are never held together.
         EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
-        EXPECT_LT(resident + kStagingBytes + rows + plan.selection.step_bytes, ceiling);
+        EXPECT_LT(resident + kStagingBytes + rows, ceiling);
         EXPECT_LT(resident + plan.digest_threads * kDigestPieceBytes, ceiling);
         EXPECT_GE(plan.block_bytes, kMiB);
         EXPECT_GE(plan.selection.segment_regions, 1);
         EXPECT_GE(plan.digest_threads, 1U);
         EXPECT_LE(plan.digest_threads, threads);
+      }
+    }
+  }
+}
+
+TEST(MemoryPlan, SelectionsRowsAndStepsFitWhatIsThere) {
+  constexpr std::uint64_t kRegionBytes = 8 * kMiB;  // of packed blocks
+  for (const std::size_t threads : {1U, 2U, 16U}) {
+    for (std::uint64_t ceiling = 64 * kMiB; ceiling < 2048 * kMiB; ceiling += 7 * kMiB) {
+      MemoryPlan plan;
+      try {
+        plan = plan_memory(ceiling, 10 * kMiB, threads, kLarge, kRegionBytes);
+      } catch (const Error&) {
+        continue;  // too little for so many threads
+      }
+      const std::uint64_t walk = threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * kRegionBytes;
+      EXPECT_LE(plan.fixed_bytes + walk + plan.selection.step_bytes, ceiling) << threads << " threads";
+      if (plan.selection.segment_regions > 1) {
+        EXPECT_GE(plan.selection.step_bytes, walk / 2);
       }
     }
   }

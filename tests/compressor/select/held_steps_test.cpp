@@ -61,8 +61,10 @@ TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
 
 TEST(HeldSteps, TakesNoMoreThanItMay) {
   HeldSteps held(keys_between(1, 2), kMiB);
-  for (std::int64_t i = 0; i < 100'000; ++i) held.part().add(i, 1.5, 1, 1);  // of 24 bytes
-  EXPECT_FALSE(held.complete());
+  std::int64_t steps = 0;
+  while (held.complete() && steps < 100'000) held.part().add(steps++, 1.5, 1, 1);
+  constexpr std::int64_t kOfAMiB = 4 * (kMiB / 4 / sizeof(HeldSteps::Step));
+  EXPECT_EQ(steps, kOfAMiB + 1);
   EXPECT_TRUE(held.chunks().empty());
 }
 
@@ -90,6 +92,31 @@ TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
         }
       }
     }
+  }
+}
+
+TEST(HeldSteps, AnErrorIsCutAtTheSamePlaceWithAndWithoutThem) {
+  const auto source = open_synthetic("turbulence", {{150, 140, 260}, 3});
+  test::MemoryVolume volume(*source);
+  const test::Surveyed with(volume, 1U << 30U, {64, 16 * kMiB});
+  const test::Surveyed without(volume, 1U << 30U, {64, 0});
+  GainRule rule{Metric::sse, 1, {FillMode::mean, 0.25F, NonFinitePolicy::background}};
+  rule.encoding = Encoding::fpn;
+  double cuts = 0;
+  for (const double share : {0.5, 1e-2, 1e-4}) {
+    TreeRegions tree(volume.info().domain());
+    TreeRegions other_tree(volume.info().domain());
+    Selection held(rule, with.rows, tree);
+    Selection walked(rule, without.rows, other_tree);
+    double error = 0;
+    for (const Upper& upper : tree.uppers) error += upper.tile_error;
+    held.choose_error(share * error);
+    walked.choose_error(share * error);
+    EXPECT_EQ(held.cut().threshold, walked.cut().threshold) << share;
+    EXPECT_EQ(held.cut().tie_region, walked.cut().tie_region) << share;
+    EXPECT_EQ(held.cut().tie_steps, walked.cut().tie_steps) << share;
+    EXPECT_NE(held.cut().threshold, cuts) << share;
+    cuts = held.cut().threshold;
   }
 }
 
