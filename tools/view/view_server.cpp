@@ -68,7 +68,9 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       rules_(rules_of(settings_)),
       backend_(backend),
       shelf_(backend, volumes_held(files_)),
-      scene_requests_(io, {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast},
+      scene_requests_(io,
+                      {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast,
+                       settings_.forecast_options},
                       [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
   state_text_ = line({{"title", files_.title},
                       {"series", files_.key},

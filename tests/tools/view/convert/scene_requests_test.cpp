@@ -77,8 +77,10 @@ TEST_F(SceneRequestsTest, Convert_WithoutMemoryForForecasts_SaysSo) {
   ServedView served(volume_, "", settings);
   ViewClient client(served.port());
   client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
-  EXPECT_EQ(client.text("forecast").value()["message"],
-            "no memory is set aside for a forecast here; run the command with --dry-run");
+  EXPECT_EQ(
+      client.text("forecast").value()["message"],
+      "no memory is set aside for a forecast here, run the command with --dry-run; --forecast-memory of weir view, or "
+      "192 MiB of viewer_memory of weir watch, has one made");
 }
 
 TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
