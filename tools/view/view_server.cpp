@@ -327,12 +327,22 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
 }
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
-  const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
-  const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
-  if (!sidecar) {
-    throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
+  try {
+    const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
+    const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
+    if (!sidecar) {
+      throw input_error(volume,
+                        "has no certificate of its own beside it, which would name its source; convert it again");
+    }
+    scene_requests_.handle(id, volume, *sidecar, request);
+  } catch (const std::exception& error) {
+    send(id, line({{"type", "conversion"},
+                   {"id", request.id},
+                   {"command", nullptr},
+                   {"bytes", nullptr},
+                   {"state", "failed"},
+                   {"message", error.what()}}));
   }
-  scene_requests_.handle(id, volume, *sidecar, request);
 }
 
 RenderEvents ViewServer::render_events() {

@@ -68,10 +68,13 @@ export class Conversion {
     this.send({type: "convert", id: ++this.id, scene, [budget]: amount, encoding: by_id("encoding").value, run});
   }
 
+  /** Without a command where there is none, for want of the source: then nothing is tried out, either. */
   receive({command, bytes, state, message}) {
-    show_command(by_id("convert-command"), command);
-    set_text(by_id("convert-size"), bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
-                                                   : `${format.count(bytes)} bytes, whatever the scene.`);
+    show_command(by_id("convert-command"), command ?? "");
+    const size = bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
+                                : `${format.count(bytes)} bytes, whatever the scene.`;
+    set_text(by_id("convert-size"), command === null ? "" : size);
+    if (command === null) set_text(by_id("convert-forecast"), "");
     by_id("run-convert").disabled = state === "running";
     const note = {
       shown: this.allowed ? "" : "Save the scene beside it; or start weir view with --allow-convert to run it here.",
