@@ -125,7 +125,13 @@ void view(const ViewArguments& arguments) {
   if (is_source(arguments.input)) {
     preview.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress);
     settings.preview_of = arguments.input;
-  } else if (const std::string key = given_input_option(arguments.source); !key.empty()) {
+  }
+  std::optional<SourcePreview> compared;
+  if (!arguments.against.empty() && is_source(arguments.against)) {
+    compared.emplace(arguments.against, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress,
+                     SourcePreview::Kept::all);
+  }
+  if (const std::string key = given_input_option(arguments.source); !preview && !compared && !key.empty()) {
     throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
                                                            " is shown as it is; leave it out")));
   }
@@ -133,9 +139,11 @@ void view(const ViewArguments& arguments) {
     throw Error(ErrorKind::usage, compose(option("series"), cat(" is of a NanoVDB file, and ", arguments.input,
                                                                 " is converted to be seen; leave it out")));
   }
-  ViewedFiles files =
-      find_viewed_files({preview ? preview->file() : arguments.input, arguments.series}, arguments.against);
-  if (preview) files.key = viewed_key({arguments.input}, arguments.against);  // its file's name is another each time
+  ViewedFiles files = find_viewed_files({preview ? preview->file() : arguments.input, arguments.series},
+                                        compared ? compared->file() : arguments.against);
+  if (preview || compared) {  // whose file has another name each time
+    files.key = viewed_key({arguments.input, arguments.series}, arguments.against);
+  }
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
   if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
@@ -181,7 +189,11 @@ void add_view(CLI::App& app) {
           "shown through a quick packed conversion")
       ->type_name("FILE")
       ->required();
-  command->add_option("--against", arguments->against, "another file, or as many, to compare with")->type_name("FILE");
+  command
+      ->add_option("--against", arguments->against,
+                   "another file, or as many, to compare with; an input of convert is compared with as it is, "
+                   "converted without loss")
+      ->type_name("FILE");
   command->add_option("--listen", arguments->listen, "address of the page; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->capture_default_str();

@@ -83,7 +83,7 @@ TEST_F(ViewCommandTest, PackedFileLargerThanTheMemory_TurnsBelowTheCeiling) {
 }
 
 TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
-  expect_refused({"view", volume_, "--against", directory_ / "v_40x30x20_float32.raw"}, 2,
+  expect_refused({"view", volume_, "--against", directory_ / "v_*.raw"}, 2,
                  cat(directory_ / "v_40x30x20_float32.raw", ": is no NanoVDB file; convert it first: weir convert ",
                      directory_ / "v_40x30x20_float32.raw"));
   expect_refused({"view", volume_, "--against", directory_ / "none.nvdb"}, 3,
@@ -123,6 +123,30 @@ TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
   client.show(1, true);
   EXPECT_TRUE(client.frame());
   EXPECT_EQ(list_directory(folder).size(), 3U) << "a directory, the file and its sidecar";
+  child.send_signal(SIGINT);
+  EXPECT_EQ(child.wait().exit_code, 0);
+  EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
+}
+
+TEST_F(ViewCommandTest, SourceToCompareWith_IsShownWithoutLoss) {
+  const std::string folder = directory_ / "work";
+  std::filesystem::create_directory(folder);
+  write_file(directory_ / "dump.bin", read_file(directory_ / "v_40x30x20_float32.raw"));
+  ChildProcess child({WEIR_COMMAND, "view", volume_, "--against", directory_ / "dump.bin", "--dims", "40,30,20",
+                      "--type", "float32", "--work-dir", folder, "--progress", "never"});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  const auto state = nlohmann::json::parse(get(port, "/api/state").second);
+  EXPECT_EQ(state["against"], nlohmann::json::parse(R"(["dump.bin.nvdb"])"));
+  EXPECT_TRUE(state["preview_of"].is_null());
+  ViewClient client(port);
+  client.show(1, true, {{"against", true}});
+  EXPECT_EQ(client.frame().value().header["layers"], 2);
+  const std::vector<std::string> made = list_directory(folder);
+  ASSERT_EQ(made.size(), 3U) << "a directory, the file and its sidecar";
+  const auto found = std::find_if(made.begin(), made.end(), [](const auto& name) { return name.ends_with(".json"); });
+  ASSERT_NE(found, made.end());
+  EXPECT_TRUE(read_sidecar((std::filesystem::path(folder) / *found).string()).error.lossless);
   child.send_signal(SIGINT);
   EXPECT_EQ(child.wait().exit_code, 0);
   EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
