@@ -544,20 +544,38 @@ def says_when_the_server_is_gone(browser, url):
     browser.wait("and why", lambda: browser.text("#banner") == "The server does not answer; it may have ended.")
 
 
+def of_process(pid, name):
+    """The text of a file of /proc; empty where the process is gone."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/{name}").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
 def descendants(pid):
-    children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()
-    return [int(child) for child in children] + [one for child in children for one in descendants(int(child))]
+    children = [int(child) for child in of_process(pid, f"task/{pid}/children").split()]
+    return children + [one for child in children for one in descendants(child)]
+
+
+def processes_of(browser):
+    """All of its own. It is no child of its driver, but known by its profile."""
+    running = [int(entry.name) for entry in pathlib.Path("/proc").iterdir() if entry.name.isdigit()]
+    own = [pid for pid in running if browser.profile.name in of_process(pid, "cmdline")]
+    return {*own, *(one for pid in own for one in descendants(pid))}
 
 
 def kill(browser):
     """Ends a browser as a crash does: nothing of it says goodbye."""
-    for pid in descendants(browser.driver.pid):
+    own = processes_of(browser)
+    assert own, "no process has this profile"
+    for pid in own:
         try:
             os.kill(pid, signal.SIGKILL)
         except ProcessLookupError:  # gone with its parent
             pass
     browser.driver.kill()
     browser.driver.wait()
+    browser.wait("it is gone", lambda: not processes_of(browser))
     browser.profile.cleanup()
 
 
