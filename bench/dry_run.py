@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """How well `weir convert --dry-run` tells what a conversion then does.
 
-    bench/dry_run.py [--weir WEIR] [--edge 640] [--directory DIRECTORY] [VOLUME...]
+    bench/dry_run.py [--weir WEIR] [--edge 640] [--directory DIRECTORY] [--scenes] [VOLUME...]
 
 Of each volume, ten synthetic ones of EDGE^3 float32 voxels where none is given, it makes a dry run and the conversion, in
 turn, for each of RUNS, and prints two tables in Markdown: PSNR, size and time as expected and as they came out, and how far
-they were off. Files lie in DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where
+they were off. With --scenes each of SCENES decides what is kept, packed, and PSNR is that of what it shows. Files lie in DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where
 a PSNR is off by more than 1 dB or a size by more than 5 %; times are for the reader to judge, since another program may have
 run meanwhile.
 """
@@ -25,6 +25,18 @@ RUNS = [["--rate", "8"], ["--rate", "8", "--encoding", "float"], ["--rate", "20"
         ["--psnr", "50"], ["--psnr", "60", "--encoding", "packed"]]
 
 
+SCENE_RUNS = [["--rate", "20", "--encoding", "packed"], ["--psnr", "50", "--encoding", "packed"]]
+# By name; values and voxels as shares of the range and of the edge.
+SCENES = {
+    "upper half": lambda value, voxel: f'mode = "dvr"\n[volume]\nrange = [{value(0)}, {value(1)}]\n'
+                                       'opacity = [[0, 0], [0.5, 0], [1, 1]]\n',
+    "region": lambda value, voxel: f'mode = "dvr"\n[volume]\nrange = [{value(0)}, {value(1)}]\n'
+                                   'opacity = [[0, 0], [0.2, 0], [1, 1]]\n'
+                                   f'region = [[{voxel(0.15)}, {voxel(0.6)}], [0, {voxel(1)}], [{voxel(0.1)}, {voxel(0.5)}]]\n',
+    "iso": lambda value, voxel: f'mode = "iso"\n[volume]\niso = {value(0.4)}\n',
+}
+
+
 def convert(weir, volume, output, options):
     """The JSON that the command prints, and the seconds that it took."""
     started = time.monotonic()
@@ -42,7 +54,7 @@ class Tally:
     def add(self, options, expected, made, seconds):
         """One line's cells."""
         off = self.off.setdefault(" ".join(options), {"dB": [], "%": [], "time %": [], "in range": []})
-        error, real = expected["error"], made["error"]
+        error, real = expected["visible"] or expected["error"], made.get("visible") or made["error"]
         by_size = expected["file"]["exact"]
         size, bytes_made = expected["file"], made["file"]["bytes"]
         off["%"].append(abs(size["value"] / bytes_made - 1) * 100)
@@ -84,11 +96,22 @@ def size_text(size):
     return text if size["low"] is None else f"{text} ({size['low'] / 1e6:.2f} to {size['high'] / 1e6:.2f})"
 
 
-def check(weir, volume, name, folder, tally):
-    for options in RUNS:
+def scenes_of(weir, volume, edge, folder):
+    """SCENES as files, by name."""
+    expected, _ = convert(weir, volume, str(folder / "out.nvdb"), ["--psnr", "50", "--dry-run"])
+    low, high = expected["error"]["value_range"]
+    for name, text in SCENES.items():
+        path = folder / f"{name}.toml"
+        path.write_text(text(lambda share: low + share * (high - low), lambda share: round(share * edge)))
+        yield name, str(path)
+
+
+def check(weir, volume, name, folder, tally, scene=None):
+    with_scene = ["--scene", scene] if scene else []
+    for options in SCENE_RUNS if scene else RUNS:
         output = str(folder / "out.nvdb")
-        expected, _ = convert(weir, volume, output, [*options, "--dry-run"])
-        made, seconds = convert(weir, volume, output, options)
+        expected, _ = convert(weir, volume, output, [*options, *with_scene, "--dry-run"])
+        made, seconds = convert(weir, volume, output, [*options, *with_scene])
         cells = tally.add(options, expected, made, seconds)
         print("|", " | ".join([name, " ".join(options), f"{100 * expected['sample']['share']:.3g} %", *cells]), "|", flush=True)
         for path in folder.glob("out.nvdb*"):
@@ -100,6 +123,7 @@ def main():
     parser.add_argument("--weir", default=str(pathlib.Path(__file__).parent.parent / "build/release/weir"))
     parser.add_argument("--edge", type=int, default=640)
     parser.add_argument("--directory")
+    parser.add_argument("--scenes", action="store_true")
     parser.add_argument("volumes", nargs="*", metavar="VOLUME")
     arguments = parser.parse_args()
     tally = Tally()
@@ -113,7 +137,10 @@ def main():
             edges = "x".join([str(arguments.edge)] * 3)
             volume = folder / f"{kind}_{edges}_float32.raw"
             subprocess.run([arguments.weir, "sample", kind, "--seed", str(seed), "-o", volume, "--quiet"], check=True)
-            check(arguments.weir, str(volume), f"{kind} {seed}", folder, tally)
+            if not arguments.scenes:
+                check(arguments.weir, str(volume), f"{kind} {seed}", folder, tally)
+            for scene, path in scenes_of(arguments.weir, str(volume), arguments.edge, folder) if arguments.scenes else []:
+                check(arguments.weir, str(volume), f"{kind} {seed}, {scene}", folder, tally, path)
             volume.unlink()
     print()
     return 0 if tally.print() else 1

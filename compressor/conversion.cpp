@@ -18,6 +18,7 @@
 #include "format/base/text.h"
 #include "format/io/file_id.h"
 #include "ingest/files/file_state.h"
+#include "ingest/source/cell_places.h"
 
 namespace weir {
 
@@ -108,7 +109,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     }
   }
   team.run([&] { start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey)); });
-  const std::optional<Visibility> visibility = visibility_of(options, domain);
+  const std::optional<Visibility> visibility =
+      visibility_of(options, source.places() == nullptr ? domain : source.places()->origin_domain());
   const auto spill = [&](const char* name) -> std::shared_ptr<File> {
     if (journal != nullptr) return journal->open(name);
     return work.spill_records();

@@ -259,7 +259,8 @@ class SurveyedConversion {
     FileRequest request = request_for(options_, survey_, info_, background_.value);
     request.packed = packed_request(options_, survey_, info_, request.rule.fill.background);
     if (parts_.seen) {
-      shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.work, stores_.rows);
+      shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.source.places(), parts_.work,
+                            stores_.rows);
       stores_.faces.reset();
       request.rule.visibility = &*parts_.seen;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/fixed_bytes.h"
+#include "compressor/survey/visibility.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
@@ -44,7 +46,7 @@ class Forecaster {
         plan_(domain_, source.access(), most_voxels_, options.metric == Metric::sse ? 1 : options.brick / kLeafDim) {}
 
   Forecast run() {
-    visibility_of(options_, domain_);
+    seen_ = visibility_of(options_, domain_);
     const OutputPlaces places(files_, options_);
     plan_machine();
     forecast_.whole = plan_.whole();
@@ -137,7 +139,7 @@ class Forecaster {
   }
 
   void try_sample() {
-    SampledSource sampled(source_, plan_);
+    SampledSource sampled(source_, plan_, SampledSource::From::volume, seen_ ? &*seen_ : nullptr);
     ScratchFileSystem scratch(files_, options_.output);
     WorkDirectory work(scratch, options_.output, options_.work_dir);
     SampleCopy copy(sampled, work.spill(), copy_block_bytes_, control_.cancel);
@@ -146,6 +148,7 @@ class Forecaster {
                               ? ReadCost{0, 0, static_cast<double>(sampled.bytes_read()) / voxels}
                               : probe_reading(source_, reading_.survey);
     const SampledNodes nodes{sampled.varied_in_volume(), sampled.varied_in_sample()};
+    if (seen_) sampled.find_reaches(control_.cancel);
     const SampleScale scale(domain_, plan_.domain(), options_, nodes);
     const std::vector<Part> parts = try_parts(copy, nodes);
     Trial trial;
@@ -173,7 +176,6 @@ class Forecaster {
   ConversionOptions sample_options(const SampleScale& scale) const {
     ConversionOptions options = options_;
     options.budget = scale.budget();
-    options.scene.reset();  // places of a sample are not where they are seen
     if (options.non_finite == NonFinitePolicy::error) options.non_finite = NonFinitePolicy::background;
     if (options.missing == MissingPolicy::error) options.missing = MissingPolicy::background;
     return options;
@@ -234,12 +236,18 @@ class Forecaster {
     const bool plain = s.grid.type == grid_type_name(GridType::float32);
     f.budget = s.budget.kind;
     f.encoding = s.packed ? encoding_name(Encoding::packed) : plain ? encoding_name(Encoding::float32) : s.grid.type;
-    f.lossless = s.error.lossless;
-    f.rmse = s.error.rmse;
-    f.max_abs = s.error.max_abs;
+    f.error = without_spread(s.error);
     f.value_low = s.value_range[0];
     f.value_high = s.value_range[1];
-    if (s.error.psnr_db) f.psnr_db = Expected{*s.error.psnr_db, *s.error.psnr_db, *s.error.psnr_db};
+    if (!s.visible) return;
+    f.shown_voxels = s.visible->voxels;
+    if (f.shown_voxels > 0) f.shown = without_spread(s.visible->error);
+  }
+
+  static ForecastError without_spread(const Sidecar::CertifiedError& error) {
+    ForecastError expected{error.lossless, {}, error.rmse, error.max_abs};
+    if (error.psnr_db) expected.psnr_db = Expected{*error.psnr_db, *error.psnr_db, *error.psnr_db};
+    return expected;
   }
 
   void add_spread(const Sidecar& s, const std::vector<Part>& parts, double share) {
@@ -247,21 +255,31 @@ class Forecaster {
     if (parts.empty()) return;
     std::vector<double> bytes;
     std::vector<double> db;
+    std::vector<double> shown_db;
     double wider_db = 0;  // by which the sample's range is wider than its parts' are
     for (const Part& part : parts) {
       const Sidecar& of_part = part.trial.sidecar;
       bytes.push_back(part.file_bytes);
       if (of_part.error.psnr_db) db.push_back(*of_part.error.psnr_db);
+      if (of_part.visible && of_part.visible->error.psnr_db) shown_db.push_back(*of_part.visible->error.psnr_db);
       wider_db += (range_db(s) - range_db(of_part)) / static_cast<double>(parts.size());
     }
     if (!forecast_.exact_bytes) forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
-    if (!s.error.psnr_db || db.size() < parts.size()) return;
-    forecast_.psnr_db = spread_of(*s.error.psnr_db, db, share);
-    if (options_.budget.by_error() || !std::isfinite(wider_db)) return;
     // The volume's range is at least the sample's. If it grows with each doubling as it did from the parts to the
     // sample, the PSNR is higher by as much.
     const double doublings = std::log2(static_cast<double>(parts.size()));
-    forecast_.psnr_db->high += std::max(0.0, wider_db) / doublings * -std::log2(share);
+    const double of_range = std::isfinite(wider_db) ? std::max(0.0, wider_db) / doublings * -std::log2(share) : 0;
+    // How coarse hidden blocks become depends on whether all around them are, too, which a sample mixes.
+    if (!options_.scene) add_spread(forecast_.error, db, share, of_range);
+    if (forecast_.shown) add_spread(*forecast_.shown, shown_db, share, of_range);
+  }
+
+  // None where some part has no error, or nothing that a scene shows.
+  void add_spread(ForecastError& error, const std::vector<double>& of_parts_db, double share,
+                  double of_range_db) const {
+    if (!error.psnr_db || of_parts_db.size() < forecast_.parts) return;
+    error.psnr_db = spread_of(error.psnr_db->value, of_parts_db, share);
+    if (!options_.budget.by_error()) error.psnr_db->high += of_range_db;
   }
 
   VolumeSource& source_;
@@ -271,6 +289,7 @@ class Forecaster {
   Box domain_;
   std::int64_t most_voxels_;
   SamplePlan plan_;
+  std::optional<Visibility> seen_;
   ReadingPlan reading_;
   std::uint64_t copy_block_bytes_ = 0;
   Forecast forecast_;

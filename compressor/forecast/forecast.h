@@ -16,6 +16,14 @@
 
 namespace weir {
 
+/// Of all voxels that were converted, or of those that a scene shows.
+struct ForecastError {
+  bool lossless = false;
+  std::optional<Expected> psnr_db;  ///< over the sample's range; none where lossless
+  double rmse = 0;
+  double max_abs = 0;
+};
+
 struct Forecast {
   bool whole = false;       ///< all of the volume was converted: the figures of the file and of its error are exact
   std::string not_sampled;  ///< why nothing was converted, so that there is neither error nor time; else empty
@@ -36,11 +44,10 @@ struct Forecast {
   std::size_t threads = 0;
   bool on_device = false;
 
-  bool lossless = false;            ///< of all that was converted
-  std::optional<Expected> psnr_db;  ///< over the sample's range; none where lossless
-  double rmse = 0;
-  double max_abs = 0;  ///< of all that was converted
-  double value_low = 0;
+  ForecastError error;
+  std::optional<ForecastError> shown;  ///< with a scene that shows something of what was converted
+  std::uint64_t shown_voxels = 0;      ///< finite ones among those that were converted
+  double value_low = 0;                ///< of all that was converted
   double value_high = 0;
 
   double survey_s = 0;  ///< at the rates measured while the sample was converted

@@ -26,7 +26,7 @@ void SampleCopy::for_each_run(const Box& box, const Action& action) const {
 
 SampleCopy::SampleCopy(VolumeSource& sample, std::unique_ptr<File> file, std::uint64_t block_bytes,
                        const std::atomic<bool>* cancel)
-    : info_(sample.info()), file_(std::move(file)) {
+    : info_(sample.info()), places_(sample.places()), file_(std::move(file)) {
   const BlockPlan plan = plan_blocks(info_.domain(), sample.access(), block_bytes);
   std::vector<float> values;
   for (std::int64_t i = 0; i < plan.size(); ++i) {

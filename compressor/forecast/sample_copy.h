@@ -14,8 +14,9 @@ namespace weir {
 /// A source of the same values as float32, which lie in the page cache. Thread-safe.
 class SampleCopy final : public VolumeSource {
  public:
-  /// Reads all of `sample` in blocks of at most `block_bytes` and writes them to `file`. Throws what reading and
-  /// writing throw, and Error(interrupted) where `cancel`, which may be null, says so.
+  /// Reads all of `sample`, which must outlive the object for places(), in blocks of at most `block_bytes` and writes
+  /// them to `file`. Throws what reading and writing throw, and Error(interrupted) where `cancel`, which may be null,
+  /// says so.
   SampleCopy(VolumeSource& sample, std::unique_ptr<File> file, std::uint64_t block_bytes,
              const std::atomic<bool>* cancel);
 
@@ -23,6 +24,7 @@ class SampleCopy final : public VolumeSource {
   AccessShape access() const override { return {sizeof(float), {}, {}}; }
   ConversionLoss read(const Box& box, std::span<float> values) override;
   bool in_memory() const override { return true; }
+  const CellPlaces* places() const override { return places_; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
  private:
@@ -30,6 +32,7 @@ class SampleCopy final : public VolumeSource {
   void for_each_run(const Box& box, const Action& action) const;
 
   SourceInfo info_;
+  const CellPlaces* places_;
   std::unique_ptr<File> file_;
   std::atomic<std::uint64_t> bytes_read_{0};
 };

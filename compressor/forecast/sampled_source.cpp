@@ -41,10 +41,12 @@ MinMax range_in(std::span<const float> values, const Index3& extent, const Box& 
 
 }  // namespace
 
-SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan, From from)
+SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan, From from, const Visibility* seen)
     : source_(source),
       plan_(plan),
+      places_(from == From::volume ? SamplePlaces(plan, source.info().domain()) : SamplePlaces(plan, *source.places())),
       from_(from),
+      seen_(seen),
       info_(source.info()),
       read_before_(source.bytes_read()),
       in_volume_(source.info().domain()),
@@ -66,15 +68,28 @@ void SampledSource::note_ranges(const Piece& piece, std::span<const float> value
       for (lo.x = 0; lo.x < extent.x; lo.x = hi.x) {
         hi.x = part_end(lo.x, extent.x, piece.from.x, piece.to.lo.x);
         const MinMax range = range_in(values, extent, {lo, hi});
+        const bool shown =
+            seen_ == nullptr || (seen_->in_region({piece.from + lo, piece.from + hi}) && seen_->shows(range));
         const std::scoped_lock lock(mutex_);
-        in_volume_.add(piece.from + lo, range);
-        in_sample_.add(piece.to.lo + lo, range);
-        widen(all, range);
+        if (shown) {
+          widen(all, range);
+          in_volume_.add(piece.from + lo, range);
+          in_sample_.add(piece.to.lo + lo, range);
+        } else {
+          in_volume_.add_hidden(piece.from + lo);
+          in_sample_.add_hidden(piece.to.lo + lo);
+        }
       }
     }
   }
   const std::scoped_lock lock(mutex_);
   if (all.min < all.max) varied_voxels_ += piece.to.voxels();
+}
+
+void SampledSource::find_reaches(const std::atomic<bool>* cancel) {
+  if (source_.access().chunk != Index3{}) return;
+  reaches_.emplace(source_, plan_, cancel);
+  places_.set_reaches(&*reaches_);
 }
 
 double SampledSource::varied_share() const {

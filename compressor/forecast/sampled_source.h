@@ -4,28 +4,37 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "compressor/forecast/sample_places.h"
 #include "compressor/forecast/sample_plan.h"
 #include "compressor/forecast/varied_regions.h"
+#include "compressor/survey/visibility.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
 
 /// Of `source`, which must outlive it: of the volume that the plan was made for, or of a copy of the sample that the
-/// plan is a part of (SamplePlan::parts). Reading it also finds which regions vary.
+/// plan is a part of (SamplePlan::parts). Reading it also finds which regions vary, as far as `seen`, which may be
+/// null, shows them.
 class SampledSource final : public VolumeSource {
  public:
   enum class From { volume, copy };
-  SampledSource(VolumeSource& source, const SamplePlan& plan, From from = From::volume);
+  SampledSource(VolumeSource& source, const SamplePlan& plan, From from = From::volume,
+                const Visibility* seen = nullptr);
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return plan_.access(source_.access()); }
   ConversionLoss read(const Box& box, std::span<float> values) override;
   bool in_memory() const override { return source_.in_memory(); }
   ConversionLoss read_alone(const Box& box, std::span<float> values) override;
+  const CellPlaces* places() const override { return plan_.whole() ? source_.places() : &places_; }
   std::uint64_t working_bytes() const override;
+  /// Finds what lookups can touch of its leaves, for places(): reads the volume once more around its cells. Not where
+  /// the volume has chunks, which are decoded whole.
+  void find_reaches(const std::atomic<bool>* cancel);
   /// Since this object was made.
   std::uint64_t bytes_read() const override { return source_.bytes_read() - read_before_; }
   std::int64_t voxels_read() const { return voxels_read_; }
@@ -48,7 +57,10 @@ class SampledSource final : public VolumeSource {
 
   VolumeSource& source_;
   SamplePlan plan_;
+  SamplePlaces places_;
+  std::optional<SampleReaches> reaches_;
   From from_;
+  const Visibility* seen_;
   SourceInfo info_;
   std::uint64_t read_before_;
   std::atomic<std::int64_t> voxels_read_{0};

@@ -10,6 +10,7 @@
 #include "compressor/survey/leaf_faces.h"
 #include "compressor/survey/row_store.h"
 #include "compressor/survey/visibility.h"
+#include "ingest/source/cell_places.h"
 
 namespace weir {
 
@@ -20,8 +21,10 @@ struct Shown {
 };
 
 /// Gives `rows` the reach of every leaf: its values, those next to it, and the background where it takes the place of
-/// a value that is not finite; empty outside the scene's region. One pass over rows and faces.
+/// a value that is not finite; empty outside the scene's region. One pass over rows and faces. Of a sample with
+/// `places`, which may be null, leaves lie where they do in its volume, and what lies next to a cell there, where it is
+/// not known, is taken to go on as the cell does.
 Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibility, const Fill& fill,
-                   WorkDirectory& work, RowStore& rows);
+                   const CellPlaces* places, WorkDirectory& work, RowStore& rows);
 
 }  // namespace weir

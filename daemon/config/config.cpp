@@ -11,10 +11,14 @@ std::uint64_t job_memory(const ServiceConfig& service) {
 }
 
 std::uint64_t standard_viewer_memory(const ServiceConfig& service, std::uint64_t least_job) {
+  const std::uint64_t eighth = std::min(service.memory / 8, kMostStandardViewerMemory);
+  if (eighth < kLeastViewerMemory) return 0;
   ServiceConfig with = service;
-  with.viewer_memory = std::min(service.memory / 8, kMostStandardViewerMemory);
-  const bool fits = with.viewer_memory >= kLeastViewerMemory && job_memory(with) >= least_job;
-  return fits ? with.viewer_memory : 0;
+  for (const std::uint64_t bytes : {std::max(eighth, kForecastingViewerMemory), eighth}) {
+    with.viewer_memory = bytes;
+    if (job_memory(with) >= least_job) return bytes;
+  }
+  return 0;
 }
 
 std::optional<std::string> WatchConfig::convert_option(std::string_view option) const {

@@ -23,11 +23,11 @@ struct ServiceConfig {
   std::string port_file;                          ///< the port that was bound is written there; empty: nowhere
   std::string token;                              ///< bearer token; never empty where others than loopback may connect
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon, all jobs and the viewer together
-  std::uint64_t viewer_memory = std::uint64_t{1} << 27;  ///< bytes of it for the viewer; 0: there is none
-  int jobs = 1;                                          ///< concurrent conversions
-  int threads = 0;                                       ///< of each job; 0: all of the machine's
-  int nice = 0;                                          ///< of the jobs, 0 to 19
-  IoClass io_class = IoClass::none;                      ///< of the jobs
+  std::uint64_t viewer_memory = std::uint64_t{192} << 20;  ///< bytes of it for the viewer; 0: there is none
+  int jobs = 1;                                            ///< concurrent conversions
+  int threads = 0;                                         ///< of each job; 0: all of the machine's
+  int nice = 0;                                            ///< of the jobs, 0 to 19
+  IoClass io_class = IoClass::none;                        ///< of the jobs
   std::uint64_t bandwidth = 0;     ///< bytes per second that all conversions together may read and write; 0: no limit
   std::string work_dir;            ///< spill files; empty: a hidden directory beside each output
   double grace_s = 30;             ///< what a running job is given after SIGTERM
@@ -42,10 +42,13 @@ struct ServiceConfig {
 inline constexpr std::uint64_t kDaemonMemory = std::uint64_t{64} << 20;
 
 inline constexpr std::uint64_t kLeastViewerMemory = std::uint64_t{128} << 20;
+/// From here on the viewer says what conversions for a scene would come to: those take at least 64 MiB.
+inline constexpr std::uint64_t kForecastingViewerMemory = std::uint64_t{192} << 20;
 inline constexpr std::uint64_t kMostStandardViewerMemory = std::uint64_t{512} << 20;
 
-/// `viewer_memory` where the configuration gives none: an eighth of `memory`, kMostStandardViewerMemory at most; 0
-/// where that is less than kLeastViewerMemory or leaves a job less than `least_job` bytes.
+/// `viewer_memory` where the configuration gives none: an eighth of `memory`, kMostStandardViewerMemory at most; where
+/// that is less than kForecastingViewerMemory, but not than kLeastViewerMemory, the former, or else the eighth; 0 where
+/// it leaves a job less than `least_job` bytes.
 std::uint64_t standard_viewer_memory(const ServiceConfig& service, std::uint64_t least_job);
 
 /// The ceiling of one job in bytes: an equal share of what the daemon and the viewer leave.

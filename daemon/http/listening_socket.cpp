@@ -122,14 +122,13 @@ void ListeningSocket::listen_on_tcp(const ListenAddress& address) {
   if (!error) acceptor_.listen(Acceptor::max_listen_connections, error);
   if (error == boost::asio::error::address_in_use) {
     throw Error(ErrorKind::io, cat(address.text(),
-                                   ": cannot listen: another process does, another weir watch perhaps; "
-                                   "give each service an address of its own, as listen = \"",
-                                   ListenAddress{address.host, static_cast<std::uint16_t>(address.port ^ 1U)}.text(),
-                                   "\" in [service]"));
+                                   ": cannot listen: another process does, another weir watch or weir view perhaps; "
+                                   "listen on an address of its own, as ",
+                                   ListenAddress{address.host, static_cast<std::uint16_t>(address.port ^ 1U)}.text()));
   }
   if (error) {
-    throw Error(ErrorKind::io, cat(address.text(), ": cannot listen: ", error.message(),
-                                   "; is another weir watch running? choose another service.listen"));
+    throw Error(ErrorKind::io,
+                cat(address.text(), ": cannot listen: ", error.message(), "; listen on another address"));
   }
 }
 

@@ -20,21 +20,26 @@ using boost::system::error_code;
 
 constexpr std::uint64_t kViewers = 4;  // at a time
 
-// How a viewer's memory is divided: the program, then as much for pictures as for voxels. One viewer's picture takes so
-// many bytes a pixel while it is drawn and encoded, which is one at a time; another's waits in its sums and as PNG.
+// How a viewer's memory is divided: forecasts of conversions, a process of its own, where there is enough; the program;
+// then as much for pictures as for voxels. One viewer's picture takes so many bytes a pixel while it is drawn and
+// encoded, which is one at a time; another's waits in its sums and as PNG.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kDrawnPixelBytes = 32;
 constexpr std::uint64_t kWaitingPixelBytes = 16;
 constexpr std::uint64_t kMostPixels = std::uint64_t{4} << 20;  // of weir view
 
 struct ViewerShares {
+  std::uint64_t forecast_bytes;  ///< 0: there is none
   std::uint64_t voxel_bytes;
   std::uint64_t pixels;  ///< of a picture
 };
 
 ViewerShares shares_of(std::uint64_t memory) {
-  const std::uint64_t half = (memory - std::min(memory, kProgramBytes)) / 2;
-  return {half, std::min(kMostPixels, half / (kDrawnPixelBytes + (kViewers - 1) * kWaitingPixelBytes))};
+  const std::uint64_t forecast =
+      memory < kForecastingViewerMemory ? 0 : std::max(kForecastingViewerMemory - kLeastViewerMemory, memory / 4);
+  const std::uint64_t drawing = memory - forecast;
+  const std::uint64_t half = (drawing - std::min(drawing, kProgramBytes)) / 2;
+  return {forecast, half, std::min(kMostPixels, half / (kDrawnPixelBytes + (kViewers - 1) * kWaitingPixelBytes))};
 }
 
 // Whether a timer that has fired was not set anew since: its handler may have been waiting.
@@ -74,8 +79,8 @@ void JobViewer::start(const std::string& file) {
   const WorkerCommand command{
       program_,
       {"weir", "view", file, "--series", "--private", cat("--progress-fd=", kAnnounceDescriptor), "--progress=never",
-       "--backend=cpu", cat("--memory=", shares.voxel_bytes), cat("--pixels=", shares.pixels),
-       cat("--viewers=", kViewers), cat("--threads=", service_.threads)},
+       "--backend=cpu", cat("--memory=", shares.voxel_bytes), cat("--forecast-memory=", shares.forecast_bytes),
+       cat("--pixels=", shares.pixels), cat("--viewers=", kViewers), cat("--threads=", service_.threads)},
       service_.nice,
       service_.io_class};
   try {
@@ -168,9 +173,11 @@ void JobViewer::look_at_memory() {
   look_.async_wait([this](error_code error) {
     if (error || !worker_) return;
     const std::uint64_t bytes = worker_->anonymous_bytes();
-    if (bytes <= service_.viewer_memory) return look_at_memory();
+    const std::uint64_t forecast = shares_of(service_.viewer_memory).forecast_bytes;
+    if (bytes <= service_.viewer_memory - forecast) return look_at_memory();
+    const std::string aside = forecast == 0 ? "" : cat(" less ", format_bytes(forecast), " for forecasts");
     fail(cat("the viewer took ", format_bytes(bytes), ", more than viewer_memory = ",
-             format_bytes(service_.viewer_memory), "; raise that, or make the window smaller"));
+             format_bytes(service_.viewer_memory), aside, "; raise that, or make the window smaller"));
   });
 }
 

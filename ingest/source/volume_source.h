@@ -18,6 +18,7 @@
 
 namespace weir {
 
+class CellPlaces;
 class ResidentVolume;
 
 /// What a source knows about its volume without reading it.
@@ -96,6 +97,9 @@ class VolumeSource {
   /// The same values where a device has them (format/packed/block_coder.h); null where none has. Lives as long as the
   /// source.
   virtual ResidentVolume* resident() { return nullptr; }
+
+  /// Where its voxels lie in the volume that it is a sample of; null where it is none. Lives as long as the source.
+  virtual const CellPlaces* places() const { return nullptr; }
 
   /// Boxes without a common voxel, of all voxels of `box` that have a value where info().mapping.gaps; known without
   /// reading any. `box` is as for read.

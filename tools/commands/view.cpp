@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
@@ -11,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "compressor/options/conversion_request.h"
 #include "daemon/config/token_file.h"
 #include "daemon/jobs/worker_process.h"
 #include "format/base/error.h"
@@ -37,6 +39,7 @@ struct ViewArguments {
   bool allow_convert = false;
   bool series = false;
   bool for_program = false;
+  std::string forecast_memory;
   std::string work_dir;
   GivenOptions backend;
   GivenOptions source;
@@ -45,6 +48,33 @@ struct ViewArguments {
 
 constexpr std::uint64_t kMostViewers = 256;
 constexpr std::int64_t kLeastViewPixels = 10'000;
+
+// What a forecast may take is asked for, or as much as pictures may; whoever starts it for a page counts on its memory,
+// and asks for what there is.
+void set_forecasts(const ViewArguments& arguments, ViewSettings& settings) {
+  const auto given = [&](const char* key) {
+    const auto found = arguments.backend.find(key);
+    return found == arguments.backend.end() ? std::string() : found->second;
+  };
+  std::optional<std::uint64_t> memory;
+  if (!arguments.forecast_memory.empty()) {
+    memory = parse_bytes(arguments.forecast_memory);
+    if (!memory || (*memory != 0 && *memory < kLeastMemory)) {
+      throw Error(ErrorKind::usage, compose(option("forecast-memory", arguments.forecast_memory),
+                                            " must be a size of at "
+                                            "least ",
+                                            format_bytes(kLeastMemory), ", like 512MiB, or 0 for no forecast"));
+    }
+  } else if (arguments.for_program) {
+    memory = 0;
+  } else if (const auto pictures = parse_bytes(given("memory"))) {
+    memory = std::max(*pictures, kLeastMemory);
+  }
+  settings.forecast = memory != std::uint64_t{0};
+  if (memory) settings.forecast_options.push_back(cat("--memory=", *memory));
+  if (given("backend") == "cpu") settings.forecast_options.emplace_back("--backend=cpu");
+  if (!given("threads").empty()) settings.forecast_options.push_back(cat("--threads=", given("threads")));
+}
 
 ViewSettings settings_of(const ViewArguments& arguments) {
   ViewSettings settings;
@@ -73,7 +103,7 @@ ViewSettings settings_of(const ViewArguments& arguments) {
   settings.viewers = arguments.viewers;
   settings.pixels = arguments.pixels;
   settings.allow_convert = arguments.allow_convert;
-  settings.forecast = !arguments.for_program;  // whoever started it counts on its memory
+  set_forecasts(arguments, settings);
   settings.program = "/proc/self/exe";
   settings.version = WEIR_VERSION;
   return settings;
@@ -95,7 +125,13 @@ void view(const ViewArguments& arguments) {
   if (is_source(arguments.input)) {
     preview.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress);
     settings.preview_of = arguments.input;
-  } else if (const std::string key = given_input_option(arguments.source); !key.empty()) {
+  }
+  std::optional<SourcePreview> compared;
+  if (!arguments.against.empty() && is_source(arguments.against)) {
+    compared.emplace(arguments.against, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress,
+                     SourcePreview::Kept::all);
+  }
+  if (const std::string key = given_input_option(arguments.source); !preview && !compared && !key.empty()) {
     throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
                                                            " is shown as it is; leave it out")));
   }
@@ -103,9 +139,11 @@ void view(const ViewArguments& arguments) {
     throw Error(ErrorKind::usage, compose(option("series"), cat(" is of a NanoVDB file, and ", arguments.input,
                                                                 " is converted to be seen; leave it out")));
   }
-  ViewedFiles files =
-      find_viewed_files({preview ? preview->file() : arguments.input, arguments.series}, arguments.against);
-  if (preview) files.key = viewed_key({arguments.input}, arguments.against);  // its file's name is another each time
+  ViewedFiles files = find_viewed_files({preview ? preview->file() : arguments.input, arguments.series},
+                                        compared ? compared->file() : arguments.against);
+  if (preview || compared) {  // whose file has another name each time
+    files.key = viewed_key({arguments.input, arguments.series}, arguments.against);
+  }
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
   if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
@@ -121,6 +159,7 @@ void view(const ViewArguments& arguments) {
     if (!error) io.stop();
   });
   const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a person's patience
+  if (!files.against.empty()) const NvdbFile comparable(files.against.front());
   ListenAddress address = settings.address;
   const std::string token = arguments.for_program ? settings.token : "";
   ViewServer server(io, std::move(settings), std::move(files), *backend);
@@ -150,7 +189,11 @@ void add_view(CLI::App& app) {
           "shown through a quick packed conversion")
       ->type_name("FILE")
       ->required();
-  command->add_option("--against", arguments->against, "another file, or as many, to compare with")->type_name("FILE");
+  command
+      ->add_option("--against", arguments->against,
+                   "another file, or as many, to compare with; an input of convert is compared with as it is, "
+                   "converted without loss")
+      ->type_name("FILE");
   command->add_option("--listen", arguments->listen, "address of the page; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->capture_default_str();
@@ -174,6 +217,12 @@ void add_view(CLI::App& app) {
                     "lets pages have the source converted for the scene they show, beside the file");
   command->add_flag("--private", arguments->for_program,
                     "makes a token, told with the address to --progress-fd alone: for a program that stands before it");
+  command
+      ->add_option(
+          "--forecast-memory", arguments->forecast_memory,
+          "of a forecast for \"Convert for this scene\", a process of its own; 0: none. As --memory, or as weir "
+          "convert takes; none with --private")
+      ->type_name("BYTES");
   command->add_option("--work-dir", arguments->work_dir, "where that of an input of convert is kept until the end")
       ->type_name("DIR");
   add_backend_options(*command, arguments->backend);

@@ -25,7 +25,7 @@ constexpr ConfigKey kConfigKeys[] = {
     {"service", "token_file", "none", "file with the token, not readable by everybody"},
     {"service", "memory", "\"1GiB\"", "of the service, 64 MiB, all jobs and the viewer together"},
     {"service", "viewer_memory", "an eighth of memory",
-     "of it for the viewer of results, from 128 MiB on; 0: there is none. By default at most 512 MiB, and 0 where "
+     "of it for the viewer of results, from 128 MiB on; 0: there is none. By default 192 to 512 MiB, and 0 where "
      "memory is "
      "below 1 GiB or the jobs would get too little"},
     {"service", "jobs", "1", "conversions at once"},

@@ -16,7 +16,7 @@ std::uint64_t voxels_of(const SourceInfo& source) { return static_cast<std::uint
 
 std::uint64_t whole_number(double value) { return static_cast<std::uint64_t>(std::llround(value)); }
 
-bool spread(const Forecast& f) { return f.parts > 0; }
+bool has_spread(const Expected& expected) { return expected.low < expected.high; }
 
 std::string seconds_text(double seconds) { return cat(fixed(seconds, seconds < 10 ? 1 : 0), " s"); }
 
@@ -36,31 +36,58 @@ std::string sample_text(const Forecast& f, const SourceInfo& source) {
 std::string file_text(const Forecast& f, const std::string& output) {
   if (f.file_bytes.value == 0) return cat(output, ": as long as it needs");
   std::string text = cat(output, ": ", f.exact_bytes ? "" : "about ", whole_number(f.file_bytes.value), " bytes");
-  if (!f.exact_bytes && spread(f)) {
+  if (!f.exact_bytes && has_spread(f.file_bytes)) {
     text += cat(" (", whole_number(std::max(0.0, f.file_bytes.low)), " to ", whole_number(f.file_bytes.high), ")");
   }
   if (f.scratch_bytes > 0) text += cat(", and ", format_bytes(f.scratch_bytes), " until it is done");
   return text;
 }
 
-std::string error_line(const Forecast& f, const ConversionOptions& options) {
-  const std::string of_sample = f.whole ? "" : ", range and background of the sample";
-  const std::string range = cat("values from ", short_number(f.value_low), " to ", short_number(f.value_high));
-  if (f.lossless) return cat(f.whole ? "lossless" : "lossless in the sample", ", ", range);
-  std::string text = f.psnr_db ? cat(f.whole ? "PSNR " : "PSNR about ", fixed(f.psnr_db->value, 1), " dB") : "";
-  if (f.psnr_db && spread(f) && !options.budget.by_error()) {
-    text += cat(" (", fixed(f.psnr_db->low, 1), " to ", fixed(f.psnr_db->high, 1), ")");
-  }
-  text += cat(f.psnr_db ? ", " : "", "RMSE ", short_number(f.rmse));
-  if (f.whole) text += cat(", largest error ", short_number(f.max_abs));
-  return cat(text, ", ", range, of_sample);
+// A PSNR that was asked for is one of all voxels, or of those that a scene shows, and no figure of a sample.
+enum class Asked { no, yes };
+
+Asked of_all(const ConversionOptions& options) {
+  return options.budget.by_error() && !options.scene ? Asked::yes : Asked::no;
 }
 
-nlohmann::ordered_json to_json(const Expected& expected, bool has_spread) {
+Asked of_shown(const ConversionOptions& options) { return options.budget.by_error() ? Asked::yes : Asked::no; }
+
+std::string error_text(const ForecastError& e, bool whole, Asked asked) {
+  if (e.lossless) return whole ? "lossless" : "lossless in the sample";
+  std::string text = e.psnr_db ? cat(whole ? "PSNR " : "PSNR about ", fixed(e.psnr_db->value, 1), " dB") : "";
+  if (e.psnr_db && asked == Asked::no && has_spread(*e.psnr_db)) {
+    text += cat(" (", fixed(e.psnr_db->low, 1), " to ", fixed(e.psnr_db->high, 1), ")");
+  }
+  text += cat(e.psnr_db ? ", " : "", "RMSE ", short_number(e.rmse));
+  if (whole) text += cat(", largest error ", short_number(e.max_abs));
+  return text;
+}
+
+std::string error_line(const Forecast& f, const ConversionOptions& options) {
+  const std::string of_sample = f.whole || f.error.lossless ? "" : ", range and background of the sample";
+  return cat(error_text(f.error, f.whole, of_all(options)), ", values from ", short_number(f.value_low), " to ",
+             short_number(f.value_high), of_sample);
+}
+
+std::string shown_line(const Forecast& f, const ConversionOptions& options) {
+  if (!f.shown) return cat("nothing of the ", f.whole ? "volume" : "sample");
+  return cat(error_text(*f.shown, f.whole, of_shown(options)), ", over ", share_text(f.shown_voxels, f.sampled_voxels),
+             " of the voxels");
+}
+
+nlohmann::ordered_json to_json(const Expected& expected, bool with_spread) {
   nlohmann::ordered_json json{{"value", expected.value}, {"low", nullptr}, {"high", nullptr}};
-  if (!has_spread) return json;
+  if (!with_spread || !has_spread(expected)) return json;
   json["low"] = expected.low;
   json["high"] = expected.high;
+  return json;
+}
+
+nlohmann::ordered_json to_json(const ForecastError& error, bool whole, Asked asked) {
+  nlohmann::ordered_json json{
+      {"lossless", error.lossless}, {"psnr_db", nullptr}, {"rmse", error.rmse}, {"max_abs", nullptr}};
+  if (error.psnr_db) json["psnr_db"] = to_json(*error.psnr_db, asked == Asked::no);
+  if (whole) json["max_abs"] = error.max_abs;
   return json;
 }
 
@@ -77,8 +104,8 @@ std::string forecast_text(const Forecast& f, const SourceInfo& source, const Con
                              f.threads, f.threads == 1 ? " thread" : " threads", f.on_device ? " and a device" : ""));
   if (!sampled) return text;
   text += line("encoding", f.encoding);
-  text += line("error", options.scene && !f.whole ? "not told by a sample where a scene decides what is kept"
-                                                  : error_line(f, options));
+  text += line("error", error_line(f, options));
+  if (options.scene) text += line("shown", shown_line(f, options));
   text += line("time", cat("about ", seconds_text(f.total_s()), ": survey ", seconds_text(f.survey_s), ", encoding ",
                            seconds_text(f.encode_s)));
   return text;
@@ -86,7 +113,6 @@ std::string forecast_text(const Forecast& f, const SourceInfo& source, const Con
 
 nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source, const ConversionOptions& options) {
   const bool sampled = f.not_sampled.empty();
-  const bool error_known = sampled && (f.whole || !options.scene);
   nlohmann::ordered_json json{{"dry_run", 1}, {"input", source.path}, {"output", options.output}, {"exact", f.whole}};
   json["sample"] = {{"voxels", f.sampled_voxels},
                     {"share", static_cast<double>(f.sampled_voxels) / static_cast<double>(voxels_of(source))},
@@ -96,7 +122,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["read"] = {{"volume_bytes", f.volume_bytes}, {"bytes", nullptr}, {"passes", nullptr}};
   json["file"] = nullptr;
   if (f.file_bytes.value > 0) {
-    json["file"] = to_json(f.file_bytes, spread(f) && !f.exact_bytes);
+    json["file"] = to_json(f.file_bytes, !f.exact_bytes);
     json["file"]["exact"] = f.exact_bytes;
   }
   json["scratch_bytes"] = nullptr;
@@ -105,6 +131,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["backend"] = f.on_device ? "cuda" : "cpu";
   json["encoding"] = nullptr;
   json["error"] = nullptr;
+  json["visible"] = nullptr;
   json["time"] = nullptr;
   if (!sampled) return json;
   json["read"]["bytes"] = f.read_bytes;
@@ -112,14 +139,11 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["scratch_bytes"] = f.scratch_bytes;
   json["encoding"] = f.encoding;
   json["time"] = {{"survey_s", f.survey_s}, {"encode_s", f.encode_s}, {"total_s", f.total_s()}};
-  if (!error_known) return json;
-  json["error"] = {{"lossless", f.lossless},
-                   {"psnr_db", nullptr},
-                   {"rmse", f.rmse},
-                   {"max_abs", nullptr},
-                   {"value_range", {f.value_low, f.value_high}}};
-  if (f.psnr_db) json["error"]["psnr_db"] = to_json(*f.psnr_db, spread(f) && !options.budget.by_error());
-  if (f.whole) json["error"]["max_abs"] = f.max_abs;
+  json["error"] = to_json(f.error, f.whole, of_all(options));
+  json["error"]["value_range"] = {f.value_low, f.value_high};
+  if (!f.shown) return json;
+  json["visible"] = {{"share", static_cast<double>(f.shown_voxels) / static_cast<double>(f.sampled_voxels)}};
+  json["visible"].update(to_json(*f.shown, f.whole, of_shown(options)));
   return json;
 }
 

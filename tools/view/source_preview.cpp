@@ -34,13 +34,14 @@ bool is_source(const std::string& path) {
 }
 
 SourcePreview::SourcePreview(const std::string& source, const GivenOptions& given, const std::string& work_dir,
-                             std::optional<std::uint64_t> memory, const ProgressOptions& shown)
+                             std::optional<std::uint64_t> memory, const ProgressOptions& shown, Kept kept)
     : folder_(work_dir) {
   fs::path name = fs::path(source);
   if (!name.has_filename()) name = name.parent_path();
-  file_ = folder_.path() / name.filename().replace_extension(".nvdb");
-  GivenOptions all{
-      {"encoding", "packed"}, {"rate", kRate}, {"nonfinite", "background"}};  // a preview shows what there is
+  name = name.filename();
+  file_ = folder_.path() / (kept == Kept::all ? name += ".nvdb" : name.replace_extension(".nvdb"));
+  GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // a preview shows what there is
+  kept == Kept::all ? all.emplace("lossless", "true") : all.emplace("rate", kRate);
   all.insert(given.begin(), given.end());
   auto [source_options, options] = read_conversion_request(all);
   source_options.cancel = &interrupt_flag();

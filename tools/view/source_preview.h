@@ -18,12 +18,15 @@ bool is_source(const std::string& path);
 
 class SourcePreview {
  public:
-  /// Converts `source`, one volume, read as `given` says (input_options), at an eighth of its float32 size. The
-  /// directory is made in `work_dir`, or where temporary files are. `memory` is of the whole process. Throws as
-  /// open_source and convert_volume, Error(interrupted) where interrupt_flag() was set.
+  /// An eighth of its float32 size, to be looked at; or without loss, to compare with.
+  enum class Kept { eighth, all };
+  /// Converts `source`, one volume, read as `given` says (input_options). The directory is made in `work_dir`, or where
+  /// temporary files are. `memory` is of the whole process. Throws as open_source and convert_volume,
+  /// Error(interrupted) where interrupt_flag() was set.
   SourcePreview(const std::string& source, const GivenOptions& given, const std::string& work_dir,
-                std::optional<std::uint64_t> memory, const ProgressOptions& shown);
-  /// The NanoVDB file, named after the source; its sidecar lies beside it.
+                std::optional<std::uint64_t> memory, const ProgressOptions& shown, Kept kept = Kept::eighth);
+  /// The NanoVDB file, named after the source, one without loss with its suffix before its own; its sidecar lies beside
+  /// it.
   std::string file() const { return file_.string(); }
 
  private:

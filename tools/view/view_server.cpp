@@ -68,7 +68,9 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       rules_(rules_of(settings_)),
       backend_(backend),
       shelf_(backend, volumes_held(files_)),
-      scene_requests_(io, {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast},
+      scene_requests_(io,
+                      {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast,
+                       settings_.forecast_options},
                       [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
   state_text_ = line({{"title", files_.title},
                       {"series", files_.key},
@@ -325,12 +327,22 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
 }
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
-  const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
-  const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
-  if (!sidecar) {
-    throw input_error(volume, "has no certificate of its own beside it, which would name its source; convert it again");
+  try {
+    const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
+    const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
+    if (!sidecar) {
+      throw input_error(volume,
+                        "has no certificate of its own beside it, which would name its source; convert it again");
+    }
+    scene_requests_.handle(id, volume, *sidecar, request);
+  } catch (const std::exception& error) {
+    send(id, line({{"type", "conversion"},
+                   {"id", request.id},
+                   {"command", nullptr},
+                   {"bytes", nullptr},
+                   {"state", "failed"},
+                   {"message", error.what()}}));
   }
-  scene_requests_.handle(id, volume, *sidecar, request);
 }
 
 RenderEvents ViewServer::render_events() {

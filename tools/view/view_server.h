@@ -34,13 +34,14 @@ namespace weir {
 
 struct ViewSettings {
   ListenAddress address{"127.0.0.1", 0};
-  std::string token;                      ///< that every viewer must bring; empty: none, loopback only
-  std::size_t viewers = 8;                ///< at once
-  std::int64_t pixels = kMostViewPixels;  ///< of a picture, at most
-  bool allow_convert = false;             ///< a viewer may have the source converted
-  bool forecast = true;                   ///< a viewer may have a conversion forecast
-  std::string program;                    ///< path of weir, for both
-  std::string version;                    ///< of weir, shown on the page
+  std::string token;                               ///< that every viewer must bring; empty: none, loopback only
+  std::size_t viewers = 8;                         ///< at once
+  std::int64_t pixels = kMostViewPixels;           ///< of a picture, at most
+  bool allow_convert = false;                      ///< a viewer may have the source converted
+  bool forecast = true;                            ///< a viewer may have a conversion forecast
+  std::vector<std::string> forecast_options = {};  ///< of weir convert, "--memory=N" for instance
+  std::string program;                             ///< path of weir, for both
+  std::string version;                             ///< of weir, shown on the page
   std::string preview_of = {};  ///< the source that the file was made from for this, shown on the page; empty: none
   bool any_host = false;        ///< a Host header may name anything: who asks has a token that no web page can know
   std::chrono::milliseconds look_again{1000};  ///< between two looks for steps of a series that grows

@@ -90,13 +90,13 @@ TEST_F(ForecastTest, SmallVolume_HasExactFigures) {
     EXPECT_EQ(f.parts, 0U);
     EXPECT_EQ(f.file_bytes.value, static_cast<double>(made.file.bytes));
     EXPECT_EQ(f.budget, made.budget.kind);
-    EXPECT_EQ(f.lossless, made.error.lossless);
-    EXPECT_EQ(f.psnr_db.has_value(), made.error.psnr_db.has_value());
-    if (f.psnr_db) {
-      EXPECT_EQ(f.psnr_db->value, *made.error.psnr_db);
+    EXPECT_EQ(f.error.lossless, made.error.lossless);
+    EXPECT_EQ(f.error.psnr_db.has_value(), made.error.psnr_db.has_value());
+    if (f.error.psnr_db) {
+      EXPECT_EQ(f.error.psnr_db->value, *made.error.psnr_db);
     }
-    EXPECT_EQ(f.rmse, made.error.rmse);
-    EXPECT_EQ(f.max_abs, made.error.max_abs);
+    EXPECT_EQ(f.error.rmse, made.error.rmse);
+    EXPECT_EQ(f.error.max_abs, made.error.max_abs);
     EXPECT_EQ(f.read_bytes, made.timing.bytes_read - read_before);
     EXPECT_EQ(f.volume_bytes, static_cast<std::uint64_t>(200 * 110 * 70 * 4));
     EXPECT_EQ(f.scratch_bytes, 0U);  // memory holds the records
@@ -131,10 +131,10 @@ TEST_F(ForecastTest, SampleOfUnevenParts_BracketsWhatThenComesOut) {
     EXPECT_EQ(f.parts, 8U);
     EXPECT_TRUE(f.exact_bytes);
     EXPECT_EQ(f.file_bytes.value, static_cast<double>(made.file.bytes));
-    ASSERT_TRUE(f.psnr_db && made.error.psnr_db) << encoding_name(encoding);
-    EXPECT_NEAR(f.psnr_db->value, *made.error.psnr_db, 1) << encoding_name(encoding);
-    EXPECT_LE(f.psnr_db->low, *made.error.psnr_db) << encoding_name(encoding);
-    EXPECT_GE(f.psnr_db->high, *made.error.psnr_db) << encoding_name(encoding);
+    ASSERT_TRUE(f.error.psnr_db && made.error.psnr_db) << encoding_name(encoding);
+    EXPECT_NEAR(f.error.psnr_db->value, *made.error.psnr_db, 1) << encoding_name(encoding);
+    EXPECT_LE(f.error.psnr_db->low, *made.error.psnr_db) << encoding_name(encoding);
+    EXPECT_GE(f.error.psnr_db->high, *made.error.psnr_db) << encoding_name(encoding);
   }
 }
 
@@ -149,12 +149,79 @@ TEST_F(ForecastTest, SampleForAnErrorTarget_TellsTheSize) {
   EXPECT_GE(f.file_bytes.high, bytes);
 }
 
+// What lies above 0.45, in all of the volume or in its upper part alone.
+SceneFile upper_values(bool region) {
+  SceneFile file;
+  file.path = "scene.toml";
+  file.scene.mode = RenderMode::dvr;
+  file.scene.volume.range = {0, 1};
+  file.scene.volume.opacity = {{0, 0}, {0.45, 0}, {1, 1}};
+  if (region) file.scene.volume.region = Box{{0, 0, 96}, {200, 256, 200}};
+  return file;
+}
+
+TEST_F(ForecastTest, SampleWithAScene_TellsTheErrorOfWhatItShows) {
+  MemoryVolume& volume = uneven_volume();
+  for (const bool region : {false, true}) {
+    for (const Encoding encoding : {Encoding::automatic, Encoding::packed}) {
+      const std::string what = cat(encoding_name(encoding), region ? ", region" : "");
+      ConversionOptions asked = options(encoding, Budget::Kind::rate);
+      asked.scene = upper_values(region);
+      if (encoding == Encoding::packed) asked.budget.rate = 40;
+      const Forecast f = forecast(volume, asked, 14 * kMiB);
+      const Sidecar made = convert(volume, asked);
+      EXPECT_FALSE(f.whole);
+      ASSERT_TRUE(f.shown && f.shown->psnr_db && made.visible->error.psnr_db) << what;
+      EXPECT_NEAR(f.shown->psnr_db->value, *made.visible->error.psnr_db, 1.5) << what;
+      EXPECT_LE(f.shown->psnr_db->low, *made.visible->error.psnr_db) << what;
+      EXPECT_GE(f.shown->psnr_db->high, *made.visible->error.psnr_db) << what;
+      ASSERT_TRUE(f.error.psnr_db) << what;
+      EXPECT_NEAR(f.error.psnr_db->value, *made.error.psnr_db, 1) << what;
+      const double share = static_cast<double>(f.shown_voxels) / static_cast<double>(f.sampled_voxels);
+      EXPECT_NEAR(share, static_cast<double>(made.visible->voxels) / static_cast<double>(200 * 256 * 256), 0.02)
+          << what;
+    }
+  }
+}
+
+TEST_F(ForecastTest, SampleOfChunksWithAScene_TellsTheErrorOfWhatItShows) {
+  MemoryVolume volume({{0, 0, 0}, {192, 256, 256}}, uneven);
+  volume.set_access({4, {32, 32, 32}, {}});
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::rate);
+  asked.scene = upper_values(false);
+  const Forecast f = forecast(volume, asked, 14 * kMiB);
+  const Sidecar made = convert(volume, asked);
+  ASSERT_TRUE(f.shown && f.shown->psnr_db);
+  EXPECT_NEAR(f.shown->psnr_db->value, *made.visible->error.psnr_db, 1.5);
+}
+
+TEST_F(ForecastTest, SampleForAPsnrOfWhatASceneShows_TellsTheSize) {
+  MemoryVolume& volume = uneven_volume();
+  ConversionOptions asked = options(Encoding::packed, Budget::Kind::psnr, 50);
+  asked.scene = upper_values(true);
+  const Forecast f = forecast(volume, asked, 14 * kMiB);
+  const auto bytes = static_cast<double>(convert(volume, asked).file.bytes);
+  EXPECT_NEAR(f.file_bytes.value / bytes, 1, 0.1);
+  EXPECT_LE(f.file_bytes.low, bytes);
+  EXPECT_GE(f.file_bytes.high, bytes);
+}
+
+TEST_F(ForecastTest, SceneThatShowsNothing_HasNoErrorOfIt) {
+  MemoryVolume& volume = uneven_volume();
+  ConversionOptions asked = options(Encoding::packed, Budget::Kind::rate);
+  asked.scene = upper_values(false);
+  asked.scene->scene.volume.range = {10, 20};
+  const Forecast f = forecast(volume, asked, 14 * kMiB);
+  EXPECT_FALSE(f.shown);
+  EXPECT_EQ(f.shown_voxels, 0U);
+}
+
 TEST_F(ForecastTest, SampleForALosslessFile_TellsTheSize) {
   MemoryVolume& volume = uneven_volume();
   const ConversionOptions asked = options(Encoding::automatic, Budget::Kind::lossless);
   const Forecast f = forecast(volume, asked, 14 * kMiB);
-  EXPECT_TRUE(f.lossless);
-  EXPECT_FALSE(f.psnr_db);
+  EXPECT_TRUE(f.error.lossless);
+  EXPECT_FALSE(f.error.psnr_db);
   EXPECT_NEAR(f.file_bytes.value / static_cast<double>(convert(volume, asked).file.bytes), 1, 0.01);
 }
 

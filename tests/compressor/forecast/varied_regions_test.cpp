@@ -25,5 +25,12 @@ TEST(VariedRegions, OfWhichNothingWasSeen_VaryAsTheOthers) {
   EXPECT_EQ(regions.count(), 4U);  // one of two, of eight
 }
 
+TEST(VariedRegions, OfWhichAllIsHidden_AreNotCounted) {
+  VariedRegions regions({{0, 0, 0}, {128 * 4, 128, 128}});
+  regions.add({0, 0, 0}, {0, 1});
+  regions.add_hidden({200, 0, 0});
+  EXPECT_EQ(regions.count(), 2U);  // one of two, of four
+}
+
 }  // namespace
 }  // namespace weir::varied_regions_test

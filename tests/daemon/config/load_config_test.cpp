@@ -55,8 +55,8 @@ TEST_F(Config, Defaults) {
   EXPECT_EQ(config.service.state, directory_ / "weir.db");
   EXPECT_EQ(config.service.listen.text(), "127.0.0.1:8470");
   EXPECT_EQ(config.service.memory, 1073741824U);
-  EXPECT_EQ(config.service.viewer_memory, 134217728U);
-  EXPECT_EQ(job_memory(config.service), 872415232U);
+  EXPECT_EQ(config.service.viewer_memory, 201326592U);
+  EXPECT_EQ(job_memory(config.service), 805306368U);
   EXPECT_EQ(config.service.jobs, 1);
   EXPECT_EQ(config.service.work_dir, "");
   EXPECT_EQ(config.service.log_file, "");
@@ -223,6 +223,8 @@ TEST_F(Config, ViewerMemory_IsAnEighthWhereThatLeavesEnough) {
   };
   EXPECT_EQ(of("memory = '2GiB'"), 256U);
   EXPECT_EQ(of("memory = '64GiB'"), 512U);
+  EXPECT_EQ(of("memory = '1GiB'"), 192U) << "so that it can forecast";
+  EXPECT_EQ(of("memory = '1GiB'\njobs = 12"), 192U);
   EXPECT_EQ(of("memory = '1023MiB'"), 0U) << "an eighth is less than a viewer needs";
   EXPECT_EQ(of("jobs = 14"), 0U) << "14 jobs of 64 MiB each leave 64 MiB";
   EXPECT_EQ(of("jobs = 13"), 128U);

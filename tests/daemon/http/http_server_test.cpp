@@ -360,9 +360,9 @@ TEST(HttpServer, RefusesAPortThatIsTaken) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
     EXPECT_EQ(error.what(),
               cat(served.address(),
-                  ": cannot listen: another process does, another weir watch perhaps; give each service an address of "
-                  "its own, as listen = \"127.0.0.1:",
-                  served.port() ^ 1, "\" in [service]"));
+                  ": cannot listen: another process does, another weir watch or weir view perhaps; listen on an "
+                  "address of its own, as 127.0.0.1:",
+                  served.port() ^ 1));
   }
 }
 

@@ -55,6 +55,17 @@ with Browser(1200, 900) as page:
         return new Set(data).size""")
     assert shades > 50, f"an empty picture: {shades} values"
 
+    # What a conversion for the scene would come to, in the viewer's share of the service's memory.
+    page.script("""
+        document.querySelector('#convert-panel').open = true;
+        const budget = document.querySelector('#budget');
+        budget.value = 'psnr';
+        budget.dispatchEvent(new Event('change'))""")
+    forecast = page.wait("a forecast", lambda: not (page.text("#convert-forecast") or "Being").startswith("Being") and
+                         page.text("#convert-forecast"), 60)
+    assert forecast.startswith("Expected: "), forecast
+    page.script("document.querySelector('#convert-panel').open = false")
+
     # The simulation goes on.
     data = bytes(i * 7 % 251 for i in range(24 * 20 * 16))
     hidden = pathlib.Path(sources, ".s_2")

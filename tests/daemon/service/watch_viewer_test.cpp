@@ -58,7 +58,7 @@ TEST_F(WatchViewer, IsStartedAtTheFileOfAJob_AndAnsweredBehindView) {
   const std::string series = series_digest(service.out("s_9" + std::string(ServiceHarness::kSuffix) + ".nvdb"));
   EXPECT_EQ(asked["url"],
             cat("/view/?series=", series, "&job=", job, "&output=0#f=s_1", ServiceHarness::kSuffix, ".nvdb"));
-  EXPECT_EQ(asked["memory_bytes"], 1 << 27) << "an eighth of 1 GiB";
+  EXPECT_EQ(asked["memory_bytes"], 192 << 20) << "of 1 GiB";
   ASSERT_TRUE(ready(service)) << service.get("/api/viewer");
   const RawResponse page = ask(service, "/view/");
   EXPECT_EQ(page.status, 200);

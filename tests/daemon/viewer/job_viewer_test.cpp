@@ -100,7 +100,7 @@ TEST_F(JobViewerTest, OneViewer_ServesItsWholeSeries) {
   EXPECT_EQ(viewer.view().state, ViewerState::ready);
   EXPECT_EQ(calls(), std::vector<std::string>{
                          "view /out/s_1.nvdb --series --private --progress-fd=3 --progress=never --backend=cpu "
-                         "--memory=125829120 --pixels=1572864 --viewers=4 --threads=3"});
+                         "--memory=92274688 --forecast-memory=67108864 --pixels=1153433 --viewers=4 --threads=3"});
   EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::made) << "nobody looks at the other one";
   EXPECT_EQ(viewer.view().state, ViewerState::starting);
   ASSERT_TRUE(comes_to(viewer, ViewerState::ready));
@@ -291,6 +291,23 @@ TEST_F(JobViewerTest, MemoryAboveItsCeiling_EndsIt) {
   EXPECT_TRUE(reason.starts_with("the viewer took ")) << reason;
   EXPECT_TRUE(reason.ends_with(", more than viewer_memory = 4.0 KiB; raise that, or make the window smaller"))
       << reason;
+}
+
+TEST_F(JobViewerTest, ForecastsHaveAShareOfTheMemory) {
+  program("exec sleep 60");
+  JobViewer viewer(io_, log_, program_);
+  const auto shares = [&](std::uint64_t mebibytes) {
+    const std::size_t before = std::filesystem::exists(directory_ / "calls") ? calls().size() : 0;
+    viewer.configure(service(mebibytes << 20U));
+    viewer.open("/out/s_1.nvdb", true);
+    EXPECT_TRUE(eventually([&] { return std::filesystem::exists(directory_ / "calls") && calls().size() > before; }));
+    const std::string call = calls().back();
+    const std::size_t first = call.find("--memory=");
+    return call.substr(first, call.find(" --pixels") - first);
+  };
+  EXPECT_EQ(shares(191), "--memory=91750400 --forecast-memory=0") << "half of 175 MiB";
+  EXPECT_EQ(shares(192), "--memory=58720256 --forecast-memory=67108864") << "half of 192 - 64 - 16 MiB";
+  EXPECT_EQ(shares(512), "--memory=192937984 --forecast-memory=134217728");
 }
 
 TEST_F(JobViewerTest, NoMemory_IsOff_AndAnotherConfigurationEndsTheOldOne) {

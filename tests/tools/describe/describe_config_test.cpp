@@ -59,8 +59,8 @@ exclude = ["restart*"]
   EXPECT_EQ(result.out, here(R"(service
   state       @/weir.db
   listen      127.0.0.1:8470
-  memory      1.0 GiB, 416.0 MiB for each of 2 jobs
-  viewer      128.0 MiB of it
+  memory      1.0 GiB, 384.0 MiB for each of 2 jobs
+  viewer      192.0 MiB of it
   jobs        all threads each, nice 10, I/O class none
   bandwidth   100.0 MiB/s
   work_dir    a hidden directory beside each output

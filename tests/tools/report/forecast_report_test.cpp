@@ -20,8 +20,8 @@ Forecast sampled() {
   f.scratch_bytes = 300 << 20U;
   f.memory_bytes = 100 << 20U;
   f.threads = 2;
-  f.psnr_db = Expected{61.24, 60.81, 62.4};
-  f.rmse = 0.0123;
+  f.error.psnr_db = Expected{61.24, 60.81, 62.4};
+  f.error.rmse = 0.0123;
   f.value_high = 4000;
   f.survey_s = 12.2;
   f.encode_s = 7.26;
@@ -79,20 +79,39 @@ TEST(ForecastReport, ForAnErrorTarget_TheSizeIsUncertain) {
 
 TEST(ForecastReport, Lossless_IsSaidOfTheSampleAlone) {
   Forecast f = sampled();
-  f.lossless = true;
-  f.psnr_db.reset();
+  f.error.lossless = true;
+  f.error.psnr_db.reset();
   EXPECT_NE(forecast_text(f, source(), to_rate()).find("  error     lossless in the sample, values from 0 to 4000\n"),
             std::string::npos);
   EXPECT_EQ(forecast_json(f, source(), to_rate())["error"]["psnr_db"], nullptr);
 }
 
-TEST(ForecastReport, WithASceneOrWithoutASample_TellsNoError) {
+TEST(ForecastReport, WithAScene_TellsTheErrorOfWhatItShows) {
   ConversionOptions options = to_rate();
   options.scene.emplace();
-  EXPECT_NE(forecast_text(sampled(), source(), options)
-                .find("  error     not told by a sample where a scene decides what is kept\n"),
-            std::string::npos);
-  EXPECT_EQ(forecast_json(sampled(), source(), options)["error"], nullptr);
+  Forecast f = sampled();
+  f.shown = ForecastError{false, Expected{71.5, 70.25, 72}, 0.001, 0};
+  f.shown_voxels = f.sampled_voxels / 8;
+  const std::string text = forecast_text(f, source(), options);
+  EXPECT_NE(text.find("  error     PSNR about 61.2 dB (60.8 to 62.4), RMSE 0.0123, values from 0 to 4000, range and "
+                      "background of the sample\n"
+                      "  shown     PSNR about 71.5 dB (70.2 to 72.0), RMSE 0.001, over 12.5 % of the voxels\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(forecast_json(f, source(), options)["visible"].dump(),
+            R"({"share":0.125,"lossless":false,"psnr_db":{"value":71.5,"low":70.25,"high":72.0},"rmse":0.001,)"
+            R"("max_abs":null})");
+  // A PSNR that is asked for is that of what is shown.
+  options.budget.kind = Budget::Kind::psnr;
+  EXPECT_NE(forecast_text(f, source(), options).find("  shown     PSNR about 71.5 dB, RMSE 0.001"), std::string::npos);
+  EXPECT_EQ(forecast_json(f, source(), options)["visible"]["psnr_db"]["low"], nullptr);
+  EXPECT_EQ(forecast_json(f, source(), options)["error"]["psnr_db"]["low"], 60.81);
+  f.shown.reset();
+  EXPECT_NE(forecast_text(f, source(), options).find("  shown     nothing of the sample\n"), std::string::npos);
+  EXPECT_EQ(forecast_json(f, source(), options)["visible"], nullptr);
+}
+
+TEST(ForecastReport, WithoutASample_TellsNoError) {
   Forecast f = sampled();
   f.not_sampled = "its chunks are too large for a sample";
   f.scratch_bytes = 0;

@@ -88,6 +88,8 @@ TEST_F(ViewPageTest, SavedSceneGivesTheSamePicture) { run("saved_scene_gives_the
 
 TEST_F(ViewPageTest, FitsWindows) { run("fits_windows", {cloud("a.nvdb")}); }
 
+TEST_F(ViewPageTest, StaysWhileOthersBreak) { run("stays_while_others_break", {cloud("a.nvdb")}); }
+
 TEST_F(ViewPageTest, AsksForTheToken) {
   write_file(directory_ / "token", "secret\n");
   std::filesystem::permissions(directory_ / "token", std::filesystem::perms(0600));

@@ -1,6 +1,7 @@
 // weir view from outside: its address, its end, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -46,10 +47,47 @@ TEST_F(ViewCommandTest, Signal_EndsItCleanly) {
   }
 }
 
+// Its anonymous memory now, in MiB: what no page of a file can be taken back for.
+std::uint64_t anonymous_mib(pid_t process) {
+  const std::string status = read_file(cat("/proc/", process, "/status"));
+  const std::size_t at = status.find("RssAnon:");
+  return at == std::string::npos ? 0 : std::stoull(status.substr(at + 8)) >> 10U;
+}
+
+TEST_F(ViewCommandTest, PackedFileLargerThanTheMemory_TurnsBelowTheCeiling) {
+  const std::string raw = directory_ / "n_256x256x256_float32.raw";
+  ASSERT_EQ(run_weir({"sample", "turbulence", "--dims", "256,256,256", "-o", raw}).exit_code, 0);
+  const std::string packed = directory_ / "n.nvdb";
+  ASSERT_EQ(run_weir({"convert", raw, "-o", packed, "--encoding", "packed", "--rate", "4"}).exit_code, 0);
+  ASSERT_EQ(std::filesystem::file_size(packed), 16U << 20U);
+  ChildProcess child({WEIR_COMMAND, "view", packed, "--memory", "8MiB", "--backend", "cpu"});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  ViewClient client(port);
+  std::uint64_t most = 0;
+  for (int id = 1; id <= 12; ++id) {
+    client.show(
+        id, true,
+        {{"width", 100}, {"height", 75}, {"scene", cat("mode = \"dvr\"\n[camera]\nazimuth = ", 30 * id, "\n")}});
+    const auto frame = client.frame();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->header["view"], id);
+    client.taken(*frame);
+    most = std::max(most, anonymous_mib(child.pid()));
+  }
+  client.show(13, false);
+  EXPECT_TRUE(client.refined(13, 16));
+  most = std::max(most, anonymous_mib(child.pid()));
+  EXPECT_GT(most, 0U);
+  EXPECT_LE(most, 8U + 16U) << "of voxels, and of the program with its picture; all voxels take 64 MiB";
+}
+
 TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
-  expect_refused({"view", volume_, "--against", directory_ / "v_40x30x20_float32.raw"}, 2,
+  expect_refused({"view", volume_, "--against", directory_ / "v_*.raw"}, 2,
                  cat(directory_ / "v_40x30x20_float32.raw", ": is no NanoVDB file; convert it first: weir convert ",
                      directory_ / "v_40x30x20_float32.raw"));
+  expect_refused({"view", volume_, "--against", directory_ / "none.nvdb"}, 3,
+                 cat(directory_ / "none.nvdb", ": cannot open: No such file or directory"));
   std::filesystem::create_directory(directory_ / "empty");
   expect_refused({"view", directory_ / "empty"}, 3,
                  cat(directory_ / "empty", ": holds no .nvdb file; weir convert makes them of what it holds"));
@@ -90,6 +128,30 @@ TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
   EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
 }
 
+TEST_F(ViewCommandTest, SourceToCompareWith_IsShownWithoutLoss) {
+  const std::string folder = directory_ / "work";
+  std::filesystem::create_directory(folder);
+  write_file(directory_ / "dump.bin", read_file(directory_ / "v_40x30x20_float32.raw"));
+  ChildProcess child({WEIR_COMMAND, "view", volume_, "--against", directory_ / "dump.bin", "--dims", "40,30,20",
+                      "--type", "float32", "--work-dir", folder, "--progress", "never"});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  const auto state = nlohmann::json::parse(get(port, "/api/state").second);
+  EXPECT_EQ(state["against"], nlohmann::json::parse(R"(["dump.bin.nvdb"])"));
+  EXPECT_TRUE(state["preview_of"].is_null());
+  ViewClient client(port);
+  client.show(1, true, {{"against", true}});
+  EXPECT_EQ(client.frame().value().header["layers"], 2);
+  const std::vector<std::string> made = list_directory(folder);
+  ASSERT_EQ(made.size(), 3U) << "a directory, the file and its sidecar";
+  const auto found = std::find_if(made.begin(), made.end(), [](const auto& name) { return name.ends_with(".json"); });
+  ASSERT_NE(found, made.end());
+  EXPECT_TRUE(read_sidecar((std::filesystem::path(folder) / *found).string()).error.lossless);
+  child.send_signal(SIGINT);
+  EXPECT_EQ(child.wait().exit_code, 0);
+  EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
+}
+
 TEST_F(ViewCommandTest, Private_TellsItsTokenAloneToTheProgramThatAsks) {
   const std::string told = directory_ / "told";
   ChildProcess child(
@@ -113,6 +175,17 @@ TEST_F(ViewCommandTest, PrivateAndSeries_AreRefusedWhereTheyMeanNothing) {
   const std::string raw = directory_ / "v_40x30x20_float32.raw";
   expect_refused({"view", raw, "--series", "--progress", "never", "--log-level", "off"}, 2,
                  cat("--series is of a NanoVDB file, and ", raw, " is converted to be seen; leave it out"));
+}
+
+TEST_F(ViewCommandTest, SeriesOfAPattern_IsRefused) {
+  const std::string pattern = directory_ / "v*.nvdb";
+  expect_refused({"view", pattern, "--series"}, 2,
+                 cat("--series is of one file, and ", pattern, " is a series by itself; leave it out"));
+}
+
+TEST_F(ViewCommandTest, ForecastMemory_IsThatOfAConversion) {
+  expect_refused({"view", volume_, "--forecast-memory", "1MiB"}, 2,
+                 "--forecast-memory 1MiB must be a size of at least 64.0 MiB, like 512MiB, or 0 for no forecast");
 }
 
 TEST_F(ViewCommandTest, OptionOfASource_IsRefusedWithAFile) {

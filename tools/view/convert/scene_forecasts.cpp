@@ -28,6 +28,7 @@ Json answer_of(const std::string& text) {
   const Json found = Json::parse(text, nullptr, false);
   if (!found.is_object()) return failure("weir convert --dry-run gave no figures");
   const Json& error = found.at("error");
+  const Json& shown = found.at("visible");
   return {{"state", "done"},
           {"exact", found.at("exact")},
           {"share", found.at("sample").at("share")},
@@ -36,13 +37,18 @@ Json answer_of(const std::string& text) {
           {"lossless", error.is_null() ? Json(false) : error.at("lossless")},
           {"psnr_db", error.is_null() ? Json() : error.at("psnr_db")},
           {"max_abs", error.is_null() ? Json() : error.at("max_abs")},
+          {"visible", shown.is_null() ? Json()
+                                      : Json{{"lossless", shown.at("lossless")},
+                                             {"psnr_db", shown.at("psnr_db")},
+                                             {"share", shown.at("share")}}},
           {"total_s", found.at("time").is_null() ? Json() : found.at("time").at("total_s")}};
 }
 
 }  // namespace
 
-SceneForecasts::SceneForecasts(boost::asio::io_context& io, std::string program, Told told)
-    : io_(io), program_(std::move(program)), told_(std::move(told)) {}
+SceneForecasts::SceneForecasts(boost::asio::io_context& io, std::string program, std::vector<std::string> options,
+                               Told told)
+    : io_(io), program_(std::move(program)), options_(std::move(options)), told_(std::move(told)) {}
 
 SceneForecasts::~SceneForecasts() = default;
 
@@ -90,6 +96,7 @@ void SceneForecasts::start(const Question& question) {
         conversion_command(question.conversion, kept_scene_.write(question.scene_text));
     // An output of before is not in the way of a forecast.
     arguments.insert(arguments.end(), {"--overwrite", "--dry-run", "--json", "--quiet"});
+    arguments.insert(arguments.end(), options_.begin(), options_.end());
     worker_ = std::make_unique<WorkerProcess>(
         io_, WorkerCommand{program_, arguments, kNice, IoClass::none, kReapWait}, [](std::string_view) {},
         [this](const WorkerEnd& end) {

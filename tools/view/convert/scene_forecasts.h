@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "tools/view/base/view_message.h"
 #include "tools/view/convert/kept_scene.h"
@@ -24,8 +25,8 @@ class SceneForecasts {
   /// `answer` is {"type": "forecast", "id", "state": "done" or "failed", ...}: docs/view.md.
   using Told = std::function<void(ViewerId viewer, const nlohmann::ordered_json& answer)>;
 
-  /// `program` is the path of weir.
-  SceneForecasts(boost::asio::io_context& io, std::string program, Told told);
+  /// `program` is the path of weir, `options` more options of its convert.
+  SceneForecasts(boost::asio::io_context& io, std::string program, std::vector<std::string> options, Told told);
   /// Kills the one that runs.
   ~SceneForecasts();
 
@@ -49,6 +50,7 @@ class SceneForecasts {
 
   boost::asio::io_context& io_;
   const std::string program_;
+  const std::vector<std::string> options_;
   const Told told_;
   std::map<ViewerId, Question> waiting_;
   std::uint64_t turns_ = 0;

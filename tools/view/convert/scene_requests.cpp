@@ -16,7 +16,7 @@ SceneRequests::SceneRequests(boost::asio::io_context& io, SceneRequestRules rule
     : rules_(std::move(rules)),
       send_(std::move(send)),
       converter_(io, rules_.program),
-      forecasts_(io, rules_.program, send_) {}
+      forecasts_(io, rules_.program, rules_.forecast_options, send_) {}
 
 void SceneRequests::handle(ViewerId viewer, const std::string& volume, const Sidecar& sidecar,
                            const ConvertRequest& request) {
@@ -42,10 +42,13 @@ void SceneRequests::handle(ViewerId viewer, const std::string& volume, const Sid
 
 void SceneRequests::forecast(ViewerId viewer, const SceneConversion& conversion, const ConvertRequest& request) {
   if (rules_.forecast) return forecasts_.ask(viewer, request.id, conversion, request.scene_text);
-  send_(viewer, {{"type", "forecast"},
-                 {"id", request.id},
-                 {"state", "failed"},
-                 {"message", "no memory is set aside for a forecast here; run the command with --dry-run"}});
+  send_(viewer,
+        {{"type", "forecast"},
+         {"id", request.id},
+         {"state", "failed"},
+         {"message",
+          "no memory is set aside for a forecast here, run the command with --dry-run; --forecast-memory of weir "
+          "view, or 192 MiB of viewer_memory of weir watch, has one made"}});
 }
 
 }  // namespace weir

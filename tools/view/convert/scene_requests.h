@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "format/sidecar/sidecar.h"
 #include "tools/view/base/view_message.h"
@@ -19,6 +20,7 @@ struct SceneRequestRules {
   std::string preview_of;  ///< the source that the volume is a preview of; empty: its sidecar names it
   bool run = false;        ///< a page may have the conversion run
   bool forecast = true;    ///< a page may have it forecast, which takes the memory of a conversion
+  std::vector<std::string> forecast_options = {};  ///< of weir convert: what a forecast may take
 };
 
 class SceneRequests {

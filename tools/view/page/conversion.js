@@ -9,20 +9,25 @@ const kRest_ms = 600;  // of the look, before it is asked for again
 const decibels = (value) => `${value.toFixed(1)} dB`;
 const expected = ({value, low, high}, text) => low === null ? text(value) : `${text(value)} (${text(low)} to ${text(high)})`;
 
-/** "8.0 MiB, PSNR of all voxels 33.0 dB, largest error 0.365, in about 1.2 s.", of a forecast of the server. */
-function forecast_text({exact, share, none, bytes, lossless, psnr_db, max_abs, total_s}) {
+/**
+ * "8.0 MiB, PSNR of what is shown 45.2 dB, of all voxels 33.0 dB, largest error 0.365, in about 1.2 s.", of a forecast of
+ * the server.
+ */
+function forecast_text({exact, share, none, bytes, lossless, psnr_db, visible, max_abs, total_s}) {
   const about = exact ? "" : "about ";
   const parts = [];
   if (bytes) parts.push(`${bytes.exact ? "" : about}${expected(bytes, format.bytes)}`);
   if (lossless) parts.push("no error");
-  else if (psnr_db) parts.push(`PSNR of all voxels ${about}${expected(psnr_db, decibels)}`);
+  else if (visible?.lossless) parts.push("no error in what is shown");
+  else if (visible?.psnr_db) parts.push(`PSNR of what is shown ${about}${expected(visible.psnr_db, decibels)}`);
+  if (!lossless && psnr_db) parts.push(`${visible?.psnr_db ? "" : "PSNR "}of all voxels ${about}${expected(psnr_db, decibels)}`);
   if (!lossless && max_abs !== null) parts.push(`largest error ${format.number(max_abs)}`);
   if (total_s !== null) parts.push(`in about ${format.seconds(total_s)}`);
   const text = parts.join(", ");
   if (none) return `${text ? `${text}; ` : ""}nothing was tried: ${none}.`;
   if (exact) return `${text}.`;
-  const error = lossless || psnr_db ? "" : " It does not tell the error where a scene decides what is kept.";
-  return `${text}, by a sample of ${Number((100 * share).toPrecision(2))} % of the voxels.${error}`;
+  const nothing = visible || lossless ? "" : " The scene shows nothing of it.";
+  return `${text}: estimated by a sample of ${Number((100 * share).toPrecision(2))} % of the voxels.${nothing}`;
 }
 
 export class Conversion {
@@ -63,10 +68,13 @@ export class Conversion {
     this.send({type: "convert", id: ++this.id, scene, [budget]: amount, encoding: by_id("encoding").value, run});
   }
 
+  /** Without a command where there is none, for want of the source: then nothing is tried out, either. */
   receive({command, bytes, state, message}) {
-    show_command(by_id("convert-command"), command);
-    set_text(by_id("convert-size"), bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
-                                                   : `${format.count(bytes)} bytes, whatever the scene.`);
+    show_command(by_id("convert-command"), command ?? "");
+    const size = bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
+                                : `${format.count(bytes)} bytes, whatever the scene.`;
+    set_text(by_id("convert-size"), command === null ? "" : size);
+    if (command === null) set_text(by_id("convert-forecast"), "");
     by_id("run-convert").disabled = state === "running";
     const note = {
       shown: this.allowed ? "" : "Save the scene beside it; or start weir view with --allow-convert to run it here.",

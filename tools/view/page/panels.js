@@ -72,7 +72,8 @@ export function show_quality(header, awaited) {
 /** Each word stays whole where there is room for it: a line must not end within "--scene". */
 export function show_command(target, text) {
   if (target.textContent === text) return;  // a selection in it survives
-  target.replaceChildren(...text.split(" ").flatMap((word, i) => [i > 0 ? " " : "", element("span", "word", word)]));
+  const words = text === "" ? [] : text.split(" ");
+  target.replaceChildren(...words.flatMap((word, i) => [i > 0 ? " " : "", element("span", "word", word)]));
 }
 
 export function show_banner(text) {

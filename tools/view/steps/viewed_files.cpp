@@ -65,6 +65,11 @@ ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& again
   files.key = viewed_key(choice, against);
   files.choice = choice;
   files.title = title_of(choice.input);
+  std::error_code none;
+  if (choice.series && choice.input.find_first_of("*?[") != std::string::npos && !fs::exists(choice.input, none)) {
+    throw Error(ErrorKind::usage, compose(option("series"), cat(" is of one file, and ", choice.input,
+                                                                " is a series by itself; leave it out")));
+  }
   files.steps = find_steps(choice);
   if (!against.empty()) files.against = find_steps({against});
   if (files.against.size() > 1 && files.against.size() != files.steps.size()) {

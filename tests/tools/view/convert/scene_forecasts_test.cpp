@@ -19,7 +19,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFound =
     R"({"exact": false, "sample": {"share": 0.25, "none": null}, "file": {"value": 900.0, "low": 800.0, "high": 1000.0,
-        "exact": false}, "error": null, "time": {"total_s": 1.5}})";
+        "exact": false}, "error": {"lossless": false, "psnr_db": {"value": 40.5, "low": 39.5, "high": 41.5}, "rmse": 0.1,
+        "max_abs": null}, "visible": {"share": 0.125, "lossless": false, "psnr_db": {"value": 50.0, "low": null,
+        "high": null}, "rmse": 0.01, "max_abs": null}, "time": {"total_s": 1.5}})";
 
 class SceneForecastsTest : public testing::Test {
  protected:
@@ -60,14 +62,15 @@ class SceneForecastsTest : public testing::Test {
 };
 
 TEST_F(SceneForecastsTest, SameQuestion_IsWorkedOnOnce) {
-  SceneForecasts forecasts(io_, printing_program(), tell_);
+  SceneForecasts forecasts(io_, printing_program(), {}, tell_);
   forecasts.ask(1, 7, conversion(), "a\n");
   forecasts.ask(2, 8, conversion(), "a\n");
   run_until(2);
   EXPECT_EQ(told_[0].answer,
             Json::parse(R"({"type": "forecast", "id": 7, "state": "done", "exact": false, "share": 0.25,
       "none": null, "bytes": {"value": 900.0, "low": 800.0, "high": 1000.0, "exact": false}, "lossless": false,
-      "psnr_db": null, "max_abs": null, "total_s": 1.5})"));
+      "psnr_db": {"value": 40.5, "low": 39.5, "high": 41.5}, "max_abs": null, "visible": {"lossless": false,
+      "psnr_db": {"value": 50.0, "low": null, "high": null}, "share": 0.125}, "total_s": 1.5})"));
   EXPECT_EQ(told_[1].viewer, 2);
   EXPECT_EQ(told_[1].answer["id"], 8);
   forecasts.ask(1, 9, conversion(), "a\n");
@@ -80,8 +83,17 @@ TEST_F(SceneForecastsTest, SameQuestion_IsWorkedOnOnce) {
   EXPECT_EQ(calls(), "a\na\n");
 }
 
+TEST_F(SceneForecastsTest, Options_AreThoseOfTheConversion) {
+  SceneForecasts forecasts(io_, program("echo \"$@\" > " + (directory_ / "words") + "; exit 1"),
+                           {"--memory=67108864", "--threads=3"}, tell_);
+  forecasts.ask(1, 1, conversion(), "a\n");
+  run_until(1);
+  EXPECT_TRUE(read_file(directory_ / "words").ends_with(" --dry-run --json --quiet --memory=67108864 --threads=3\n"))
+      << read_file(directory_ / "words");
+}
+
 TEST_F(SceneForecastsTest, NewerQuestion_EndsTheOlder_AndOfAViewerThatIsGone) {
-  SceneForecasts forecasts(io_, program("exec sleep 60"), tell_);
+  SceneForecasts forecasts(io_, program("exec sleep 60"), {}, tell_);
   forecasts.ask(1, 1, conversion(), "a\n");
   forecasts.ask(2, 2, conversion(), "b\n");
   printing_program();
@@ -98,12 +110,12 @@ TEST_F(SceneForecastsTest, NewerQuestion_EndsTheOlder_AndOfAViewerThatIsGone) {
 }
 
 TEST_F(SceneForecastsTest, Failure_IsSaidInTheProgramsWords) {
-  SceneForecasts forecasts(io_, program("echo 'weir: x.raw: open: No such file or directory' >&2; exit 3"), tell_);
+  SceneForecasts forecasts(io_, program("echo 'weir: x.raw: open: No such file or directory' >&2; exit 3"), {}, tell_);
   forecasts.ask(1, 1, conversion(), "a\n");
   run_until(1);
   EXPECT_EQ(told_[0].answer, Json::parse(R"({"type": "forecast", "id": 1, "state": "failed",
                                              "message": "x.raw: open: No such file or directory"})"));
-  SceneForecasts none(io_, directory_ / "none", tell_);
+  SceneForecasts none(io_, directory_ / "none", {}, tell_);
   none.ask(1, 2, conversion(), "a\n");
   run_until(2);
   EXPECT_EQ(told_[1].answer["message"], cat(directory_ / "none", ": cannot start it: No such file or directory"));

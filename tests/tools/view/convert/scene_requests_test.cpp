@@ -77,8 +77,10 @@ TEST_F(SceneRequestsTest, Convert_WithoutMemoryForForecasts_SaysSo) {
   ServedView served(volume_, "", settings);
   ViewClient client(served.port());
   client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
-  EXPECT_EQ(client.text("forecast").value()["message"],
-            "no memory is set aside for a forecast here; run the command with --dry-run");
+  EXPECT_EQ(
+      client.text("forecast").value()["message"],
+      "no memory is set aside for a forecast here, run the command with --dry-run; --forecast-memory of weir view, or "
+      "192 MiB of viewer_memory of weir watch, has one made");
 }
 
 TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
@@ -87,9 +89,11 @@ TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
   ServedView served(volume_);
   ViewClient client(served.port());
   client.send({{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
-  EXPECT_EQ(client.text("error").value()["message"],
-            cat(source, ": is not the source of ", volume_,
-                ", which had 96000 bytes; put it there, or convert it again from where it is"));
+  const Json failed = client.text("conversion").value();
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_TRUE(failed["command"].is_null());
+  EXPECT_EQ(failed["message"], cat(source, ": is not the source of ", volume_,
+                                   ", which had 96000 bytes; put it there, or convert it again from where it is"));
 }
 
 TEST_F(SceneRequestsTest, Convert_MakesTheFileWhereAllowed) {

@@ -1,0 +1,36 @@
+// What lookups can touch of the leaves of a sample, in the volume that it was taken of.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "compressor/forecast/sample_plan.h"
+#include "format/base/index.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "ingest/source/volume_source.h"
+
+namespace weir {
+
+/// Bounds of the finite values of each leaf and of the voxels around it, as find_reaches has them of a volume. 8 bytes
+/// a leaf.
+class SampleReaches {
+ public:
+  /// Reads the cells of `plan` from `volume`, with one voxel around them, in rows of leaves. Throws what reading
+  /// throws, and Error(interrupted) where `cancel`, which may be null, says so.
+  SampleReaches(VolumeSource& volume, const SamplePlan& plan, const std::atomic<bool>* cancel);
+
+  /// Of the leaf of the sample that holds `voxel`; min > max where no value is finite.
+  const MinMax& at(const Index3& voxel) const { return reaches_[index_of(voxel)]; }
+
+ private:
+  std::size_t index_of(const Index3& voxel) const {
+    return static_cast<std::size_t>(leaves_.linear(floor_div(voxel, kLeafDim) - leaves_.first));
+  }
+  void read_piece(VolumeSource& volume, const Box& piece, const Index3& corner);
+
+  NodeLattice leaves_;
+  std::vector<MinMax> reaches_;
+};
+
+}  // namespace weir
