@@ -12,6 +12,7 @@
 #include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/leaf_difference.h"
+#include "compressor/leaf/leaf_in_block.h"
 #include "compressor/packed/block_values.h"
 #include "compressor/packed/exact_block.h"
 #include "format/base/error.h"
@@ -35,9 +36,11 @@ class PackedEncoder final : public PackedLayerEncoder {
                  const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) override {
     const Box box = intersect(target_.tree.leaf_box(region_index), leaf_box);
     for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
-      surveyed.check(leaf, block.values, block.voxels);
       begin_leaf(leaf);
-      gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
+      LeafRoom room;
+      const LeafInBlock seen = leaf_in_block(block, inside_, room);
+      surveyed.check(leaf, seen.values, seen.voxels);
+      gather_leaf(seen.values, seen.voxels, node_, inside_, target_.fill.background, source_);
       const std::optional<CodedStream> known = coded == nullptr ? std::nullopt : coded->find(leaf);
       if (known) {
         replaced_ = false;

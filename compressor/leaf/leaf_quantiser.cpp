@@ -61,10 +61,11 @@ double sum(const Floats16& lanes) {
 }
 
 // The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats16& v, const CodeLevels& l, Floats16& code) {
-  const Floats16 zero{};
-  const Floats16 top = l.top - zero;
-  Floats16 t = (v - l.minimum) * l.reciprocal;
+template <typename Floats>
+[[gnu::always_inline]] inline void nearest(const Floats& v, const CodeLevels& l, Floats& code) {
+  const Floats zero{};
+  const Floats top = l.top - zero;
+  Floats t = (v - l.minimum) * l.reciprocal;
   t = t > zero ? t : zero;
   t = t < top ? t : top;
   code = (t + kRounder) - kRounder;
@@ -128,6 +129,84 @@ WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeL
   }
 }
 
+// Of lanes that stand for two each: the other rows of values in equal pairs of rows.
+double sum_of_twins(const Floats8& lanes) {
+  Floats16 all;
+  std::memcpy(&all, &lanes, sizeof lanes);
+  std::memcpy(reinterpret_cast<std::byte*>(&all) + sizeof lanes, &lanes, sizeof lanes);
+  return sum(all);
+}
+
+// deviate() of 512 values in equal pairs of rows, each plane `planes` times: fills the first rows of the first planes.
+WEIR_SIMD double twin_deviate(const float* values, std::size_t planes, float mean, float scale, float* deviations) {
+  Floats8 squares{};
+  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
+    std::array<Floats8, kTwins> terms;
+    for (std::size_t k = 0; k < kTwins; ++k) {
+      Floats8 v;
+      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
+      const Floats8 d = (v - mean) * scale;
+      std::memcpy(deviations + z + kTwinStep * k, &d, sizeof d);
+      terms[k] = d * d;
+    }
+    for (std::size_t n = 0; n < planes; ++n) {
+      for (std::size_t k = 0; k < kTwins; ++k) squares += terms[k];
+    }
+  }
+  return sum_of_twins(squares);
+}
+
+// assign() of such values.
+WEIR_SIMD Sums twin_assign(const float* values, const float* deviations, std::size_t planes, const CodeLevels& levels) {
+  const CodeLevels l = levels;
+  Floats8 codes{};
+  Floats8 code_squares{};
+  Floats8 code_values{};
+  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
+    std::array<Floats8, kTwins> code;
+    std::array<Floats8, kTwins> squared;
+    std::array<Floats8, kTwins> times_value;
+    for (std::size_t k = 0; k < kTwins; ++k) {
+      Floats8 v;
+      Floats8 d;
+      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
+      std::memcpy(&d, deviations + z + kTwinStep * k, sizeof d);
+      nearest(v, l, code[k]);
+      squared[k] = code[k] * code[k];
+      times_value[k] = code[k] * d;
+    }
+    for (std::size_t n = 0; n < planes; ++n) {
+      for (std::size_t k = 0; k < kTwins; ++k) {
+        codes += code[k];
+        code_squares += squared[k];
+        code_values += times_value[k];
+      }
+    }
+  }
+  return {0, sum_of_twins(codes), sum_of_twins(code_squares), sum_of_twins(code_values)};
+}
+
+// measure() of such values.
+WEIR_SIMD double twin_measure(const float* values, std::size_t planes, const CodeLevels& levels, float scale) {
+  const CodeLevels l = levels;
+  Floats8 squares{};
+  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
+    std::array<Floats8, kTwins> terms;
+    for (std::size_t k = 0; k < kTwins; ++k) {
+      Floats8 v;
+      Floats8 code;
+      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
+      nearest(v, l, code);
+      const Floats8 error = (v - (code * l.quantum + l.minimum)) * scale;
+      terms[k] = error * error;
+    }
+    for (std::size_t n = 0; n < planes; ++n) {
+      for (std::size_t k = 0; k < kTwins; ++k) squares += terms[k];
+    }
+  }
+  return sum_of_twins(squares);
+}
+
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
 CodeLevels levels_of(const Quantiser& q) {
@@ -186,12 +265,14 @@ bool divisible(const ValueRange& range, unsigned bits) {
 // One leaf being fitted, at one width after the other.
 class Fitter {
  public:
-  Fitter(std::span<const float> values, const ValueRange& range) : values_(values), range_(range) {
+  Fitter(std::span<const float> values, const ValueRange& range, const LeafRepeats& repeats)
+      : values_(values), range_(range), repeats_(repeats) {
     const int exponent = -std::ilogb(range.max / 2 - range.min / 2);
     scale_ = std::ldexp(1.0F, exponent);
     unscale_ = std::ldexp(1.0, -exponent);
     deviation_ = range.deviation * static_cast<double>(scale_);
-    squares_ = deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
+    squares_ = repeats.twins ? twin_deviate(values.data(), repeats.planes, range.mean, scale_, deviations_.data())
+                             : deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
   }
 
   void set_bits(unsigned bits) {
@@ -238,15 +319,21 @@ class Fitter {
  private:
   Sums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
+    Sums sums = repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels)
+                               : assign(values_.data(), deviations_.data(), values_.size(), levels);
     if (bits_ >= 8) {
-      sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+      sums.squares = measured(levels);
       return sums;
     }
     sums.squares = followed(sums, q);
     // A difference that small is the roundings of what it is between.
-    if (!(sums.squares > kCancelled * squares_)) sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+    if (!(sums.squares > kCancelled * squares_)) sums.squares = measured(levels);
     return sums;
+  }
+
+  double measured(const CodeLevels& levels) const {
+    return repeats_.twins ? twin_measure(values_.data(), repeats_.planes, levels, scale_)
+                          : measure(values_.data(), values_.size(), levels, scale_);
   }
 
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
@@ -314,6 +401,7 @@ class Fitter {
 
   std::span<const float> values_;
   ValueRange range_;
+  LeafRepeats repeats_;
   Deviations deviations_;  // scaled; as many as there are values
   float scale_;
   double unscale_;
@@ -348,10 +436,11 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
   return usable(q) ? q : one_level(range);
 }
 
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
+                        const LeafRepeats& repeats) {
   // Levels of fewer bits are levels of more.
-  if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2);
-  Fitter fitter(values, range);
+  if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2, repeats);
+  Fitter fitter(values, range, repeats);
   const auto fit = [&](unsigned width) {
     fitter.set_bits(width);
     fitter.start(1, width <= 4 ? 3 : 2);
@@ -371,7 +460,7 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
 }
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
-                                       double squares) {
+                                       double squares, const LeafRepeats& repeats) {
   // The rounds, and what those left out would gain on average: 0.5 dB at 2 bits, 0.3 dB at 4.
   struct Start {
     double share;
@@ -381,7 +470,7 @@ std::array<double, 3> estimated_errors(std::span<const float> values, const Valu
   constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.93}, {1, 3, 0.89}, {1, 1, 0.93}}};
   std::array<double, 3> errors{1, 1, 1};
   if (below_bits <= 1 || !divisible(range, 1)) return errors;
-  Fitter fitter(values, range);
+  Fitter fitter(values, range, repeats);
   for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
     if (!divisible(range, 1U << log2)) continue;
     fitter.set_bits(1U << log2);

@@ -81,7 +81,7 @@ void RangeHistogram::cover(float low, float high) {
   grow(exponent_, range_at);
 }
 
-void RangeHistogram::add(std::span<const float> values, float low, float high) {
+void RangeHistogram::add(std::span<const float> values, float low, float high, std::uint64_t times) {
   cover(low, high);
   constexpr std::size_t kPiece = 512;
   std::array<std::int32_t, kPiece> bins;
@@ -93,10 +93,10 @@ void RangeHistogram::add(std::span<const float> values, float low, float high) {
     bins_one_by_one(values.subspan(eights, count - eights), scale_, base_, bins.data() + eights);
     std::size_t i = 0;
     for (; i + 1 < count; i += 2) {
-      ++even_[static_cast<std::size_t>(bins[i])];
-      ++odd_[static_cast<std::size_t>(bins[i + 1])];
+      even_[static_cast<std::size_t>(bins[i])] += times;
+      odd_[static_cast<std::size_t>(bins[i + 1])] += times;
     }
-    if (i < count) ++even_[static_cast<std::size_t>(bins[i])];
+    if (i < count) even_[static_cast<std::size_t>(bins[i])] += times;
     values = values.subspan(count);
   }
 }
