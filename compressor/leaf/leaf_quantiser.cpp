@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/twin_sums.h"
 #include "format/base/index.h"
 #include "format/base/simd.h"
 
@@ -13,30 +15,12 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kQuantiserLanes = 16;
-/// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
-constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
 /// Squared errors below this part of the squared deviations are measured, for any number of bits.
 constexpr double kCancelled = 1e-4;
 /// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
 constexpr double kWidest = 0x1.fffffp+127;
-
-// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
-// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
-struct Sums {
-  double squares = 0;  // of the errors of the scaled deviations
-  double codes = 0;    // exact: below 2^24 a lane for up to 8 bits
-  double code_squares = 0;
-  double code_values = 0;  // code * deviation
-};
-
-struct CodeLevels {
-  float minimum;
-  float quantum;
-  float reciprocal;
-  float top;
-};
 
 using Deviations = std::array<float, kLeafVoxels>;
 
@@ -60,17 +44,6 @@ double sum(const Floats16& lanes) {
   }
 }
 
-// The code of each value.
-template <typename Floats>
-[[gnu::always_inline]] inline void nearest(const Floats& v, const CodeLevels& l, Floats& code) {
-  const Floats zero{};
-  const Floats top = l.top - zero;
-  Floats t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
-
 // Fills the deviations, 0 behind the last value, and returns the sum of their squares.
 WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
   Floats16 squares{};
@@ -85,7 +58,7 @@ WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, flo
 }
 
 // All but the squares.
-WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
+WEIR_SIMD CodeSums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
   const CodeLevels l = levels;
   Floats16 codes{};
   Floats16 code_squares{};
@@ -127,84 +100,6 @@ WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeL
     t = t < l.top ? t : l.top;
     codes[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>((t + kRounder) - kRounder));
   }
-}
-
-// Of lanes that stand for two each: the other rows of values in equal pairs of rows.
-double sum_of_twins(const Floats8& lanes) {
-  Floats16 all;
-  std::memcpy(&all, &lanes, sizeof lanes);
-  std::memcpy(reinterpret_cast<std::byte*>(&all) + sizeof lanes, &lanes, sizeof lanes);
-  return sum(all);
-}
-
-// deviate() of 512 values in equal pairs of rows, each plane `planes` times: fills the first rows of the first planes.
-WEIR_SIMD double twin_deviate(const float* values, std::size_t planes, float mean, float scale, float* deviations) {
-  Floats8 squares{};
-  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
-    std::array<Floats8, kTwins> terms;
-    for (std::size_t k = 0; k < kTwins; ++k) {
-      Floats8 v;
-      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
-      const Floats8 d = (v - mean) * scale;
-      std::memcpy(deviations + z + kTwinStep * k, &d, sizeof d);
-      terms[k] = d * d;
-    }
-    for (std::size_t n = 0; n < planes; ++n) {
-      for (std::size_t k = 0; k < kTwins; ++k) squares += terms[k];
-    }
-  }
-  return sum_of_twins(squares);
-}
-
-// assign() of such values.
-WEIR_SIMD Sums twin_assign(const float* values, const float* deviations, std::size_t planes, const CodeLevels& levels) {
-  const CodeLevels l = levels;
-  Floats8 codes{};
-  Floats8 code_squares{};
-  Floats8 code_values{};
-  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
-    std::array<Floats8, kTwins> code;
-    std::array<Floats8, kTwins> squared;
-    std::array<Floats8, kTwins> times_value;
-    for (std::size_t k = 0; k < kTwins; ++k) {
-      Floats8 v;
-      Floats8 d;
-      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
-      std::memcpy(&d, deviations + z + kTwinStep * k, sizeof d);
-      nearest(v, l, code[k]);
-      squared[k] = code[k] * code[k];
-      times_value[k] = code[k] * d;
-    }
-    for (std::size_t n = 0; n < planes; ++n) {
-      for (std::size_t k = 0; k < kTwins; ++k) {
-        codes += code[k];
-        code_squares += squared[k];
-        code_values += times_value[k];
-      }
-    }
-  }
-  return {0, sum_of_twins(codes), sum_of_twins(code_squares), sum_of_twins(code_values)};
-}
-
-// measure() of such values.
-WEIR_SIMD double twin_measure(const float* values, std::size_t planes, const CodeLevels& levels, float scale) {
-  const CodeLevels l = levels;
-  Floats8 squares{};
-  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
-    std::array<Floats8, kTwins> terms;
-    for (std::size_t k = 0; k < kTwins; ++k) {
-      Floats8 v;
-      Floats8 code;
-      std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
-      nearest(v, l, code);
-      const Floats8 error = (v - (code * l.quantum + l.minimum)) * scale;
-      terms[k] = error * error;
-    }
-    for (std::size_t n = 0; n < planes; ++n) {
-      for (std::size_t k = 0; k < kTwins; ++k) squares += terms[k];
-    }
-  }
-  return sum_of_twins(squares);
 }
 
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
@@ -301,7 +196,7 @@ class Fitter {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q); ++round) {
       q.top = top_inside(q, range_, most_);
-      const Sums sums = assigned(q);
+      const CodeSums sums = assigned(q);
       if (sums.squares < best_) {
         best_ = sums.squares;
         quantiser_ = q;
@@ -317,10 +212,10 @@ class Fitter {
   double squared_error() const { return best_ * unscale_ * unscale_; }
 
  private:
-  Sums assigned(const Quantiser& q) const {
+  CodeSums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    Sums sums = repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels)
-                               : assign(values_.data(), deviations_.data(), values_.size(), levels);
+    CodeSums sums = repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels)
+                                   : assign(values_.data(), deviations_.data(), values_.size(), levels);
     if (bits_ >= 8) {
       sums.squares = measured(levels);
       return sums;
@@ -337,7 +232,7 @@ class Fitter {
   }
 
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
-  double followed(const Sums& sums, const Quantiser& q) const {
+  double followed(const CodeSums& sums, const Quantiser& q) const {
     const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
     const double minimum = scaled(q.minimum);
     const auto n = static_cast<double>(values_.size());
@@ -347,7 +242,7 @@ class Fitter {
 
   // Least squares of value = minimum + code * quantum, the first level in the range; false where all values have one
   // code.
-  bool refit(const Sums& sums, Quantiser& q) const {
+  bool refit(const CodeSums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * sums.code_squares - sums.codes * sums.codes;
     if (!(determinant > 0)) return false;
@@ -364,7 +259,7 @@ class Fitter {
 
   // Where the level of the largest value lies above the range, levels that end at that value may cost less than giving
   // it the level below.
-  void end_inside(const Sums& sums, Quantiser& q) const {
+  void end_inside(const CodeSums& sums, Quantiser& q) const {
     const std::uint32_t highest = code_of(range_.max, q, most_);
     if (highest == 0 || !(level_of(highest, q) > range_.max)) return;
     Quantiser ended = ending_at_largest(sums, highest);
@@ -378,7 +273,7 @@ class Fitter {
   }
 
   // Least squares of value = largest - (code of the largest - code) * quantum.
-  Quantiser ending_at_largest(const Sums& sums, std::uint32_t highest) const {
+  Quantiser ending_at_largest(const CodeSums& sums, std::uint32_t highest) const {
     const auto n = static_cast<double>(values_.size());
     const auto code = static_cast<double>(highest);
     const double largest = scaled(range_.max);
