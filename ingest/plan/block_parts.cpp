@@ -11,7 +11,6 @@ Box leaves_of(const Box& box) {
   return {floor_div(box.lo, kLeafDim), floor_div(box.hi - Index3{1, 1, 1}, kLeafDim) + Index3{1, 1, 1}};
 }
 
-// Of eight voxels: lengths that the compiler knows.
 template <std::size_t By>
 void repeat_eight(const float* distinct, float* row) {
   for (std::size_t i = 0; i < kLeafDim; ++i) row[i] = distinct[i / By];
@@ -21,6 +20,24 @@ void repeat_row(const float* distinct, std::int64_t by, std::int64_t count, floa
   if (count == kLeafDim && by == 2) return repeat_eight<2>(distinct, row);
   if (count == kLeafDim && by == 4) return repeat_eight<4>(distinct, row);
   for (std::int64_t x = 0; x < count; ++x) row[x] = distinct[x / by];
+}
+
+// Of lengths that the compiler knows: what leaves have is worth no call.
+template <std::size_t Count>
+void copy_values(const float* from, float* to) {
+  std::memcpy(to, from, Count * sizeof(float));
+}
+
+void copy_row(const float* from, std::int64_t count, float* to) {
+  if (count == 2) return copy_values<2>(from, to);
+  if (count == 4) return copy_values<4>(from, to);
+  if (count == 8) return copy_values<8>(from, to);
+  std::copy_n(from, count, to);
+}
+
+void copy_plane(const float* from, std::int64_t count, float* to) {
+  if (count == 64) return copy_values<64>(from, to);
+  std::copy_n(from, count, to);
 }
 
 }  // namespace
@@ -58,13 +75,12 @@ Index3 BlockParts::gather(std::span<const float> values, const Box& leaf, std::s
   float* out = distinct.data();
   for (std::int64_t z = 0; z < groups.z; ++z) {
     for (std::int64_t y = 0; y < groups.y; ++y, out += groups.x)
-      std::copy_n(corner + of_part.x * (y + of_part.y * z), groups.x, out);
+      copy_row(corner + of_part.x * (y + of_part.y * z), groups.x, out);
   }
   return part.by;
 }
 
 void repeat_values(const float* distinct, const Index3& by, const Index3& extent, float* values) {
-  const auto row_bytes = static_cast<std::size_t>(extent.x) * sizeof(float);
   const std::int64_t plane = extent.x * extent.y;
   for (std::int64_t z = 0; z < extent.z; z += by.z) {
     float* const first = values + plane * z;
@@ -72,10 +88,9 @@ void repeat_values(const float* distinct, const Index3& by, const Index3& extent
       float* const row = first + extent.x * y;
       repeat_row(distinct, by.x, extent.x, row);
       distinct += extent.x / by.x;
-      for (std::int64_t i = 1; i < by.y; ++i) std::memcpy(row + extent.x * i, row, row_bytes);
+      for (std::int64_t i = 1; i < by.y; ++i) copy_row(row, extent.x, row + extent.x * i);
     }
-    for (std::int64_t i = 1; i < by.z; ++i)
-      std::memcpy(first + plane * i, first, static_cast<std::size_t>(plane) * sizeof(float));
+    for (std::int64_t i = 1; i < by.z; ++i) copy_plane(first, plane, first + plane * i);
   }
 }
 
