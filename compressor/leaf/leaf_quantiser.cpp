@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/taken_codes.h"
 #include "format/base/index.h"
-#include "format/base/simd.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kQuantiserLanes = 16;
-/// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
-constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
 /// Squared errors below this part of the squared deviations are measured, for any number of bits.
@@ -22,111 +19,7 @@ constexpr double kCancelled = 1e-4;
 /// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
 constexpr double kWidest = 0x1.fffffp+127;
 
-// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
-// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
-struct Sums {
-  double squares = 0;  // of the errors of the scaled deviations
-  double codes = 0;    // exact: below 2^24 a lane for up to 8 bits
-  double code_squares = 0;
-  double code_values = 0;  // code * deviation
-};
-
-struct CodeLevels {
-  float minimum;
-  float quantum;
-  float reciprocal;
-  float top;
-};
-
 using Deviations = std::array<float, kLeafVoxels>;
-
-// Pairwise, whatever the machine.
-double sum(const Floats16& lanes) {
-  std::array<float, kQuantiserLanes> all;
-  std::memcpy(all.data(), &lanes, sizeof all);
-  for (std::size_t width = kQuantiserLanes / 2; width > 0; width /= 2) {
-    for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
-  }
-  return static_cast<double>(all[0]);
-}
-
-// The next 16 of `left` values; `filler` behind the last.
-[[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
-  if (left >= kQuantiserLanes) {
-    std::memcpy(&v, values, sizeof v);
-  } else {
-    v = filler - Floats16{};
-    std::memcpy(&v, values, left * sizeof(float));
-  }
-}
-
-// The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats16& v, const CodeLevels& l, Floats16& code) {
-  const Floats16 zero{};
-  const Floats16 top = l.top - zero;
-  Floats16 t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
-
-// Fills the deviations, 0 behind the last value, and returns the sum of their squares.
-WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    load(values + i, count - i, mean, v);
-    const Floats16 d = (v - mean) * scale;
-    squares += d * d;
-    std::memcpy(deviations + i, &d, sizeof d);
-  }
-  return sum(squares);
-}
-
-// All but the squares.
-WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
-  const CodeLevels l = levels;
-  Floats16 codes{};
-  Floats16 code_squares{};
-  Floats16 code_values{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 d;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    std::memcpy(&d, deviations + i, sizeof d);
-    nearest(v, l, code);  // behind the last value 0, which adds nothing
-    codes += code;
-    code_squares += code * code;
-    code_values += code * d;
-  }
-  return {0, sum(codes), sum(code_squares), sum(code_values)};
-}
-
-// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
-WEIR_SIMD double measure(const float* values, std::size_t count, const CodeLevels& levels, float scale) {
-  const CodeLevels l = levels;
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    nearest(v, l, code);
-    const Floats16 error = (v - (code * l.quantum + l.minimum)) * scale;
-    squares += error * error;
-  }
-  return sum(squares);
-}
-
-WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes) {
-  const CodeLevels l = levels;
-  for (std::size_t i = 0; i < count; ++i) {
-    float t = (values[i] - l.minimum) * l.reciprocal;
-    t = t > 0.0F ? t : 0.0F;
-    t = t < l.top ? t : l.top;
-    codes[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>((t + kRounder) - kRounder));
-  }
-}
 
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
@@ -220,7 +113,7 @@ class Fitter {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q); ++round) {
       q.top = top_inside(q, range_, most_);
-      const Sums sums = assigned(q);
+      const CodeSums sums = assigned(q);
       if (sums.squares < best_) {
         best_ = sums.squares;
         quantiser_ = q;
@@ -236,21 +129,23 @@ class Fitter {
   double squared_error() const { return best_ * unscale_ * unscale_; }
 
  private:
-  Sums assigned(const Quantiser& q) const {
+  CodeSums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
+    const bool one_bit = bits_ == 1 && std::isfinite(squares_);
+    CodeSums sums = (one_bit ? assign_bit : assign)(values_.data(), deviations_.data(), values_.size(), levels);
     if (bits_ >= 8) {
-      sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+      sums.squares = measure_squares(values_.data(), values_.size(), levels, scale_);
       return sums;
     }
     sums.squares = followed(sums, q);
     // A difference that small is the roundings of what it is between.
-    if (!(sums.squares > kCancelled * squares_)) sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+    if (!(sums.squares > kCancelled * squares_))
+      sums.squares = measure_squares(values_.data(), values_.size(), levels, scale_);
     return sums;
   }
 
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
-  double followed(const Sums& sums, const Quantiser& q) const {
+  double followed(const CodeSums& sums, const Quantiser& q) const {
     const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
     const double minimum = scaled(q.minimum);
     const auto n = static_cast<double>(values_.size());
@@ -260,7 +155,7 @@ class Fitter {
 
   // Least squares of value = minimum + code * quantum, the first level in the range; false where all values have one
   // code.
-  bool refit(const Sums& sums, Quantiser& q) const {
+  bool refit(const CodeSums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * sums.code_squares - sums.codes * sums.codes;
     if (!(determinant > 0)) return false;
@@ -277,7 +172,7 @@ class Fitter {
 
   // Where the level of the largest value lies above the range, levels that end at that value may cost less than giving
   // it the level below.
-  void end_inside(const Sums& sums, Quantiser& q) const {
+  void end_inside(const CodeSums& sums, Quantiser& q) const {
     const std::uint32_t highest = code_of(range_.max, q, most_);
     if (highest == 0 || !(level_of(highest, q) > range_.max)) return;
     Quantiser ended = ending_at_largest(sums, highest);
@@ -291,7 +186,7 @@ class Fitter {
   }
 
   // Least squares of value = largest - (code of the largest - code) * quantum.
-  Quantiser ending_at_largest(const Sums& sums, std::uint32_t highest) const {
+  Quantiser ending_at_largest(const CodeSums& sums, std::uint32_t highest) const {
     const auto n = static_cast<double>(values_.size());
     const auto code = static_cast<double>(highest);
     const double largest = scaled(range_.max);
@@ -330,13 +225,11 @@ class Fitter {
 // that lie beside. At 16 bits a leaf has no codes enough to tell.
 bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
   if (bits == 16) return true;
-  std::array<std::uint16_t, kLeafVoxels> codes;
-  quantise(values, quantiser, std::span(codes).first(values.size()));
-  std::array<std::uint16_t, 256> taken{};
-  for (const std::uint16_t code : std::span(codes).first(values.size())) ++taken[code];
-  const std::size_t few = values.size() >> (bits + 3);  // an eighth of what codes taken alike would have
-  const auto levels = std::count_if(taken.begin(), taken.end(), [few](std::uint16_t count) { return count > few; });
-  return levels <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
+  std::array<std::uint16_t, kLeafVoxels> all;
+  const std::span<std::uint16_t> codes = std::span(all).first(values.size());
+  quantise(values, quantiser, codes);
+  const auto few = static_cast<unsigned>(codes.size() >> (bits + 3));  // an eighth of what codes taken alike would have
+  return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
 
 }  // namespace
