@@ -1,22 +1,25 @@
-// What values come to that are assigned to the levels of a quantiser.
+// Values assigned to equidistant levels: the codes, and the sums that a least-squares fit of the levels takes. The same
+// bits on every machine: 16 lanes, nothing fused.
 #pragma once
 
-#include "format/base/simd.h"
+#include <cstddef>
+#include <cstdint>
 
 namespace weir {
 
 /// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
 inline constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 
-// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
-// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
+/// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
+/// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
 struct CodeSums {
-  double squares = 0;  // of the errors of the scaled deviations
-  double codes = 0;    // exact: below 2^24 a lane for up to 8 bits
+  double squares = 0;  ///< of the errors of the scaled deviations
+  double codes = 0;    ///< exact: below 2^24 a lane for up to 8 bits
   double code_squares = 0;
-  double code_values = 0;  // code * deviation
+  double code_values = 0;  ///< code * deviation
 };
 
+/// Levels minimum + code * quantum, for codes of 0 to `top`; a reciprocal of 0 where there is one level.
 struct CodeLevels {
   float minimum;
   float quantum;
@@ -24,15 +27,18 @@ struct CodeLevels {
   float top;
 };
 
-// The code of each value.
-template <typename Floats>
-[[gnu::always_inline]] inline void nearest(const Floats& v, const CodeLevels& l, Floats& code) {
-  const Floats zero{};
-  const Floats top = l.top - zero;
-  Floats t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
+/// Fills the deviations, as many as there are values rounded up to 16, 0 behind the last one, and returns the sum of
+/// their squares.
+double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations);
+
+/// All but the squares.
+CodeSums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels);
+/// The same of levels of one bit, where all deviations are finite.
+CodeSums assign_bit(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels);
+
+/// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
+double measure_squares(const float* values, std::size_t count, const CodeLevels& levels, float scale);
+
+void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes);
 
 }  // namespace weir

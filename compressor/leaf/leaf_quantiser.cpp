@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/taken_codes.h"
 #include "compressor/leaf/twin_sums.h"
 #include "format/base/index.h"
-#include "format/base/simd.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kQuantiserLanes = 16;
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
 /// Squared errors below this part of the squared deviations are measured, for any number of bits.
@@ -23,84 +21,6 @@ constexpr double kCancelled = 1e-4;
 constexpr double kWidest = 0x1.fffffp+127;
 
 using Deviations = std::array<float, kLeafVoxels>;
-
-// Pairwise, whatever the machine.
-double sum(const Floats16& lanes) {
-  std::array<float, kQuantiserLanes> all;
-  std::memcpy(all.data(), &lanes, sizeof all);
-  for (std::size_t width = kQuantiserLanes / 2; width > 0; width /= 2) {
-    for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
-  }
-  return static_cast<double>(all[0]);
-}
-
-// The next 16 of `left` values; `filler` behind the last.
-[[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
-  if (left >= kQuantiserLanes) {
-    std::memcpy(&v, values, sizeof v);
-  } else {
-    v = filler - Floats16{};
-    std::memcpy(&v, values, left * sizeof(float));
-  }
-}
-
-// Fills the deviations, 0 behind the last value, and returns the sum of their squares.
-WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    load(values + i, count - i, mean, v);
-    const Floats16 d = (v - mean) * scale;
-    squares += d * d;
-    std::memcpy(deviations + i, &d, sizeof d);
-  }
-  return sum(squares);
-}
-
-// All but the squares.
-WEIR_SIMD CodeSums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
-  const CodeLevels l = levels;
-  Floats16 codes{};
-  Floats16 code_squares{};
-  Floats16 code_values{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 d;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    std::memcpy(&d, deviations + i, sizeof d);
-    nearest(v, l, code);  // behind the last value 0, which adds nothing
-    codes += code;
-    code_squares += code * code;
-    code_values += code * d;
-  }
-  return {0, sum(codes), sum(code_squares), sum(code_values)};
-}
-
-// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
-WEIR_SIMD double measure(const float* values, std::size_t count, const CodeLevels& levels, float scale) {
-  const CodeLevels l = levels;
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    nearest(v, l, code);
-    const Floats16 error = (v - (code * l.quantum + l.minimum)) * scale;
-    squares += error * error;
-  }
-  return sum(squares);
-}
-
-WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes) {
-  const CodeLevels l = levels;
-  for (std::size_t i = 0; i < count; ++i) {
-    float t = (values[i] - l.minimum) * l.reciprocal;
-    t = t > 0.0F ? t : 0.0F;
-    t = t < l.top ? t : l.top;
-    codes[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>((t + kRounder) - kRounder));
-  }
-}
 
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
@@ -214,8 +134,8 @@ class Fitter {
  private:
   CodeSums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    CodeSums sums = repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels)
-                                   : assign(values_.data(), deviations_.data(), values_.size(), levels);
+    CodeSums sums =
+        repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels) : assign_all(levels);
     if (bits_ >= 8) {
       sums.squares = measured(levels);
       return sums;
@@ -226,9 +146,14 @@ class Fitter {
     return sums;
   }
 
+  CodeSums assign_all(const CodeLevels& levels) const {
+    const bool one_bit = bits_ == 1 && std::isfinite(squares_);
+    return (one_bit ? assign_bit : assign)(values_.data(), deviations_.data(), values_.size(), levels);
+  }
+
   double measured(const CodeLevels& levels) const {
     return repeats_.twins ? twin_measure(values_.data(), repeats_.planes, levels, scale_)
-                          : measure(values_.data(), values_.size(), levels, scale_);
+                          : measure_squares(values_.data(), values_.size(), levels, scale_);
   }
 
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
@@ -313,13 +238,11 @@ class Fitter {
 // that lie beside. At 16 bits a leaf has no codes enough to tell.
 bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
   if (bits == 16) return true;
-  std::array<std::uint16_t, kLeafVoxels> codes;
-  quantise(values, quantiser, std::span(codes).first(values.size()));
-  std::array<std::uint16_t, 256> taken{};
-  for (const std::uint16_t code : std::span(codes).first(values.size())) ++taken[code];
-  const std::size_t few = values.size() >> (bits + 3);  // an eighth of what codes taken alike would have
-  const auto levels = std::count_if(taken.begin(), taken.end(), [few](std::uint16_t count) { return count > few; });
-  return levels <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
+  std::array<std::uint16_t, kLeafVoxels> all;
+  const std::span<std::uint16_t> codes = std::span(all).first(values.size());
+  quantise(values, quantiser, codes);
+  const auto few = static_cast<unsigned>(codes.size() >> (bits + 3));  // an eighth of what codes taken alike would have
+  return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "compressor/leaf/leaf_repeats.h"
 #include "format/base/index.h"
+#include "format/base/simd.h"
 
 namespace weir {
 namespace {
@@ -18,6 +19,16 @@ double sum_of_twins(const Floats8& lanes) {
     for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
   }
   return static_cast<double>(all[0]);
+}
+
+// The code of each value, as assign() finds it.
+[[gnu::always_inline]] inline void nearest(const Floats8& v, const CodeLevels& l, Floats8& code) {
+  const Floats8 zero{};
+  const Floats8 top = l.top - zero;
+  Floats8 t = (v - l.minimum) * l.reciprocal;
+  t = t > zero ? t : zero;
+  t = t < top ? t : top;
+  code = (t + kRounder) - kRounder;
 }
 
 }  // namespace
