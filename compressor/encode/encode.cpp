@@ -161,6 +161,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     for (; told < end; ++told) known.add(parts[told]);
   };
   StreamOptions stream = options;
+  stream.in_parts = target.packed == nullptr || target.packed->coder == nullptr;  // a coder is given all voxels
   if (pauses.due) {
     stream.at_rest = [&](std::size_t boxes_done) {
       if (!pauses.due()) return;

@@ -8,6 +8,7 @@
 
 #include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
+#include "compressor/leaf/leaf_in_block.h"
 #include "compressor/leaf/quantised_leaf.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/quantised_codec.h"
@@ -33,10 +34,12 @@ class LeafEncoder final : public LayerEncoder {
         const Index3 leaf{x, y, z};
         const std::size_t position = tree.mask_position(leaf);
         if (!places.kept(position)) continue;
-        surveyed.check(leaf, block.values, block.voxels);
+        LeafRoom room;
+        const LeafInBlock seen = leaf_in_block(block, tree.leaves.voxels(leaf), room);
+        surveyed.check(leaf, seen.values, seen.voxels);
         const LeafPlaces::Place before = places.before(position);
         const LeafWidth width = places.width(position);
-        gather(block, leaf,
+        gather(seen, leaf,
                {region.first_leaf + before.leaves, target_.layout.leaves + region.first_byte + before.bytes, width});
       }
     }
@@ -73,11 +76,11 @@ class LeafEncoder final : public LayerEncoder {
     LeafWidth width;
   };
 
-  void gather(const Block& block, const Index3& leaf, const Leaf& place) {
+  void gather(const LeafInBlock& seen, const Index3& leaf, const Leaf& place) {
     const Box node = target_.tree.leaves.node_box(leaf);
     const Box inside = target_.tree.leaves.voxels(leaf);
     LeafValues& values = values_[batch_];
-    gather_leaf(block.values, block.voxels, node, inside, target_.fill.background, values);
+    gather_leaf(seen.values, seen.voxels, node, inside, target_.fill.background, values);
     finite_[batch_] = all_finite(values);
     if (!finite_[batch_] && target_.fill.non_finite != NonFinitePolicy::keep) {
       sources_[batch_] = values;
@@ -87,6 +90,7 @@ class LeafEncoder final : public LayerEncoder {
     masks_[batch_] = gaps ? active_voxels(sources_[batch_], node, inside) : std::nullopt;
     nodes_[batch_] = node;
     insides_[batch_] = inside;
+    repeats_[batch_] = LeafRepeats::of(seen.by.y, seen.by.x);
     leaves_.push_back(place);
     if (++batch_ == kLeafBatch) encode_batch();
     if (leaves_.size() >= kHeldLeaves) finish();
@@ -111,8 +115,8 @@ class LeafEncoder final : public LayerEncoder {
       for (std::size_t i = 0; i < batch_; ++i) {
         const LeafValues& source = finite_[i] ? values_[i] : sources_[i];
         const Leaf& leaf = leaves_[first + i];
-        quantised_[i] =
-            quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target_.fit);
+        quantised_[i] = quantise_leaf(values_[i], source, nodes_[i], insides_[i], bits_log2_of(leaf.width), target_.fit,
+                                      repeats_[i]);
         values_[i] = quantised_[i].decoded;
       }
     }
@@ -153,6 +157,7 @@ class LeafEncoder final : public LayerEncoder {
   std::array<QuantisedLeaf, kLeafBatch> quantised_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};
+  std::array<LeafRepeats, kLeafBatch> repeats_{};
   std::array<NodeStatistics, kLeafBatch> statistics_{};
   std::vector<Leaf> leaves_;  // held, encoded or not
   std::vector<std::byte> bytes_;

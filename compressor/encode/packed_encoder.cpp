@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include "compressor/encode/coded_regions.h"
@@ -12,6 +13,7 @@
 #include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/leaf_difference.h"
+#include "compressor/leaf/leaf_in_block.h"
 #include "compressor/packed/block_values.h"
 #include "compressor/packed/exact_block.h"
 #include "format/base/error.h"
@@ -35,9 +37,11 @@ class PackedEncoder final : public PackedLayerEncoder {
                  const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) override {
     const Box box = intersect(target_.tree.leaf_box(region_index), leaf_box);
     for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
-      surveyed.check(leaf, block.values, block.voxels);
       begin_leaf(leaf);
-      gather_leaf(block.values, block.voxels, node_, inside_, target_.fill.background, source_);
+      LeafRoom room;
+      const LeafInBlock seen = leaf_in_block(block, inside_, room);
+      surveyed.check(leaf, seen.values, seen.voxels);
+      gather_leaf(seen.values, seen.voxels, node_, inside_, target_.fill.background, source_);
       const std::optional<CodedStream> known = coded == nullptr ? std::nullopt : coded->find(leaf);
       if (known) {
         replaced_ = false;
@@ -140,23 +144,25 @@ class PackedEncoder final : public PackedLayerEncoder {
     extend_outside(node_, inside_, values_);
     const std::span<std::byte> stream = std::span(stream_).first(places.bytes(place.position));
     write_stream(places.plan(), place.position, stream);
-    if (!decode_block(packed_.constants, places.plan().region.means, stream.data(),
-                      static_cast<std::uint32_t>(stream.size()), decoded_.data())) {
-      fail(leaf, "does not decode");
-    }
+    decode_stream(leaf, place, stream);
     append(place.offset, stream);
     if (packed_.rule.preview) write_corner(leaf);
   }
 
+  static bool is_near(std::int16_t step) { return std::abs(step - PlannedStreams::kNearStep) <= 128; }
+  // Whether it is the step of a quantiser.
+  static bool transforms(std::int16_t step) {
+    return !is_near(step) && step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep;
+  }
+
   void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
-    const int exponent = step - PlannedStreams::kNearStep;
-    if (std::abs(exponent) <= 128) {
+    if (is_near(step)) {
       rounded_.set(values_);
-      if (!rounded_.encode(exponent, stream)) fail({}, "cannot be rounded");
+      if (!rounded_.encode(step - PlannedStreams::kNearStep, stream)) fail({}, "cannot be rounded");
       return;
     }
-    if (step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep) {
+    if (transforms(step)) {
       if (!transform_.set(values_)) fail({}, "cannot be transformed");
       transform_.encode(packed_.constants, plan.region.means, step, stream);
       return;
@@ -173,6 +179,32 @@ class PackedEncoder final : public PackedLayerEncoder {
     }
     if (bytes != stream.size()) fail({}, "has another length than was planned");
     std::copy_n(scratch.begin(), bytes, stream.begin());
+  }
+
+  // What the stream decodes to. Of transformed and rounded values that is known: one in some streams is decoded to see
+  // that it is so.
+  void decode_stream(const Index3& leaf, const KeptPlace& place, std::span<const std::byte> stream) {
+    constexpr std::uint64_t kChecked = 64;
+    const bool known = know_values(place.places.plan(), place.position);
+    if (known && place.ordinal % kChecked != 0) return;
+    LeafValues& decoded = known ? checked_ : decoded_;
+    if (!decode_block(packed_.constants, place.places.plan().region.means, stream.data(),
+                      static_cast<std::uint32_t>(stream.size()), decoded.data())) {
+      fail(leaf, "does not decode");
+    }
+    if (known && std::memcmp(checked_.data(), decoded_.data(), sizeof decoded_) != 0) {
+      fail(leaf, "decodes to other values than were coded");
+    }
+  }
+
+  // Whether write_stream() has left what the stream decodes to, which is then put there.
+  bool know_values(const PlannedStreams& plan, std::size_t position) {
+    const std::int16_t step = plan.steps[position];
+    if (is_near(step)) {
+      rounded_.decoded(packed_.constants, decoded_);
+      return true;
+    }
+    return transforms(step) && transform_.decoded(packed_.constants, plan.region.means, step, decoded_);
   }
 
   void write_corner(const Index3& leaf) {
@@ -232,6 +264,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   LeafValues values_{};    // what is packed
   bool replaced_ = false;  // some of the source were not finite
   LeafValues decoded_{};
+  LeafValues checked_{};  // decoded once more
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
   std::uint64_t first_byte_ = 0;

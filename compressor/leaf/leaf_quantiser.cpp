@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/taken_codes.h"
+#include "compressor/leaf/twin_sums.h"
 #include "format/base/index.h"
-#include "format/base/simd.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kQuantiserLanes = 16;
-/// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
-constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 /// Quanta below this have no reciprocal.
 constexpr float kLeastQuantum = 0x1p-120F;
 /// Squared errors below this part of the squared deviations are measured, for any number of bits.
@@ -22,111 +20,7 @@ constexpr double kCancelled = 1e-4;
 /// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
 constexpr double kWidest = 0x1.fffffp+127;
 
-// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
-// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
-struct Sums {
-  double squares = 0;  // of the errors of the scaled deviations
-  double codes = 0;    // exact: below 2^24 a lane for up to 8 bits
-  double code_squares = 0;
-  double code_values = 0;  // code * deviation
-};
-
-struct CodeLevels {
-  float minimum;
-  float quantum;
-  float reciprocal;
-  float top;
-};
-
 using Deviations = std::array<float, kLeafVoxels>;
-
-// Pairwise, whatever the machine.
-double sum(const Floats16& lanes) {
-  std::array<float, kQuantiserLanes> all;
-  std::memcpy(all.data(), &lanes, sizeof all);
-  for (std::size_t width = kQuantiserLanes / 2; width > 0; width /= 2) {
-    for (std::size_t i = 0; i < width; ++i) all[i] += all[i + width];
-  }
-  return static_cast<double>(all[0]);
-}
-
-// The next 16 of `left` values; `filler` behind the last.
-[[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
-  if (left >= kQuantiserLanes) {
-    std::memcpy(&v, values, sizeof v);
-  } else {
-    v = filler - Floats16{};
-    std::memcpy(&v, values, left * sizeof(float));
-  }
-}
-
-// The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats16& v, const CodeLevels& l, Floats16& code) {
-  const Floats16 zero{};
-  const Floats16 top = l.top - zero;
-  Floats16 t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
-
-// Fills the deviations, 0 behind the last value, and returns the sum of their squares.
-WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    load(values + i, count - i, mean, v);
-    const Floats16 d = (v - mean) * scale;
-    squares += d * d;
-    std::memcpy(deviations + i, &d, sizeof d);
-  }
-  return sum(squares);
-}
-
-// All but the squares.
-WEIR_SIMD Sums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
-  const CodeLevels l = levels;
-  Floats16 codes{};
-  Floats16 code_squares{};
-  Floats16 code_values{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 d;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    std::memcpy(&d, deviations + i, sizeof d);
-    nearest(v, l, code);  // behind the last value 0, which adds nothing
-    codes += code;
-    code_squares += code * code;
-    code_values += code * d;
-  }
-  return {0, sum(codes), sum(code_squares), sum(code_values)};
-}
-
-// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
-WEIR_SIMD double measure(const float* values, std::size_t count, const CodeLevels& levels, float scale) {
-  const CodeLevels l = levels;
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    nearest(v, l, code);
-    const Floats16 error = (v - (code * l.quantum + l.minimum)) * scale;
-    squares += error * error;
-  }
-  return sum(squares);
-}
-
-WEIR_SIMD void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes) {
-  const CodeLevels l = levels;
-  for (std::size_t i = 0; i < count; ++i) {
-    float t = (values[i] - l.minimum) * l.reciprocal;
-    t = t > 0.0F ? t : 0.0F;
-    t = t < l.top ? t : l.top;
-    codes[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>((t + kRounder) - kRounder));
-  }
-}
 
 std::uint32_t most_code(unsigned bits) { return (1U << bits) - 1U; }
 
@@ -186,12 +80,14 @@ bool divisible(const ValueRange& range, unsigned bits) {
 // One leaf being fitted, at one width after the other.
 class Fitter {
  public:
-  Fitter(std::span<const float> values, const ValueRange& range) : values_(values), range_(range) {
+  Fitter(std::span<const float> values, const ValueRange& range, const LeafRepeats& repeats)
+      : values_(values), range_(range), repeats_(repeats) {
     const int exponent = -std::ilogb(range.max / 2 - range.min / 2);
     scale_ = std::ldexp(1.0F, exponent);
     unscale_ = std::ldexp(1.0, -exponent);
     deviation_ = range.deviation * static_cast<double>(scale_);
-    squares_ = deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
+    squares_ = repeats.twins ? twin_deviate(values.data(), repeats.planes, range.mean, scale_, deviations_.data())
+                             : deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
   }
 
   void set_bits(unsigned bits) {
@@ -220,7 +116,7 @@ class Fitter {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q); ++round) {
       q.top = top_inside(q, range_, most_);
-      const Sums sums = assigned(q);
+      const CodeSums sums = assigned(q);
       if (sums.squares < best_) {
         best_ = sums.squares;
         quantiser_ = q;
@@ -236,21 +132,32 @@ class Fitter {
   double squared_error() const { return best_ * unscale_ * unscale_; }
 
  private:
-  Sums assigned(const Quantiser& q) const {
+  CodeSums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    Sums sums = assign(values_.data(), deviations_.data(), values_.size(), levels);
+    CodeSums sums =
+        repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels) : assign_all(levels);
     if (bits_ >= 8) {
-      sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+      sums.squares = measured(levels);
       return sums;
     }
     sums.squares = followed(sums, q);
     // A difference that small is the roundings of what it is between.
-    if (!(sums.squares > kCancelled * squares_)) sums.squares = measure(values_.data(), values_.size(), levels, scale_);
+    if (!(sums.squares > kCancelled * squares_)) sums.squares = measured(levels);
     return sums;
   }
 
+  CodeSums assign_all(const CodeLevels& levels) const {
+    const bool one_bit = bits_ == 1 && std::isfinite(squares_);
+    return (one_bit ? assign_bit : assign)(values_.data(), deviations_.data(), values_.size(), levels);
+  }
+
+  double measured(const CodeLevels& levels) const {
+    return repeats_.twins ? twin_measure(values_.data(), repeats_.planes, levels, scale_)
+                          : measure_squares(values_.data(), values_.size(), levels, scale_);
+  }
+
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
-  double followed(const Sums& sums, const Quantiser& q) const {
+  double followed(const CodeSums& sums, const Quantiser& q) const {
     const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
     const double minimum = scaled(q.minimum);
     const auto n = static_cast<double>(values_.size());
@@ -260,7 +167,7 @@ class Fitter {
 
   // Least squares of value = minimum + code * quantum, the first level in the range; false where all values have one
   // code.
-  bool refit(const Sums& sums, Quantiser& q) const {
+  bool refit(const CodeSums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * sums.code_squares - sums.codes * sums.codes;
     if (!(determinant > 0)) return false;
@@ -277,7 +184,7 @@ class Fitter {
 
   // Where the level of the largest value lies above the range, levels that end at that value may cost less than giving
   // it the level below.
-  void end_inside(const Sums& sums, Quantiser& q) const {
+  void end_inside(const CodeSums& sums, Quantiser& q) const {
     const std::uint32_t highest = code_of(range_.max, q, most_);
     if (highest == 0 || !(level_of(highest, q) > range_.max)) return;
     Quantiser ended = ending_at_largest(sums, highest);
@@ -291,7 +198,7 @@ class Fitter {
   }
 
   // Least squares of value = largest - (code of the largest - code) * quantum.
-  Quantiser ending_at_largest(const Sums& sums, std::uint32_t highest) const {
+  Quantiser ending_at_largest(const CodeSums& sums, std::uint32_t highest) const {
     const auto n = static_cast<double>(values_.size());
     const auto code = static_cast<double>(highest);
     const double largest = scaled(range_.max);
@@ -314,6 +221,7 @@ class Fitter {
 
   std::span<const float> values_;
   ValueRange range_;
+  LeafRepeats repeats_;
   Deviations deviations_;  // scaled; as many as there are values
   float scale_;
   double unscale_;
@@ -330,13 +238,11 @@ class Fitter {
 // that lie beside. At 16 bits a leaf has no codes enough to tell.
 bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
   if (bits == 16) return true;
-  std::array<std::uint16_t, kLeafVoxels> codes;
-  quantise(values, quantiser, std::span(codes).first(values.size()));
-  std::array<std::uint16_t, 256> taken{};
-  for (const std::uint16_t code : std::span(codes).first(values.size())) ++taken[code];
-  const std::size_t few = values.size() >> (bits + 3);  // an eighth of what codes taken alike would have
-  const auto levels = std::count_if(taken.begin(), taken.end(), [few](std::uint16_t count) { return count > few; });
-  return levels <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
+  std::array<std::uint16_t, kLeafVoxels> all;
+  const std::span<std::uint16_t> codes = std::span(all).first(values.size());
+  quantise(values, quantiser, codes);
+  const auto few = static_cast<unsigned>(codes.size() >> (bits + 3));  // an eighth of what codes taken alike would have
+  return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
 
 }  // namespace
@@ -348,10 +254,11 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
   return usable(q) ? q : one_level(range);
 }
 
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits) {
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
+                        const LeafRepeats& repeats) {
   // Levels of fewer bits are levels of more.
-  if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2);
-  Fitter fitter(values, range);
+  if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2, repeats);
+  Fitter fitter(values, range, repeats);
   const auto fit = [&](unsigned width) {
     fitter.set_bits(width);
     fitter.start(1, width <= 4 ? 3 : 2);
@@ -371,7 +278,7 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
 }
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
-                                       double squares) {
+                                       double squares, const LeafRepeats& repeats) {
   // The rounds, and what those left out would gain on average: 0.5 dB at 2 bits, 0.3 dB at 4.
   struct Start {
     double share;
@@ -381,7 +288,7 @@ std::array<double, 3> estimated_errors(std::span<const float> values, const Valu
   constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.93}, {1, 3, 0.89}, {1, 1, 0.93}}};
   std::array<double, 3> errors{1, 1, 1};
   if (below_bits <= 1 || !divisible(range, 1)) return errors;
-  Fitter fitter(values, range);
+  Fitter fitter(values, range, repeats);
   for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
     if (!divisible(range, 1U << log2)) continue;
     fitter.set_bits(1U << log2);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "compressor/leaf/leaf_repeats.h"
+
 namespace weir {
 
 /// value = fl(fl(code * quantum) + minimum), code in 0 .. top.
@@ -32,13 +34,15 @@ struct ValueRange {
 /// beyond the outer levels. Where the range is so small that the quantum has no reciprocal there is one level, the
 /// mean, or zero where the least value is zero. Where few levels are taken, those of fewer bits are tried as well, so
 /// that more bits never do worse: values near a lattice may lie on the levels of a few bits, and beside those of many.
-/// The same on every machine: fixed lanes, nothing fused.
-Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits);
+/// The same on every machine: fixed lanes, nothing fused. `repeats`, of 512 values, say what need not be computed
+/// again.
+Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
+                        const LeafRepeats& repeats = {});
 
 /// What the squared error of fit_quantiser will be at 1, 2 and 4 bits, from a third of the work: within 15 % on
 /// average, relative to `squares`, the squared error about the mean (above 0). 1 for what is not below `below_bits`.
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
-                                       double squares);
+                                       double squares, const LeafRepeats& repeats = {});
 
 /// Levels over the whole range, none beyond it: the largest error is half a quantum, and the roundings of the decoder.
 /// One level, the mean or zero as there, where float cannot hold them.

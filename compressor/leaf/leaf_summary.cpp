@@ -8,6 +8,7 @@
 
 #include "compressor/leaf/leaf_lattice.h"
 #include "compressor/leaf/leaf_quantiser.h"
+#include "format/base/index.h"
 #include "format/base/simd.h"
 
 namespace weir {
@@ -97,6 +98,34 @@ WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
   return {min, max, sum(lanes)};
 }
 
+// first_moments() of 512 values in equal pairs of rows: both halves of the lanes are the same.
+WEIR_SIMD Moments twin_moments(const float* values, std::size_t planes) {
+  Floats8 low = values[0] - Floats8{};
+  Floats8 high = low;
+  SummaryLanes total;
+  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
+    std::array<Doubles8, kTwins> terms;
+    for (std::size_t k = 0; k < kTwins; ++k) {
+      Floats8 a;
+      std::memcpy(&a, values + z + kTwinStep * k, sizeof a);
+      low = a < low ? a : low;
+      high = a > high ? a : high;
+      terms[k] = __builtin_convertvector(a, Doubles8);
+    }
+    for (std::size_t n = 0; n < planes; ++n) {
+      for (std::size_t k = 0; k < kTwins; ++k) total.low += terms[k];
+    }
+  }
+  total.high = total.low;
+  float min = low[0];
+  float max = high[0];
+  for (int l = 1; l < 8; ++l) {
+    min = low[l] < min ? low[l] : min;
+    max = high[l] > max ? high[l] : max;
+  }
+  return {min, max, sum(to_array(total))};
+}
+
 struct Deviation {
   double sum;
   double squares;
@@ -129,6 +158,32 @@ WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mea
   return {sum(total_lanes), sum(square_lanes)};
 }
 
+// deviations() of 512 values in equal pairs of rows.
+WEIR_SIMD Deviation twin_deviations(const float* values, std::size_t planes, float mean) {
+  const auto centre = static_cast<double>(mean);
+  SummaryLanes total;
+  SummaryLanes squares;
+  for (std::size_t z = 0; z < kLeafVoxels; z += planes * kTwinPlane) {
+    std::array<Doubles8, kTwins> terms;
+    std::array<Doubles8, kTwins> squared;
+    for (std::size_t k = 0; k < kTwins; ++k) {
+      Floats8 a;
+      std::memcpy(&a, values + z + kTwinStep * k, sizeof a);
+      terms[k] = __builtin_convertvector(a, Doubles8) - centre;
+      squared[k] = terms[k] * terms[k];
+    }
+    for (std::size_t n = 0; n < planes; ++n) {
+      for (std::size_t k = 0; k < kTwins; ++k) {
+        total.low += terms[k];
+        squares.low += squared[k];
+      }
+    }
+  }
+  total.high = total.low;
+  squares.high = squares.low;
+  return {sum(to_array(total)), sum(to_array(squares))};
+}
+
 // Values that equal `min` or `max`.
 WEIR_SIMD std::uint32_t count_at_ends(const float* values, std::size_t count, float min, float max) {
   std::uint32_t at_ends = 0;
@@ -143,17 +198,19 @@ Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
 }
 
 // Statistics of `count` >= 1 finite values that differ in the bits of `differ`.
-void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, LeafRow& row) {
+void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, const LeafRepeats& repeats,
+                      LeafRow& row) {
   if (differ == 0) {
     row.min = row.max = row.mean = values[0];
     row.same_bits = 1;
     return;
   }
-  const Moments moments = first_moments(values, count);
+  const Moments moments = repeats.twins ? twin_moments(values, repeats.planes) : first_moments(values, count);
   row.min = moments.min;
   row.max = moments.max;
   row.mean = static_cast<float>(moments.sum / static_cast<double>(count));
-  const Deviation deviation = deviations(values, count, row.mean);
+  const Deviation deviation =
+      repeats.twins ? twin_deviations(values, repeats.planes, row.mean) : deviations(values, count, row.mean);
   row.residual = static_cast<float>(deviation.sum);
   row.sse = deviation.squares;
 }
@@ -161,53 +218,78 @@ void summarize_finite(const float* values, std::size_t count, std::uint32_t diff
 }  // namespace
 
 LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, UniformDigest& last) {
+  return summarize_leaf(values, sample_at, last, values, {});
+}
+
+LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, UniformDigest& last,
+                       std::span<const float> distinct, const LeafRepeats& repeats) {
   const float* data = values.data();
   const std::size_t count = values.size();
   LeafRow row;
-  const Scan scan = scan_bits(data, count);
+  Scan scan = scan_bits(distinct.data(), distinct.size());
+  const auto times = static_cast<std::uint32_t>(count / distinct.size());
+  scan.non_finite *= times;
+  scan.zeros *= times;
   row.digest = scan.differ == 0 ? uniform_digest(values, last) : leaf_digest(values);
   row.finite = static_cast<std::uint16_t>(count - scan.non_finite);
   row.zeros = scan.zeros & 0x7FFFU;
   row.sample = std::isfinite(data[sample_at]) ? data[sample_at] : std::numeric_limits<float>::quiet_NaN();
   if (scan.non_finite == 0) {
-    summarize_finite(data, count, scan.differ, row);
+    summarize_finite(data, count, scan.differ, repeats, row);
   } else if (row.finite > 0) {
     std::array<float, 512> finite;
     std::size_t kept = 0;
     for (const float v : values) {
       if (std::isfinite(v)) finite[kept++] = v;
     }
-    summarize_finite(finite.data(), kept, scan_bits(finite.data(), kept).differ, row);
+    summarize_finite(finite.data(), kept, scan_bits(finite.data(), kept).differ, {}, row);
   }
   return row;
 }
 
-ValueRange leaf_range(std::span<const float> values) {
-  const Moments moments = first_moments(values.data(), values.size());
+ValueRange leaf_range(std::span<const float> values, const LeafRepeats& repeats) {
+  const Moments moments =
+      repeats.twins ? twin_moments(values.data(), repeats.planes) : first_moments(values.data(), values.size());
   const auto count = static_cast<double>(values.size());
   const auto mean = static_cast<float>(moments.sum / count);
   return {moments.min, moments.max, mean, moments.sum - count * static_cast<double>(mean)};
 }
 
-void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
+namespace {
+
+// `values` that are all finite where `all`, each of `distinct` so many of them.
+void find_widths(std::span<const float> values, bool all, std::span<const float> distinct, const LeafRepeats& repeats,
+                 LeafRow& row) {
   // What takes the place of a value that is not finite need not lie on the others' lattice.
   if (row.uniform()) row.exact_bits = all ? 1 : 0;
   if (!(row.min < row.max)) return;
-  if (const auto lattice = all ? find_lattice(values, row.min, row.max) : std::nullopt) {
+  if (const auto lattice = all ? find_lattice(distinct, row.min, row.max) : std::nullopt) {
     row.exact_bits = static_cast<std::uint8_t>(bits_for(lattice->largest));
   }
   if (row.exact_bits == 0 || row.exact_bits > 8) {
-    row.at_ends = static_cast<std::uint16_t>(count_at_ends(values.data(), values.size(), row.min, row.max));
+    const std::size_t times = values.size() / distinct.size();
+    row.at_ends = static_cast<std::uint16_t>(times * count_at_ends(distinct.data(), distinct.size(), row.min, row.max));
   }
   const ValueRange range{row.min, row.max, row.mean, static_cast<double>(row.residual)};
   const unsigned exact_bits = row.exact_bits == 0 ? 32 : row.exact_bits;
   if (row.sse > 0) {
-    const std::array<double, 3> errors = estimated_errors(values, range, exact_bits, row.sse);
+    const std::array<double, 3> errors = estimated_errors(values, range, exact_bits, row.sse, repeats);
     for (std::size_t log2 = 0; log2 < errors.size(); ++log2) row.quantised[log2] = static_cast<float>(errors[log2]);
   }
   for (unsigned log2 = 0; log2 < row.quantised.size(); ++log2) {
     if (1U << log2 >= exact_bits) row.quantised[log2] = 0;
   }
+}
+
+}  // namespace
+
+void summarize_widths(std::span<const float> values, bool all, LeafRow& row) {
+  find_widths(values, all, values, {}, row);
+}
+
+void summarize_widths(std::span<const float> values, std::span<const float> distinct, const LeafRepeats& repeats,
+                      LeafRow& row) {
+  find_widths(values, true, distinct, repeats, row);
 }
 
 }  // namespace weir

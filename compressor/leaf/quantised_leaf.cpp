@@ -26,14 +26,14 @@ void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t
   });
 }
 
-Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit) {
-  const ValueRange range = leaf_range(values);
+Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit, const LeafRepeats& repeats) {
+  const ValueRange range = leaf_range(values, repeats);
   // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
   if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front()), 0};
   if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
     return {range.min, lattice->step, lattice->largest};
   }
-  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits);
+  return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits, repeats);
 }
 
 WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, float* decoded) {
@@ -51,7 +51,7 @@ void quantise_part(const LeafValues& values, const Box& node, const Box& inside,
   for_each_inside(node, inside, [&](std::size_t i) { compact[count++] = values[i]; });
   const auto seen = std::span<const float>(compact).first(count);
   const unsigned bits = 1U << leaf.bits_log2;
-  leaf.quantiser = choose_quantiser(seen, bits, fit);
+  leaf.quantiser = choose_quantiser(seen, bits, fit, {});
   std::array<std::uint16_t, kLeafVoxels> codes;
   quantise(seen, leaf.quantiser, std::span(codes).first(count));
   count = 0;
@@ -122,12 +122,12 @@ void measure(const LeafValues& source, QuantisedLeaf& leaf) {
 }  // namespace
 
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
-                            unsigned bits_log2, Fit fit) {
+                            unsigned bits_log2, Fit fit, const LeafRepeats& repeats) {
   QuantisedLeaf leaf;
   leaf.bits_log2 = bits_log2;
   const bool whole = inside == node;
   if (whole) {
-    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit);
+    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit, repeats);
     quantise(values, leaf.quantiser, leaf.codes);
   } else {
     quantise_part(values, node, inside, fit, leaf);

@@ -28,8 +28,8 @@ enum class Fit { squares, largest };
 /// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly where they lie on
 /// a lattice that fits, else with least error (leaf_quantiser.h). `values` are finite there; `source` is
 /// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the nearest
-/// one inside, so that they widen no range.
+/// one inside, so that they widen no range. `repeats`: of the values of a leaf that lies in the domain as a whole.
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
-                            unsigned bits_log2, Fit fit = Fit::squares);
+                            unsigned bits_log2, Fit fit = Fit::squares, const LeafRepeats& repeats = {});
 
 }  // namespace weir

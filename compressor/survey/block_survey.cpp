@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "compressor/leaf/leaf_in_block.h"
 #include "compressor/packed/block_values.h"
 
 namespace weir {
@@ -127,16 +128,20 @@ class BlockSurvey::Leaves {
   LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, PackedLadder* ladder, Tally& tally) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
-    std::array<float, kLeafVoxels> values;
-    const std::span<const float> seen = gather(leaf, values);
+    LeafRoom room;
+    const LeafInBlock in_part = block_.parts == nullptr ? LeafInBlock{} : leaf_in_block(block_, inside, room);
+    const std::span<const float> seen = block_.parts == nullptr ? gather(leaf, room.values) : in_part.values;
+    const std::span<const float> distinct = in_part.distinct.empty() ? seen : in_part.distinct;
+    const Index3& by = in_part.by;
+    const LeafRepeats repeats = seen.size() == kLeafVoxels ? LeafRepeats::of(by.y, by.z) : LeafRepeats{};
     const std::size_t count = seen.size();
-    LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform);
+    LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform, distinct, repeats);
     if (faces != nullptr) *faces = faces_of(seen, extent);
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
     if (row.finite == count) {
-      count_values(seen, row, tally);
-      if (widths_) summarize_widths(seen, true, row);
+      count_values(distinct, count / distinct.size(), row, tally);
+      if (widths_) summarize_widths(seen, distinct, repeats, row);
     } else {
       count_non_finite(seen, inside, row, tally);
     }
@@ -153,21 +158,22 @@ class BlockSurvey::Leaves {
                : tally.builder(*aim_).build_non_finite(block, row, rungs);
   }
 
-  void count_values(std::span<const float> finite, const LeafRow& row, Tally& tally) const {
+  // Each of `finite` so many times.
+  void count_values(std::span<const float> finite, std::size_t times, const LeafRow& row, Tally& tally) const {
     tally.min = std::min(tally.min, row.min);
     tally.max = std::max(tally.max, row.max);
     if (counting_ == Counting::elsewhere) return;
     if (table_.size > 0) {
       const auto offset = static_cast<float>(table_.offset);
       if (row.uniform()) {
-        tally.value_counts[static_cast<std::size_t>(row.mean - offset)] += finite.size();
+        tally.value_counts[static_cast<std::size_t>(row.mean - offset)] += times * finite.size();
       } else {
-        for (const float v : finite) ++tally.value_counts[static_cast<std::size_t>(v - offset)];
+        for (const float v : finite) tally.value_counts[static_cast<std::size_t>(v - offset)] += times;
       }
     } else if (row.uniform()) {
-      tally.histogram.add(row.mean, finite.size());
+      tally.histogram.add(row.mean, times * finite.size());
     } else {
-      tally.histogram.add(finite, row.min, row.max);
+      tally.histogram.add(finite, row.min, row.max, times);
     }
   }
 
@@ -196,7 +202,7 @@ class BlockSurvey::Leaves {
     tally.non_finite += non_finite;
     row.non_finite = non_finite > 0 ? 1 : 0;
     if (kept == 0) return;
-    count_values(std::span(finite.data(), kept), row, tally);
+    count_values(std::span(finite.data(), kept), 1, row, tally);
     if (widths_) summarize_widths(std::span(finite.data(), kept), false, row);
   }
 

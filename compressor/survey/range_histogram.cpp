@@ -22,16 +22,16 @@ void bins_one_by_one(std::span<const float> values, double scale, double base, s
   }
 }
 
-// The same for a multiple of eight values whose floor(value * scale) fits 32 bits.
-WEIR_SIMD void bins_by_eight(const float* values, std::size_t count, double scale, std::int32_t base,
+// The same for a multiple of eight values whose floor(value * scale) fits 32 bits; `width` is 1 / scale. The products
+// with powers of two are exact, but where one is below any normal number: towards zero that is 0 all the same.
+WEIR_SIMD void bins_by_eight(const float* values, std::size_t count, float scale, float width, std::int32_t base,
                              std::int32_t* bins) {
   for (std::size_t i = 0; i < count; i += 8) {
     Floats8 v;
     std::memcpy(&v, values + i, sizeof v);
-    const Doubles8 x = __builtin_convertvector(v, Doubles8) * scale;
-    const Ints8 cut = __builtin_convertvector(x, Ints8);            // towards zero
-    const auto above = __builtin_convertvector(cut, Doubles8) > x;  // -1 where that is not the floor
-    const Ints8 bin = cut + __builtin_convertvector(above, Ints8) - base;
+    const Ints8 cut = __builtin_convertvector(v * scale, Ints8);            // towards zero
+    const Ints8 above = __builtin_convertvector(cut, Floats8) * width > v;  // -1 where that is not the floor
+    const Ints8 bin = cut + above - base;
     std::memcpy(bins + i, &bin, sizeof bin);
   }
 }
@@ -81,22 +81,25 @@ void RangeHistogram::cover(float low, float high) {
   grow(exponent_, range_at);
 }
 
-void RangeHistogram::add(std::span<const float> values, float low, float high) {
+void RangeHistogram::add(std::span<const float> values, float low, float high, std::uint64_t times) {
   cover(low, high);
   constexpr std::size_t kPiece = 512;
   std::array<std::int32_t, kPiece> bins;
-  const bool small = std::abs(base_) < 0x1p30;
+  // Where float holds scale and width, and 32 bits the bins.
+  const bool small = std::abs(base_) < 0x1p30 && exponent_ > -std::numeric_limits<float>::max_exponent;
+  const auto scale = small ? static_cast<float>(scale_) : 0.0F;
+  const float width = small ? std::ldexp(1.0F, exponent_) : 0.0F;
   while (!values.empty()) {
     const std::size_t count = std::min(values.size(), kPiece);
     const std::size_t eights = small ? count / 8 * 8 : 0;
-    if (eights > 0) bins_by_eight(values.data(), eights, scale_, static_cast<std::int32_t>(base_), bins.data());
+    if (eights > 0) bins_by_eight(values.data(), eights, scale, width, static_cast<std::int32_t>(base_), bins.data());
     bins_one_by_one(values.subspan(eights, count - eights), scale_, base_, bins.data() + eights);
     std::size_t i = 0;
     for (; i + 1 < count; i += 2) {
-      ++even_[static_cast<std::size_t>(bins[i])];
-      ++odd_[static_cast<std::size_t>(bins[i + 1])];
+      even_[static_cast<std::size_t>(bins[i])] += times;
+      odd_[static_cast<std::size_t>(bins[i + 1])] += times;
     }
-    if (i < count) ++even_[static_cast<std::size_t>(bins[i])];
+    if (i < count) even_[static_cast<std::size_t>(bins[i])] += times;
     values = values.subspan(count);
   }
 }

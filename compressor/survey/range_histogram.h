@@ -18,8 +18,8 @@ class RangeHistogram {
 
   RangeHistogram();
 
-  /// Adds finite values, all within [low, high] (both occur among the values).
-  void add(std::span<const float> values, float low, float high);
+  /// Adds finite values, all within [low, high] (both occur among the values), each `times`.
+  void add(std::span<const float> values, float low, float high, std::uint64_t times = 1);
   /// Adds one finite value `count` times.
   void add(float value, std::uint64_t count);
   void merge(const RangeHistogram& other);

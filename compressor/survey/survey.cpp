@@ -75,6 +75,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
       pauses.save();
     };
   }
+  stream.in_parts = !ladders || ladders->surveying_coder() == nullptr;  // a coder is given all voxels
   team.run([&] { survey_boxes(source, plan, leaf_boxes, stream, reading, survey); });
   tell(leaf_boxes.size());
   merge_tallies(known.tally, team);

@@ -7,9 +7,12 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <set>
 #include <span>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/store_quiet.h"
@@ -21,10 +24,54 @@ namespace weir {
 namespace {
 
 constexpr std::array kMetadata{"zarr.json", ".zarray", ".zgroup", ".zattrs", ".zmetadata"};
+/// An event loop looks at them, which has others to serve.
+constexpr std::size_t kMostEntries = 4096;  ///< that are listed of a directory
 
-/// The directory `store`, and those in it on the way to the datasets that the options name.
+bool exists(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0;
+}
+
+bool is_node(const std::string& directory) {
+  return exists(directory + "/zarr.json") || exists(directory + "/.zarray") || exists(directory + "/.zgroup");
+}
+
+/// What may be groups and arrays directly in `directory`, by their names.
+std::set<std::string> directories_in(const std::string& directory) {
+  std::set<std::string> found;
+  std::error_code error;  // what may not be listed cannot be converted either
+  std::filesystem::directory_iterator entry(directory, error);
+  for (std::size_t n = 0; n < kMostEntries && !error && entry != std::filesystem::directory_iterator(); ++n) {
+    std::error_code unknown;
+    if (!entry->is_regular_file(unknown)) found.insert(entry->path().string());
+    entry.increment(error);
+  }
+  return found;
+}
+
+/// Adds the groups and arrays in that of `top`, the outer ones first, until there are kMostWatchedNodes.
+void add_nodes_in(const std::string& top, std::set<std::string>& nodes) {
+  std::vector<std::string> groups{top};
+  while (!groups.empty()) {
+    std::vector<std::string> inner;
+    for (const std::string& group : groups) {
+      if (exists(group + "/.zarray")) continue;
+      for (const std::string& directory : directories_in(group)) {
+        if (!is_node(directory)) continue;
+        if (nodes.size() >= kMostWatchedNodes && !nodes.contains(directory)) return;
+        nodes.insert(directory);
+        inner.push_back(directory);
+      }
+    }
+    groups = std::move(inner);
+  }
+}
+
+/// The directory `store`, those in it on the way to the datasets that the options name, and the groups and arrays in
+/// these; of a pattern, and where none is named, all in the store.
 std::set<std::string> node_directories(const std::string& store, const std::vector<std::string>& convert_options) {
   std::set<std::string> directories{store};
+  std::vector<std::string> tops;
   for (const std::string& option : convert_options) {
     constexpr std::array kNaming{"--dataset=", "--magnitude="};
     const auto naming = std::find_if(kNaming.begin(), kNaming.end(), [&](auto key) { return option.starts_with(key); });
@@ -36,8 +83,11 @@ std::set<std::string> node_directories(const std::string& store, const std::vect
         directory += '/' + name;
         directories.insert(directory);
       }
+      tops.push_back(dataset.find_first_of("*?[") == std::string::npos ? directory : store);
     }
   }
+  if (tops.empty()) tops.push_back(store);
+  for (const std::string& top : tops) add_nodes_in(top, directories);
   return directories;
 }
 

@@ -1,6 +1,7 @@
 // The identity of a source: of a file, or of the metadata of a Zarr hierarchy in a directory.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,10 +10,14 @@
 
 namespace weir {
 
+/// Groups and arrays of one hierarchy whose metadata are looked at, those on the way to what is named aside.
+inline constexpr std::size_t kMostWatchedNodes = 256;
+
 /// That of the file at `path`, as identify() says. Where the file is the head of a Zarr hierarchy: also of the metadata
-/// of the groups and arrays on the way to what --dataset or --magnitude among `convert_options` name: the total size,
-/// the newest time, and an inode that is another one wherever a state of those files is. So a step that is appended to
-/// an array of a group makes another identity. None where one of the files cannot be looked at.
+/// of the groups and arrays on the way to what --dataset or --magnitude among `convert_options` name, and in it, or of
+/// all, kMostWatchedNodes in any case, where they name none: the total size, the newest time, and an inode that is
+/// another one wherever a state of those files is. So a step that is appended to an array of a group makes another
+/// identity. None where one of the files cannot be looked at.
 std::optional<FileIdentity> identify_source(const std::string& path, const std::vector<std::string>& convert_options);
 
 }  // namespace weir

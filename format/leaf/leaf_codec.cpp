@@ -1,34 +1,48 @@
 #include "format/leaf/leaf_codec.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "format/base/little_endian.h"
 #include "format/base/simd.h"
+#include "format/base/transpose_lanes.h"
 #include "format/leaf/leaf_head.h"
 
 namespace weir {
 namespace {
 
-// NodeStatistics::add for kLeafBatch leaves side by side.
+// NodeStatistics::add for kLeafBatch leaves side by side, eight to a vector.
+constexpr std::size_t kVectors = kLeafBatch / 8;
+
 struct BatchStatistics {
-  std::array<float, kLeafBatch> min;
-  std::array<float, kLeafBatch> max;
-  std::array<double, kLeafBatch> mean;
-  std::array<double, kLeafBatch> m2;
+  std::array<Floats8, kVectors> min;
+  std::array<Floats8, kVectors> max;
+  std::array<Doubles8, kVectors> mean;
+  std::array<Doubles8, kVectors> m2;
 };
 
 WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
   BatchStatistics s = batch;
-  for (std::size_t i = 0; i < kLeafVoxels; ++i) {
-    const auto count = static_cast<double>(i + 1);
-    for (std::size_t l = 0; l < kLeafBatch; ++l) {
-      const float value = values[l * kLeafVoxels + i];
-      s.min[l] = value < s.min[l] ? value : s.min[l];
-      s.max[l] = value > s.max[l] ? value : s.max[l];
-      const double delta = static_cast<double>(value) - s.mean[l];
-      s.mean[l] += delta / count;
-      s.m2[l] += delta * (static_cast<double>(value) - s.mean[l]);
+  for (std::size_t first = 0; first < kLeafVoxels; first += 8) {
+    Floats8 next[kVectors][8];
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      for (std::size_t l = 0; l < 8; ++l) {
+        std::memcpy(&next[v][l], values + (8 * v + l) * kLeafVoxels + first, sizeof(Floats8));
+      }
+      transpose_8(next[v]);  // a lane for each leaf
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto count = static_cast<double>(first + i + 1);
+      for (std::size_t v = 0; v < kVectors; ++v) {
+        const Floats8 value = next[v][i];
+        s.min[v] = value < s.min[v] ? value : s.min[v];
+        s.max[v] = value > s.max[v] ? value : s.max[v];
+        const Doubles8 wide = __builtin_convertvector(value, Doubles8);
+        const Doubles8 delta = wide - s.mean[v];
+        s.mean[v] += delta / count;
+        s.m2[v] += delta * (wide - s.mean[v]);
+      }
     }
   }
   batch = s;
@@ -36,28 +50,12 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
 
 // Transposes 8 x 8 values: row i of `from`, `stride` apart, becomes column i of `to`, whose rows are 64 apart.
 WEIR_SIMD void transpose(const float* from, std::int64_t stride, float* to) {
-  std::array<Floats8, 8> rows;
+  Floats8 rows[8];
   for (std::size_t i = 0; i < 8; ++i) {
-    std::memcpy(&rows[i], from + static_cast<std::int64_t>(i) * stride, sizeof(Floats8));
+    std::memcpy(&rows[i], from + static_cast<std::int64_t>(i) * stride, sizeof rows[i]);
   }
-  std::array<Floats8, 8> pairs;
-  for (std::size_t i = 0; i < 8; i += 2) {
-    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  std::array<Floats8, 8> fours;
-  for (std::size_t i = 0; i < 8; i += 4) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      fours[i + 2 * k] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      fours[i + 2 * k + 1] = __builtin_shufflevector(pairs[i + k], pairs[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Floats8 low = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    const Floats8 high = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-    std::memcpy(to + 64 * i, &low, sizeof low);
-    std::memcpy(to + 64 * (i + 4), &high, sizeof high);
-  }
+  transpose_8(rows);
+  for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + 64 * i, &rows[i], sizeof rows[i]);
 }
 
 }  // namespace
@@ -111,8 +109,8 @@ void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Bo
                           std::span<NodeStatistics> statistics) {
   const NodeStatistics fresh;
   BatchStatistics batch{};
-  batch.min.fill(fresh.min);
-  batch.max.fill(fresh.max);
+  batch.min.fill(fresh.min - Floats8{});
+  batch.max.fill(fresh.max - Floats8{});
   if (leaves.size() == kLeafBatch) {
     add_side_by_side(leaves.front().data(), batch);
   } else {
@@ -121,7 +119,12 @@ void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Bo
     add_side_by_side(padded.front().data(), batch);
   }
   for (std::size_t l = 0; l < leaves.size(); ++l) {
-    statistics[l] = NodeStatistics{batch.min[l], batch.max[l], batch.mean[l], batch.m2[l], kLeafVoxels, nodes[l]};
+    const std::size_t v = l / 8;
+    const std::size_t lane = l % 8;
+    statistics[l] = NodeStatistics{batch.min[v][lane], batch.max[v][lane], batch.mean[v][lane],
+                                   batch.m2[v][lane],  kLeafVoxels,        nodes[l]};
+    // Of a sum of two NaN machines take the first, which lanes have in another order.
+    if (!std::isfinite(batch.mean[v][lane])) statistics[l] = leaf_statistics(leaves[l], nodes[l], nodes[l]);
   }
 }
 

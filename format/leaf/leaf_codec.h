@@ -29,8 +29,8 @@ NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const 
 NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const LeafMask& mask);
 
 /// Leaves whose statistics are computed together: each one's arithmetic is a chain of divisions that
-/// wait for each other, eight chains at a time keep the machine busy.
-inline constexpr std::size_t kLeafBatch = 8;
+/// wait for each other, sixteen chains at a time keep the machine busy.
+inline constexpr std::size_t kLeafBatch = 16;
 
 /// The same for up to kLeafBatch leaves that lie wholly inside the domain, in one go: bit for bit what
 /// leaf_statistics gives for each. `nodes` and `statistics` are as long as `leaves`.

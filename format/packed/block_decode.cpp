@@ -4,8 +4,9 @@
 #include <cstring>
 
 #include "format/base/simd.h"
+#include "format/base/transpose_lanes.h"
+#include "format/packed/coefficient_values.h"
 #include "format/packed/fast_magnitudes.h"
-#include "format/packed/transpose_lanes.h"
 
 namespace weir {
 namespace {
@@ -136,8 +137,7 @@ bool decode_transform(const BlockConstants& constants, const MeanRange& range, c
     most = most < index ? index : most;
     values[index] = sizes.coefficient(list.magnitude[n], coded.negative(n));
   }
-  transform_in_lanes(values, (most >> 6U) + 1, packed_detail::decode_mean(range, step, coded.code()), constants.minimum,
-                     constants.maximum);
+  values_of_coefficients(constants, packed_detail::decode_mean(range, step, coded.code()), (most >> 6U) + 1, values);
   return true;
 }
 
@@ -183,6 +183,10 @@ bool decode_lattice(const BlockConstants& constants, const std::byte* stream, st
 }
 
 }  // namespace
+
+void values_of_coefficients(const BlockConstants& constants, float mean, unsigned planes, float* values) {
+  transform_in_lanes(values, planes, mean, constants.minimum, constants.maximum);
+}
 
 bool decode_block(const BlockConstants& constants, const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
                   float* values) {

@@ -1,34 +1,39 @@
 #include "format/packed/block_encode.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 
 #include "format/base/simd.h"
+#include "format/base/transpose_lanes.h"
 #include "format/packed/block_decode.h"
+#include "format/packed/coefficient_values.h"
 #include "format/packed/forward_transform.h"
-#include "format/packed/transpose_lanes.h"
 
 namespace weir {
 namespace {
 
-WEIR_SIMD void forward_transform(float* values) {
+// Of the differences from the mean; coefficient 0, that of the mean, becomes 0.
+WEIR_SIMD void forward_transform(const float* values, float mean, float* coefficients) {
   for (unsigned x = 0; x < 8; ++x) {
     Floats8 rows[8];
     std::memcpy(rows, values + 64 * x, sizeof rows);
+    for (Floats8& row : rows) row -= mean;
     forward_transform_8(rows);  // along y
     transpose_8(rows);
     forward_transform_8(rows);  // along z
     transpose_8(rows);
-    std::memcpy(values + 64 * x, rows, sizeof rows);
+    std::memcpy(coefficients + 64 * x, rows, sizeof rows);
   }
   for (unsigned y = 0; y < 8; ++y) {
     Floats8 rows[8];
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], values + 64 * x + 8 * y, sizeof rows[x]);
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], coefficients + 64 * x + 8 * y, sizeof rows[x]);
     forward_transform_8(rows);  // along x
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(values + 64 * x + 8 * y, &rows[x], sizeof rows[x]);
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(coefficients + 64 * x + 8 * y, &rows[x], sizeof rows[x]);
   }
+  coefficients[0] = 0;
 }
 
 struct BlockRange {
@@ -85,7 +90,7 @@ WEIR_SIMD float measure_rows(const float* coefficients, float* largest, double* 
 // What quantise_rows has found.
 struct Quantised {
   double squared_error;
-  std::int32_t last_place;  // that is not zero; 0 where all are
+  unsigned last_place;  // that is not zero; 0 where all are
 };
 
 // Magnitudes at a step by index; rows whose largest coefficient is below the dead zone are zero.
@@ -132,7 +137,26 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
     total += static_cast<double>(sum[l]);
     last_place = last[l] > last_place ? last[l] : last_place;
   }
-  return {dropped + total * static_cast<double>(step) * static_cast<double>(step), last_place};
+  return {dropped + total * static_cast<double>(step) * static_cast<double>(step), static_cast<unsigned>(last_place)};
+}
+
+// The coefficients that magnitudes decode to, with those signs.
+WEIR_SIMD void decode_rows(const float* signs, const MagnitudeRows& magnitudes, float below_one, float below_more,
+                           float step, float* values) {
+  const Floats8 none{};
+  for (unsigned row = 0; row < 64; ++row) {
+    Floats8 decoded{};
+    if ((magnitudes.live >> row & 1U) != 0) {
+      Ints8 m;
+      Floats8 sign;
+      std::memcpy(&m, magnitudes.row(row), sizeof m);
+      std::memcpy(&sign, signs + 8 * row, sizeof sign);
+      const Floats8 below = m == 1 ? below_one - none : below_more - none;
+      const Floats8 size = (__builtin_convertvector(m, Floats8) - below) * step;
+      decoded = m == 0 ? none : sign < 0 ? -size : size;
+    }
+    std::memcpy(values + 8 * row, &decoded, sizeof decoded);
+  }
 }
 
 // The last of the places with the least magnitude that is not zero: what to leave out where a stream is too long.
@@ -159,12 +183,8 @@ bool TransformBlock::set(std::span<const float, 512> values) {
   const float range = high - low;
   if (!(std::fabs(low) < kLargestTransformed && std::fabs(high) < kLargestTransformed)) return false;
   if (range < kLeastTransformed) return false;
-  std::array<float, 512> block;
-  for (std::size_t i = 0; i < 512; ++i) block[i] = values[i] - mean_;
-  forward_transform(block.data());
-  block[0] = 0;
-  coefficients_ = block;
-  const float largest = measure_rows(block.data(), row_largest_.data(), row_energy_.data());
+  forward_transform(values.data(), mean_, coefficients_.data());
+  const float largest = measure_rows(coefficients_.data(), row_largest_.data(), row_energy_.data());
   energy_ = std::accumulate(row_energy_.begin(), row_energy_.end(), 0.0);
   largest_ = static_cast<double>(largest);
   return true;
@@ -177,7 +197,7 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
                                             kPlacesByIndex.place, magnitudes_);
   Cost cost{8, quantised.squared_error};
   if (quantised.last_place == 0) return cost;
-  const unsigned end = static_cast<unsigned>(quantised.last_place) / kEndUnit + 1;
+  const unsigned end = end_at(quantised.last_place);
   constexpr unsigned kEndBits = 5;
   constexpr unsigned kLeastMeanBits = 6;
   cost.bits = 8 + rows_.of(magnitudes_, end).stream_bits(end, kEndBits, kLeastMeanBits);
@@ -186,11 +206,11 @@ TransformBlock::Cost TransformBlock::cost(std::int32_t step) {
 
 void TransformBlock::encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
                             std::span<std::byte> out) {
-  quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(), step_size(step), kPlacesByIndex.place,
-                magnitudes_);
+  const Quantised quantised = quantise_rows(coefficients_.data(), row_largest_.data(), row_energy_.data(),
+                                            step_size(step), kPlacesByIndex.place, magnitudes_);
   std::array<std::uint32_t, 512> signs;
   std::memcpy(signs.data(), coefficients_.data(), sizeof signs);
-  StreamFront front;
+  StreamFront& front = front_;
   front.number_bits = mean_bits(range, step);
   const float width = range.high - range.low;
   const auto last = static_cast<std::uint32_t>(width / mean_quantum(step)) + 1;
@@ -200,19 +220,30 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
   const auto head = [&](StreamKind kind) {
     return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
   };
-  for (;;) {
-    front.end = end_of(magnitudes_);
-    if (front.end == 0) break;
+  front.end = end_at(quantised.last_place);
+  while (front.end > 0) {
     out[0] = head(StreamKind::transform);
     if (coder_.encode(front, {magnitudes_, signs}, out.subspan(1))) return;
     const unsigned dropped = kBlockScan.index[cheapest_place(magnitudes_)];
     magnitudes_.row(dropped / 8)[dropped % 8] = 0;
+    front.end = end_of(magnitudes_);
   }
   std::fill(out.begin(), out.end(), std::byte{0});
   out[0] = head(StreamKind::mean);
   for (unsigned i = 0; i < front.number_bits && 1 + i / 8 < out.size(); ++i) {
     if ((front.number >> i & 1U) != 0) out[1 + i / 8] |= static_cast<std::byte>(1U << (i % 8));
   }
+}
+
+bool TransformBlock::decoded(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
+                             std::span<float, 512> values) const {
+  if (front_.end == 0) return false;
+  decode_rows(coefficients_.data(), magnitudes_, constants.below_one, constants.below_more, step_size(step),
+              values.data());
+  const auto last_row = 63U - static_cast<unsigned>(std::countl_zero(magnitudes_.live));
+  values_of_coefficients(constants, packed_detail::decode_mean(range, step, front_.number), last_row / 8 + 1,
+                         values.data());
+  return true;
 }
 
 }  // namespace weir

@@ -45,6 +45,10 @@ class TransformBlock {
   /// Writes the stream to all of `out`. Where that is shorter than the stream, the smallest coefficients
   /// go until it fits, where longer it has zeros in its middle. `constants` has what the file has.
   void encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step, std::span<std::byte> out);
+  /// The values that the stream of the last encode(), of those arguments, decodes to: decode_block()'s bits, without
+  /// decoding it. False where it is a mean alone.
+  bool decoded(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
+               std::span<float, 512> values) const;
 
  private:
   ValueEncoder coder_;
@@ -56,6 +60,7 @@ class TransformBlock {
   std::array<float, 64> row_largest_{};
   std::array<double, 64> row_energy_{};
   MagnitudeRows magnitudes_;
+  StreamFront front_;  // of the last encode()
 };
 
 }  // namespace weir

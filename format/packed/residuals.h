@@ -27,7 +27,4 @@ struct ResidualSizes {
 /// Magnitudes of residuals, by index.
 ResidualSizes fill_magnitudes(const BlockCodes& residuals, MagnitudeRows& magnitudes);
 
-/// What StreamFront::end is for that last place.
-constexpr unsigned end_at(unsigned last_place) { return last_place == 0 ? 0 : last_place / kEndUnit + 1; }
-
 }  // namespace weir

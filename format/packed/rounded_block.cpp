@@ -53,6 +53,23 @@ WEIR_SIMD Rounded round_all(const float* values, double scale, std::int32_t* mul
   return rounded;
 }
 
+// lattice_value() of codes below 2^24.
+WEIR_SIMD void values_at(const std::uint32_t* codes, const BlockConstants& constants, float minimum, float quantum,
+                         float* values) {
+  const Floats8 none{};
+  const Floats8 low = constants.minimum - none;
+  const Floats8 high = constants.maximum - none;
+  for (unsigned i = 0; i < 512; i += 8) {
+    Ints8 code;
+    std::memcpy(&code, codes + i, sizeof code);
+    const Floats8 product = __builtin_convertvector(code, Floats8) * quantum;
+    Floats8 v = product + minimum;
+    v = v <= high ? v : high;
+    v = v >= low ? v : low;
+    std::memcpy(values + i, &v, sizeof v);
+  }
+}
+
 }  // namespace
 
 RoundedBlock::RoundedBlock(const std::uint16_t* tables)
@@ -112,11 +129,15 @@ bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
   if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kFrontAt))) return false;
   out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor_ << 2U |
                                   static_cast<unsigned>(LatticeKind::own) << 4U);
-  const auto quantum = static_cast<float>(std::ldexp(1.0, quantum_exponent));
-  const float minimum = static_cast<float>(lowest_) * quantum;
-  std::memcpy(out.data() + 1, &minimum, sizeof minimum);
-  std::memcpy(out.data() + 5, &quantum, sizeof quantum);
+  quantum_ = static_cast<float>(std::ldexp(1.0, quantum_exponent));
+  minimum_ = static_cast<float>(lowest_) * quantum_;
+  std::memcpy(out.data() + 1, &minimum_, sizeof minimum_);
+  std::memcpy(out.data() + 5, &quantum_, sizeof quantum_);
   return true;
+}
+
+void RoundedBlock::decoded(const BlockConstants& constants, std::span<float, 512> values) const {
+  values_at(codes_.data(), constants, minimum_, quantum_, values.data());
 }
 
 }  // namespace weir

@@ -36,6 +36,9 @@ class RoundedBlock {
   /// Writes the stream to all of `out`. Where that is too short the quantum is doubled until it is not; false where
   /// no quantum does.
   bool encode(int quantum_exponent, std::span<std::byte> out);
+  /// The values that the stream of the last encode(), which gave true, decodes to: decode_block()'s bits, without
+  /// decoding it. `constants` has what the file has.
+  void decoded(const BlockConstants& constants, std::span<float, 512> values) const;
 
  private:
   bool find_codes(int quantum_exponent);
@@ -51,6 +54,8 @@ class RoundedBlock {
   double squared_error_ = 0;
   BlockCodes residuals_{};
   MagnitudeRows magnitudes_;
+  float minimum_ = 0;  // of the stream that was written
+  float quantum_ = 0;
 };
 
 }  // namespace weir

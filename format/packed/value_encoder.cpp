@@ -154,10 +154,12 @@ class BitWriter {
 class ValueEncoder::Words {
  public:
   void put_symbol(std::uint32_t& x, const Symbol& symbol) {
-    const std::uint64_t limit = std::uint64_t{symbol.frequency} << (32U - kFrequencyBits);
-    if (x >= limit) emit(x);
-    const auto whole = static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits);
-    x = (whole << kFrequencyBits) + (x - whole * symbol.frequency) + symbol.low;
+    // Whether a word has to go is as good as random: it is written in any case, and counted where it has.
+    words_[count_] = static_cast<std::uint16_t>(x & 0xFFFFU);
+    const unsigned full = x >= symbol.limit ? 1 : 0;
+    count_ += full;
+    x >>= 16U * full;
+    x += static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits) * symbol.complement + symbol.low;
   }
   /// Up to 16 bits as they are. Decoding shifts right and then reads a word where the state is below the least.
   void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
@@ -200,10 +202,12 @@ ValueEncoder::ValueEncoder(const std::uint16_t* tables, Kind kind) : bands_(kind
     for (unsigned s = 0; s < kPackedSymbols; ++s) {
       const std::uint32_t end = s + 1 < kPackedSymbols ? table[s + 1] : kTotal;
       Symbol& symbol = symbols_[std::size_t{kPackedSymbols} * context + s];
+      const std::uint32_t frequency = end - table[s];
       symbol.low = table[s];
-      symbol.frequency = end - table[s];
-      if (symbol.frequency == 0) continue;
-      symbol.inverse = ((std::uint64_t{1} << kInverseBits) + symbol.frequency - 1) / symbol.frequency;
+      symbol.complement = kTotal - frequency;
+      if (frequency == 0) continue;
+      symbol.limit = std::uint64_t{frequency} << (32U - kFrequencyBits);
+      symbol.inverse = ((std::uint64_t{1} << kInverseBits) + frequency - 1) / frequency;
     }
   }
 }
@@ -227,10 +231,8 @@ void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& mag
         places.first_symbol[index] + static_cast<std::int32_t>(kPackedSymbols * level + std::min(m >> extra, kEscape));
     before += std::min(m, kMostOfNeighbour);
   }
-  std::uint32_t x[2] = {states[0], states[1]};
-  for (unsigned place = kEndUnit * front.end - 1; place > 0; --place) {
+  const auto put = [&](std::uint32_t& state, unsigned place) {
     const unsigned index = kBlockScan.index[place];
-    std::uint32_t& state = x[States == 2 ? place & 1U : 0];
     const std::int32_t symbol = coded.symbol[index];
     const auto extra = static_cast<unsigned>(coded.extra[index]);
     const bool escapes = (static_cast<unsigned>(symbol) & (kPackedSymbols - 1)) == kEscape;
@@ -240,9 +242,18 @@ void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& mag
       if (escapes) words.put_escape(state, m >> extra);
     }
     words.put_symbol(state, symbols_[static_cast<std::size_t>(symbol)]);
+  };
+  // The states of even and odd places, where they are two, stay in registers.
+  std::uint32_t even = states[0];
+  std::uint32_t odd = states[1];
+  unsigned place = kEndUnit * front.end - 1;
+  for (; place > 1; place -= 2) {
+    put(States == 2 ? odd : even, place);
+    put(even, place - 1);
   }
-  states[0] = x[0];
-  states[1] = x[1];
+  put(States == 2 ? odd : even, place);
+  states[0] = even;
+  states[1] = odd;
 }
 
 bool ValueEncoder::encode(const StreamFront& front, const SignedRows& values, std::span<std::byte> out,

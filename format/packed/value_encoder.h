@@ -28,6 +28,8 @@ struct StreamFront {
 /// Of the last place of the scan that is not zero, in units of kEndUnit places, rounded up; 0 where all are. Place 0
 /// does not count.
 unsigned end_of(const MagnitudeRows& magnitudes);
+/// The same of that place; 0 where there is none.
+constexpr unsigned end_at(unsigned last_place) { return last_place == 0 ? 0 : last_place / kEndUnit + 1; }
 
 /// Bytes of a stream's two parts, between which there may be zeros.
 struct StreamSize {
@@ -48,10 +50,12 @@ class ValueEncoder {
               StreamSize* size = nullptr) const;
 
  private:
-  // What a symbol of frequency f from `low` on makes of a state: x / f is x * inverse >> 44.
+  // What a symbol of frequency f from `low` on makes of a state x, once that is below `limit`: f goes into it
+  // x * inverse >> 44 times, and what that leaves is x + that * (total - f) + low.
   struct Symbol {
     std::uint64_t inverse = 0;
-    std::uint32_t frequency = 0;
+    std::uint64_t limit = 0;
+    std::uint32_t complement = 0;  // total - f
     std::uint32_t low = 0;
   };
   class Words;

@@ -35,6 +35,10 @@ class AmrexSource final : public VolumeSource {
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {scalar_bytes(info_.type), {}, {}}; }
   std::vector<Box> voxels_with_values(const Box& box) const override { return composite_.voxels_with_values(box); }
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const override { return composite_.repeated_parts(box); }
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
+    return composite_.read_repeated(part, values);
+  }
   std::uint64_t working_bytes() const override { return composite_.working_bytes(); }
   std::uint64_t bytes_read() const override { return composite_.bytes_read(); }
 

@@ -8,6 +8,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/amrex/linear_cells.h"
+#include "ingest/amrex/repeated_leaves.h"
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source/extent.h"
@@ -86,12 +87,30 @@ std::vector<Box> Composite::voxels_with_values(const Box& box) const {
   return boxes;
 }
 
+std::vector<RepeatedPart> Composite::repeated_parts(const Box& box) const {
+  if (own_ || upsampling_ != Upsampling::constant || wanted_ == 0) return {{box}};
+  return repeated_leaves(plotfile_.levels, composite_parts(wanted_, box), box);
+}
+
+ConversionLoss Composite::read_repeated(const RepeatedPart& part, std::span<float> values) {
+  if (!part.repeats()) return read(part.box, values);
+  std::size_t level = wanted_;
+  while (refinement(plotfile_.levels, level, wanted_) != part.by) --level;
+  const Box cells = coarsened(part.box, part.by);
+  const std::vector<CoverPart> parts = composite_parts(level, cells);
+  ConversionLoss loss;
+  for (const auto& of_fab : by_fab(parts)) loss.add(reader_.read(level, of_fab, cells, values));
+  return loss.times(static_cast<std::uint64_t>(volume(part.by)));
+}
+
+std::vector<CoverPart> Composite::composite_parts(std::size_t level, const Box& box) const {
+  LevelCover cover = cover_box(plotfile_.levels, level, 0, box);
+  if (!cover.rest.empty()) throw uncovered(plotfile_, cover.rest.front());
+  return std::move(cover.parts);
+}
+
 std::vector<CoverPart> Composite::parts_of(const Box& box, std::span<float> values) const {
-  if (!own_) {
-    LevelCover cover = cover_box(plotfile_.levels, wanted_, 0, box);
-    if (!cover.rest.empty()) throw uncovered(plotfile_, cover.rest.front());
-    return std::move(cover.parts);
-  }
+  if (!own_) return composite_parts(wanted_, box);
   std::vector<CoverPart> parts = own_parts(plotfile_.levels, wanted_, plotfile_.levels.size() - 1, box);
   std::int64_t cells = 0;
   for (const CoverPart& part : parts) cells += part.box.voxels();

@@ -9,6 +9,7 @@
 
 #include "ingest/amrex/fab_reader.h"
 #include "ingest/amrex/plotfile.h"
+#include "ingest/source/repeated_part.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/upsampling.h"
 #include "ingest/source/volume_source.h"
@@ -30,14 +31,18 @@ class Composite {
   /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.
   ConversionLoss read(const Box& box, std::span<float> values);
 
-  /// As VolumeSource has it.
+  /// As VolumeSource has them. What coarser levels have repeats where values are constant in their cells.
   std::vector<Box> voxels_with_values(const Box& box) const;
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const;
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values);
 
   /// What a read takes at most besides the caller's values and kStagingBytes.
   std::uint64_t working_bytes() const;
   std::uint64_t bytes_read() const { return reader_.bytes_read(); }
 
  private:
+  /// The parts of `box`, of cells of `level`, by levels up to that one.
+  std::vector<CoverPart> composite_parts(std::size_t level, const Box& box) const;
   /// The parts of `box`, whose `values` are set where no part is.
   std::vector<CoverPart> parts_of(const Box& box, std::span<float> values) const;
   ConversionLoss read_constant(const Box& box, std::span<float> values);

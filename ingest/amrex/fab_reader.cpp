@@ -67,10 +67,6 @@ void for_each_piece(const StoredCells& stored, const Box& part, const Take& take
   }
 }
 
-ConversionLoss repeated_loss(const ConversionLoss& loss, std::uint64_t n) {
-  return {loss.inexact * n, loss.overflow * n, loss.max_abs_error, loss.unmarked * n};
-}
-
 /// Writes cells to the values of a box of the wanted level.
 struct Painter {
   Index3 by;  ///< cells of the wanted level along one
@@ -123,7 +119,7 @@ struct Painter {
         std::copy(decoded.begin(), decoded.end(), row({part.lo.x, at_y, at_z}, count).begin());
       }
     }
-    return repeated_loss(loss, static_cast<std::uint64_t>((y1 - y0) * (z1 - z0)));
+    return loss.times(static_cast<std::uint64_t>((y1 - y0) * (z1 - z0)));
   }
 };
 

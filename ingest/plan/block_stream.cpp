@@ -8,9 +8,11 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "format/base/error.h"
+#include "ingest/plan/block_parts.h"
 #include "ingest/plan/page_buffer.h"
 
 namespace weir {
@@ -101,6 +103,13 @@ std::size_t end_of_group(std::span<const Box> boxes, std::size_t first) {
   return end;
 }
 
+// How the values of a box come, where that is in parts.
+std::optional<BlockParts> parts_of(const VolumeSource& source, const Box& box) {
+  std::vector<RepeatedPart> parts = source.repeated_parts(box);
+  const bool repeats = std::any_of(parts.begin(), parts.end(), [](const RepeatedPart& part) { return part.repeats(); });
+  return repeats ? std::optional(BlockParts(std::move(parts), box)) : std::nullopt;
+}
+
 }  // namespace
 
 void throw_if_cancelled(const StreamOptions& options) {
@@ -127,12 +136,15 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
   };
 
   std::array<ConversionLoss, kBuffers> losses;
+  std::array<std::optional<BlockParts>, kBuffers> parts;
   Handover handover;
   const BlockReader reader(handover, [&] {
     try {
       for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
         const TraceSpan span(options.trace, "read", values(i).size_bytes());
-        losses[i % kBuffers] = source.read(boxes[i], values(i));
+        std::optional<BlockParts>& in_parts = parts[i % kBuffers];
+        in_parts = options.in_parts ? parts_of(source, boxes[i]) : std::nullopt;
+        losses[i % kBuffers] = in_parts ? in_parts->read(source, values(i)) : source.read(boxes[i], values(i));
         handover.publish_read();
       }
     } catch (...) {
@@ -146,7 +158,8 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
     if (is_cancelled(options)) rest(options, i);
     const ConversionLoss lost = losses[i % kBuffers];
     loss.add(lost);
-    work({i, boxes[i], values(i), lost});
+    const std::optional<BlockParts>& in_parts = parts[i % kBuffers];
+    work({i, boxes[i], values(i), lost, in_parts ? &*in_parts : nullptr});
     handover.publish_worked();
     done += boxes[i].voxels();
     if (options.progress) options.progress(done, total);

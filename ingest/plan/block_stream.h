@@ -14,11 +14,14 @@
 
 namespace weir {
 
+class BlockParts;
+
 struct Block {
-  std::size_t index = 0;          ///< position in the list given to stream_blocks
-  Box voxels;                     ///< index space
-  std::span<const float> values;  ///< x fastest over `voxels`; valid during the call only
-  ConversionLoss loss;            ///< of reading it
+  std::size_t index = 0;              ///< position in the list given to stream_blocks
+  Box voxels;                         ///< index space
+  std::span<const float> values;      ///< x fastest over `voxels`; valid during the call only
+  ConversionLoss loss;                ///< of reading it
+  const BlockParts* parts = nullptr;  ///< where the values are not those of all voxels but these parts'
 };
 
 /// stream_blocks or work_in_place.
@@ -33,6 +36,7 @@ struct StreamOptions {
   /// `cancel` waits for, so that it loses nothing.
   std::function<void(std::size_t boxes_done)> at_rest;
   Trace* trace = nullptr;  ///< gets a "read" of each box
+  bool in_parts = false;   ///< blocks whose voxels repeat each other come in parts, where they are read ahead
 };
 
 /// Throws Error(interrupted) where `cancel` is set.

@@ -24,6 +24,12 @@ class LimitedSource final : public VolumeSource {
     spend();
     return loss;
   }
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const override { return source_->repeated_parts(box); }
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
+    const ConversionLoss loss = source_->read_repeated(part, values);
+    spend();
+    return loss;
+  }
   std::vector<Box> voxels_with_values(const Box& box) const override { return source_->voxels_with_values(box); }
   std::uint64_t working_bytes() const override { return source_->working_bytes(); }
   std::uint64_t bytes_read() const override { return source_->bytes_read(); }

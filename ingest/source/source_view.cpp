@@ -31,6 +31,14 @@ class SourceView final : public VolumeSource {
     check(box);
     return source_->read_alone(box, values);
   }
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const override {
+    check(box);
+    return source_->repeated_parts(box);
+  }
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
+    check(part.box);
+    return source_->read_repeated(part, values);
+  }
 
  private:
   void check(const Box& box) const {

@@ -14,6 +14,7 @@
 #include "format/base/scalar_type.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/field_details.h"
+#include "ingest/source/repeated_part.h"
 #include "ingest/source/stored_value.h"
 
 namespace weir {
@@ -64,6 +65,8 @@ struct ConversionLoss {
     max_abs_error = max_abs_error > other.max_abs_error ? max_abs_error : other.max_abs_error;
     unmarked += other.unmarked;
   }
+  /// Of `n` times as many values.
+  ConversionLoss times(std::uint64_t n) const { return {inexact * n, overflow * n, max_abs_error, unmarked * n}; }
 };
 
 /// How a source is best read; input to the block plan.
@@ -104,6 +107,15 @@ class VolumeSource {
   /// Boxes without a common voxel, of all voxels of `box` that have a value where info().mapping.gaps; known without
   /// reading any. `box` is as for read.
   virtual std::vector<Box> voxels_with_values(const Box& box) const { return {box}; }
+
+  /// Cuts `box`, which is as for read, into parts whose voxels are known to repeat each other and others, where parts
+  /// are leaves (8^3 voxels at multiples of 8 of the index) as far as they lie in `box`, and `by` divides 8.
+  virtual std::vector<RepeatedPart> repeated_parts(const Box& box) const { return {{box}}; }
+  /// Reads one of them: the value of each group, x fastest; the loss is that of all voxels. By the calling thread
+  /// alone.
+  virtual ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) {
+    return read(part.box, values);
+  }
 
   /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
   virtual std::uint64_t working_bytes() const { return 0; }

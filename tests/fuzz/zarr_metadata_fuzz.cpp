@@ -38,7 +38,10 @@ void check_array(const weir::ZarrArray& array) {
   const std::vector<std::int64_t> index(axes - 3, 0);
   const weir::ChunkGeometry geometry(array, index, "fuzz");
   const weir::ChunkPlace place = geometry.place_of({0, 0, 0});
-  if (place.inner != 0 || place.object.size() != axes) std::abort();
+  if (place.inner.size() != array.shards.size() || place.object.size() != axes) std::abort();
+  for (std::size_t level = 0; level < array.shards.size(); ++level) {
+    if (place.inner[level] != 0 || geometry.chunks_in_shards()[level] == 0) std::abort();
+  }
   if (geometry.first_byte() != 0 || geometry.unit_shape().bytes() == 0) std::abort();
 }
 

@@ -64,9 +64,7 @@ ZarrCodecs read_chain(const nlohmann::json& list, std::size_t axes, std::size_t 
     const nlohmann::json& configuration = json_member(codec, "configuration");
     const auto packer = parse_packer(name);
     if (name == kSharding) {
-      throw input_error(where,
-                        "has shards in shards, or other codecs beside sharding_indexed; write the array with one "
-                        "level of shards, and other codecs inside");
+      throw input_error(where, "has other codecs beside sharding_indexed; write the array with those inside");
     }
     if (!packer && name != "bytes" && name != "transpose") throw unsupported_codec(where, "codec", name);
     if (bytes != packer.has_value()) {
@@ -85,18 +83,26 @@ ZarrCodecs read_chain(const nlohmann::json& list, std::size_t axes, std::size_t 
   return codecs;
 }
 
-ZarrSharding read_sharding(const nlohmann::json& configuration, const ZarrArray& array, const std::string& where) {
+/// `codecs` are those of an object, or of a chunk in a shard, that is a shard itself.
+bool is_sharded(const nlohmann::json& codecs) {
+  return codecs.size() == 1 && extension_name(codecs.front()) == kSharding;
+}
+
+/// Of shards of `shard` elements; their chunks may be shards too, of which nothing is read here.
+ZarrSharding read_sharding(const nlohmann::json& configuration, const std::vector<std::int64_t>& shard,
+                           std::size_t value_bytes, const std::string& where) {
   ZarrSharding sharding;
   sharding.chunk = json_extents(json_member(configuration, "chunk_shape"), "chunk_shape of sharding_indexed", 1, where);
-  require_same_axes(array.shape, sharding.chunk, "chunk_shape of sharding_indexed", where);
+  require_same_axes(shard, sharding.chunk, "chunk_shape of sharding_indexed", where);
   for (std::size_t axis = 0; axis < sharding.chunk.size(); ++axis) {
-    if (array.chunk[axis] % sharding.chunk[axis] == 0) continue;
-    throw input_error(
-        where, cat("its shards have ", array.chunk[axis], " elements along axis ", axis, ", and the chunks in them ",
-                   sharding.chunk[axis], ", which does not divide that; the file is damaged"));
+    if (shard[axis] % sharding.chunk[axis] == 0) continue;
+    throw input_error(where,
+                      cat("its shards have ", shard[axis], " elements along axis ", axis, ", and the chunks in them ",
+                          sharding.chunk[axis], ", which does not divide that; the file is damaged"));
   }
-  sharding.codecs = read_chain(require_list(json_member(configuration, "codecs"), "codecs of sharding_indexed", where),
-                               sharding.chunk.size(), scalar_bytes(array.type), where);
+  const nlohmann::json& codecs =
+      require_list(json_member(configuration, "codecs"), "codecs of sharding_indexed", where);
+  if (!is_sharded(codecs)) sharding.codecs = read_chain(codecs, sharding.chunk.size(), value_bytes, where);
   const ZarrCodecs index =
       read_chain(require_list(json_member(configuration, "index_codecs"), "index_codecs", where), 0, 8, where);
   const bool checksum = index.packers == std::vector{ZarrPacker::crc32c};
@@ -122,11 +128,18 @@ std::string extension_name(const nlohmann::json& extension) {
 
 void read_codecs(const nlohmann::json& codecs, ZarrArray& array, const std::string& where) {
   require_list(codecs, "codecs", where);
-  if (codecs.size() == 1 && extension_name(codecs.front()) == kSharding) {
-    array.sharding = read_sharding(json_member(codecs.front(), "configuration"), array, where);
-    return;
+  const std::size_t value_bytes = scalar_bytes(array.type);
+  const nlohmann::json* level = &codecs;
+  while (is_sharded(*level)) {
+    if (array.shards.size() == kMostShardLevels) {
+      throw input_error(where, cat("has more than ", kMostShardLevels,
+                                   " levels of shards in each other; write the array with fewer"));
+    }
+    const nlohmann::json& configuration = json_member(level->front(), "configuration");
+    array.shards.push_back(read_sharding(configuration, array.unit(), value_bytes, where));
+    level = &json_member(configuration, "codecs");
   }
-  array.codecs = read_chain(codecs, array.shape.size(), scalar_bytes(array.type), where);
+  if (array.shards.empty()) array.codecs = read_chain(codecs, array.shape.size(), value_bytes, where);
 }
 
 }  // namespace weir

@@ -26,7 +26,8 @@ std::string ZarrChunkKeys::key(std::span<const std::int64_t> position) const {
 
 std::string ZarrArray::layout_text() const {
   std::string text = cat("chunked ", extents_text(unit()));
-  if (sharding) text += cat(" in shards of ", extents_text(chunk));
+  for (std::size_t level = shards.size(); level-- > 0;)
+    text += cat(" in shards of ", extents_text(level == 0 ? chunk : shards[level - 1].chunk));
   if (!values().transpose.empty()) text += ", transposed";
   for (const ZarrFilter& filter : values().filters) text += cat(", ", filter_name(filter.kind));
   for (const ZarrPacker packer : values().packers) text += cat(", ", packer_name(packer));

@@ -33,10 +33,10 @@ struct ZarrCodecs {
   std::vector<ZarrFilter> filters = {};  ///< in the order of writing, before the packers
 };
 
-/// Chunks that lie together in one object, a shard, with an index of their places.
+/// Chunks that lie together in one object, a shard, with an index of their places. They may be shards themselves.
 struct ZarrSharding {
   std::vector<std::int64_t> chunk;  ///< elements of each inner chunk; divides the shard's
-  ZarrCodecs codecs;                ///< of an inner chunk
+  ZarrCodecs codecs;                ///< of an inner chunk that is no shard
   bool index_big_endian = false;
   bool index_checksum = false;  ///< a crc32c behind the index
   bool index_first = false;     ///< else at the shard's end
@@ -55,8 +55,8 @@ struct ZarrArray {
   std::vector<std::int64_t> shape;  ///< elements, each >= 0
   std::vector<std::int64_t> chunk;  ///< elements of each stored object, each >= 1; as many axes as shape
   ScalarType type = ScalarType::float32;
-  ZarrCodecs codecs;  ///< of a stored object; what `sharding` says where there is one
-  std::optional<ZarrSharding> sharding;
+  ZarrCodecs codecs;                 ///< of a stored object without shards
+  std::vector<ZarrSharding> shards;  ///< of a stored object, of the chunks in it that are shards, and so on
   ZarrChunkKeys keys;
   std::optional<std::vector<std::byte>> fill;  ///< one value, in the byte order of values(); none: it is null
   std::string fill_text;                       ///< as the metadata writes it
@@ -64,8 +64,8 @@ struct ZarrArray {
   nlohmann::json attributes;                   ///< of the user
 
   /// The elements that are decoded together, and how: of an inner chunk where there are shards.
-  const std::vector<std::int64_t>& unit() const { return sharding ? sharding->chunk : chunk; }
-  const ZarrCodecs& values() const { return sharding ? sharding->codecs : codecs; }
+  const std::vector<std::int64_t>& unit() const { return shards.empty() ? chunk : shards.back().chunk; }
+  const ZarrCodecs& values() const { return shards.empty() ? codecs : shards.back().codecs; }
 
   /// "chunked 64 x 64 x 64 in shards of 256 x 256 x 256, blosc, crc32c".
   std::string layout_text() const;

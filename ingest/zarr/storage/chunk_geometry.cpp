@@ -62,7 +62,10 @@ ChunkGeometry::ChunkGeometry(const ZarrArray& array, const std::vector<std::int6
     throw Error(ErrorKind::internal, cat(where, ": ", index.size(), " positions for ", array.shape.size(), " axes"));
   }
   check_chunk_bytes(units_, unit_shape_.value_bytes, where);
-  chunks_in_object_ = count_inner(chunk_, units_, where);
+  for (const ZarrSharding& level : array.shards) {
+    chunks_in_shards_.push_back(count_inner(inner_.empty() ? chunk_ : inner_.back(), level.chunk, where));
+    inner_.push_back(level.chunk);
+  }
   extent_ = last_axes(array.shape);
   unit_ = last_axes(units_);
   object_ = last_axes(chunk_);
@@ -90,10 +93,17 @@ ChunkPlace ChunkGeometry::place_of(const Index3& chunk) const {
   std::vector<std::int64_t> element = index_;
   const Index3 first = times_each(chunk, unit_);
   element.insert(element.end(), {first.z, first.y, first.x});
-  for (std::size_t axis = 0; axis < element.size(); ++axis) {
-    const std::int64_t along = element[axis] % chunk_[axis] / units_[axis];
-    place.inner = place.inner * static_cast<std::size_t>(chunk_[axis] / units_[axis]) + static_cast<std::size_t>(along);
+  for (std::size_t axis = 0; axis < element.size(); ++axis)
     place.corner.push_back(element[axis] - element[axis] % units_[axis]);
+  const std::vector<std::int64_t>* shard = &chunk_;
+  for (const std::vector<std::int64_t>& inner : inner_) {
+    std::size_t at = 0;
+    for (std::size_t axis = 0; axis < element.size(); ++axis) {
+      const std::int64_t along = element[axis] % (*shard)[axis] / inner[axis];
+      at = at * static_cast<std::size_t>((*shard)[axis] / inner[axis]) + static_cast<std::size_t>(along);
+    }
+    place.inner.push_back(at);
+    shard = &inner;
   }
   return place;
 }

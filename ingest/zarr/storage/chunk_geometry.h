@@ -15,7 +15,7 @@ namespace weir {
 /// A chunk that is decoded alone: a whole object, or one in a shard.
 struct ChunkPlace {
   std::vector<std::int64_t> object;  ///< position in the grid of stored objects, of each axis
-  std::size_t inner = 0;             ///< in the shard's index; 0 without shards
+  std::vector<std::size_t> inner;    ///< in the index of its shard, of the shard in that, ...; empty without shards
   std::vector<std::int64_t> corner;  ///< its first element
 };
 
@@ -35,8 +35,8 @@ class ChunkGeometry {
   std::size_t first_byte() const { return first_byte_; }
   /// Stored objects that the volume touches, along x, y, z.
   const Index3& objects() const { return objects_; }
-  /// Chunks in a shard; 1 without shards.
-  std::uint64_t chunks_in_object() const { return chunks_in_object_; }
+  /// Chunks in a shard of each level, those that are objects first; empty without shards.
+  const std::vector<std::uint64_t>& chunks_in_shards() const { return chunks_in_shards_; }
 
   /// Of the chunk at `chunk` (chunk coordinates, in units).
   ChunkPlace place_of(const Index3& chunk) const;
@@ -48,8 +48,9 @@ class ChunkGeometry {
   std::vector<std::int64_t> object_position(const Index3& object) const;
 
  private:
-  std::vector<std::int64_t> chunk_;  ///< elements of an object
-  std::vector<std::int64_t> units_;  ///< elements of what is decoded alone
+  std::vector<std::int64_t> chunk_;               ///< elements of an object
+  std::vector<std::int64_t> units_;               ///< elements of what is decoded alone
+  std::vector<std::vector<std::int64_t>> inner_;  ///< elements of the chunks in shards of each level
   std::vector<std::int64_t> index_;
   ChunkShape unit_shape_;
   Index3 extent_;
@@ -57,7 +58,7 @@ class ChunkGeometry {
   Index3 object_;  ///< voxels of an object
   Index3 objects_;
   std::size_t first_byte_ = 0;
-  std::uint64_t chunks_in_object_ = 1;
+  std::vector<std::uint64_t> chunks_in_shards_;
 };
 
 /// "0, 64, 128".

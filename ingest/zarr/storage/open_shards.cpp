@@ -27,23 +27,25 @@ OpenShards::OpenShards(const ZarrSharding& sharding, std::uint64_t chunks, std::
   most_ = static_cast<std::size_t>(std::min<std::uint64_t>(room / one, kMostOpenShards));
 }
 
-std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, const std::string& shown,
-                                            std::unique_ptr<ZarrObject> object) const {
-  if (object->size() < index_bytes_) {
-    throw input_error(shown, cat("has ", object->size(), " bytes, and the index of its shard alone takes ",
-                                 index_bytes_, "; the file is cut short or damaged"));
+std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, const std::string& shown, ShardBytes shard) const {
+  if (shard.bytes < index_bytes_) {
+    throw input_error(shown, cat("has ", shard.bytes, " bytes, and the index of its shard alone takes ", index_bytes_,
+                                 "; the file is cut short or damaged"));
   }
   std::vector<std::byte> index(static_cast<std::size_t>(index_bytes_));
-  object->read(sharding_.index_first ? 0 : object->size() - index_bytes_, index);
-  auto shard = std::make_shared<OpenShard>();
-  shard->key = key;
-  shard->places = parse_shard_index(sharding_, index, object->size(), shown);
-  shard->object = std::move(object);
-  return shard;
+  shard.object->read(shard.offset + (sharding_.index_first ? 0 : shard.bytes - index_bytes_), index);
+  auto open = std::make_shared<OpenShard>();
+  open->key = key;
+  open->places = parse_shard_index(sharding_, index, shard.bytes, shown);
+  for (ShardPlace& place : open->places) {
+    if (place.stored()) place.offset += shard.offset;
+  }
+  open->object = std::move(shard.object);
+  return open;
 }
 
 std::shared_ptr<OpenShard> OpenShards::get(const std::string& key, const std::string& shown,
-                                           const std::function<std::unique_ptr<ZarrObject>()>& open) {
+                                           const std::function<ShardBytes()>& open) {
   // One thread reads an index; those that want the same wait for it, and reading one takes little time.
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& shard) { return shard->key == key; });

@@ -16,13 +16,20 @@
 
 namespace weir {
 
-struct OpenShard {
-  std::string key;
-  std::unique_ptr<ZarrObject> object;
-  std::vector<ShardPlace> places;
+/// The bytes of a shard: an object, or a part of one.
+struct ShardBytes {
+  std::shared_ptr<ZarrObject> object;
+  std::uint64_t offset = 0;
+  std::uint64_t bytes = 0;
 };
 
-/// Thread-safe.
+struct OpenShard {
+  std::string key;
+  std::shared_ptr<ZarrObject> object;
+  std::vector<ShardPlace> places;  ///< in the object
+};
+
+/// Those of one level. Thread-safe.
 class OpenShards {
  public:
   /// Keeps those that were asked for last: as many as a sixteenth of `memory` bytes has room for, at most
@@ -34,14 +41,13 @@ class OpenShards {
 
   std::uint64_t working_bytes() const { return most_ * index_bytes_ * 2; }
 
-  /// The shard at `key`, which open(key) opens where it is not kept. Throws what parse_shard_index throws, beginning
+  /// The shard `key`, which open() opens where it is not kept. Throws what parse_shard_index throws, beginning
   /// with `shown`, and Error(input) where the shard is shorter than its index.
   std::shared_ptr<OpenShard> get(const std::string& key, const std::string& shown,
-                                 const std::function<std::unique_ptr<ZarrObject>()>& open);
+                                 const std::function<ShardBytes()>& open);
 
  private:
-  std::shared_ptr<OpenShard> load(const std::string& key, const std::string& shown,
-                                  std::unique_ptr<ZarrObject> object) const;
+  std::shared_ptr<OpenShard> load(const std::string& key, const std::string& shown, ShardBytes shard) const;
 
   ZarrSharding sharding_;
   std::uint64_t index_bytes_;

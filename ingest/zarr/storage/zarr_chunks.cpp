@@ -11,15 +11,17 @@ namespace weir {
 ZarrChunks::ZarrChunks(ChunkObjects objects, ZarrArray array, ChunkGeometry geometry, std::uint64_t memory,
                        const std::atomic<bool>* cancel)
     : objects_(std::move(objects)), array_(std::move(array)), geometry_(std::move(geometry)) {
-  if (array_.sharding) {
-    shards_ = std::make_unique<OpenShards>(*array_.sharding, geometry_.chunks_in_object(), memory,
-                                           objects_.store.shown(objects_.array_key));
+  for (std::size_t level = 0; level < array_.shards.size(); ++level) {
+    shards_.push_back(std::make_unique<OpenShards>(array_.shards[level], geometry_.chunks_in_shards()[level], memory,
+                                                   objects_.store.shown(objects_.array_key)));
   }
   scan_ = scan_objects(objects_, geometry_, memory, cancel);
 }
 
 std::uint64_t ZarrChunks::working_bytes() const {
-  return scan_.stored.size() / 8 + objects_.store.held_bytes() + (shards_ ? shards_->working_bytes() : 0);
+  std::uint64_t bytes = scan_.stored.size() / 8 + objects_.store.held_bytes();
+  for (const auto& level : shards_) bytes += level->working_bytes();
+  return bytes;
 }
 
 std::unique_ptr<ZarrObject> ZarrChunks::open_unchanged(const std::string& key) const {
@@ -31,8 +33,23 @@ std::unique_ptr<ZarrObject> ZarrChunks::open_unchanged(const std::string& key) c
   return object;
 }
 
-std::shared_ptr<OpenShard> ZarrChunks::open_shard(const std::string& key) {
-  return shards_->get(key, objects_.store.shown(key), [&] { return open_unchanged(key); });
+std::shared_ptr<OpenShard> ZarrChunks::open_shard(const std::string& key, const ChunkPlace& place) {
+  std::string shown = objects_.store.shown(key);
+  std::shared_ptr<OpenShard> shard = shards_.front()->get(key, shown, [&] {
+    std::shared_ptr<ZarrObject> object = open_unchanged(key);
+    const std::uint64_t bytes = object->size();
+    return ShardBytes{std::move(object), 0, bytes};
+  });
+  std::string path = key;
+  for (std::size_t level = 1; level < shards_.size(); ++level) {
+    const std::size_t inner = place.inner[level - 1];
+    const ShardPlace& at = shard->places[inner];
+    if (!at.stored()) return nullptr;
+    path += cat('#', inner);
+    shown += cat(": chunk ", inner, " of the shard");
+    shard = shards_[level]->get(path, shown, [&] { return ShardBytes{shard->object, at.offset, at.bytes}; });
+  }
+  return shard;
 }
 
 UnstoredChunks ZarrChunks::count_unstored() {
@@ -47,16 +64,18 @@ UnstoredChunks ZarrChunks::count_unstored() {
     const Index3 object = index_at(static_cast<std::int64_t>(i), geometry_.objects());
     const Box chunks = geometry_.chunks_of(object);
     unstored.all += static_cast<std::uint64_t>(chunks.voxels());
-    if (scan_.stored[i] && !shards_) continue;
+    if (scan_.stored[i] && shards_.empty()) continue;
     if (!scan_.stored[i]) {
       note(chunks.lo);
       unstored.count += static_cast<std::uint64_t>(chunks.voxels()) - 1;
       continue;
     }
-    const auto shard = open_shard(objects_.key_of(geometry_.object_position(object)));
+    const std::string key = objects_.key_of(geometry_.object_position(object));
     for (std::int64_t k = 0; k < chunks.voxels(); ++k) {
       const Index3 chunk = chunks.lo + index_at(k, chunks.extent());
-      if (!shard->places[geometry_.place_of(chunk).inner].stored()) note(chunk);
+      const ChunkPlace place = geometry_.place_of(chunk);
+      const auto shard = open_shard(key, place);
+      if (!shard || !shard->places[place.inner.back()].stored()) note(chunk);
     }
   }
   return unstored;
@@ -73,14 +92,15 @@ std::optional<std::size_t> ZarrChunks::fetch(const ChunkPlace& place, std::span<
     if (bytes <= into.size()) return static_cast<std::size_t>(bytes);
     throw wrong_chunk(place, cat("takes ", bytes, " bytes, and at most ", into.size(), " can be right"));
   };
-  if (!shards_) {
+  if (shards_.empty()) {
     const auto object = open_unchanged(key);
     const std::size_t bytes = checked(object->size());
     object->read(0, into.first(bytes));
     return bytes;
   }
-  const auto shard = open_shard(key);
-  const ShardPlace& at = shard->places[place.inner];
+  const auto shard = open_shard(key, place);
+  if (!shard) return std::nullopt;
+  const ShardPlace& at = shard->places[place.inner.back()];
   if (!at.stored()) return std::nullopt;
   const std::size_t bytes = checked(at.bytes);
   shard->object->read(at.offset, into.first(bytes));

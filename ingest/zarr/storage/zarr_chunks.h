@@ -48,7 +48,8 @@ class ZarrChunks final : public StoredChunks {
  private:
   /// Throws where it was changed or is not there any more.
   std::unique_ptr<ZarrObject> open_unchanged(const std::string& key) const;
-  std::shared_ptr<OpenShard> open_shard(const std::string& key);
+  /// The shard that the chunk lies in, in the object at `key`; nullptr where that is not stored.
+  std::shared_ptr<OpenShard> open_shard(const std::string& key, const ChunkPlace& place);
   /// The bytes of the chunk to the front of `into`; nullopt where the shard has none.
   std::optional<std::size_t> fetch(const ChunkPlace& place, std::span<std::byte> into);
   Error wrong_chunk(const ChunkPlace& place, const Message& what) const;
@@ -57,7 +58,7 @@ class ZarrChunks final : public StoredChunks {
   ZarrArray array_;
   ChunkGeometry geometry_;
   ObjectScan scan_;
-  std::unique_ptr<OpenShards> shards_;  ///< nullptr without shards
+  std::vector<std::unique_ptr<OpenShards>> shards_;  ///< of each level; empty without shards
   std::atomic<std::uint64_t> bytes_read_{0};
 };
 

@@ -112,6 +112,10 @@ TEST(LeafCodec, BatchedStatisticsEqualThoseOfSingleLeaves) {
       if (l == 3) leaves[l][100] = kNaN;
       if (l == 4) leaves[l].fill(kNaN);
       if (l == 5) leaves[l][0] = std::numeric_limits<float>::infinity();
+      if (l == 6) {  // of the NaN that infinite values lead to and that beside, the same one is taken
+        leaves[l][164] = std::numeric_limits<float>::infinity();
+        leaves[l][165] = kNaN;
+      }
     }
     std::vector<NodeStatistics> found(count);
     full_leaf_statistics(leaves, nodes, found);

@@ -16,6 +16,7 @@ using packed_test::constants_from;
 using packed_test::decode;
 using packed_test::kShapes;
 using packed_test::Numbers;
+using packed_test::same_bits;
 using packed_test::sample;
 using packed_test::Shape;
 using packed_test::Stream;
@@ -52,6 +53,9 @@ TEST(RoundedBlock, EncodesToItsCostWithItsError) {
           Stream stream(cost->bytes);
           ASSERT_TRUE(block.encode(exponent, stream));
           const BlockValues decoded = decoded_from(stream);
+          BlockValues known;
+          block.decoded(constants_from(0), known);
+          ASSERT_TRUE(same_bits(known, decoded)) << "2^" << exponent;
           const double quantum = std::ldexp(1.0, exponent);
           for (std::size_t i = 0; i < values.size(); ++i) {
             const double multiple = static_cast<double>(decoded[i]) / quantum;
@@ -77,6 +81,23 @@ TEST(RoundedBlock, ALongerStreamHasZerosInItsMiddle) {
   ASSERT_TRUE(block.encode(exponent, shortest));
   ASSERT_TRUE(block.encode(exponent, longer));
   EXPECT_EQ(decoded_from(shortest), decoded_from(longer));
+}
+
+TEST(RoundedBlock, KnownValuesLieInTheRangeOfTheFile) {
+  Numbers numbers(7);
+  const BlockValues values = sample(Shape::mixed, numbers, 1, 0);
+  RoundedBlock block;
+  block.set(values);
+  const int exponent = block.exponent() - 4;
+  Stream stream(block.cost(exponent)->bytes);
+  ASSERT_TRUE(block.encode(exponent, stream));
+  BlockConstants constants = constants_from(0);
+  constants.minimum = *std::min_element(values.begin(), values.end());
+  constants.maximum = *std::max_element(values.begin(), values.end());
+  BlockValues known;
+  block.decoded(constants, known);
+  EXPECT_TRUE(same_bits(known, decode(constants, {}, stream).value()));
+  EXPECT_FALSE(same_bits(known, decoded_from(stream))) << "some lie outside";
 }
 
 TEST(RoundedBlock, WhereTheStreamIsTooShortTheQuantumIsLarger) {

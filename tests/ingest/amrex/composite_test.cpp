@@ -61,6 +61,78 @@ TEST(AmrexComposite, GeneratedPlotfiles_HaveTheValueOfTheFinestLevelInEachCell) 
   }
 }
 
+bool covers_leaves(const RepeatedPart& part, const Box& box) {
+  const auto on_leaf = [](std::int64_t at, std::int64_t end) { return at % kLeafDim == 0 || at == end; };
+  return on_leaf(part.box.lo.x, box.lo.x) && on_leaf(part.box.hi.x, box.hi.x) && on_leaf(part.box.lo.y, box.lo.y) &&
+         on_leaf(part.box.hi.y, box.hi.y) && on_leaf(part.box.lo.z, box.lo.z) && on_leaf(part.box.hi.z, box.hi.z);
+}
+
+/// Reads `box` by its repeated parts; counts the voxels in those that repeat.
+std::vector<float> read_parts(VolumeSource& source, const Box& box, ConversionLoss& loss, std::int64_t& repeated) {
+  std::vector<float> values(static_cast<std::size_t>(box.voxels()), -1.0F);
+  std::int64_t voxels = 0;
+  for (const RepeatedPart& part : source.repeated_parts(box)) {
+    EXPECT_TRUE(box.contains(part.box) && covers_leaves(part, box));
+    EXPECT_EQ(part.groups().x * part.by.x, part.box.extent().x);
+    EXPECT_EQ(part.values() * volume(part.by), part.box.voxels());
+    voxels += part.box.voxels();
+    repeated += part.repeats() ? part.box.voxels() : 0;
+    std::vector<float> of_part(static_cast<std::size_t>(part.values()));
+    loss.add(source.read_repeated(part, of_part));
+    for_each_index(part.box, [&](const Index3& i) {
+      const Index3 at = i - part.box.lo;
+      const Index3 group{at.x / part.by.x, at.y / part.by.y, at.z / part.by.z};
+      float& value = values[static_cast<std::size_t>(linear_index(i - box.lo, box.extent()))];
+      EXPECT_EQ(value, -1.0F);  // parts have no voxel in common
+      value = of_part[static_cast<std::size_t>(linear_index(group, part.groups()))];
+    });
+  }
+  EXPECT_EQ(voxels, box.voxels());
+  return values;
+}
+
+TEST(AmrexComposite, RepeatedParts_HaveTheValuesOfAllVoxels) {
+  std::int64_t repeated = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scratch scratch;
+    PlotfilePlan plan = test::generated_plotfile(seed);
+    plan.value = [](std::size_t level, std::size_t component, const Index3& cell) {
+      return 0.1 + test::plain_plotfile_value(level, component, cell);
+    };
+    const std::string path = scratch.path("plt00042");
+    test::write_plotfile(path, plan);
+    SourceOptions options;
+    options.dataset = "Temp";
+    const auto source = open_source(path, options);
+    const Box domain = source->info().domain();
+    const Box inner{{domain.hi.x / 3, domain.hi.y / 4, 0}, {domain.hi.x, domain.hi.y / 2 + 1, domain.hi.z}};
+    for (const Box& box : {domain, inner}) {
+      std::vector<float> expected(static_cast<std::size_t>(box.voxels()));
+      const ConversionLoss expected_loss = source->read(box, expected);
+      ConversionLoss loss;
+      ASSERT_EQ(read_parts(*source, box, loss, repeated), expected);
+      EXPECT_EQ(loss.inexact, expected_loss.inexact);
+      EXPECT_EQ(loss.max_abs_error, expected_loss.max_abs_error);
+    }
+  }
+  EXPECT_GT(repeated, 100'000);
+}
+
+TEST(AmrexComposite, LinearValues_RepeatNothing) {
+  const Scratch scratch;
+  const std::string path = scratch.path("plt00042");
+  test::write_plotfile(path, test::generated_plotfile(3));
+  SourceOptions options;
+  options.dataset = "Temp";
+  options.upsampling = Upsampling::linear;
+  const auto source = open_source(path, options);
+  const std::vector<RepeatedPart> parts = source->repeated_parts(source->info().domain());
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].box, source->info().domain());
+  EXPECT_FALSE(parts[0].repeats());
+}
+
 /// The composite of linear values as its definition says it, a level at a time. With whole values and ratios of 2 and 4
 /// all sums are exact.
 class LinearOracle {

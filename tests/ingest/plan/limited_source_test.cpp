@@ -22,6 +22,10 @@ class CountingSource final : public VolumeSource {
     std::fill(values.begin(), values.end(), static_cast<float>(box.lo.x));
     return {1, 0, 0};
   }
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const override { return {{box, {2, 1, 1}}}; }
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
+    return read(part.box, values);
+  }
   bool in_memory() const override { return true; }
   std::uint64_t working_bytes() const override { return 17; }
   std::uint64_t bytes_read() const override { return bytes_; }
@@ -48,6 +52,10 @@ TEST(LimitedSource, ReadsTheSameAndNoFasterThanAllowed) {
   EXPECT_EQ(now, start + 200ms);  // of 300 bytes 100 were free
   source->read_alone({{3, 0, 0}, {53, 1, 1}}, values);
   EXPECT_EQ(now, start + 400ms);
+  const std::vector<RepeatedPart> parts = source->repeated_parts({{0, 0, 0}, {50, 1, 1}});
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(source->read_repeated(parts[0], std::span(values).first(25)).inexact, 1U);
+  EXPECT_EQ(now, start + 500ms);
 }
 
 }  // namespace

@@ -122,6 +122,61 @@ TEST(ZarrSource, ShardIndexThatPointsOutsideTheShard_IsRefused) {
       "run.zarr/c/0/0/0: has 3 bytes, and the index of its shard alone takes 32; the file is cut short or damaged");
 }
 
+constexpr std::uint64_t kNotStored = ~std::uint64_t{0};
+
+std::string index_text(const std::vector<std::uint64_t>& index) {
+  return {reinterpret_cast<const char*>(index.data()), index.size() * sizeof(std::uint64_t)};
+}
+
+/// Two chunks of two elements in each shard, two of which are an object; its index stands first, theirs at their end.
+std::string nested_zarr_json() {
+  const std::string index = R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}])";
+  const std::string inner = R"({"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,2],)"
+                            R"("codecs":[{"name":"bytes"}],)" +
+                            index + "}}";
+  return zarr_json("[1,1,8]", "[1,1,8]",
+                   R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,4],"index_location":"start",)"
+                   R"("codecs":[)" +
+                       inner + "]," + index + "}}]");
+}
+
+TEST(ZarrSource, ShardsInShards_AreReadAndCounted) {
+  const ZarrFiles files;
+  files.write("zarr.json", nested_zarr_json());
+  const std::string first = "abcd" + index_text({2, 2, 0, 2});
+  const std::string second = "ef" + index_text({kNotStored, kNotStored, 0, 2});
+  files.write("c/0/0/0", index_text({32, 36, 68, 34}) + first + second);
+  EXPECT_EQ(files.read(), (std::vector<float>{'c', 'd', 'a', 'b', 7, 7, 'e', 'f'}));
+  EXPECT_EQ(open_source(files.path(), {})->info().details.chunks_note,
+            "1 of its 4 chunks is not stored and reads as its fill value, 7");
+
+  files.write("c/0/0/0", index_text({kNotStored, kNotStored, 32, 34}) + second);
+  EXPECT_EQ(files.read(), (std::vector<float>{7, 7, 7, 7, 7, 7, 'e', 'f'}));
+  EXPECT_EQ(open_source(files.path(), {})->info().details.chunks_note,
+            "3 of its 4 chunks are not stored and read as its fill value, 7");
+  SourceOptions all;
+  all.missing_chunks = MissingChunks::error;
+  EXPECT_TRUE(files.message(ErrorKind::input, all).starts_with("run.zarr/c/0/0/0: chunk at 0, 0, 0: is not stored; 3"))
+      << files.message(ErrorKind::input, all);
+}
+
+TEST(ZarrSource, ShardsInShardsThatPointOutside_AreRefused) {
+  const ZarrFiles files;
+  files.write("zarr.json", nested_zarr_json());
+  files.write("c/0/0/0", index_text({32, 36, kNotStored, kNotStored}) + "abcd" + index_text({2, 2, 35, 2}) + "behind");
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk 0 of the shard: chunk 1 of the shard is said to have 2 bytes at 35, and the shard "
+            "has 36 bytes; the file is damaged");
+  files.write("c/0/0/0", index_text({32, 3, kNotStored, kNotStored}) + "abc");
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk 0 of the shard: has 3 bytes, and the index of its shard alone takes 32; the file "
+            "is cut short or damaged");
+  files.write("c/0/0/0", index_text({32, 37, kNotStored, kNotStored}) + "abcd" + index_text({2, 2, 0, 2}));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/c/0/0/0: chunk 0 of the shard is said to have 37 bytes at 32, and the shard has 68 bytes; the "
+            "file is damaged");
+}
+
 TEST(ZarrSource, HostileSizes_AreRefusedBeforeMemoryIsTaken) {
   const ZarrFiles files;
   files.write("zarr.json", zarr_json("[100000,100000,100000]", "[65536,65536,1]"));
@@ -144,6 +199,16 @@ TEST(ZarrSource, HostileSizes_AreRefusedBeforeMemoryIsTaken) {
   EXPECT_EQ(files.message(ErrorKind::usage),
             "run.zarr: the index of one of its shards of 268435456 chunks takes 8.0 GiB, more than a sixteenth of "
             "--memory 512.0 MiB; give at least 131073MiB");
+  files.write(
+      "zarr.json",
+      zarr_json("[4096,4096,4096]", "[4096,4096,1024]",
+                R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[4096,4096,512],"codecs":[)"
+                R"({"name":"sharding_indexed","configuration":{"chunk_shape":[4,4,4],"codecs":[{"name":"bytes"}],)"
+                R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}]}}],)"
+                R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}]}}])"));
+  EXPECT_EQ(files.message(ErrorKind::usage),
+            "run.zarr: the index of one of its shards of 134217728 chunks takes 4.0 GiB, more than a sixteenth of "
+            "--memory 512.0 MiB; give at least 65537MiB");
   files.write("zarr.json", zarr_json("[4,4,9223372036854775807]", "[1,1,1]"));
   EXPECT_TRUE(files.message(ErrorKind::input).starts_with("run.zarr: ")) << files.message(ErrorKind::input);
 }

@@ -73,6 +73,7 @@ std::set<std::string> headers() {
                            "base/text",
                            "base/process_memory",
                            "base/simd",
+                           "base/transpose_lanes",
                            "nanovdb/grid_block",
                            "nanovdb/packed_blocks",
                            "packed/block_constants",
@@ -81,13 +82,13 @@ std::set<std::string> headers() {
                            "packed/block_scan",
                            "packed/block_steps",
                            "packed/coefficient_decoder",
+                           "packed/coefficient_values",
                            "packed/inverse_transform",
                            "packed/lattice_codes",
                            "nanovdb/packed_chunk",
                            "nanovdb/packed_data",
                            "nanovdb/packed_header",
-                           "packed/packed_layout",
-                           "packed/transpose_lanes"}) {
+                           "packed/packed_layout"}) {
     files.insert(cat("include/weir/format/", name, ".h"));
   }
   for (const char* name : {"image/colormap",

@@ -174,10 +174,17 @@ TEST(ZarrMetadata, Version3_CodecsOutOfPlaceAreRefused) {
       "is damaged");
   EXPECT_EQ(refusal_of_codecs(shards("[4,4,2]", R"([{"name":"bytes","configuration":{"endian":"little"}},"gzip"])")),
             "a: index_codecs has 'gzip', and weir reads indices with bytes and crc32c; write the array with those");
+  EXPECT_EQ(refusal_of_codecs(shards("[4,4,2]", index, R"({"name":"sharding_indexed"},"gzip")")),
+            "a: has other codecs beside sharding_indexed; write the array with those inside");
+  const auto inside = [&](const std::string& list) { return list.substr(1, list.size() - 2); };
   EXPECT_EQ(
-      refusal_of_codecs(shards("[4,4,2]", index, R"({"name":"sharding_indexed"})")),
-      "a: has shards in shards, or other codecs beside sharding_indexed; write the array with one level of shards, "
-      "and other codecs inside");
+      refusal_of_codecs(shards("[4,4,2]", index, inside(shards("[4,4,3]", index)))),
+      "a: its shards have 2 elements along axis 2, and the chunks in them 3, which does not divide that; the file "
+      "is damaged");
+  std::string deep = R"({"name":"bytes"})";
+  for (int level = 0; level < 5; ++level) deep = inside(shards("[4,4,4]", index, deep));
+  EXPECT_EQ(refusal_of_codecs(cat('[', deep, ']')),
+            "a: has more than 4 levels of shards in each other; write the array with fewer");
 }
 
 }  // namespace

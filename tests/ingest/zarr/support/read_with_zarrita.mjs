@@ -30,16 +30,39 @@ class Files {
   }
 }
 
+/** A shard in a shard, which zarrita does not know: an array of one object, which it does. */
+class InnerShard {
+  kind = "array_to_bytes";
+  constructor(configuration, chunk) {
+    const grid = { name: "regular", configuration: { chunk_shape: chunk.shape } };
+    const codecs = [{ name: "sharding_indexed", configuration }];
+    this.metadata = { zarr_format: 3, node_type: "array", shape: chunk.shape, data_type: chunk.dataType, chunk_grid: grid,
+                      chunk_key_encoding: { name: "default" }, codecs, fill_value: chunk.fillValue, attributes: {} };
+  }
+  static fromConfig(configuration, chunk) {
+    return new InnerShard(configuration, chunk);
+  }
+  async decode(shard) {
+    const store = new Files("");
+    const metadata = new TextEncoder().encode(JSON.stringify(this.metadata));
+    store.get = async (key) => (key.endsWith("zarr.json") ? metadata : shard);
+    const { data, shape, stride } = await zarr.get(await zarr.open.v3(store, { kind: "array" }));
+    return { data, shape, stride };
+  }
+}
+zarr.registry.set("sharding_indexed", () => InnerShard);
+
 async function write(name, file, index) {
   const array = await zarr.open(new Files(path.join(directory, file)), { kind: "array" });
   const part = await zarr.get(array, [...index, null, null, null]);
   const [z, y, x] = part.shape;
+  const at_index = (i) => (part.data.get ? part.data.get(i) : part.data[i]); // truth values lie in no plain array
   const values = new Float32Array(z * y * x);
   let at = 0;
   for (let k = 0; k < z; ++k)
     for (let j = 0; j < y; ++j)
       for (let i = 0; i < x; ++i)
-        values[at++] = Number(part.data[k * part.stride[0] + j * part.stride[1] + i * part.stride[2]]);
+        values[at++] = Number(at_index(k * part.stride[0] + j * part.stride[1] + i * part.stride[2]));
   fs.writeFileSync(path.join(directory, `${name}.zarrita`), new Uint8Array(values.buffer));
 }
 

@@ -215,6 +215,22 @@ for i, dtype in enumerate(["uint16", "float32", "float64", "int32", "uint8", "fl
     write_v3(out / f"{name}.zarr", array, (2, 8, 12, 16), [sharding], FILL,
              leave_out=lambda position: i == 3 and position == (0, 1, 1, 1))
     note(name, f"{name}.zarr", "", array, (1,))
+# Shards in shards, indices at either end.
+for i, dtype in enumerate(["uint16", "float32", "float64", "int32"]):
+    name = f"v3_nested_{i}"
+    array = values_of(dtype, (13, 17, 39))
+    array[4:8, :8, :] = FILL
+    array[8:, 8:, 24:] = FILL  # whole inner shards
+    codecs = [[], transpose(2, 1, 0)][i % 2] + [BYTES[i // 2 % 2]] + [GZIP, [], ZSTD, CRC][i]
+    shapes = [(2, 4, 4), (4, 4, 12), (8, 8, 24)][:2 + i % 2]
+    for level, shape in enumerate(shapes):
+        codecs = [{"name": "sharding_indexed",
+                   "configuration": {"chunk_shape": shape, "codecs": codecs,
+                                     "index_codecs": [BYTES[(i + level) % 2]] + (CRC if (i + level) % 3 else []),
+                                     "index_location": ["end", "start"][i // 2 * ((i + level) % 2)]}}]
+    write_v3(out / f"{name}.zarr", array, (8, 16, 24), codecs, FILL,
+             leave_out=lambda position: i == 3 and position == (1, 0, 1))
+    note(name, f"{name}.zarr", "", array)
 # In a zip file, stored and deflated, with names of axes and a group around it.
 for variant, method in enumerate([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED]):
     name = f"v3_zip_{variant}"

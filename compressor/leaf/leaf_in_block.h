@@ -1,0 +1,29 @@
+// The values of one leaf in a block, also where that comes in parts.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "format/base/index.h"
+#include "ingest/plan/block_stream.h"
+
+namespace weir {
+
+/// Where values that lie in a part are put.
+struct LeafRoom {
+  std::array<float, kLeafVoxels> values;
+  std::array<float, kLeafVoxels> distinct;
+};
+
+struct LeafInBlock {
+  std::span<const float> values;  ///< of `voxels`, x fastest; those of the leaf among them
+  Box voxels;
+  std::span<const float> distinct;  ///< of the leaf, where some repeat each other, without those; else empty
+  Index3 by{1, 1, 1};               ///< how many voxels have each along the axes
+};
+
+/// `inside`: the voxels of the leaf in the domain. Of a block in parts the values are those of the leaf alone, in
+/// `room`.
+LeafInBlock leaf_in_block(const Block& block, const Box& inside, LeafRoom& room);
+
+}  // namespace weir

@@ -1,0 +1,19 @@
+// Which leaves of a composited grid repeat the values of coarse cells.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ingest/amrex/level_cover.h"
+#include "ingest/amrex/plotfile.h"
+#include "ingest/source/repeated_part.h"
+
+namespace weir {
+
+/// Cuts `box`, of cells of the last of `levels`, into parts of whole leaves, as far as they lie in it. Each leaf
+/// repeats by the cells of the coarsest level that has one value for each group and no finer cells there; `cover` are
+/// the parts that give the box its values.
+std::vector<RepeatedPart> repeated_leaves(std::span<const PlotfileLevel> levels, std::span<const CoverPart> cover,
+                                          const Box& box);
+
+}  // namespace weir
