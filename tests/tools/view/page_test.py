@@ -442,8 +442,10 @@ def converts(browser, url):
     browser.click("#show-command")
     note = browser.wait("why not", lambda: "is not the source of" in (browser.text("#convert-note") or "") and
                         browser.text("#convert-note"))
-    equal(note, f"{source}: is not the source of {arguments[0]}, which had 1048576 bytes; put it there, or convert it again "
-                "from where it is")
+    with open(arguments[0] + ".json", encoding="utf-8") as file:
+        mtime = json.load(file)["source"]["mtime"]
+    equal(note, f"{source}: is not the source of {arguments[0]}, which had 1048576 bytes as of {mtime}; put it there, or convert "
+                "it again from where it is")
     equal((browser.text("#convert-forecast"), browser.text("#convert-size"), browser.visible("#convert-command")), ("", "", False))
     equal(browser.visible("#banner"), False)
 

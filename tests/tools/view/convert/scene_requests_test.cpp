@@ -85,6 +85,7 @@ TEST_F(SceneRequestsTest, Convert_WithoutMemoryForForecasts_SaysSo) {
 
 TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
   const std::string source = directory_ / "v_40x30x20_float32.raw";
+  const std::string mtime = sidecar().source.mtime;
   std::filesystem::resize_file(source, 100);
   ServedView served(volume_);
   ViewClient client(served.port());
@@ -93,7 +94,8 @@ TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_TRUE(failed["command"].is_null());
   EXPECT_EQ(failed["message"], cat(source, ": is not the source of ", volume_,
-                                   ", which had 96000 bytes; put it there, or convert it again from where it is"));
+                                   ", which had 96000 bytes as of ", mtime,
+                                   "; put it there, or convert it again from where it is"));
 }
 
 TEST_F(SceneRequestsTest, Convert_MakesTheFileWhereAllowed) {
