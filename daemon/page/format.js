@@ -33,6 +33,7 @@ export function bytes_per_s(value) {
 
 /** Three digits, as short as they can be written: "0.0125", "4.2e-7", "125000". */
 export function number(value) {
+  if (value === null) return kUnknown;  // JSON has no NaN and no infinity
   const short = Number(value.toPrecision(3));
   const size = Math.abs(short);
   return size !== 0 && (size < 1e-3 || size >= 1e6) ? short.toExponential().replace("e+", "e") : String(short);

@@ -53,7 +53,8 @@ JobViewer::JobViewer(boost::asio::io_context& io, const EventLog& log, std::stri
 void JobViewer::configure(const ServiceConfig& service) {
   const ServiceConfig before = std::exchange(service_, service);
   const bool same = before.viewer_memory == service.viewer_memory && before.threads == service.threads &&
-                    before.nice == service.nice && before.io_class == service.io_class;
+                    before.nice == service.nice && before.io_class == service.io_class &&
+                    before.bandwidth == service.bandwidth && before.work_dir == service.work_dir;
   if (!same && worker_) {
     stop();
     log_.info("viewer-ended", {{"file", file_}, {"reason", "the configuration is another"}});
@@ -76,13 +77,15 @@ void JobViewer::start(const std::string& file) {
   stop();
   file_ = file;
   const ViewerShares shares = shares_of(service_.viewer_memory);
-  const WorkerCommand command{
+  WorkerCommand command{
       program_,
       {"weir", "view", file, "--series", "--private", cat("--progress-fd=", kAnnounceDescriptor), "--progress=never",
        "--backend=cpu", cat("--memory=", shares.voxel_bytes), cat("--forecast-memory=", shares.forecast_bytes),
        cat("--pixels=", shares.pixels), cat("--viewers=", kViewers), cat("--threads=", service_.threads)},
       service_.nice,
       service_.io_class};
+  if (service_.bandwidth != 0) command.arguments.push_back(cat("--forecast-bandwidth=", service_.bandwidth));
+  if (!service_.work_dir.empty()) command.arguments.push_back(cat("--work-dir=", service_.work_dir));
   try {
     worker_ = std::make_unique<WorkerProcess>(
         io_, command, [this](std::string_view line) { heard(line); }, [this](const WorkerEnd& end) { ended(end); });

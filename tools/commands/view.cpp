@@ -40,6 +40,7 @@ struct ViewArguments {
   bool series = false;
   bool for_program = false;
   std::string forecast_memory;
+  std::string forecast_bandwidth;
   std::string work_dir;
   GivenOptions backend;
   GivenOptions source;
@@ -73,7 +74,15 @@ void set_forecasts(const ViewArguments& arguments, ViewSettings& settings) {
   settings.forecast = memory != std::uint64_t{0};
   if (memory) settings.forecast_options.push_back(cat("--memory=", *memory));
   if (given("backend") == "cpu") settings.forecast_options.emplace_back("--backend=cpu");
-  if (!given("threads").empty()) settings.forecast_options.push_back(cat("--threads=", given("threads")));
+  // No --threads: it takes as many as its memory holds, where a number that is asked for may not fit.
+  if (!arguments.work_dir.empty()) settings.forecast_options.push_back(cat("--work-dir=", arguments.work_dir));
+  if (!arguments.forecast_bandwidth.empty()) {
+    if (parse_bytes(arguments.forecast_bandwidth).value_or(0) == 0) {
+      throw Error(ErrorKind::usage, compose(option("forecast-bandwidth", arguments.forecast_bandwidth),
+                                            " must be a size above 0, like 200MB (a second)"));
+    }
+    settings.forecast_options.push_back(cat("--bandwidth=", arguments.forecast_bandwidth));
+  }
 }
 
 ViewSettings settings_of(const ViewArguments& arguments) {
@@ -223,7 +232,13 @@ void add_view(CLI::App& app) {
           "of a forecast for \"Convert for this scene\", a process of its own; 0: none. As --memory, or as weir "
           "convert takes; none with --private")
       ->type_name("BYTES");
-  command->add_option("--work-dir", arguments->work_dir, "where that of an input of convert is kept until the end")
+  command
+      ->add_option("--forecast-bandwidth", arguments->forecast_bandwidth,
+                   "most bytes per second that a forecast reads and writes, in the long run; default: no limit")
+      ->type_name("SIZE");
+  command
+      ->add_option("--work-dir", arguments->work_dir,
+                   "where that of an input of convert is kept until the end, and forecasts keep what they need")
       ->type_name("DIR");
   add_backend_options(*command, arguments->backend);
   add_input_options(*command, arguments->source);

@@ -25,9 +25,9 @@ constexpr ConfigKey kConfigKeys[] = {
     {"service", "token_file", "none", "file with the token, not readable by everybody"},
     {"service", "memory", "\"1GiB\"", "of the service, 64 MiB, all jobs and the viewer together"},
     {"service", "viewer_memory", "an eighth of memory",
-     "of it for the viewer of results, from 128 MiB on; 0: there is none. By default 192 to 512 MiB, and 0 where "
-     "memory is "
-     "below 1 GiB or the jobs would get too little"},
+     "of it for the viewer of results, from 128 MiB on; 0: there is none. By default 192 MiB at least and 512 MiB at "
+     "most; as little as 128 MiB where the jobs would get too little beside 192; and 0 where they would even so or "
+     "memory is below 1 GiB"},
     {"service", "jobs", "1", "conversions at once"},
     {"service", "threads", "0", "of each job; 0: all of the machine's that the memory holds"},
     {"service", "nice", "0", "of the jobs, 0 to 19"},

@@ -11,7 +11,6 @@
 #include "daemon/http/socket_token.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "tools/report/read_sidecar.h"
 #include "tools/view/base/file_identity.h"
 #include "tools/view/jpeg_picture.h"
 #include "tools/view/value_probe.h"
@@ -71,7 +70,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       scene_requests_(io,
                       {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast,
                        settings_.forecast_options},
-                      [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
+                      open_files_, [this](ViewerId id, const Json& message) { send(id, line(message)); }) {
   state_text_ = line({{"title", files_.title},
                       {"series", files_.key},
                       {"version", settings_.version},
@@ -327,22 +326,8 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
 }
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, const ConvertRequest& request) {
-  try {
-    const std::string volume = file_of(viewer.view ? viewer.view->step : 0, 0);
-    const std::optional<Sidecar> sidecar = own_sidecar(*open_files_.get(volume));
-    if (!sidecar) {
-      throw input_error(volume,
-                        "has no certificate of its own beside it, which would name its source; convert it again");
-    }
-    scene_requests_.handle(id, volume, *sidecar, request);
-  } catch (const std::exception& error) {
-    send(id, line({{"type", "conversion"},
-                   {"id", request.id},
-                   {"command", nullptr},
-                   {"bytes", nullptr},
-                   {"state", "failed"},
-                   {"message", error.what()}}));
-  }
+  const std::size_t step = request.step ? *request.step : viewer.view ? viewer.view->step : 0;
+  scene_requests_.handle(id, step, file_of(step, 0), request);
 }
 
 RenderEvents ViewServer::render_events() {

@@ -76,14 +76,15 @@ void ViewerSocket::send_text(std::string text) { send({std::move(text), false});
 void ViewerSocket::send_picture(std::string message) {
   taking_.expires_after(limits_.taking);
   taking_.async_wait([self = shared_from_this()](const error_code& error) {
-    if (!error && !self->ended_) self->end("it takes no pictures");
+    // One that fired just before the picture was taken, or the next one sent, has been set anew since.
+    if (error || self->ended_ || self->taking_.expiry() > std::chrono::steady_clock::now()) return;
+    self->end("it takes no pictures");
   });
   send({std::move(message), true});
 }
 
 void ViewerSocket::taken() {
-  error_code ignored;
-  taking_.cancel(ignored);
+  taking_.expires_at(std::chrono::steady_clock::time_point::max());  // cancels the wait, too
 }
 
 void ViewerSocket::send(Outgoing message) {

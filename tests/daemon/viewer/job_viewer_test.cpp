@@ -310,6 +310,18 @@ TEST_F(JobViewerTest, ForecastsHaveAShareOfTheMemory) {
   EXPECT_EQ(shares(512), "--memory=192937984 --forecast-memory=134217728");
 }
 
+TEST_F(JobViewerTest, ForecastsKeepToBandwidthAndWorkDirectory) {
+  program("exec sleep 60");
+  JobViewer viewer(io_, log_, program_);
+  ServiceConfig config = service();
+  config.bandwidth = 1000;
+  config.work_dir = "/scratch";
+  viewer.configure(config);
+  viewer.open("/out/s_1.nvdb", false);
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(directory_ / "calls"); }));
+  EXPECT_TRUE(calls().back().ends_with(" --threads=3 --forecast-bandwidth=1000 --work-dir=/scratch")) << calls().back();
+}
+
 TEST_F(JobViewerTest, NoMemory_IsOff_AndAnotherConfigurationEndsTheOldOne) {
   answering_program();
   JobViewer viewer(io_, log_, program_);

@@ -84,6 +84,19 @@ TEST_F(ViewPageTest, ComparesTwoFiles) {
 
 TEST_F(ViewPageTest, ShowsTheConversion) { run("converts", {cloud("a.nvdb")}); }
 
+TEST_F(ViewPageTest, AsksForTheConversionAgain) { run("asks_again", {cloud("a.nvdb"), "--allow-convert"}); }
+
+TEST_F(ViewPageTest, ShowsAFileWithValuesThatAreNotFinite) {
+  const std::string raw = directory_ / "n_16x16x16_float32.raw";
+  std::string bytes(std::size_t{16} * 16 * 16 * 4, '\0');
+  bytes.replace(bytes.size() - 4, 4, std::string("\0\0\x80\x7f", 4));  // infinity
+  write_file(raw, bytes);
+  const auto made = run_weir(
+      {"convert", raw, "-o", directory_ / "n.nvdb", "--encoding", "float", "--lossless", "--nonfinite", "keep"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  run("shows_values_that_are_not_finite", {directory_ / "n.nvdb"});
+}
+
 TEST_F(ViewPageTest, SavedSceneGivesTheSamePicture) { run("saved_scene_gives_the_same_picture", {cloud("a.nvdb")}); }
 
 TEST_F(ViewPageTest, FitsWindows) { run("fits_windows", {cloud("a.nvdb")}); }

@@ -436,16 +436,96 @@ def converts(browser, url):
     browser.wait("the estimate", lambda: browser.text("#convert-forecast") ==
                  "Expected: about 2.1 MiB (2.0 MiB to 2.1 MiB), PSNR of what is shown about 50.1 dB (49.5 dB to 51.0 dB), of all "
                  "voxels about 28.2 dB, in about 28 s: estimated by a sample of 24 % of the voxels.", 60)
+    # A figure that is not finite comes as null.
+    browser.script("""
+        const known = JSON.parse;
+        JSON.parse = (text) => {
+            const message = known(text);
+            if (message.type === 'forecast') message.visible.psnr_db.value = null;
+            return message;
+        }""")
+    browser.click("#show-command")
+    browser.wait("the estimate without it", lambda: browser.text("#convert-forecast") ==
+                 "Expected: about 2.1 MiB (2.0 MiB to 2.1 MiB), PSNR of all voxels about 28.2 dB, in about 28 s: estimated by a "
+                 "sample of 24 % of the voxels.", 60)
+    # An amount that the server would refuse leaves nothing of an earlier question.
+    for amount, why in (("250", "from 1 to 200"), ("", "from 1 to 200")):
+        browser.script("""
+            const psnr = document.querySelector('#psnr');
+            psnr.value = arguments[0];
+            psnr.dispatchEvent(new Event('change'))""", amount)
+        equal(browser.text("#convert-note"), f"The PSNR is a number {why}.")
+        equal((browser.text("#convert-forecast"), browser.visible("#convert-command")), ("", False))
+    browser.script("""
+        const psnr = document.querySelector('#psnr');
+        psnr.value = 50;
+        psnr.dispatchEvent(new Event('change'))""")
+    browser.wait("the command", lambda: browser.text("#convert-command"))
     # Without its source there is nothing to convert.
     source = pathlib.Path(command.split()[2])
     source.rename(source.with_suffix(".gone"))
     browser.click("#show-command")
     note = browser.wait("why not", lambda: "is not the source of" in (browser.text("#convert-note") or "") and
                         browser.text("#convert-note"))
-    equal(note, f"{source}: is not the source of {arguments[0]}, which had 1048576 bytes; put it there, or convert it again "
-                "from where it is")
+    with open(arguments[0] + ".json", encoding="utf-8") as file:
+        mtime = json.load(file)["source"]["mtime"]
+    equal(note, f"{source}: is not the source of {arguments[0]}, which had 1048576 bytes as of {mtime}; put it there, or convert "
+                "it again from where it is")
     equal((browser.text("#convert-forecast"), browser.text("#convert-size"), browser.visible("#convert-command")), ("", "", False))
     equal(browser.visible("#banner"), False)
+
+
+def asks_again(browser, url):
+    """Messages of a server that is made up: the page's questions go to window.asked, and window.tell answers."""
+    loaded(browser, url)
+    browser.script("""
+        window.asked = [];
+        const sent = WebSocket.prototype.send;
+        WebSocket.prototype.send = function(text) {
+            window.socket = this;
+            const message = JSON.parse(text);
+            if (message.type === 'convert') window.asked.push(message);
+            else sent.call(this, text);
+        };
+        window.tell = (message) => socket.dispatchEvent(new MessageEvent('message', {data: JSON.stringify(message)}));
+        document.querySelector('#convert-panel').open = true""")
+    asked = lambda number: browser.wait(f"question {number}", lambda: len(browser.script("return asked")) == number and
+                                        browser.script("return asked.at(-1)"))
+    tell = lambda message: browser.script("tell(arguments[0])", message)
+    shown = lambda: tuple(browser.text(f"#convert-{part}") or "" for part in ("command", "note", "forecast"))
+    of = lambda question, state, message="": {"type": "conversion", "id": question["id"], "command": f"weir {question['id']}",
+                                              "bytes": 1, "state": state, "message": message}
+    first = asked(1)
+    equal((first["step"], first["run"]), (0, False))
+    tell(of(first, "shown"))
+    # A run leaves the forecast that is on its way alone, and its states are its own.
+    browser.click("#run-convert")
+    run = asked(2)
+    equal(run["run"], True)
+    tell(of(run, "running"))
+    tell({"type": "forecast", "id": first["id"], "state": "failed", "message": "for a test"})
+    equal(shown(), (f"weir {run['id']}", "running", "No forecast: for a test."))
+    browser.click("#show-command")
+    newest = asked(3)
+    tell(of(newest, "shown"))
+    equal(shown(), (f"weir {newest['id']}", "running", "Being tried out \u2026"))
+    equal(browser.script("return document.querySelector('#run-convert').disabled"), True)
+    tell(of(run, "done", "a_scene.nvdb"))
+    equal(shown(), (f"weir {newest['id']}", "done: a_scene.nvdb", "Being tried out \u2026"))
+    equal(browser.script("return document.querySelector('#run-convert').disabled"), False)
+    # Values of the series that are others ask again, and so does a connection that comes back.
+    browser.script("""
+        tell({type: 'steps', steps: ['a.nvdb'], order: [0], range: [-1, 7], background: 0, opacity: [0, 1]})""")
+    assert "range = [-1, 7]" in asked(4)["scene"]
+    browser.script("socket.close()")
+    asked(5)
+
+
+def shows_values_that_are_not_finite(browser, url):
+    loaded(browser, url)
+    browser.wait("the certificate", lambda: "Values" in (browser.text("#certificate") or ""))
+    assert "0 to \u2013" in browser.text("#certificate"), browser.text("#certificate")
+    equal(browser.complaints(), [])
 
 
 def saved_scene_gives_the_same_picture(browser, url):

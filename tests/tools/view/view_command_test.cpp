@@ -188,6 +188,36 @@ TEST_F(ViewCommandTest, ForecastMemory_IsThatOfAConversion) {
                  "--forecast-memory 1MiB must be a size of at least 64.0 MiB, like 512MiB, or 0 for no forecast");
 }
 
+TEST_F(ViewCommandTest, Forecast_TakesTheThreadsThatItsMemoryHolds_AndLeavesNothingBehind) {
+  const std::string temporary = directory_ / "tmp";
+  const std::string work = directory_ / "work";
+  for (const std::string& made : {temporary, work}) std::filesystem::create_directory(made);
+  CommandOptions options;
+  options.environment = {"TMPDIR=" + temporary};
+  ChildProcess child({WEIR_COMMAND, "view", volume_, "--threads", "16", "--forecast-memory", "64MiB",
+                      "--forecast-bandwidth", "1GB", "--work-dir", work},
+                     options);
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  ViewClient client(port);
+  client.send({{"type", "convert"},
+               {"id", 1},
+               {"scene", "mode = \"dvr\"\n[volume]\nrange = [0, 250]\nopacity = [[0, 0], [1, 1]]\n"},
+               {"psnr", 45},
+               {"encoding", "packed"}});
+  const auto forecast = client.text("forecast").value();
+  EXPECT_EQ(forecast["state"], "done") << forecast;
+  child.send_signal(SIGKILL);
+  child.wait();
+  EXPECT_EQ(list_directory(temporary), std::vector<std::string>{});
+  EXPECT_EQ(list_directory(work), std::vector<std::string>{});
+}
+
+TEST_F(ViewCommandTest, ForecastBandwidth_IsThatOfAConversion) {
+  expect_refused({"view", volume_, "--forecast-bandwidth", "0"}, 2,
+                 "--forecast-bandwidth 0 must be a size above 0, like 200MB (a second)");
+}
+
 TEST_F(ViewCommandTest, OptionOfASource_IsRefusedWithAFile) {
   expect_refused({"view", volume_, "--dims", "1,2,3"}, 2,
                  cat("--dims says how to read a source, and ", volume_, " is shown as it is; leave it out"));

@@ -49,6 +49,10 @@ std::string text(const nlohmann::json& message, const char* key) {
   return value.get<std::string>();
 }
 
+std::size_t read_step(const nlohmann::json& message, std::size_t steps) {
+  return static_cast<std::size_t>(whole(message, "step", 0, static_cast<std::int64_t>(steps) - 1));
+}
+
 constexpr std::int64_t kMostId = std::int64_t{1} << 53;
 
 ProbeRequest read_probe(const nlohmann::json& message, bool against) {
@@ -62,7 +66,7 @@ ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool aga
   view.id = whole(message, "id", 0, kMostId);
   view.width = static_cast<std::int32_t>(whole(message, "width", 1, kLongestViewEdge));
   view.height = static_cast<std::int32_t>(whole(message, "height", 1, kLongestViewEdge));
-  view.step = static_cast<std::size_t>(whole(message, "step", 0, static_cast<std::int64_t>(steps) - 1));
+  view.step = read_step(message, steps);
   view.moving = flag(message, "moving");
   view.against = flag(message, "against");
   if (view.against && !against) refuse_key("against", "needs a second file; start weir view with --against");
@@ -76,7 +80,7 @@ ViewRequest read_view(const nlohmann::json& message, std::size_t steps, bool aga
   return view;
 }
 
-ConvertRequest read_convert(const nlohmann::json& message) {
+ConvertRequest read_convert(const nlohmann::json& message, std::size_t steps) {
   ConvertRequest request;
   request.id = whole(message, "id", 0, kMostId);
   request.scene_text = text(message, "scene");
@@ -90,6 +94,7 @@ ConvertRequest read_convert(const nlohmann::json& message) {
   request.encoding = text(message, "encoding");
   if (request.encoding != "packed" && request.encoding != "auto") refuse_key("encoding", "must be packed or auto");
   request.run = flag(message, "run");
+  if (message.contains("step")) request.step = read_step(message, steps);
   return request;
 }
 
@@ -103,7 +108,7 @@ ClientMessage parse_client_message(std::string_view text_of_message, std::size_t
   if (type == "view") return read_view(message, steps, against, pixels);
   if (type == "shown") return ShownMessage{whole(message, "frame", 0, kMostId)};
   if (type == "probe") return read_probe(message, against);
-  if (type == "convert") return read_convert(message);
+  if (type == "convert") return read_convert(message, steps);
   refuse_key("type", "must be view, shown, probe or convert");
 }
 

@@ -56,6 +56,7 @@ struct ConvertRequest {
   std::optional<double> rate;  ///< the file's size, as `weir convert --rate` has it
   double psnr_db = 0;          ///< where there is no rate: of what the scene shows, at least
   bool run = false;
+  std::optional<std::size_t> step;  ///< else the one of the newest view
 };
 
 using ClientMessage = std::variant<ViewRequest, ShownMessage, ProbeRequest, ConvertRequest>;

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/io/real_path.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/convert_command.h"
 
@@ -21,29 +21,52 @@ namespace fs = std::filesystem;
 // No option, whatever it begins with.
 std::string as_path(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
 
-std::string named_source(const std::string& volume, const Sidecar& sidecar) {
-  std::error_code failure;
-  // Relative to where the conversion was started, which may well be where this program was: the very file, then.
-  const std::string& recorded = sidecar.source.path;
+// Of a directory, and of the one file of several that has the path, no more is recorded that can be seen at a glance.
+bool is_source_of(const std::string& path, const Sidecar& sidecar) {
   struct stat status {};
-  if (::stat(recorded.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
-      utc_text(state_of(recorded, status).mtime_ns) == sidecar.source.mtime &&
-      static_cast<std::uint64_t>(status.st_size) == sidecar.source.bytes) {
-    return recorded;
-  }
+  if (::stat(path.c_str(), &status) != 0) return false;
+  if (S_ISDIR(status.st_mode)) return true;
+  const bool same_size = static_cast<std::uint64_t>(status.st_size) == sidecar.source.bytes;
+  return same_size &&
+         (!sidecar.source.files_digest.empty() || utc_text(state_of(path, status).mtime_ns) == sidecar.source.mtime);
+}
+
+std::string named_source(const std::string& volume, const Sidecar& sidecar) {
+  // Relative to where the conversion was started, which may well be where this program was, or moved with the volume.
+  const std::string& recorded = sidecar.source.path;
+  if (is_source_of(recorded, sidecar)) return recorded;
   std::string path = (fs::path(volume).parent_path() / recorded).string();
-  const bool directory = fs::is_directory(path, failure);
-  if (!is_there(path) || (!directory && fs::file_size(path, failure) != sidecar.source.bytes)) {
-    throw input_error(path, cat("is not the source of ", volume, ", which had ", sidecar.source.bytes,
-                                " bytes; put it there, or convert it again from where it is"));
-  }
-  return path;
+  if (is_source_of(path, sidecar)) return path;
+  throw input_error(path, cat("is not the source of ", volume, ", which had ", sidecar.source.bytes, " bytes as of ",
+                              sidecar.source.mtime, "; put it there, or convert it again from where it is"));
+}
+
+std::string index_text(const std::vector<std::int64_t>& index) {
+  std::string text;
+  for (const std::int64_t position : index) text += cat(text.empty() ? "" : ",", position);
+  return text;
+}
+
+// How the volume was read. What was typed may have chosen several: "*", "time=*"; the sidecar says which one this is.
+std::string recorded_option(const Sidecar& sidecar, const std::string& key) {
+  const auto& given = sidecar.weir.options;
+  const bool lengths = given.contains("magnitude");  // of several datasets
+  if (key == "dataset") return lengths ? "" : sidecar.source.dataset;
+  if (key == "component") return lengths ? "" : sidecar.source.component;
+  if (key == "index") return index_text(sidecar.source.index);
+  const auto found = given.find(key);
+  return found == given.end() ? "" : found->second;
 }
 
 }  // namespace
 
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request) {
+  if (const auto& level = sidecar.source.level) {
+    throw input_error(volume, cat("is level ", level->number, " of ", level->count,
+                                  ", which no conversion makes alone; convert the source without --levels separate to "
+                                  "have a volume of all levels, and view that"));
+  }
   const std::string read = source.empty() ? named_source(volume, sidecar) : source;
   fs::path beside(source.empty() ? volume : source);
   if (!beside.has_filename()) beside = beside.parent_path();
@@ -52,11 +75,10 @@ SceneConversion scene_conversion(const std::string& volume, const std::string& s
   std::vector<std::string>& words = conversion.arguments;
   words = {"convert", as_path(read)};
   for (const ConversionOption& option : input_options()) {
-    const auto given = sidecar.weir.options.find(std::string(option.row.key));
-    if (given == sidecar.weir.options.end() || given->second.empty()) continue;
-    if (option.row.flag() && given->second != "true") continue;
+    const std::string value = recorded_option(sidecar, std::string(option.row.key));
+    if (value.empty() || (option.row.flag() && value != "true")) continue;
     words.push_back(cat("--", option.row.key));
-    if (!option.row.flag()) words.push_back(given->second);
+    if (!option.row.flag()) words.push_back(value);
   }
   if (sidecar.nonfinite.count > 0) words.insert(words.end(), {"--nonfinite", sidecar.nonfinite.policy});
   words.insert(words.end(), {"--encoding", request.encoding, request.rate ? "--rate" : "--psnr",

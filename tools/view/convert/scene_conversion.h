@@ -16,8 +16,9 @@ struct SceneConversion {
 };
 
 /// From `source`, of which `volume` is a preview, to "NAME_scene.nvdb" beside it; where that is empty, from the source
-/// that `sidecar` names, a relative path below the volume's directory, to a file beside the volume. It is read as the
-/// sidecar says. Throws Error(input) where that source is not there, or of another size.
+/// that `sidecar` names, a relative path as it leads from here or from the volume's directory, to a file beside the
+/// volume. It is read as the sidecar says. Throws Error(input) where that source is not there, of another size or
+/// written to since, and where the volume is one level of several.
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request);
 

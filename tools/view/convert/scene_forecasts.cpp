@@ -20,13 +20,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostKept = 256;  // answers, some 300 bytes each
 constexpr int kNice = 10;               // pictures come first
 constexpr std::chrono::milliseconds kReapWait{100};
+constexpr std::chrono::milliseconds kSettle{200};  // of a question, before a process is started for it
+constexpr std::chrono::milliseconds kGrace{500};   // for one that is given up to remove what it keeps on disk
 
 Json failure(const std::string& message) { return {{"state", "failed"}, {"message", message}}; }
 
-// Of what `weir convert --dry-run --json` printed.
-Json answer_of(const std::string& text) {
-  const Json found = Json::parse(text, nullptr, false);
-  if (!found.is_object()) return failure("weir convert --dry-run gave no figures");
+Json figures_of(const Json& found) {
   const Json& error = found.at("error");
   const Json& shown = found.at("visible");
   return {{"state", "done"},
@@ -44,18 +43,40 @@ Json answer_of(const std::string& text) {
           {"total_s", found.at("time").is_null() ? Json() : found.at("time").at("total_s")}};
 }
 
+// Of what `weir convert --dry-run --json` printed.
+Json answer_of(const std::string& text) {
+  try {
+    return figures_of(Json::parse(text));
+  } catch (const Json::exception&) {
+    return failure("weir convert --dry-run gave no figures of one volume");
+  }
+}
+
+// Its reader can set what the share comes from, and not --memory.
+std::string reason_of(const WorkerEnd& end) {
+  constexpr std::string_view kRemedy = "give at least ";
+  const std::string reason = worker_reason("convert", end);
+  if (reason.find("--memory") == std::string::npos) return reason;
+  const std::size_t remedy = reason.rfind(kRemedy);
+  const std::string needs =
+      remedy == std::string::npos ? "" : cat(", it needs ", reason.substr(remedy + kRemedy.size()));
+  return cat(
+      "the memory set aside for a forecast is too little for this volume", needs,
+      "; give more by --forecast-memory of weir view, or by viewer_memory of weir watch, of which it is a share");
+}
+
 }  // namespace
 
 SceneForecasts::SceneForecasts(boost::asio::io_context& io, std::string program, std::vector<std::string> options,
                                Told told)
-    : io_(io), program_(std::move(program)), options_(std::move(options)), told_(std::move(told)) {}
+    : io_(io), program_(std::move(program)), options_(std::move(options)), told_(std::move(told)), settle_(io) {}
 
 SceneForecasts::~SceneForecasts() = default;
 
 void SceneForecasts::ask(ViewerId viewer, std::int64_t id, const SceneConversion& conversion,
                          const std::string& scene_text) {
   const std::string key = cat(file_identity(conversion.arguments.at(1)), '\n', conversion.text, '\n', scene_text);
-  waiting_[viewer] = {++turns_, id, key, conversion, scene_text};
+  waiting_[viewer] = {std::chrono::steady_clock::now(), id, key, conversion, scene_text};
   next();
 }
 
@@ -69,49 +90,77 @@ bool SceneForecasts::is_waited_for(const std::string& key) const {
 }
 
 void SceneForecasts::next() {
-  std::vector<std::pair<ViewerId, Json>> known;
-  for (;;) {
-    std::erase_if(waiting_, [&](const auto& asked) {
-      const auto found = answers_.find(asked.second.key);
-      if (found == answers_.end()) return false;
-      Json answer{{"type", "forecast"}, {"id", asked.second.id}};
-      answer.update(found->second);
-      known.emplace_back(asked.first, std::move(answer));
-      return true;
-    });
-    if (worker_ && !is_waited_for(running_)) worker_.reset();
-    if (worker_ || waiting_.empty()) break;
-    start(std::min_element(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) {
-            return a.second.turn < b.second.turn;
-          })->second);
+  std::vector<std::string> known;
+  for (const auto& [viewer, asked] : waiting_) {
+    if (answers_.contains(asked.key)) known.push_back(asked.key);
   }
-  for (const auto& [viewer, answer] : known) told_(viewer, answer);  // last: one that reads nothing is gone after it
+  for (const std::string& key : known) answer(key, answers_.at(key));
+  if (worker_ && !ending_ && !is_waited_for(running_)) {
+    ending_ = true;
+    worker_->stop(kGrace);
+  }
+  settle_.cancel();
+  if (!worker_ && !waiting_.empty()) {
+    const Question& first = std::min_element(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) {
+                              return a.second.asked < b.second.asked;
+                            })->second;
+    settle_.expires_at(first.asked + kSettle);
+    settle_.async_wait([this, key = first.key, alive = std::weak_ptr(alive_)](const boost::system::error_code& error) {
+      if (!error && alive.lock() && !worker_) start(key);
+    });
+  }
+  for (const auto& [viewer, text] : std::exchange(due_, {})) told_(viewer, text);  // last: it may forget the viewer
 }
 
 // Where that fails there is an answer, too.
-void SceneForecasts::start(const Question& question) {
-  running_ = question.key;
+void SceneForecasts::start(const std::string& key) {
+  const auto asked =
+      std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& each) { return each.second.key == key; });
+  if (asked == waiting_.end()) return next();  // another question came in the timer's place
+  running_ = key;
+  ending_ = false;
   try {
     std::vector<std::string> arguments =
-        conversion_command(question.conversion, kept_scene_.write(question.scene_text));
+        conversion_command(asked->second.conversion, kept_scene_.write(asked->second.scene_text));
     // An output of before is not in the way of a forecast.
     arguments.insert(arguments.end(), {"--overwrite", "--dry-run", "--json", "--quiet"});
     arguments.insert(arguments.end(), options_.begin(), options_.end());
     worker_ = std::make_unique<WorkerProcess>(
         io_, WorkerCommand{program_, arguments, kNice, IoClass::none, kReapWait}, [](std::string_view) {},
-        [this](const WorkerEnd& end) {
-          worker_.reset();
-          keep(running_, end.exit_code == 0 ? answer_of(end.log) : failure(worker_reason("convert", end)));
-          next();
-        });
+        [this](const WorkerEnd& end) { ended(end); });
   } catch (const Error& error) {
-    keep(running_, failure(error.what()));
+    answer(key, failure(error.what()));
+    next();
   }
 }
 
-void SceneForecasts::keep(const std::string& key, Json answer) {
+// One that was given up says nothing of its question, which may have been asked again meanwhile.
+void SceneForecasts::ended(const WorkerEnd& end) {
+  worker_.reset();
+  if (end.exit_code == 0) {
+    const Json found = answer_of(end.log);
+    if (found.at("state") == "done") keep(running_, found);
+    answer(running_, found);
+  } else if (!ending_) {
+    answer(running_, failure(reason_of(end)));
+  }
+  next();
+}
+
+void SceneForecasts::answer(const std::string& key, const Json& found) {
+  std::erase_if(waiting_, [&](const auto& asked) {
+    if (asked.second.key != key) return false;
+    Json text{{"type", "forecast"}, {"id", asked.second.id}};
+    text.update(found);
+    due_.emplace_back(asked.first, std::move(text));
+    return true;
+  });
+}
+
+// What failed may succeed the next time.
+void SceneForecasts::keep(const std::string& key, const Json& found) {
   if (answers_.size() >= kMostKept) answers_.clear();
-  answers_[key] = std::move(answer);
+  answers_[key] = found;
 }
 
 }  // namespace weir

@@ -1,15 +1,19 @@
 // What conversions for scenes would come to: `weir convert --dry-run`, as a process of its own, one at a time. A page's
-// newest question counts; one that nobody waits for any more is given up. What was found is kept for whoever asks the
-// same. Lives on the io_context's thread.
+// newest question counts, once it has stood for a moment; one that nobody waits for any more is given up, and the next
+// one begins when its process has ended. What was found is kept for whoever asks the same; a failure is not. Lives on
+// the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/view/base/view_message.h"
@@ -19,6 +23,7 @@
 namespace weir {
 
 class WorkerProcess;
+struct WorkerEnd;
 
 class SceneForecasts {
  public:
@@ -36,7 +41,7 @@ class SceneForecasts {
 
  private:
   struct Question {
-    std::uint64_t turn = 0;  // those asked first are answered first
+    std::chrono::steady_clock::time_point asked;  // those asked first are answered first
     std::int64_t id = 0;
     std::string key;  // what is asked, as a text
     SceneConversion conversion;
@@ -44,8 +49,10 @@ class SceneForecasts {
   };
 
   void next();
-  void start(const Question& question);
-  void keep(const std::string& key, nlohmann::ordered_json answer);
+  void start(const std::string& key);
+  void ended(const WorkerEnd& end);
+  void answer(const std::string& key, const nlohmann::ordered_json& found);
+  void keep(const std::string& key, const nlohmann::ordered_json& found);
   bool is_waited_for(const std::string& key) const;
 
   boost::asio::io_context& io_;
@@ -53,10 +60,13 @@ class SceneForecasts {
   const std::vector<std::string> options_;
   const Told told_;
   std::map<ViewerId, Question> waiting_;
-  std::uint64_t turns_ = 0;
-  std::map<std::string, nlohmann::ordered_json> answers_;  // by key
+  std::vector<std::pair<ViewerId, nlohmann::ordered_json>> due_;  // answers that are told next
+  std::map<std::string, nlohmann::ordered_json> answers_;         // by key
   KeptScene kept_scene_;
   std::string running_;  // key of what the worker finds
+  bool ending_ = false;  // it was given up
+  boost::asio::steady_timer settle_;
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // a timer that has fired may still be waiting
   std::unique_ptr<WorkerProcess> worker_;
 };
 

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "format/sidecar/sidecar.h"
+#include "tools/view/base/open_files.h"
 #include "tools/view/base/view_message.h"
 #include "tools/view/convert/scene_converter.h"
 #include "tools/view/convert/scene_forecasts.h"
@@ -27,11 +28,12 @@ class SceneRequests {
  public:
   using Send = std::function<void(ViewerId viewer, const nlohmann::ordered_json& message)>;
 
-  SceneRequests(boost::asio::io_context& io, SceneRequestRules rules, Send send);
+  /// `files` must outlive the object.
+  SceneRequests(boost::asio::io_context& io, SceneRequestRules rules, OpenFiles& files, Send send);
 
-  /// Answers by `send`, now and as more is known. Throws Error(input) where the source of `volume`, which has that
-  /// sidecar, is not there.
-  void handle(ViewerId viewer, const std::string& volume, const Sidecar& sidecar, const ConvertRequest& request);
+  /// Answers by `send`, now and as more is known, for the volume of that step, without a command where there is none:
+  /// its sidecar or its source is not there.
+  void handle(ViewerId viewer, std::size_t step, const std::string& volume, const ConvertRequest& request);
   /// The viewer is gone.
   void forget(ViewerId viewer) { forecasts_.forget(viewer); }
 
@@ -39,6 +41,7 @@ class SceneRequests {
   void forecast(ViewerId viewer, const SceneConversion& conversion, const ConvertRequest& request);
 
   const SceneRequestRules rules_;
+  OpenFiles& files_;
   const Send send_;
   SceneConverter converter_;
   SceneForecasts forecasts_;

@@ -130,6 +130,7 @@ function receive_steps(message) {
   else if (!message.order.includes(look.step)) show_banner(`${steps.names[look.step]} is no longer there.`);
   if (!other_values || found !== undefined) return;
   show_look();
+  conversion.changed();
   if (look.range === null) ask_picture(false);
 }
 
@@ -138,6 +139,7 @@ function receive(message) {
     const before = scene();
     files.add(message);
     show_look();
+    conversion.changed();
     if (message.type === "facts") show_shown_file();
     // A picture that was asked for without these facts may have been of another box or range.
     if (!drawn_first || scene() !== before) ask_picture(steps.playing);
@@ -197,7 +199,12 @@ const conversion = new Conversion({
     // What can be seen has to be said: the curve of a look that has no points.
     return looks.to_scene({...look, opacity: look.opacity ?? simplified(curve_of(shown))}, shown, aspect());
   },
-  kept: () => JSON.stringify([look.mode, look.opacity, look.range, look.iso, look.box, look.step]),
+  step: () => look.step,
+  kept: () => {
+    const shown = facts();
+    return JSON.stringify([look.mode, look.opacity, look.range, look.iso, look.box, look.step, shown?.file, shown?.bytes,
+                           shown?.box, shown?.range, shown?.background, shown?.certificate]);
+  },
   send: (message) => session.connection.send(message),
 });
 const steps = new Steps(go_to_step);

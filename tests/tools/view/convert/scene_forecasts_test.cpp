@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -45,15 +46,24 @@ class SceneForecastsTest : public testing::Test {
   SceneConversion conversion() const {
     return {{"convert", directory_ / "source.raw", "-o", "x.nvdb", "--scene", "scene.toml"}, "x.nvdb", "weir convert"};
   }
-  void run_until(std::size_t told) {
+  void run_while(const std::function<bool()>& holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (told_.size() < told && std::chrono::steady_clock::now() < end) {
+    while (holds() && std::chrono::steady_clock::now() < end) {
       io_.restart();
       io_.run_for(std::chrono::milliseconds(5));
     }
+    ASSERT_FALSE(holds());
+  }
+  void run_until(std::size_t told) {
+    run_while([&] { return told_.size() < told; });
     ASSERT_EQ(told_.size(), told);
   }
-  std::string calls() const { return read_file(directory_ / "calls"); }
+  void run_until_called(const std::string& with) {
+    run_while([&] { return calls() != with; });
+  }
+  std::string calls() const {
+    return std::filesystem::exists(directory_ / "calls") ? read_file(directory_ / "calls") : "";
+  }
 
   TemporaryDirectory directory_;
   boost::asio::io_context io_;
@@ -96,6 +106,7 @@ TEST_F(SceneForecastsTest, NewerQuestion_EndsTheOlder_AndOfAViewerThatIsGone) {
   SceneForecasts forecasts(io_, program("exec sleep 60"), {}, tell_);
   forecasts.ask(1, 1, conversion(), "a\n");
   forecasts.ask(2, 2, conversion(), "b\n");
+  run_until_called("a\n");
   printing_program();
   forecasts.forget(1);
   run_until(1);
@@ -103,10 +114,66 @@ TEST_F(SceneForecastsTest, NewerQuestion_EndsTheOlder_AndOfAViewerThatIsGone) {
   EXPECT_EQ(told_[0].answer["state"], "done");
   program("exec sleep 60");
   forecasts.ask(1, 3, conversion(), "c\n");
+  run_until_called("a\nb\nc\n");
   printing_program();
   forecasts.ask(1, 4, conversion(), "d\n");
   run_until(2);
   EXPECT_EQ(told_[1].answer["id"], 4);
+}
+
+TEST_F(SceneForecastsTest, QuestionsInQuickSuccession_StartOneProcess) {
+  SceneForecasts forecasts(io_, printing_program(), {}, tell_);
+  for (const char* scene : {"a\n", "b\n", "c\n"}) forecasts.ask(1, 1, conversion(), scene);
+  run_until(1);
+  EXPECT_EQ(calls(), "c\n");
+}
+
+TEST_F(SceneForecastsTest, NextOne_BeginsWhenTheLastHasEnded) {
+  const std::string lock = directory_ / "lock";
+  // It takes a while to remove what it keeps.
+  SceneForecasts forecasts(
+      io_,
+      program(cat("mkdir ", lock, "; trap 'sleep 0.2; rmdir ", lock, "; exit 1' TERM; while :; do sleep 0.01; done")),
+      {}, tell_);
+  forecasts.ask(1, 1, conversion(), "a\n");
+  run_while([&] { return !std::filesystem::exists(lock); });
+  write_file(directory_ / "found", kFound);
+  program(cat("mkdir ", lock, " && cat ", directory_ / "found"));
+  forecasts.ask(1, 2, conversion(), "b\n");
+  run_until(1);
+  EXPECT_EQ(told_[0].answer["id"], 2);
+  EXPECT_EQ(told_[0].answer["state"], "done") << told_[0].answer;
+}
+
+TEST_F(SceneForecastsTest, OutputWithoutTheFiguresOfOneVolume_IsAFailure) {
+  SceneForecasts forecasts(io_, program("echo '{\"steps\": []}'"), {}, tell_);
+  forecasts.ask(1, 1, conversion(), "a\n");
+  run_until(1);
+  EXPECT_EQ(told_[0].answer, Json::parse(R"({"type": "forecast", "id": 1, "state": "failed",
+                                             "message": "weir convert --dry-run gave no figures of one volume"})"));
+}
+
+TEST_F(SceneForecastsTest, Failure_IsTriedAgain) {
+  SceneForecasts forecasts(io_, program("exit 3"), {}, tell_);
+  forecasts.ask(1, 1, conversion(), "a\n");
+  run_until(1);
+  EXPECT_EQ(told_[0].answer["state"], "failed");
+  printing_program();
+  forecasts.ask(1, 2, conversion(), "a\n");
+  run_until(2);
+  EXPECT_EQ(told_[1].answer["state"], "done");
+}
+
+TEST_F(SceneForecastsTest, MemoryThatIsTooLittle_IsSaidInWhatItsReaderCanSet) {
+  SceneForecasts forecasts(io_,
+                           program("echo 'weir: --memory 64.0 MiB is too small for this volume with 1 threads; give at "
+                                   "least 71MiB' >&2; exit 2"),
+                           {}, tell_);
+  forecasts.ask(1, 1, conversion(), "a\n");
+  run_until(1);
+  EXPECT_EQ(told_[0].answer["message"],
+            "the memory set aside for a forecast is too little for this volume, it needs 71MiB; give more by "
+            "--forecast-memory of weir view, or by viewer_memory of weir watch, of which it is a share");
 }
 
 TEST_F(SceneForecastsTest, Failure_IsSaidInTheProgramsWords) {

@@ -85,6 +85,7 @@ TEST_F(SceneRequestsTest, Convert_WithoutMemoryForForecasts_SaysSo) {
 
 TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
   const std::string source = directory_ / "v_40x30x20_float32.raw";
+  const std::string mtime = sidecar().source.mtime;
   std::filesystem::resize_file(source, 100);
   ServedView served(volume_);
   ViewClient client(served.port());
@@ -92,8 +93,45 @@ TEST_F(SceneRequestsTest, Convert_OfASourceThatIsAnother_IsRefused) {
   const Json failed = client.text("conversion").value();
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_TRUE(failed["command"].is_null());
-  EXPECT_EQ(failed["message"], cat(source, ": is not the source of ", volume_,
-                                   ", which had 96000 bytes; put it there, or convert it again from where it is"));
+  EXPECT_EQ(failed["message"], cat(source, ": is not the source of ", volume_, ", which had 96000 bytes as of ", mtime,
+                                   "; put it there, or convert it again from where it is"));
+}
+
+TEST_F(SceneRequestsTest, Convert_IsOfTheStepThatIsAsked) {
+  const std::string steps = directory_ / "steps";
+  std::filesystem::create_directory(steps);
+  for (const char* name : {"/v_1.nvdb", "/v_2.nvdb"}) {
+    std::filesystem::copy(volume_, steps + name);
+    std::filesystem::copy(sidecar_path(volume_), sidecar_path(steps + name));
+  }
+  ServedView served(steps);
+  ViewClient client(served.port());
+  client.show(1, true);
+  client.send({{"type", "convert"}, {"id", 1}, {"step", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}});
+  const Json shown = client.text("conversion").value();
+  EXPECT_EQ(shown["step"], 1);
+  EXPECT_NE(shown["command"].get<std::string>().find("v_2_scene.nvdb"), std::string::npos) << shown;
+}
+
+TEST_F(SceneRequestsTest, SecondRun_IsRefusedWithItsCommand) {
+  ViewSettings settings;
+  settings.allow_convert = true;
+  settings.program = directory_ / "program";
+  write_file(settings.program, "#!/bin/sh\nexec sleep 60\n");
+  std::filesystem::permissions(settings.program, std::filesystem::perms(0755));
+  ServedView served(volume_, "", settings);
+  ViewClient client(served.port());
+  Json request{{"type", "convert"}, {"id", 1}, {"scene", ""}, {"rate", 4}, {"encoding", "packed"}, {"run", true}};
+  client.send(request);
+  const Json first = client.text("conversion").value();
+  EXPECT_EQ(first["state"], "running");
+  request["id"] = 2;
+  client.send(request);
+  const Json second = client.text("conversion").value();
+  EXPECT_EQ(second["state"], "failed");
+  EXPECT_EQ(second["message"], "a conversion runs already; wait for its end");
+  EXPECT_EQ(second["command"], first["command"]);
+  EXPECT_EQ(second["bytes"], first["bytes"]);
 }
 
 TEST_F(SceneRequestsTest, Convert_MakesTheFileWhereAllowed) {
