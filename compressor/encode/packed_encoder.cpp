@@ -181,12 +181,12 @@ class PackedEncoder final : public PackedLayerEncoder {
     std::copy_n(scratch.begin(), bytes, stream.begin());
   }
 
-  // What the stream decodes to. Of transformed and rounded values that is known: one in some streams is decoded to see
-  // that it is so.
+  // What the stream decodes to. Of transformed and rounded values that is known: one in some streams, and all that were
+  // too short for their step, are decoded to see that it is so.
   void decode_stream(const Index3& leaf, const KeptPlace& place, std::span<const std::byte> stream) {
     constexpr std::uint64_t kChecked = 64;
     const bool known = know_values(place.places.plan(), place.position);
-    if (known && place.ordinal % kChecked != 0) return;
+    if (known && !shortened_ && place.ordinal % kChecked != 0) return;
     LeafValues& decoded = known ? checked_ : decoded_;
     if (!decode_block(packed_.constants, place.places.plan().region.means, stream.data(),
                       static_cast<std::uint32_t>(stream.size()), decoded.data())) {
@@ -200,6 +200,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   // Whether write_stream() has left what the stream decodes to, which is then put there.
   bool know_values(const PlannedStreams& plan, std::size_t position) {
     const std::int16_t step = plan.steps[position];
+    shortened_ = is_near(step) ? rounded_.coarser() : transforms(step) && transform_.dropped();
     if (is_near(step)) {
       rounded_.decoded(packed_.constants, decoded_);
       return true;
@@ -264,7 +265,8 @@ class PackedEncoder final : public PackedLayerEncoder {
   LeafValues values_{};    // what is packed
   bool replaced_ = false;  // some of the source were not finite
   LeafValues decoded_{};
-  LeafValues checked_{};  // decoded once more
+  LeafValues checked_{};    // decoded once more
+  bool shortened_ = false;  // the stream has fewer coefficients, or a larger quantum, than planned
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
   std::uint64_t first_byte_ = 0;

@@ -6,8 +6,10 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <span>
 #include <string_view>
@@ -16,16 +18,19 @@
 
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/store_quiet.h"
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "ingest/files/input_directory.h"
+#include "ingest/zarr/metadata/zarr_json.h"
 
 namespace weir {
 namespace {
 
 constexpr std::array kMetadata{"zarr.json", ".zarray", ".zgroup", ".zattrs", ".zmetadata"};
-/// An event loop looks at them, which has others to serve.
-constexpr std::size_t kMostEntries = 4096;  ///< that are listed of a directory
+/// Larger documents are taken for those of groups, which may hold the metadata of all that is in them: nothing is
+/// missed where an array is looked into.
+constexpr std::size_t kMostArrayBytes = std::size_t{16} << 10U;
 
 bool exists(const std::string& path) {
   struct stat status {};
@@ -36,32 +41,54 @@ bool is_node(const std::string& directory) {
   return exists(directory + "/zarr.json") || exists(directory + "/.zarray") || exists(directory + "/.zgroup");
 }
 
-/// What may be groups and arrays directly in `directory`, by their names.
-std::set<std::string> directories_in(const std::string& directory) {
-  std::set<std::string> found;
-  std::error_code error;  // what may not be listed cannot be converted either
-  std::filesystem::directory_iterator entry(directory, error);
-  for (std::size_t n = 0; n < kMostEntries && !error && entry != std::filesystem::directory_iterator(); ++n) {
-    std::error_code unknown;
-    if (!entry->is_regular_file(unknown)) found.insert(entry->path().string());
-    entry.increment(error);
+/// Whether the metadata in `directory` are those of an array, in which there are chunks alone.
+bool is_array(const std::string& directory) {
+  if (exists(directory + "/.zarray")) return true;
+  const std::string document = directory + "/zarr.json";
+  struct stat status {};
+  if (::stat(document.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
+  if (static_cast<std::uint64_t>(status.st_size) > kMostArrayBytes) return false;
+  std::string text(static_cast<std::size_t>(status.st_size), '\0');
+  std::ifstream file(document, std::ios::binary);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  try {
+    return json_string(parse_zarr_json(text, document), "node_type") == "array";
+  } catch (const Error&) {  // it may still be being written
+    return false;
   }
-  return found;
 }
 
-/// Adds the groups and arrays in that of `top`, the outer ones first, until there are kMostWatchedNodes.
-void add_nodes_in(const std::string& top, std::set<std::string>& nodes) {
+/// What may be groups and arrays directly in `directory`, by their names; none where it cannot be listed whole, or has
+/// more than `entries`, which those that it has are taken from.
+std::set<std::string> directories_in(const std::string& directory, std::size_t& entries) {
+  std::set<std::string> found;
+  std::error_code error;  // what may not be listed cannot be converted either
+  for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entries == 0) return {};
+    --entries;
+    std::error_code unknown;
+    if (!entry->is_regular_file(unknown)) found.insert(entry->path().string());
+  }
+  return error ? std::set<std::string>() : found;
+}
+
+/// Adds the groups and arrays in that of `top`, the outer ones first, until there are kMostWatchedNodes or `entries`
+/// are listed.
+void add_nodes_in(const std::string& top, std::size_t& entries, std::set<std::string>& nodes) {
   std::vector<std::string> groups{top};
   while (!groups.empty()) {
     std::vector<std::string> inner;
     for (const std::string& group : groups) {
-      if (exists(group + "/.zarray")) continue;
-      for (const std::string& directory : directories_in(group)) {
+      if (is_array(group)) continue;
+      for (const std::string& directory : directories_in(group, entries)) {
         if (!is_node(directory)) continue;
         if (nodes.size() >= kMostWatchedNodes && !nodes.contains(directory)) return;
         nodes.insert(directory);
         inner.push_back(directory);
       }
+      if (entries == 0) return;
     }
     groups = std::move(inner);
   }
@@ -87,7 +114,8 @@ std::set<std::string> node_directories(const std::string& store, const std::vect
     }
   }
   if (tops.empty()) tops.push_back(store);
-  for (const std::string& top : tops) add_nodes_in(top, directories);
+  std::size_t entries = kMostListedEntries;
+  for (const std::string& top : tops) add_nodes_in(top, entries, directories);
   return directories;
 }
 

@@ -221,11 +221,13 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
     return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
   };
   front.end = end_at(quantised.last_place);
+  dropped_ = false;
   while (front.end > 0) {
     out[0] = head(StreamKind::transform);
     if (coder_.encode(front, {magnitudes_, signs}, out.subspan(1))) return;
-    const unsigned dropped = kBlockScan.index[cheapest_place(magnitudes_)];
-    magnitudes_.row(dropped / 8)[dropped % 8] = 0;
+    const unsigned cheapest = kBlockScan.index[cheapest_place(magnitudes_)];
+    magnitudes_.row(cheapest / 8)[cheapest % 8] = 0;
+    dropped_ = true;
     front.end = end_of(magnitudes_);
   }
   std::fill(out.begin(), out.end(), std::byte{0});

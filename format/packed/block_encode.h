@@ -45,6 +45,8 @@ class TransformBlock {
   /// Writes the stream to all of `out`. Where that is shorter than the stream, the smallest coefficients
   /// go until it fits, where longer it has zeros in its middle. `constants` has what the file has.
   void encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step, std::span<std::byte> out);
+  /// Whether some went in the last encode().
+  bool dropped() const { return dropped_; }
   /// The values that the stream of the last encode(), of those arguments, decodes to: decode_block()'s bits, without
   /// decoding it. False where it is a mean alone.
   bool decoded(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
@@ -61,6 +63,7 @@ class TransformBlock {
   std::array<double, 64> row_energy_{};
   MagnitudeRows magnitudes_;
   StreamFront front_;  // of the last encode()
+  bool dropped_ = false;
 };
 
 }  // namespace weir

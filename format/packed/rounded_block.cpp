@@ -111,10 +111,12 @@ std::optional<RoundedBlock::Cost> RoundedBlock::cost(int quantum_exponent) {
 }
 
 bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
+  coarser_ = false;
   for (; quantum_exponent <= kMostExponent; ++quantum_exponent) {
     if (!find_codes(quantum_exponent)) return false;
     residuals_of(codes_, predictor_, false, residuals_);
     if (write(quantum_exponent, out)) return true;
+    coarser_ = true;
   }
   return false;
 }

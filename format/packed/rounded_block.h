@@ -36,6 +36,8 @@ class RoundedBlock {
   /// Writes the stream to all of `out`. Where that is too short the quantum is doubled until it is not; false where
   /// no quantum does.
   bool encode(int quantum_exponent, std::span<std::byte> out);
+  /// Whether it was in the last encode(), which gave true.
+  bool coarser() const { return coarser_; }
   /// The values that the stream of the last encode(), which gave true, decodes to: decode_block()'s bits, without
   /// decoding it. `constants` has what the file has.
   void decoded(const BlockConstants& constants, std::span<float, 512> values) const;
@@ -56,6 +58,7 @@ class RoundedBlock {
   MagnitudeRows magnitudes_;
   float minimum_ = 0;  // of the stream that was written
   float quantum_ = 0;
+  bool coarser_ = false;
 };
 
 }  // namespace weir

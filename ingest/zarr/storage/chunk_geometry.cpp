@@ -95,18 +95,27 @@ ChunkPlace ChunkGeometry::place_of(const Index3& chunk) const {
   element.insert(element.end(), {first.z, first.y, first.x});
   for (std::size_t axis = 0; axis < element.size(); ++axis)
     place.corner.push_back(element[axis] - element[axis] % units_[axis]);
-  const std::vector<std::int64_t>* shard = &chunk_;
-  for (const std::vector<std::int64_t>& inner : inner_) {
-    std::size_t at = 0;
-    for (std::size_t axis = 0; axis < element.size(); ++axis) {
-      const std::int64_t along = element[axis] % (*shard)[axis] / inner[axis];
-      at = at * static_cast<std::size_t>((*shard)[axis] / inner[axis]) + static_cast<std::size_t>(along);
-    }
-    place.inner.push_back(at);
-    shard = &inner;
-  }
+  for (std::size_t level = 0; level < inner_.size(); ++level) place.inner.push_back(place_in_shard(chunk, level));
   return place;
 }
+
+std::size_t ChunkGeometry::place_in_shard(const Index3& chunk, std::size_t level) const {
+  const std::vector<std::int64_t>& shard = level == 0 ? chunk_ : inner_[level - 1];
+  const std::vector<std::int64_t>& inner = inner_[level];
+  std::size_t place = 0;
+  const auto add_axis = [&](std::size_t axis, std::int64_t element) {
+    const std::int64_t along = element % shard[axis] / inner[axis];
+    place = place * static_cast<std::size_t>(shard[axis] / inner[axis]) + static_cast<std::size_t>(along);
+  };
+  for (std::size_t axis = 0; axis < index_.size(); ++axis) add_axis(axis, index_[axis]);
+  const Index3 first = times_each(chunk, unit_);
+  add_axis(index_.size(), first.z);
+  add_axis(index_.size() + 1, first.y);
+  add_axis(index_.size() + 2, first.x);
+  return place;
+}
+
+Index3 ChunkGeometry::units_in_shard(std::size_t level) const { return divided(last_axes(inner_[level]), unit_); }
 
 Box ChunkGeometry::chunks_of(const Index3& object) const {
   const Index3 lo = times_each(object, object_);

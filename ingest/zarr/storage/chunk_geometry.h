@@ -40,6 +40,10 @@ class ChunkGeometry {
 
   /// Of the chunk at `chunk` (chunk coordinates, in units).
   ChunkPlace place_of(const Index3& chunk) const;
+  /// Its ChunkPlace::inner of one level.
+  std::size_t place_in_shard(const Index3& chunk, std::size_t level) const;
+  /// The units along x, y, z in each of the chunks that shards of that level hold; 1, 1, 1 at the last one.
+  Index3 units_in_shard(std::size_t level) const;
   /// Which object it lies in, among objects().
   Index3 object_of(const Index3& chunk) const;
   /// The chunks (chunk coordinates, in units) of an object that have voxels of the volume.

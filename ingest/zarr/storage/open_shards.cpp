@@ -14,9 +14,9 @@ constexpr std::uint64_t kIndexCopies = 2;  // as it is stored, and its places
 
 }  // namespace
 
-OpenShards::OpenShards(const ZarrSharding& sharding, std::uint64_t chunks, std::uint64_t memory,
+OpenShards::OpenShards(Kind kind, const ZarrSharding& sharding, std::uint64_t chunks, std::uint64_t memory,
                        const std::string& where)
-    : sharding_(sharding), index_bytes_(shard_index_bytes(sharding, chunks)) {
+    : kind_(kind), sharding_(sharding), index_bytes_(shard_index_bytes(sharding, chunks)) {
   const std::uint64_t room = memory / kIndexShare;
   const std::uint64_t one = kIndexCopies * index_bytes_;
   if (one > room) {
@@ -27,25 +27,24 @@ OpenShards::OpenShards(const ZarrSharding& sharding, std::uint64_t chunks, std::
   most_ = static_cast<std::size_t>(std::min<std::uint64_t>(room / one, kMostOpenShards));
 }
 
-std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, const std::string& shown, ShardBytes shard) const {
+std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, ShardBytes shard) const {
   if (shard.bytes < index_bytes_) {
-    throw input_error(shown, cat("has ", shard.bytes, " bytes, and the index of its shard alone takes ", index_bytes_,
-                                 "; the file is cut short or damaged"));
+    throw input_error(shard.shown, cat("has ", shard.bytes, " bytes, and the index of its shard alone takes ",
+                                       index_bytes_, "; the file is cut short or damaged"));
   }
   std::vector<std::byte> index(static_cast<std::size_t>(index_bytes_));
   shard.object->read(shard.offset + (sharding_.index_first ? 0 : shard.bytes - index_bytes_), index);
   auto open = std::make_shared<OpenShard>();
   open->key = key;
-  open->places = parse_shard_index(sharding_, index, shard.bytes, shown);
+  open->places = parse_shard_index(sharding_, index, shard.bytes, shard.shown);
   for (ShardPlace& place : open->places) {
     if (place.stored()) place.offset += shard.offset;
   }
-  open->object = std::move(shard.object);
+  if (kind_ == Kind::objects) open->object = std::move(shard.object);
   return open;
 }
 
-std::shared_ptr<OpenShard> OpenShards::get(const std::string& key, const std::string& shown,
-                                           const std::function<ShardBytes()>& open) {
+std::shared_ptr<const OpenShard> OpenShards::get(const std::string& key, const std::function<ShardBytes()>& open) {
   // One thread reads an index; those that want the same wait for it, and reading one takes little time.
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& shard) { return shard->key == key; });
@@ -53,7 +52,7 @@ std::shared_ptr<OpenShard> OpenShards::get(const std::string& key, const std::st
     kept_.splice(kept_.begin(), kept_, found);
     return kept_.front();
   }
-  kept_.push_front(load(key, shown, open()));
+  kept_.push_front(load(key, open()));
   if (kept_.size() > most_) kept_.pop_back();
   return kept_.front();
 }

@@ -12,7 +12,8 @@ ZarrChunks::ZarrChunks(ChunkObjects objects, ZarrArray array, ChunkGeometry geom
                        const std::atomic<bool>* cancel)
     : objects_(std::move(objects)), array_(std::move(array)), geometry_(std::move(geometry)) {
   for (std::size_t level = 0; level < array_.shards.size(); ++level) {
-    shards_.push_back(std::make_unique<OpenShards>(array_.shards[level], geometry_.chunks_in_shards()[level], memory,
+    shards_.push_back(std::make_unique<OpenShards>(level == 0 ? OpenShards::Kind::objects : OpenShards::Kind::parts,
+                                                   array_.shards[level], geometry_.chunks_in_shards()[level], memory,
                                                    objects_.store.shown(objects_.array_key)));
   }
   scan_ = scan_objects(objects_, geometry_, memory, cancel);
@@ -33,49 +34,69 @@ std::unique_ptr<ZarrObject> ZarrChunks::open_unchanged(const std::string& key) c
   return object;
 }
 
-std::shared_ptr<OpenShard> ZarrChunks::open_shard(const std::string& key, const ChunkPlace& place) {
-  std::string shown = objects_.store.shown(key);
-  std::shared_ptr<OpenShard> shard = shards_.front()->get(key, shown, [&] {
+std::shared_ptr<const OpenShard> ZarrChunks::outer_shard(const std::string& key) {
+  return shards_.front()->get(key, [&] {
     std::shared_ptr<ZarrObject> object = open_unchanged(key);
     const std::uint64_t bytes = object->size();
-    return ShardBytes{std::move(object), 0, bytes};
+    return ShardBytes{std::move(object), 0, bytes, objects_.store.shown(key)};
   });
-  std::string path = key;
-  for (std::size_t level = 1; level < shards_.size(); ++level) {
-    const std::size_t inner = place.inner[level - 1];
-    const ShardPlace& at = shard->places[inner];
-    if (!at.stored()) return nullptr;
-    path += cat('#', inner);
-    shown += cat(": chunk ", inner, " of the shard");
-    shard = shards_[level]->get(path, shown, [&] { return ShardBytes{shard->object, at.offset, at.bytes}; });
+}
+
+std::shared_ptr<const OpenShard> ZarrChunks::inner_shard(const OpenShard& outer, const OpenShard& around,
+                                                         std::span<const std::size_t> path) {
+  const ShardPlace& at = around.places[path.back()];
+  if (!at.stored()) return nullptr;
+  return shards_[path.size()]->get(cat(around.key, '#', path.back()), [&] {
+    std::string shown = objects_.store.shown(outer.key);
+    for (const std::size_t inner : path) shown += cat(": chunk ", inner, " of the shard");
+    return ShardBytes{outer.object, at.offset, at.bytes, std::move(shown)};
+  });
+}
+
+void ZarrChunks::add_unstored(const Box& chunks, UnstoredChunks& unstored) const {
+  if (unstored.count == 0) {
+    const ChunkPlace place = geometry_.place_of(chunks.lo);
+    unstored.first =
+        cat(objects_.store.shown(objects_.key_of(place.object)), ": chunk at ", position_text(place.corner));
   }
-  return shard;
+  unstored.count += static_cast<std::uint64_t>(chunks.voxels());
+}
+
+// Shard by shard, each of which is opened once, however many lie in those around it.
+void ZarrChunks::count_unstored_in(const OpenShard& outer, const OpenShard& around, const Box& chunks,
+                                   std::vector<std::size_t>& path, UnstoredChunks& unstored) {
+  const std::size_t level = path.size();
+  const Index3 units = geometry_.units_in_shard(level);
+  for (std::int64_t z = chunks.lo.z; z < chunks.hi.z; z += units.z) {
+    for (std::int64_t y = chunks.lo.y; y < chunks.hi.y; y += units.y) {
+      for (std::int64_t x = chunks.lo.x; x < chunks.hi.x; x += units.x) {
+        const Index3 lo{x, y, z};
+        const Box inside = intersect({lo, lo + units}, chunks);
+        const std::size_t place = geometry_.place_in_shard(lo, level);
+        if (!around.places[place].stored()) {
+          add_unstored(inside, unstored);
+        } else if (level + 1 < shards_.size()) {
+          path.push_back(place);
+          count_unstored_in(outer, *inner_shard(outer, around, path), inside, path, unstored);
+          path.pop_back();
+        }
+      }
+    }
+  }
 }
 
 UnstoredChunks ZarrChunks::count_unstored() {
   UnstoredChunks unstored;
-  const auto note = [&](const Index3& chunk) {
-    if (unstored.count++ > 0) return;
-    const ChunkPlace place = geometry_.place_of(chunk);
-    unstored.first =
-        cat(objects_.store.shown(objects_.key_of(place.object)), ": chunk at ", position_text(place.corner));
-  };
+  std::vector<std::size_t> path;
   for (std::size_t i = 0; i < scan_.stored.size(); ++i) {
     const Index3 object = index_at(static_cast<std::int64_t>(i), geometry_.objects());
     const Box chunks = geometry_.chunks_of(object);
     unstored.all += static_cast<std::uint64_t>(chunks.voxels());
-    if (scan_.stored[i] && shards_.empty()) continue;
     if (!scan_.stored[i]) {
-      note(chunks.lo);
-      unstored.count += static_cast<std::uint64_t>(chunks.voxels()) - 1;
-      continue;
-    }
-    const std::string key = objects_.key_of(geometry_.object_position(object));
-    for (std::int64_t k = 0; k < chunks.voxels(); ++k) {
-      const Index3 chunk = chunks.lo + index_at(k, chunks.extent());
-      const ChunkPlace place = geometry_.place_of(chunk);
-      const auto shard = open_shard(key, place);
-      if (!shard || !shard->places[place.inner.back()].stored()) note(chunk);
+      add_unstored(chunks, unstored);
+    } else if (!shards_.empty()) {
+      const auto outer = outer_shard(objects_.key_of(geometry_.object_position(object)));
+      count_unstored_in(*outer, *outer, chunks, path, unstored);
     }
   }
   return unstored;
@@ -98,12 +119,16 @@ std::optional<std::size_t> ZarrChunks::fetch(const ChunkPlace& place, std::span<
     object->read(0, into.first(bytes));
     return bytes;
   }
-  const auto shard = open_shard(key, place);
+  const auto outer = outer_shard(key);
+  auto shard = outer;
+  for (std::size_t level = 1; shard && level < shards_.size(); ++level) {
+    shard = inner_shard(*outer, *shard, std::span(place.inner).first(level));
+  }
   if (!shard) return std::nullopt;
   const ShardPlace& at = shard->places[place.inner.back()];
   if (!at.stored()) return std::nullopt;
   const std::size_t bytes = checked(at.bytes);
-  shard->object->read(at.offset, into.first(bytes));
+  outer->object->read(at.offset, into.first(bytes));
   return bytes;
 }
 

@@ -48,8 +48,16 @@ class ZarrChunks final : public StoredChunks {
  private:
   /// Throws where it was changed or is not there any more.
   std::unique_ptr<ZarrObject> open_unchanged(const std::string& key) const;
-  /// The shard that the chunk lies in, in the object at `key`; nullptr where that is not stored.
-  std::shared_ptr<OpenShard> open_shard(const std::string& key, const ChunkPlace& place);
+  /// The shard that is the object at `key`.
+  std::shared_ptr<const OpenShard> outer_shard(const std::string& key);
+  /// The shard in that object that lies at path.back() in `around`, which lies at the rest of `path`; nullptr where it
+  /// is not stored.
+  std::shared_ptr<const OpenShard> inner_shard(const OpenShard& outer, const OpenShard& around,
+                                               std::span<const std::size_t> path);
+  void count_unstored_in(const OpenShard& outer, const OpenShard& around, const Box& chunks,
+                         std::vector<std::size_t>& path, UnstoredChunks& unstored);
+  /// Those in `chunks`, an object's.
+  void add_unstored(const Box& chunks, UnstoredChunks& unstored) const;
   /// The bytes of the chunk to the front of `into`; nullopt where the shard has none.
   std::optional<std::size_t> fetch(const ChunkPlace& place, std::span<std::byte> into);
   Error wrong_chunk(const ChunkPlace& place, const Message& what) const;

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "daemon/watch/source_identity.h"
-#include "format/base/text.h"
 #include "tests/support/plotfile_writer.h"
 #include "tests/support/temporary_directory.h"
 
@@ -271,76 +269,6 @@ TEST(PlotfileCompletion, RulesLookForAllFilesAndSamplesForItsHeader) {
             directory / "plt00042/Level_0/Cell_H: cannot open for reading: No such file or directory");
   std::ofstream(header) << "CheckPointVersion_1.0\n";
   EXPECT_FALSE(sample_file(header, "").exists);
-}
-
-TEST(ZarrCompletion, IdentityIsOfTheMetadataOnTheWayToTheDataset) {
-  const TemporaryDirectory directory;
-  const std::string store = directory / "run.zarr";
-  const std::string head = store + "/.zgroup";
-  std::filesystem::create_directories(store + "/a/rho");
-  std::filesystem::create_directories(store + "/b");
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::ofstream(store + '/' + name) << text;
-  };
-  write(".zgroup", "{}");
-  const auto identity = [&](const std::string& option) { return sample_file(head, "", {option}).identity; };
-  const auto changes = [&](const std::string& option, const std::string& name, const std::string& text) {
-    const FileIdentity before = identity(option);
-    EXPECT_EQ(identity(option), before);
-    write(name, text);
-    return !(identity(option) == before);
-  };
-  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 2U);
-  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/.zgroup", "{ }"));
-  EXPECT_TRUE(changes("--dataset=/a/rho/", "a/rho/.zarray", "1234"));
-  EXPECT_EQ(identity("--dataset=/a/rho/").bytes, 9U);
-  EXPECT_TRUE(changes("--dataset=a/rho", "a/rho/.zattrs", "1"));
-  EXPECT_TRUE(changes("--dataset=a/rho", ".zmetadata", "1"));
-  EXPECT_FALSE(changes("--dataset=a/rho", "b/.zarray", "1"));
-  EXPECT_FALSE(changes("--dataset=a/rho", "a/rho/0.0.0", "1"));
-  EXPECT_TRUE(changes("--magnitude=a/rho,b", "b/.zarray", "12"));
-}
-
-TEST(ZarrCompletion, WithoutADataset_IdentityIsOfAllGroupsAndArrays) {
-  const TemporaryDirectory directory;
-  const std::string store = directory / "run.zarr";
-  const std::string head = store + "/zarr.json";
-  for (const char* const node : {"a/rho/c/0", "b/image/0", "b/image/1", "plain"})
-    std::filesystem::create_directories(store + '/' + node);
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::ofstream(store + '/' + name) << text;
-  };
-  for (const char* const node : {"", "a/", "a/rho/", "b/", "b/image/"}) write(cat(node, "zarr.json"), "{}");
-  for (const char* const array : {"b/image/0", "b/image/1"}) write(cat(array, "/.zarray"), "{}");
-  const auto changes = [&](const std::vector<std::string>& options, const std::string& name, const std::string& text) {
-    const auto identity = [&] { return sample_file(head, "", options).identity; };
-    const FileIdentity before = identity();
-    EXPECT_EQ(identity(), before);
-    write(name, text);
-    return !(identity() == before);
-  };
-  EXPECT_TRUE(changes({}, "a/rho/zarr.json", "1"));
-  EXPECT_TRUE(changes({"--lossless"}, "b/image/1/.zarray", "1"));
-  EXPECT_TRUE(changes({"--dataset=b/im*"}, "b/image/0/.zattrs", "1"));
-  EXPECT_TRUE(changes({"--dataset=b/image"}, "b/image/0/.zarray", "12"));  // the finest scale
-  EXPECT_FALSE(changes({"--dataset=b/image"}, "a/rho/zarr.json", "123"));
-  EXPECT_FALSE(changes({}, "a/rho/c/0/zarr.json", "1"));  // among chunks
-  EXPECT_FALSE(changes({}, "plain/notes", "1"));
-  EXPECT_TRUE(changes({}, "plain/zarr.json", "1"));  // a new array
-  std::filesystem::create_directory_symlink("..", store + "/b/again");
-  EXPECT_TRUE(sample_file(head, "").exists);
-}
-
-TEST(ZarrCompletion, IdentityIsOfABoundedNumberOfNodes) {
-  const TemporaryDirectory directory;
-  const std::string store = directory / "run.zarr";
-  std::filesystem::create_directory(store);
-  std::ofstream(store + "/.zgroup") << "12";
-  for (std::size_t i = 0; i < kMostWatchedNodes + 10; ++i) {
-    std::filesystem::create_directory(cat(store, '/', i));
-    std::ofstream(cat(store, '/', i, "/.zarray")) << "1";
-  }
-  EXPECT_EQ(sample_file(store + "/.zgroup", "").identity.bytes, 2 + kMostWatchedNodes - 1);
 }
 
 TEST(ZarrCompletion, SamplesAreOfTheFileThatSaysWhatItIs) {

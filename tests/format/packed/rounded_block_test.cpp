@@ -106,8 +106,15 @@ TEST(RoundedBlock, WhereTheStreamIsTooShortTheQuantumIsLarger) {
   RoundedBlock block;
   block.set(values);
   const int exponent = block.exponent() - 16;
-  Stream stream(block.cost(exponent)->bytes * 3 / 4);
+  Stream enough(block.cost(exponent)->bytes);
+  ASSERT_TRUE(block.encode(exponent, enough));
+  EXPECT_FALSE(block.coarser());
+  Stream stream(enough.size() * 3 / 4);
   ASSERT_TRUE(block.encode(exponent, stream));
+  EXPECT_TRUE(block.coarser());
+  BlockValues known;
+  block.decoded(constants_from(0), known);
+  EXPECT_TRUE(same_bits(known, decoded_from(stream)));
   const double error = squared_error(values, decoded_from(stream));
   EXPECT_GT(error, block.cost(exponent)->squared_error * 100);
   EXPECT_LT(error, 0.001);

@@ -126,17 +126,30 @@ TEST(TransformBlock, ShorterStreamsLoseCoefficientsAndStayValid) {
     const MeanRange means = means_around(block.mean(), 2);
     const std::uint32_t promised = stream_bytes(block.cost(step).bits, mean_bits(means, step));
     const std::uint32_t least = stream_bytes(8, mean_bits(means, step));
+    Stream whole(promised + 8);
+    block.encode(constants, means, step, whole);
+    ASSERT_FALSE(block.dropped());
+    const auto all = decode(constants, means, whole);
+    ASSERT_TRUE(all.has_value());
+    unsigned known_after_drops = 0;
     double last = squared_error(values, BlockValues{}) * 2;
     for (std::uint32_t bytes = least; bytes <= promised + 8; bytes += bytes < 40 ? 1 : 7) {
       Stream stream(bytes);
       block.encode(constants, means, step, stream);
       const auto decoded = decode(constants, means, stream);
       ASSERT_TRUE(decoded.has_value()) << bytes;
+      ASSERT_EQ(block.dropped(), !same_bits(*decoded, *all)) << bytes;
+      BlockValues known;
+      if (block.decoded(constants, means, step, known)) {
+        ASSERT_TRUE(same_bits(known, *decoded)) << bytes;
+        known_after_drops += block.dropped() ? 1 : 0;
+      }
       // More bytes are no worse, but for what a dead zone leaves.
       const double error = squared_error(values, *decoded);
       ASSERT_LE(error, last + 1) << bytes;
       last = error;
     }
+    EXPECT_GT(known_after_drops, 0U);
   }
 }
 

@@ -1,0 +1,144 @@
+// What is read and held open of an array in shards, of a store in memory that counts it.
+#include "ingest/zarr/storage/zarr_chunks.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/base/text.h"
+
+namespace weir::zarr_chunks_test {
+namespace {
+
+constexpr std::uint64_t kNotStored = ShardPlace::kNone;
+
+struct Counts {
+  int opened = 0;
+  int reads = 0;
+  int open = 0;  // now
+};
+
+class CountedObject final : public ZarrObject {
+ public:
+  CountedObject(const std::string& bytes, Counts& counts) : bytes_(bytes), counts_(counts) {
+    ++counts_.opened;
+    ++counts_.open;
+  }
+  CountedObject(const CountedObject&) = delete;
+  CountedObject& operator=(const CountedObject&) = delete;
+  ~CountedObject() override { --counts_.open; }
+
+  std::uint64_t size() const override { return bytes_.size(); }
+  void read(std::uint64_t offset, std::span<std::byte> into) override {
+    ++counts_.reads;
+    std::memcpy(into.data(), bytes_.data() + offset, into.size());
+  }
+
+ private:
+  const std::string& bytes_;
+  Counts& counts_;
+};
+
+class CountedStore final : public ZarrStore {
+ public:
+  std::map<std::string, std::string> objects;
+  Counts counts;
+
+  std::string shown(std::string_view key) const override { return "run.zarr/" + std::string(key); }
+  std::string file_of(const std::string& key) const override { return shown(key); }
+  bool is_one_file() const override { return false; }
+  std::vector<std::string> groups_in(const std::string& /*key*/) override { return {}; }
+  std::optional<ZarrObjectState> look(const std::string& key) override {
+    if (!objects.contains(key)) return std::nullopt;
+    return ZarrObjectState{objects.at(key).size()};
+  }
+  std::unique_ptr<ZarrObject> open(const std::string& key) override {
+    return std::make_unique<CountedObject>(objects.at(key), counts);
+  }
+};
+
+std::string index_text(const std::vector<std::uint64_t>& index) {
+  return {reinterpret_cast<const char*>(index.data()), index.size() * sizeof(std::uint64_t)};
+}
+
+/// The parts one after another, behind them their places; empty ones are not stored.
+std::string shard_of(const std::vector<std::string>& parts) {
+  std::string bytes;
+  std::vector<std::uint64_t> index;
+  for (const std::string& part : parts) {
+    index.insert(index.end(), {part.empty() ? kNotStored : bytes.size(), part.empty() ? kNotStored : part.size()});
+    bytes += part;
+  }
+  return bytes + index_text(index);
+}
+
+/// Bytes in objects of `levels[0]` elements, which are shards of chunks of `levels[1]`, and so on.
+ZarrArray bytes_in_shards(const std::vector<std::int64_t>& shape,
+                          const std::vector<std::vector<std::int64_t>>& levels) {
+  ZarrArray array;
+  array.shape = shape;
+  array.chunk = levels.front();
+  array.type = ScalarType::uint8;
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    ZarrSharding sharding;
+    sharding.chunk = levels[level];
+    array.shards.push_back(sharding);
+  }
+  return array;
+}
+
+ZarrChunks chunks_of(CountedStore& store, const ZarrArray& array) {
+  return {{store, "", array.keys}, array, ChunkGeometry(array, {}, "run.zarr"), std::uint64_t{64} << 20U, nullptr};
+}
+
+TEST(ZarrChunks, MoreShardsInAShardThanAreKept_EachIndexIsReadOnce) {
+  constexpr int kInner = 2 * static_cast<int>(OpenShards::kMostOpenShards);
+  CountedStore store;
+  std::vector<std::string> inner(kInner, shard_of({"a", "", "b", "c"}));
+  inner[3].clear();
+  store.objects["0.0.0"] = shard_of(inner);
+  // Two planes: a walk along x comes to every inner shard twice.
+  const ZarrArray array = bytes_in_shards({2, 1, 2 * kInner}, {{2, 1, 2 * kInner}, {2, 1, 2}, {1, 1, 1}});
+  ZarrChunks chunks = chunks_of(store, array);
+  const UnstoredChunks unstored = chunks.count_unstored();
+  EXPECT_EQ(unstored.count, kInner - 1 + 4U);
+  EXPECT_EQ(unstored.all, 4U * kInner);
+  EXPECT_EQ(unstored.first, "run.zarr/0.0.0: chunk at 0, 0, 1");
+  EXPECT_EQ(store.counts.reads, 1 + kInner - 1);
+  EXPECT_EQ(store.counts.opened, 1);
+}
+
+TEST(ZarrChunks, ShardsThatTheVolumeEndsIn_AreCountedAsFarAsItGoes) {
+  CountedStore store;
+  const std::string inner = shard_of({"a", "", "", ""});
+  const std::string third = shard_of({inner, "", inner, inner});
+  store.objects["0.0.0"] = shard_of({third, third});
+  // x: 16 elements an object, 8 a shard in it, 2 an innermost shard of 2 chunks; z: 2, 2 and 2 chunks. The volume
+  // has 11.
+  ZarrArray array = bytes_in_shards({2, 1, 11}, {{2, 1, 16}, {2, 1, 8}, {2, 1, 2}, {1, 1, 1}});
+  ZarrChunks chunks = chunks_of(store, array);
+  const UnstoredChunks unstored = chunks.count_unstored();
+  EXPECT_EQ(unstored.all, 22U);
+  EXPECT_EQ(unstored.count, 22U - 4U) << "the first chunk of innermost shards 0, 2, 3 and 4 is stored";
+  EXPECT_EQ(store.counts.reads, 1 + 2 + 4);
+}
+
+TEST(ZarrChunks, ObjectsHeldOpen_AreBoundedOverAllLevels) {
+  constexpr std::int64_t kMost = OpenShards::kMostOpenShards;
+  CountedStore store;
+  for (std::int64_t i = 0; i < 2 * kMost; ++i) {
+    // Those behind have no inner shard: what the inner level keeps is of those before.
+    store.objects[cat("0.0.", i)] = i < kMost ? shard_of({shard_of({"a", "b"})}) : shard_of({""});
+  }
+  const ZarrArray array = bytes_in_shards({1, 1, 4 * kMost}, {{1, 1, 2}, {1, 1, 2}, {1, 1, 1}});
+  ZarrChunks chunks = chunks_of(store, array);
+  EXPECT_EQ(chunks.count_unstored().count, static_cast<std::uint64_t>(2 * kMost));
+  EXPECT_EQ(store.counts.open, kMost);
+}
+
+}  // namespace
+}  // namespace weir::zarr_chunks_test
