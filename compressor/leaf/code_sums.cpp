@@ -7,69 +7,109 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kQuantiserLanes = 16;
+// 16 lanes, as two vectors of eight: wider ones than the machine has are compared lane by lane.
+constexpr std::size_t kHalf = 8;
+struct Lanes {
+  Floats8 low{};
+  Floats8 high{};
+};
 
 // Pairwise, whatever the machine.
-[[gnu::always_inline]] inline double sum(const Floats16& lanes) {
-  const Floats8 eight = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3, 4, 5, 6, 7) +
-                        __builtin_shufflevector(lanes, lanes, 8, 9, 10, 11, 12, 13, 14, 15);
+[[gnu::always_inline]] inline double sum(const Lanes& lanes) {
+  const Floats8 eight = lanes.low + lanes.high;
   const auto four =
       __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
   const auto two = four + __builtin_shufflevector(four, four, 2, 3, 2, 3);
   return static_cast<double>(two[0] + two[1]);
 }
 
-// The next 16 of `left` values; `filler` behind the last.
-[[gnu::always_inline]] inline void load(const float* values, std::size_t left, float filler, Floats16& v) {
-  if (left >= kQuantiserLanes) {
-    std::memcpy(&v, values, sizeof v);
+[[gnu::always_inline]] inline void load_half(const float* values, std::size_t first, std::size_t count, float filler,
+                                             Floats8& v) {
+  if (first + kHalf <= count) {
+    std::memcpy(&v, values + first, sizeof v);
   } else {
-    v = filler - Floats16{};
-    std::memcpy(&v, values, left * sizeof(float));
+    v = filler - Floats8{};
+    if (first < count) std::memcpy(&v, values + first, (count - first) * sizeof(float));
   }
 }
 
+// 16 of the values from `first` on; `filler` behind the last.
+[[gnu::always_inline]] inline void load(const float* values, std::size_t first, std::size_t count, float filler,
+                                        Lanes& v) {
+  load_half(values, first, count, filler, v.low);
+  load_half(values, first + kHalf, count, filler, v.high);
+}
+
 // The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats16& v, const CodeLevels& l, Floats16& code) {
-  const Floats16 zero{};
-  const Floats16 top = l.top - zero;
-  Floats16 t = (v - l.minimum) * l.reciprocal;
+[[gnu::always_inline]] inline void nearest(const Floats8& v, const CodeLevels& l, Floats8& code) {
+  const Floats8 zero{};
+  const Floats8 top = l.top - zero;
+  Floats8 t = (v - l.minimum) * l.reciprocal;
   t = t > zero ? t : zero;
   t = t < top ? t : top;
   code = (t + kRounder) - kRounder;
 }
 
+// One half of what the functions below do.
+
+[[gnu::always_inline]] inline void deviate_half(const Floats8& v, float mean, float scale, float* deviations,
+                                                Floats8& squares) {
+  const Floats8 d = (v - mean) * scale;
+  squares += d * d;
+  std::memcpy(deviations, &d, sizeof d);
+}
+
+[[gnu::always_inline]] inline void assign_bit_half(const Floats8& v, const float* deviations, const CodeLevels& l,
+                                                   Floats8& codes, Floats8& code_values) {
+  const Floats8 zero{};
+  Floats8 d;
+  std::memcpy(&d, deviations, sizeof d);
+  const auto upper = (v - l.minimum) * l.reciprocal > 0.5F;  // a half goes to the even code
+  codes += upper ? 1.0F - zero : zero;
+  code_values += upper ? d : zero;  // adding a deviation is adding its product with 1
+}
+
+[[gnu::always_inline]] inline void assign_half(const Floats8& v, const float* deviations, const CodeLevels& l,
+                                               Floats8& codes, Floats8& code_squares, Floats8& code_values) {
+  Floats8 d;
+  Floats8 code;
+  std::memcpy(&d, deviations, sizeof d);
+  nearest(v, l, code);  // behind the last value 0, which adds nothing
+  codes += code;
+  code_squares += code * code;
+  code_values += code * d;
+}
+
+[[gnu::always_inline]] inline void measure_half(const Floats8& v, const CodeLevels& l, float scale, Floats8& squares) {
+  Floats8 code;
+  nearest(v, l, code);
+  const Floats8 error = (v - (code * l.quantum + l.minimum)) * scale;
+  squares += error * error;
+}
+
 }  // namespace
 
 WEIR_SIMD double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations) {
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    load(values + i, count - i, mean, v);
-    const Floats16 d = (v - mean) * scale;
-    squares += d * d;
-    std::memcpy(deviations + i, &d, sizeof d);
+  Lanes squares;
+  for (std::size_t i = 0; i < count; i += 2 * kHalf) {
+    Lanes v;
+    load(values, i, count, mean, v);
+    deviate_half(v.low, mean, scale, deviations + i, squares.low);
+    deviate_half(v.high, mean, scale, deviations + i + kHalf, squares.high);
   }
   return sum(squares);
 }
 
-// Adding a deviation is adding its product with 1.
 WEIR_SIMD CodeSums assign_bit(const float* values, const float* deviations, std::size_t count,
                               const CodeLevels& levels) {
   const CodeLevels l = levels;
-  const Floats16 zero{};
-  Floats16 codes{};
-  Floats16 code_values{};
-  if (l.top > 0) {
-    for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-      Floats16 v;
-      Floats16 d;
-      load(values + i, count - i, l.minimum, v);
-      std::memcpy(&d, deviations + i, sizeof d);
-      const auto upper = (v - l.minimum) * l.reciprocal > 0.5F;  // a half goes to the even code
-      codes += upper ? 1.0F - zero : zero;
-      code_values += upper ? d : zero;
-    }
+  Lanes codes;
+  Lanes code_values;
+  for (std::size_t i = 0; i < count && l.top > 0; i += 2 * kHalf) {
+    Lanes v;
+    load(values, i, count, l.minimum, v);
+    assign_bit_half(v.low, deviations + i, l, codes.low, code_values.low);
+    assign_bit_half(v.high, deviations + i + kHalf, l, codes.high, code_values.high);
   }
   const double ones = sum(codes);
   return {0, ones, ones, sum(code_values)};
@@ -77,33 +117,26 @@ WEIR_SIMD CodeSums assign_bit(const float* values, const float* deviations, std:
 
 WEIR_SIMD CodeSums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels) {
   const CodeLevels l = levels;
-  Floats16 codes{};
-  Floats16 code_squares{};
-  Floats16 code_values{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 d;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    std::memcpy(&d, deviations + i, sizeof d);
-    nearest(v, l, code);  // behind the last value 0, which adds nothing
-    codes += code;
-    code_squares += code * code;
-    code_values += code * d;
+  Lanes codes;
+  Lanes code_squares;
+  Lanes code_values;
+  for (std::size_t i = 0; i < count; i += 2 * kHalf) {
+    Lanes v;
+    load(values, i, count, l.minimum, v);
+    assign_half(v.low, deviations + i, l, codes.low, code_squares.low, code_values.low);
+    assign_half(v.high, deviations + i + kHalf, l, codes.high, code_squares.high, code_values.high);
   }
   return {0, sum(codes), sum(code_squares), sum(code_values)};
 }
 
 WEIR_SIMD double measure_squares(const float* values, std::size_t count, const CodeLevels& levels, float scale) {
   const CodeLevels l = levels;
-  Floats16 squares{};
-  for (std::size_t i = 0; i < count; i += kQuantiserLanes) {
-    Floats16 v;
-    Floats16 code;
-    load(values + i, count - i, l.minimum, v);
-    nearest(v, l, code);
-    const Floats16 error = (v - (code * l.quantum + l.minimum)) * scale;
-    squares += error * error;
+  Lanes squares;
+  for (std::size_t i = 0; i < count; i += 2 * kHalf) {
+    Lanes v;
+    load(values, i, count, l.minimum, v);
+    measure_half(v.low, l, scale, squares.low);
+    measure_half(v.high, l, scale, squares.high);
   }
   return sum(squares);
 }

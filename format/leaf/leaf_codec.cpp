@@ -12,21 +12,33 @@
 namespace weir {
 namespace {
 
-// NodeStatistics::add for kLeafBatch leaves side by side, eight to a vector.
-constexpr std::size_t kVectors = kLeafBatch / 8;
+using Floats4 = float __attribute__((vector_size(16)));
+using Doubles4 = double __attribute__((vector_size(32)));
+
+// NodeStatistics::add for kLeafBatch leaves side by side, four to a vector, which most machines have.
+constexpr std::size_t kFours = kLeafBatch / 4;
 
 struct BatchStatistics {
-  std::array<Floats8, kVectors> min;
-  std::array<Floats8, kVectors> max;
-  std::array<Doubles8, kVectors> mean;
-  std::array<Doubles8, kVectors> m2;
+  std::array<Floats4, kFours> min;
+  std::array<Floats4, kFours> max;
+  std::array<Doubles4, kFours> mean;
+  std::array<Doubles4, kFours> m2;
 };
+
+[[gnu::always_inline]] inline void add_four(const Floats4& value, double count, std::size_t four, BatchStatistics& s) {
+  s.min[four] = value < s.min[four] ? value : s.min[four];
+  s.max[four] = value > s.max[four] ? value : s.max[four];
+  const Doubles4 wide = __builtin_convertvector(value, Doubles4);
+  const Doubles4 delta = wide - s.mean[four];
+  s.mean[four] += delta / count;
+  s.m2[four] += delta * (wide - s.mean[four]);
+}
 
 WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
   BatchStatistics s = batch;
   for (std::size_t first = 0; first < kLeafVoxels; first += 8) {
-    Floats8 next[kVectors][8];
-    for (std::size_t v = 0; v < kVectors; ++v) {
+    Floats8 next[kLeafBatch / 8][8];
+    for (std::size_t v = 0; v < kLeafBatch / 8; ++v) {
       for (std::size_t l = 0; l < 8; ++l) {
         std::memcpy(&next[v][l], values + (8 * v + l) * kLeafVoxels + first, sizeof(Floats8));
       }
@@ -34,14 +46,10 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
     }
     for (std::size_t i = 0; i < 8; ++i) {
       const auto count = static_cast<double>(first + i + 1);
-      for (std::size_t v = 0; v < kVectors; ++v) {
+      for (std::size_t v = 0; v < kLeafBatch / 8; ++v) {
         const Floats8 value = next[v][i];
-        s.min[v] = value < s.min[v] ? value : s.min[v];
-        s.max[v] = value > s.max[v] ? value : s.max[v];
-        const Doubles8 wide = __builtin_convertvector(value, Doubles8);
-        const Doubles8 delta = wide - s.mean[v];
-        s.mean[v] += delta / count;
-        s.m2[v] += delta * (wide - s.mean[v]);
+        add_four(__builtin_shufflevector(value, value, 0, 1, 2, 3), count, 2 * v, s);
+        add_four(__builtin_shufflevector(value, value, 4, 5, 6, 7), count, 2 * v + 1, s);
       }
     }
   }
@@ -109,8 +117,8 @@ void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Bo
                           std::span<NodeStatistics> statistics) {
   const NodeStatistics fresh;
   BatchStatistics batch{};
-  batch.min.fill(fresh.min - Floats8{});
-  batch.max.fill(fresh.max - Floats8{});
+  batch.min.fill(fresh.min - Floats4{});
+  batch.max.fill(fresh.max - Floats4{});
   if (leaves.size() == kLeafBatch) {
     add_side_by_side(leaves.front().data(), batch);
   } else {
@@ -119,8 +127,8 @@ void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Bo
     add_side_by_side(padded.front().data(), batch);
   }
   for (std::size_t l = 0; l < leaves.size(); ++l) {
-    const std::size_t v = l / 8;
-    const std::size_t lane = l % 8;
+    const std::size_t v = l / 4;
+    const std::size_t lane = l % 4;
     statistics[l] = NodeStatistics{batch.min[v][lane], batch.max[v][lane], batch.mean[v][lane],
                                    batch.m2[v][lane],  kLeafVoxels,        nodes[l]};
     // Of a sum of two NaN machines take the first, which lanes have in another order.
