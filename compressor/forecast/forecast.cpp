@@ -23,6 +23,8 @@
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/fixed_bytes.h"
+#include "compressor/select/held_steps.h"
+#include "compressor/select/leaf_gain.h"
 #include "compressor/survey/visibility.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
@@ -80,8 +82,11 @@ class Forecaster {
     }
     const std::uint64_t block = std::max(reading_.survey.block_bytes, reading_.encode.block_bytes);
     const std::uint64_t blocks = block * (reading_.reading == Reading::in_place ? threads : 2);
-    const std::uint64_t walk = threads * static_cast<std::uint64_t>(memory.selection.segment_regions) * of_region +
-                               memory.selection.step_bytes;
+    const auto leaves = static_cast<std::uint64_t>(make_lattice(domain_, kLeafDim).size());
+    const std::uint64_t steps =
+        std::min(memory.selection.step_bytes, leaves * RegionGains::kMostSteps * sizeof(HeldSteps::Step));
+    const std::uint64_t walk =
+        threads * static_cast<std::uint64_t>(memory.selection.segment_regions) * of_region + steps;
     // Chunks are decoded whole; rows are read as well in smaller blocks.
     constexpr std::uint64_t kRowsBytes = std::uint64_t{32} << 20U;
     const bool chunked = source_.access().chunk != Index3{};
