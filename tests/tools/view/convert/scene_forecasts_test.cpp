@@ -133,7 +133,7 @@ TEST_F(SceneForecastsTest, NextOne_BeginsWhenTheLastHasEnded) {
   // It takes a while to remove what it keeps.
   SceneForecasts forecasts(
       io_,
-      program(cat("mkdir ", lock, "; trap 'sleep 0.2; rmdir ", lock, "; exit 1' TERM; while :; do sleep 0.01; done")),
+      program(cat("trap 'sleep 0.05; rmdir ", lock, "; exit 1' TERM; mkdir ", lock, "; while :; do sleep 0.01; done")),
       {}, tell_);
   forecasts.ask(1, 1, conversion(), "a\n");
   run_while([&] { return !std::filesystem::exists(lock); });
