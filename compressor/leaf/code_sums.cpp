@@ -40,16 +40,6 @@ struct Lanes {
   load_half(values, first + kHalf, count, filler, v.high);
 }
 
-// The code of each value.
-[[gnu::always_inline]] inline void nearest(const Floats8& v, const CodeLevels& l, Floats8& code) {
-  const Floats8 zero{};
-  const Floats8 top = l.top - zero;
-  Floats8 t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
-
 // One half of what the functions below do.
 
 [[gnu::always_inline]] inline void deviate_half(const Floats8& v, float mean, float scale, float* deviations,
@@ -74,7 +64,7 @@ struct Lanes {
   Floats8 d;
   Floats8 code;
   std::memcpy(&d, deviations, sizeof d);
-  nearest(v, l, code);  // behind the last value 0, which adds nothing
+  nearest_code(v, l, code);  // behind the last value 0, which adds nothing
   codes += code;
   code_squares += code * code;
   code_values += code * d;
@@ -82,7 +72,7 @@ struct Lanes {
 
 [[gnu::always_inline]] inline void measure_half(const Floats8& v, const CodeLevels& l, float scale, Floats8& squares) {
   Floats8 code;
-  nearest(v, l, code);
+  nearest_code(v, l, code);
   const Floats8 error = (v - (code * l.quantum + l.minimum)) * scale;
   squares += error * error;
 }

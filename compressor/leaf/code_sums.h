@@ -5,10 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace weir {
+#include "compressor/leaf/code_levels.h"
 
-/// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
-inline constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
+namespace weir {
 
 /// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
 /// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
@@ -17,14 +16,6 @@ struct CodeSums {
   double codes = 0;    ///< exact: below 2^24 a lane for up to 8 bits
   double code_squares = 0;
   double code_values = 0;  ///< code * deviation
-};
-
-/// Levels minimum + code * quantum, for codes of 0 to `top`; a reciprocal of 0 where there is one level.
-struct CodeLevels {
-  float minimum;
-  float quantum;
-  float reciprocal;
-  float top;
 };
 
 /// Fills the deviations, as many as there are values rounded up to 16, 0 behind the last one, and returns the sum of

@@ -21,16 +21,6 @@ double sum_of_twins(const Floats8& lanes) {
   return static_cast<double>(all[0]);
 }
 
-// The code of each value, as assign() finds it.
-[[gnu::always_inline]] inline void nearest(const Floats8& v, const CodeLevels& l, Floats8& code) {
-  const Floats8 zero{};
-  const Floats8 top = l.top - zero;
-  Floats8 t = (v - l.minimum) * l.reciprocal;
-  t = t > zero ? t : zero;
-  t = t < top ? t : top;
-  code = (t + kRounder) - kRounder;
-}
-
 }  // namespace
 
 WEIR_SIMD double twin_deviate(const float* values, std::size_t planes, float mean, float scale, float* deviations) {
@@ -66,7 +56,7 @@ WEIR_SIMD CodeSums twin_assign(const float* values, const float* deviations, std
       Floats8 d;
       std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
       std::memcpy(&d, deviations + z + kTwinStep * k, sizeof d);
-      nearest(v, l, code[k]);
+      nearest_code(v, l, code[k]);
       squared[k] = code[k] * code[k];
       times_value[k] = code[k] * d;
     }
@@ -90,7 +80,7 @@ WEIR_SIMD double twin_measure(const float* values, std::size_t planes, const Cod
       Floats8 v;
       Floats8 code;
       std::memcpy(&v, values + z + kTwinStep * k, sizeof v);
-      nearest(v, l, code);
+      nearest_code(v, l, code);
       const Floats8 error = (v - (code * l.quantum + l.minimum)) * scale;
       terms[k] = error * error;
     }
