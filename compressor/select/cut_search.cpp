@@ -27,17 +27,8 @@ PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) cons
 
 // The weights of a range of keys, in buckets of 1 << shift of their bits; and of what lies outside it.
 struct CutSearch::Counted {
-  struct Bucket {
-    PurchaseGoal::Weight weight = 0;
-    std::uint64_t items = 0;
-    void operator+=(const Bucket& other) {
-      weight += other.weight;
-      items += other.items;
-    }
-  };
   // As many as a core's cache holds.
   static constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 14U;
-  enum Outside : std::size_t { kRequired, kAbove, kBelow };
 
   explicit Counted(const KeyRange& keys) : range(keys) {
     while ((range.end - range.first - 1) >> shift >= kMostBuckets) ++shift;
@@ -45,17 +36,17 @@ struct CutSearch::Counted {
   }
   void add(double key, PurchaseGoal::Weight weight) {
     if (!(key > 0)) return;
-    const Bucket one{weight, 1};
+    const PurchaseSum one{weight, 1};
     if (range.holds(key)) {
       buckets[(key_bits(key) - range.first) >> shift] += one;
     } else {
-      outside[key == kRequiredKey ? kRequired : key_bits(key) < range.first ? kBelow : kAbove] += one;
+      outside.add(range, key, one);
     }
   }
   PurchaseGoal::Weight all() const {
     PurchaseGoal::Weight sum = 0;
-    for (const Bucket& bucket : buckets) sum += bucket.weight;
-    for (const Bucket& part : outside) sum += part.weight;
+    for (const PurchaseSum& bucket : buckets) sum += bucket.weight;
+    for (const PurchaseSum& part : outside.parts) sum += part.weight;
     return sum;
   }
   KeyRange keys_of(std::size_t bucket) const {
@@ -63,12 +54,10 @@ struct CutSearch::Counted {
     return {first, std::min(range.end, first + (std::uint64_t{1} << shift))};
   }
 
-  static Bucket as_bucket(const HeldSteps::Sum& sum) { return {sum.bytes, sum.count}; }
-
   KeyRange range;
   unsigned shift = 0;
-  std::vector<Bucket> buckets;
-  std::array<Bucket, 3> outside{};
+  std::vector<PurchaseSum> buckets;
+  OutsideSums outside;
 };
 
 KeyRange CutSearch::likely_keys(const GainRule& rule) {
@@ -85,11 +74,8 @@ void CutSearch::for_each_key(const Begin& begin) const {
     if (region.key == 0) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
     rule_.gains(tree_, rows, gains);
-    for (const LeafGain& leaf : gains) {
-      for (std::uint32_t i = 0; i < leaf.step_count; ++i) {
-        visit(index, step_key(leaf, i, region.key), leaf.steps[i].bytes, leaf.steps[i].gain);
-      }
-    }
+    for_each_step(gains, region.key,
+                  [&](double key, const LeafStep& step) { visit(index, key, step.bytes, step.gain); });
   });
 }
 
@@ -112,18 +98,16 @@ CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& g
   Counted total(range);
   if (holds(range) && goal.unit == 0) {
     for_each_held(begin);
-    const HeldSteps::Outside outside = held_->outside();
-    total.outside = {Counted::as_bucket(outside.required), Counted::as_bucket(outside.above),
-                     Counted::as_bucket(outside.below)};
+    total.outside = held_->outside();
   } else {
     for_each_key(begin);
   }
   for (const Counted& counted : local) {
     for (std::size_t i = 0; i < total.buckets.size(); ++i) total.buckets[i] += counted.buckets[i];
-    for (std::size_t i = 0; i < total.outside.size(); ++i) total.outside[i] += counted.outside[i];
+    total.outside += counted.outside;
   }
-  rows_.team().sum<Counted::Bucket>(total.buckets);
-  rows_.team().sum<Counted::Bucket>(total.outside);
+  rows_.team().sum<PurchaseSum>(total.buckets);
+  rows_.team().sum<PurchaseSum>(total.outside.parts);
   for (const Upper& upper : tree_.uppers) total.add(upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
   return total;
 }
@@ -138,9 +122,9 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
       goal.limit = all > *goal.left ? all - *goal.left : 0;
     }
     // What is required is bought whatever the goal.
-    PurchaseGoal::Weight above = counted.outside[Counted::kRequired].weight;
+    PurchaseGoal::Weight above = counted.outside[OutsideSums::kRequired].weight;
     if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
-    const Counted::Bucket& higher = counted.outside[Counted::kAbove];
+    const PurchaseSum& higher = counted.outside[OutsideSums::kAbove];
     if (higher.items > 0 && !goal.admits_all(above, higher.weight)) {
       range = {range.end, kAllKeys.end};
       continue;
@@ -151,7 +135,7 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
       above += counted.buckets[--bucket].weight;
     }
     if (bucket == 0) {
-      if (counted.outside[Counted::kBelow].items == 0) return {0, above};  // everything may be bought
+      if (counted.outside[OutsideSums::kBelow].items == 0) return {0, above};  // everything may be bought
       range = {kAllKeys.first, range.first};
       continue;
     }

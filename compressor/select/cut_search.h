@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compressor/select/held_steps.h"
+#include "compressor/select/key_sums.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/select/step_keys.h"
@@ -20,8 +21,7 @@ namespace weir {
 /// What a purchase counts against the goal: its bytes, or the error it saves in units of `unit`.
 struct PurchaseGoal {
   double unit = 0;  ///< squared error; 0: bytes count
-  // Whole numbers, so that sums do not depend on the order of the threads.
-  using Weight = unsigned __int128;
+  using Weight = PurchaseSum::Weight;
   Weight limit = 0;
   /// What may stay unbought of all there is, where every step that can be bought leads to no error: the search sets
   /// `limit` by it. So small errors are told apart however large the one of nothing bought is.

@@ -2,17 +2,6 @@
 
 namespace weir {
 
-void HeldSteps::Part::add_outside(double key, std::uint64_t bytes) {
-  const Sum one{bytes, 1};
-  if (key == kRequiredKey) {
-    outside_.required += one;
-  } else if (key_bits(key) < all_->range_.first) {
-    outside_.below += one;
-  } else {
-    outside_.above += one;
-  }
-}
-
 bool HeldSteps::Part::grow() {
   if (all_->overflown_ || all_->chunk_count_++ >= all_->most_chunks_) {
     all_->overflown_ = true;
@@ -25,14 +14,10 @@ bool HeldSteps::Part::grow() {
   return true;
 }
 
-HeldSteps::Outside HeldSteps::outside() const {
-  Outside sum;
-  for (const Part& part : parts_) {
-    sum.required += part.outside_.required;
-    sum.above += part.outside_.above;
-    sum.below += part.outside_.below;
-  }
-  return sum;
+OutsideSums HeldSteps::outside() const {
+  OutsideSums sums;
+  for (const Part& part : parts_) sums += part.outside_;
+  return sums;
 }
 
 std::vector<std::span<const HeldSteps::Step>> HeldSteps::chunks() const {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "compressor/select/key_sums.h"
 #include "compressor/select/step_keys.h"
 #include "ingest/plan/page_buffer.h"
 
@@ -23,20 +24,6 @@ class HeldSteps {
     std::int32_t region;
     std::uint32_t bytes;
   };
-  struct Sum {
-    std::uint64_t bytes = 0;
-    std::uint64_t count = 0;
-    void operator+=(const Sum& other) {
-      bytes += other.bytes;
-      count += other.count;
-    }
-  };
-  /// Of steps whose keys are not in the range.
-  struct Outside {
-    Sum required;
-    Sum above;
-    Sum below;
-  };
 
   /// Takes up to `most_bytes` of memory, as it is needed.
   HeldSteps(const KeyRange& range, std::uint64_t most_bytes) : range_(range), most_chunks_(most_bytes / kChunkBytes) {}
@@ -48,7 +35,7 @@ class HeldSteps {
     void add(std::int64_t region, double key, std::uint64_t bytes, double gain) {
       if (!(key > 0)) return;
       if (!all_->range_.holds(key)) {
-        add_outside(key, bytes);
+        outside_.add(all_->range_, key, {bytes, 1});
       } else if (room_ > 0 || grow()) {
         *next_++ = {key, gain, static_cast<std::int32_t>(region), static_cast<std::uint32_t>(bytes)};
         --room_;
@@ -57,21 +44,21 @@ class HeldSteps {
 
    private:
     friend class HeldSteps;
-    void add_outside(double key, std::uint64_t bytes);
     bool grow();
 
     HeldSteps* all_;
     std::vector<PageBuffer> chunks_;
     Step* next_ = nullptr;
     std::size_t room_ = 0;  // steps that the last chunk still takes
-    Outside outside_;
+    OutsideSums outside_;
   };
   Part& part() { return parts_.local(); }
 
   /// Whether every step of the range is held.
   bool complete() const { return !overflown_; }
   const KeyRange& range() const { return range_; }
-  Outside outside() const;
+  /// Their bytes.
+  OutsideSums outside() const;
   /// In no order.
   std::vector<std::span<const Step>> chunks() const;
 

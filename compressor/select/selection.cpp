@@ -34,16 +34,9 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
     RegionGains& gains = local_gains.local();
     rule_.gains(tree_, region_rows, gains);
     keys.summarize_region(region, region_rows, gains);
+    if (held_ && held_->complete()) hold(region, gains);
     Totals& total = totals.local();
-    const double region_key = tree_.regions[static_cast<std::size_t>(region)].key;
-    HeldSteps::Part* const held = held_ && held_->complete() ? &held_->part() : nullptr;
-    if (held != nullptr) {
-      held->add(region, region_key, rule_.region_bytes(), tree_.regions[static_cast<std::size_t>(region)].opening_gain);
-    }
     for (const LeafGain& leaf : gains) {
-      for (std::uint32_t i = 0; held != nullptr && region_key > 0 && i < leaf.step_count; ++i) {
-        held->add(region, step_key(leaf, i, region_key), leaf.steps[i].bytes, leaf.steps[i].gain);
-      }
       total.lossy += leaf.lossless ? 0 : 1;
       if (leaf.step_count == 0) continue;
       ++total.full.leaves;
@@ -81,6 +74,15 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   bytes_.full = layout_of(full);
   required_bytes_ = minimum.uppers * rule_.upper_bytes() + minimum.regions * rule_.region_bytes() + minimum.leaf_bytes;
   bytes_.by_scene = rule_.visibility != nullptr;
+}
+
+void Selection::hold(std::int64_t index, const RegionGains& gains) {
+  const Region& region = tree_.regions[static_cast<std::size_t>(index)];
+  HeldSteps::Part& part = held_->part();
+  part.add(index, region.key, rule_.region_bytes(), region.opening_gain);
+  if (region.key == 0) return;  // no leaf in it has a higher one
+  for_each_step(gains, region.key,
+                [&](double key, const LeafStep& step) { part.add(index, key, step.bytes, step.gain); });
 }
 
 // Of a file in which so much is bought.

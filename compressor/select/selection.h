@@ -82,6 +82,7 @@ class Selection {
     std::uint64_t leaves = 0;
     std::uint64_t leaf_bytes = 0;
   };
+  void hold(std::int64_t region, const RegionGains& gains);
   TreeLayout layout_of(const Purchases& bought) const;
   void buy_for(PurchaseGoal goal);
   void resolve_ties(const PurchaseGoal& goal, const Threshold& threshold);

@@ -35,11 +35,11 @@ TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
   EXPECT_EQ(chunks[0][1].region, 4);
   EXPECT_EQ(chunks[0][1].bytes, 20U);
   EXPECT_EQ(chunks[0][1].gain, 0.25);
-  const HeldSteps::Outside outside = held.outside();
-  EXPECT_EQ(outside.below.bytes, 200U);
-  EXPECT_EQ(outside.below.count, 2U);
-  EXPECT_EQ(outside.above.bytes, 1000U);
-  EXPECT_EQ(outside.required.bytes, 10'000U);
+  const OutsideSums outside = held.outside();
+  EXPECT_TRUE(outside[OutsideSums::kBelow].weight == 200U);
+  EXPECT_EQ(outside[OutsideSums::kBelow].items, 2U);
+  EXPECT_TRUE(outside[OutsideSums::kAbove].weight == 1000U);
+  EXPECT_TRUE(outside[OutsideSums::kRequired].weight == 10'000U);
 }
 
 TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
