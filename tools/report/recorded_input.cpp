@@ -22,13 +22,13 @@ std::optional<Sidecar> record_of(const NvdbFile& file) {
   }
 }
 
+}  // namespace
+
 std::string index_text(const std::vector<std::int64_t>& index) {
   std::string text;
   for (const std::int64_t position : index) text += cat(text.empty() ? "" : ",", position);
   return text;
 }
-
-}  // namespace
 
 std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
                                 SourceOptions& options) {

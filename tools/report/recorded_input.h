@@ -1,7 +1,9 @@
 // What a sidecar says of how its source was read.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "format/base/option_row.h"
 #include "format/nanovdb/nvdb_file.h"
@@ -15,5 +17,8 @@ namespace weir {
 /// "--dataset /rho --index 3"; empty: nothing.
 std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
                                 SourceOptions& options);
+
+/// As --index takes it: "3,0".
+std::string index_text(const std::vector<std::int64_t>& index);
 
 }  // namespace weir

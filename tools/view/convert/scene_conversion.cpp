@@ -11,6 +11,7 @@
 #include "format/base/text.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/convert_command.h"
+#include "tools/report/recorded_input.h"
 
 namespace weir {
 
@@ -39,12 +40,6 @@ std::string named_source(const std::string& volume, const Sidecar& sidecar) {
   if (is_source_of(path, sidecar)) return path;
   throw input_error(path, cat("is not the source of ", volume, ", which had ", sidecar.source.bytes, " bytes as of ",
                               sidecar.source.mtime, "; put it there, or convert it again from where it is"));
-}
-
-std::string index_text(const std::vector<std::int64_t>& index) {
-  std::string text;
-  for (const std::int64_t position : index) text += cat(text.empty() ? "" : ",", position);
-  return text;
 }
 
 // How the volume was read. What was typed may have chosen several: "*", "time=*"; the sidecar says which one this is.
