@@ -18,6 +18,7 @@
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
+#include "compressor/packed/exact_block.h"
 #include "compressor/refused_values.h"
 #include "compressor/select/budget_outlook.h"
 #include "compressor/select/file_size.h"
@@ -87,11 +88,10 @@ PackedRequest packed_request(const ConversionOptions& options, const Survey& sur
   c.minimum = replaced ? std::min(survey.min, background) : survey.min;
   c.maximum = replaced ? std::max(survey.max, background) : survey.max;
   c.coarsest = coarsest_step(survey.min, survey.max);
-  if (packed.lattice) {
-    c.lattice_minimum = packed.lattice->minimum;
-    c.lattice_quantum = packed.lattice->quantum;
-    c.lattice_bits = packed.lattice->bits;
-  }
+  const Lattice lattice = packed.lattice.value_or(kWholeNumbers);
+  c.lattice_minimum = lattice.minimum;
+  c.lattice_quantum = lattice.quantum;
+  c.lattice_bits = lattice.bits;
   c.below_one = kBelowOne;
   c.below_more = kBelowMore;
   c.tables = built_in_tables();

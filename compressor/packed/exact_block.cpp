@@ -64,8 +64,12 @@ constexpr double kMostCodes = 16777216;  // of a lattice: 24 bits
 
 std::uint32_t ExactBlock::write(const LeafValues& block, const std::optional<Lattice>& lattice,
                                 std::span<std::byte> out, FloatOrder order) const {
-  const std::optional<Lattice> own = lattice ? std::nullopt : own_lattice(block);
-  return encode_exact(coder_, constants_of(lattice), own, block, out, order);
+  if (lattice) return encode_exact(coder_, constants_of(lattice), std::nullopt, block, out, order);
+  const std::optional<Lattice> own = own_lattice(block);
+  // On a coarser lattice of its own a block has smaller codes.
+  const bool whole = own && own->quantum == kWholeNumbers.quantum;
+  return encode_exact(coder_, constants_of(whole ? std::optional(kWholeNumbers) : std::nullopt), own, block, out,
+                      order);
 }
 
 std::uint32_t ExactBlock::write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) const {

@@ -14,10 +14,15 @@
 
 namespace weir {
 
+/// The file's lattice where the source's type says of none: whole numbers that are neither -0 nor 2^23 or more away
+/// from 0. Floats often are such numbers.
+inline constexpr Lattice kWholeNumbers{-0x1p23F, 1.0F, 24};
+
 /// One per thread.
 class ExactBlock {
  public:
-  /// Writes the shortest stream that gives every bit of `block` back; `lattice` is the file's. Returns its bytes.
+  /// Writes the shortest stream that gives every bit of `block` back; `lattice` is what the source's type says that all
+  /// values lie on. Returns its bytes.
   std::uint32_t write(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
                       FloatOrder order = FloatOrder::used) const;
 

@@ -214,6 +214,20 @@ TEST(PackedConversion, LosslessOfIntegersIsShorterThanTheirBytes) {
   EXPECT_GT(converted.sidecar.packed->blocks[3], 0U);
 }
 
+TEST(PackedConversion, LosslessOfWholeNumbersInFloatsIsLittleLongerThanOfIntegers) {
+  const auto value = [](const Index3& i) { return std::round(100 * smooth(i)) - 50; };
+  MemoryVolume floats(kPackedDomain, value);
+  MemoryVolume integers(kPackedDomain, value);
+  integers.info().type = ScalarType::int16;
+  const ConversionOptions options = packed(Budget::Kind::lossless, 0);
+  const Converted converted = test::convert(floats, options);
+  EXPECT_TRUE(converted.sidecar.error.lossless);
+  expect_certificate(floats, converted, options, "whole numbers");
+  // A byte of each base.
+  const auto blocks = static_cast<std::uint64_t>(make_lattice(kPackedDomain, kLeafDim).size());
+  EXPECT_LE(converted.file.size(), test::convert(integers, options).file.size() + blocks + 16);
+}
+
 TEST(PackedConversion, LosslessOfNoiseIsLittleMoreThanRaw) {
   std::uint32_t state = 1;
   MemoryVolume volume(kPackedDomain, [&](const Index3&) {
