@@ -10,6 +10,7 @@
 #include "tests/daemon/support/raw_client.h"
 #include "tests/daemon/support/service_harness.h"
 #include "tests/support/python.h"
+#include "tests/support/sanitized.h"
 
 namespace weir::watch_viewer_test {
 namespace {
@@ -124,7 +125,9 @@ TEST_F(WatchViewer, Page_OpensItAndShowsStepsThatCome) {
   if (std::system("command -v chromium >/dev/null && command -v chromedriver >/dev/null") != 0) {
     GTEST_SKIP() << "chromium or chromedriver is not installed; see tools/setup.sh";
   }
-  ServiceHarness service("token = \"secret\"\n", "thumbnails = true\n");
+  // A sanitizer's own memory counts against the share of a forecast.
+  ServiceHarness service(cat("token = \"secret\"\n", kSanitized ? "viewer_memory = \"512MiB\"\n" : ""),
+                         "thumbnails = true\n");
   service.add("s_1", 1);
   service.start();
   CommandOptions options;
