@@ -12,6 +12,7 @@
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"
+#include "compressor/select/file_size.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
@@ -64,6 +65,18 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
                  option("origin"), " set them in one"));
 }
 
+// Takes the room of a file whose size is known beforehand, while its volume is surveyed. Not where somebody has to be
+// asked for the room, and not for so little that it is soon done.
+void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const ConversionControl& control,
+                   const Box& domain) {
+  constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20U;
+  const Budget::Kind kind = options.budget.kind;
+  if (control.planned || (kind != Budget::Kind::size && kind != Budget::Kind::rate)) return;
+  const auto dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
+  const std::uint64_t bytes = asked_bytes(options.budget, dense);
+  if (bytes >= kLeastBytes && bytes < dense) output.reserve_ahead(bytes);
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
@@ -91,6 +104,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     reading = std::move(shares.reading);
   });
   work.hold_records(memory.record_bytes > 0);
+  if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
   const StreamOptions stream = stream_options(control);
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));

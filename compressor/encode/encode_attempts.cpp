@@ -48,7 +48,7 @@ void adopt_plan(Journal& journal, const Digest& plan) {
 std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   if (job.journal == nullptr) {
     job.rows.team().publish(job.output.volume());  // nothing of an earlier attempt comes after this one's
-    job.output.volume().clear();
+    job.output.clear_for(file.size.bytes);
     return job.work.spill_records();
   }
   adopt_plan(*job.journal, plan_digest(file));

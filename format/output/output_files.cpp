@@ -154,7 +154,24 @@ void OutputFiles::refuse_existing(const std::string& path) {
 
 void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }
 
+void OutputFiles::reserve_ahead(std::uint64_t bytes) {
+  ahead_bytes_ = bytes;
+  ahead_ = std::async(std::launch::async, [&file = volume(), bytes] {
+    try {
+      return file.preallocate(bytes);
+    } catch (const Error&) {
+      return false;
+    }
+  });
+}
+
+void OutputFiles::clear_for(std::uint64_t bytes) {
+  if (ahead_.valid() && ahead_.get() && ahead_bytes_ == bytes) return;
+  volume().clear();
+}
+
 OutputFiles::~OutputFiles() {
+  if (ahead_.valid()) ahead_.wait();
   if (committed_) {
     // The lock of a volume in another place: gone only now that what the volume was made from is.
     if (volume_) remove_quietly(path_ + ".partial");

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,11 @@ class OutputFiles {
   /// until this object ends. A failure leaves `file`, which its owner must remove.
   void write_to(std::shared_ptr<File> file);
 
+  /// Begins to reserve blocks of the volume, nothing of which is written yet, beside what its caller goes on with:
+  /// in a memory file system that takes as long as writing them. What goes wrong is left to reserve().
+  void reserve_ahead(std::uint64_t bytes);
+  /// Makes the volume empty, so that it can be reserve()d and written. `bytes` is what it will be.
+  void clear_for(std::uint64_t bytes);
   /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
   bool reserve(std::uint64_t bytes) { return volume().preallocate(bytes); }
   File& volume() { return volume_ ? *volume_ : *partial_; }
@@ -55,6 +61,8 @@ class OutputFiles {
   bool committed_ = false;
   std::unique_ptr<File> partial_;
   std::shared_ptr<File> volume_;  // where not partial_
+  std::future<bool> ahead_;       // whether ahead_bytes_ of the volume are reserved, and nothing is written
+  std::uint64_t ahead_bytes_ = 0;
 };
 
 /// Throws what OutputFiles does where no output can be made at `path`, whose longest name of weir's own beside it is

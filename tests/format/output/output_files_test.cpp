@@ -60,6 +60,33 @@ TEST_F(OutputFilesTest, WritesBothFilesAndNothingElse) {
   EXPECT_EQ(listing(), written_);
 }
 
+TEST_F(OutputFilesTest, ReservesAheadOnceAndKeepsWhatIsReserved) {
+  for (const std::uint64_t reserved : {6U, 1000U, 2U}) {
+    FaultyFileSystem files(*real_, -1, 0);
+    OutputFiles output_files(files, output(), true);
+    output_files.reserve_ahead(reserved);
+    output_files.clear_for(6);
+    EXPECT_EQ(output_files.volume().size(), reserved == 6 ? 6U : 0U);
+    EXPECT_TRUE(output_files.reserve(6));
+    output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+    output_files.clear_for(6);  // of another attempt
+    EXPECT_EQ(output_files.volume().size(), 0U) << "nothing of the one before is left";
+    output_files.reserve(6);
+    output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+    output_files.commit("sidecar");
+    EXPECT_EQ(listing(), written_);
+  }
+}
+
+TEST_F(OutputFilesTest, WhatCannotBeReservedAheadIsSaidWhenItIsReserved) {
+  FaultyFileSystem files(*real_, 1, ENOSPC);
+  OutputFiles output_files(files, output(), false);
+  output_files.reserve_ahead(6);
+  output_files.clear_for(6);
+  EXPECT_EQ(output_files.volume().size(), 0U);
+  EXPECT_EQ(files.calls(), (std::vector<std::string>{"create", "preallocate", "clear"}));
+}
+
 TEST_F(OutputFilesTest, MakesTheDocumentedSequenceOfCalls) {
   FaultyFileSystem files(*real_, -1, 0);
   EXPECT_EQ(write_output(files, false), "");
