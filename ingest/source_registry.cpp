@@ -80,7 +80,8 @@ constexpr std::array kFormats{
                  .open = open_by_hdf5_driver,
                  .list = list_by_hdf5_driver,
                  .container = true,
-                 .vectors = true},
+                 .vectors = true,
+                 .chunks = true},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },
@@ -114,7 +115,8 @@ void refuse_foreign_options(const std::string& path, const SourceFormat& format,
     refuse(options.upsampling.has_value(), option("upsample"), "AMReX plotfiles");
   }
   if (!format.chunks) {
-    refuse(options.missing_chunks != MissingChunks::fill, option("missing-chunks", "error"), "Zarr arrays");
+    refuse(options.missing_chunks != MissingChunks::fill, option("missing-chunks", "error"),
+           "Zarr arrays and HDF5 files");
   }
 }
 

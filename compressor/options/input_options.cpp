@@ -216,8 +216,9 @@ constexpr ConversionOption kInputOptions[] = {
     {{.key = "missing-chunks",
       .argument = "fill|error",
       .standard = "fill",
-      .help = "of a Zarr array, what chunks that are not stored read as: fill, the array's fill value; error: a volume "
-              "that lacks a chunk is refused"},
+      .help =
+          "of a Zarr array or an HDF5 dataset, what chunks that are not stored read as: fill, its fill value; error: "
+          "a volume that lacks a chunk is refused"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.source.missing_chunks = std::array{MissingChunks::fill, MissingChunks::error}.at(read_choice(row, text));
      }},

@@ -150,7 +150,7 @@ constexpr ConversionOption kMethodOptions[] = {
       .argument = "VALUE",
       .unit = "the values'",
       .standard = "auto",
-      .help = "auto (the most frequent value) or a value"},
+      .help = "auto (the most frequent value of the histogram's fullest bin) or a value"},
      read_background},
     {{.key = "brick",
       .argument = "8|16|32",

@@ -19,10 +19,12 @@
 #include "ingest/hdf5/storage/constant_source.h"
 #include "ingest/hdf5/storage/external_files.h"
 #include "ingest/hdf5/storage/planar_boxes.h"
+#include "ingest/hdf5/storage/unwritten_chunks.h"
 #include "ingest/hdf5/virtual/library_boxes.h"
 #include "ingest/hdf5/virtual/virtual_boxes.h"
 #include "ingest/source/extent.h"
 #include "ingest/source/reversed_source.h"
+#include "ingest/values/decode_values.h"
 #include "ingest/values/raw_values.h"
 
 namespace weir {
@@ -190,7 +192,41 @@ std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
                                     "it with the time first, or into one file"));
 }
 
+// Says, or refuses, chunks that read as the fill value. Of a volume whose axes are not the array's last three it counts
+// those of the whole array.
+void note_unwritten(Opening& opening) {
+  const Storage& storage = *opening.facts.storage;
+  if (storage.kind != StorageKind::chunked || storage.chunk.empty()) return;
+  const hid_t dataset = opening.object.handle.get();
+  std::vector<hsize_t> low(storage.chunk.size());
+  std::vector<hsize_t> high(storage.chunk.size());
+  const Hdf5Handle space(H5Dget_space(dataset));
+  if (H5Sget_simple_extent_dims(space.get(), high.data(), nullptr) != static_cast<int>(high.size())) return;
+  if (!opening.slice.planar && !opening.slice.roles.interleaved()) {
+    for (std::size_t axis = 0; axis < opening.slice.positions.size(); ++axis) {
+      low[axis] = static_cast<hsize_t>(opening.slice.positions[axis]);
+      high[axis] = low[axis] + 1;
+    }
+  }
+  const std::string where = opening.object.where();
+  const UnwrittenChunks unwritten = unwritten_chunks(dataset, storage, low, high, where);
+  if (unwritten.count == 0) return;
+  const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
+  const char* const was = unwritten.count == 1 ? " was" : " were";
+  if (opening.options.missing_chunks == MissingChunks::error) {
+    const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
+    throw input_error(where,
+                      compose(count, was, " never written", first, ", and with ", option("missing-chunks", "error"),
+                              " all must be; write them, or use ", option("missing-chunks", "fill")));
+  }
+  std::array<float, 1> fill{};
+  decode_values(storage.fill, opening.facts.type->scalar, opening.facts.type->big_endian, {}, fill);
+  opening.info.details.chunks_note =
+      cat(count, was, " never written and ", unwritten.count == 1 ? "reads" : "read", " as its fill value, ", fill[0]);
+}
+
 std::unique_ptr<VolumeSource> open_stored(Opening opening) {
+  note_unwritten(opening);
   if (opening.slice.roles.interleaved()) return open_interleaved(std::move(opening));
   if (opening.slice.planar) return open_planar(std::move(opening));
   switch (opening.facts.storage->kind) {

@@ -50,7 +50,7 @@ struct SourceOptions {
   /// Of Levels::separate the one that is this volume, 0 the coarsest; none where the file has one level.
   std::optional<std::int64_t> own_level;
 
-  MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: of Zarr arrays
+  MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: of Zarr arrays and HDF5 datasets
 
   bool stack = false;  ///< --stack: the path is a pattern, the volume many files on top of each other along z
 

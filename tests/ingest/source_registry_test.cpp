@@ -173,7 +173,7 @@ TEST(SourceRegistry, MissingChunks_IsForFormatsWhoseChunksMayBeMissing) {
   SourceOptions options;
   options.missing_chunks = MissingChunks::error;
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
-            path + ": --missing-chunks error is for Zarr arrays, and this is nrrd; leave it out");
+            path + ": --missing-chunks error is for Zarr arrays and HDF5 files, and this is nrrd; leave it out");
 }
 
 TEST(SourceRegistry, MissingFilesAreAnErrorOfTheInput) {

@@ -13,7 +13,6 @@ namespace {
 
 /// What libhdf5 1.10 calls a failure is an answer: the index was read and does not name the chunk. Later ones
 /// say that it has 0 bytes.
-constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
 
 }  // namespace
 

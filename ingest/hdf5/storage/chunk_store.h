@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ingest/hdf5/filters/filter_pipeline.h"
@@ -30,6 +31,9 @@ struct ChunkLayout {
   /// Whether the chunk whose first element is `corner` overhangs the extent.
   bool is_partial(std::span<const hsize_t> corner) const;
 };
+
+/// What hdf5_reason() is of a chunk that the file does not hold.
+inline constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
 
 /// "0, 64, 128": a chunk's first element, in the file's order of axes.
 std::string corner_text(std::span<const hsize_t> corner);

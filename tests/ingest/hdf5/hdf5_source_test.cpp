@@ -29,6 +29,42 @@ class Hdf5Source : public ::testing::Test {
   Scratch scratch_;
 };
 
+// The library gives the fill value for them, and says nothing.
+TEST_F(Hdf5Source, ChunksThatWereNeverWrittenAreSaidOrRefused) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("half", (32, 32, 32), "f4", chunks=(16, 16, 16), fillvalue=7.5)
+    d[:16] = 1
+    expect("half", d[()])
+    d = f.create_dataset("steps", (3, 8, 10, 20), ">i2", chunks=(1, 8, 10, 16), fillvalue=-3)
+    d[0] = 4
+    d[1, :, :, :16] = 5
+    d = f.create_dataset("vectors", (16, 4, 4, 3), "f4", chunks=(8, 4, 4, 3))
+    d[8:] = 2
+    f.create_dataset("whole", data=np.ones((8, 8, 8), "f4"), chunks=(4, 4, 4))
+)");
+  const auto note = [&](const SourceOptions& options) {
+    return open_source(scratch_.path("a.h5"), options)->info().details.chunks_note;
+  };
+  EXPECT_EQ(note(dataset_options("half")), "4 of its 8 chunks were never written and read as its fill value, 7.5");
+  const auto source = open_source(scratch_.path("a.h5"), dataset_options("half"));
+  EXPECT_EQ(all_values(*source), expected(scratch_, "half"));
+  EXPECT_EQ(note(dataset_options("steps", {0})), "");
+  EXPECT_EQ(note(dataset_options("steps", {1})), "1 of its 2 chunks was never written and reads as its fill value, -3");
+  EXPECT_EQ(note(dataset_options("steps", {2})), "2 of its 2 chunks were never written and read as its fill value, -3");
+  SourceOptions vectors = dataset_options("vectors");
+  vectors.component = ComponentChoice{false, 1};
+  EXPECT_EQ(note(vectors), "1 of its 2 chunks was never written and reads as its fill value, 0");
+  EXPECT_EQ(note(dataset_options("whole")), "");
+  SourceOptions all = dataset_options("half");
+  all.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(refused("a.h5", all), scratch_.path("a.h5") +
+                                      ": /half: 4 of its 8 chunks were never written (the first at 16, 0, 0), and with "
+                                      "--missing-chunks error all must be; write them, or use --missing-chunks fill");
+  all.dataset = "whole";
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), all)->info().extent, (Index3{8, 8, 8}));
+}
+
 TEST_F(Hdf5Source, ReadsEveryTypeInEveryLayout) {
   write_by_h5py(scratch_, R"(
 with h5py.File("types.h5", "w") as f:

@@ -1,0 +1,27 @@
+// Chunks of an HDF5 dataset that nobody has written: the library gives the fill value for them, without a word.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ingest/hdf5/storage/storage.h"
+
+namespace weir {
+
+struct UnwrittenChunks {
+  std::uint64_t count = 0;
+  std::uint64_t all = 0;
+  std::vector<hsize_t> first;  ///< first element of the first of them, slowest axis first, where they were looked up
+};
+
+/// Of the chunks that the part [low, high) of a chunked dataset touches, elements along each of its axes; where these
+/// are more than 65,536, of all chunks of the dataset. Where the file holds all of them that costs one look. Messages
+/// begin with `where`. The caller holds Hdf5Lock. Throws Error(input).
+UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::span<const hsize_t> low,
+                                 std::span<const hsize_t> high, const std::string& where);
+
+}  // namespace weir
