@@ -163,7 +163,7 @@ typedef struct weir_convert_options {
   int32_t fill;        /* WEIR_FILL_... */
   int32_t nonfinite;   /* WEIR_NONFINITE_... */
   int32_t has_background;
-  float background;  /* finite; without has_background the most frequent value is found */
+  float background;  /* finite; without has_background that of --background auto */
   int32_t overwrite; /* not 0: replace an existing output */
   int32_t threads;   /* 0: one per core */
   /* Since 0.2. */
@@ -228,7 +228,8 @@ typedef struct weir_input_options {
   int32_t level;          /* of an AMReX plotfile, with has_level: the finest level that is read, 0 the coarsest */
   int32_t has_level;      /* 0: the finest there is */
   int32_t upsample;       /* of an AMReX plotfile, where only coarser levels have values: WEIR_UPSAMPLE_... */
-  int32_t missing_chunks; /* of a Zarr array, what chunks that are not stored read as: WEIR_MISSING_CHUNKS_... */
+  int32_t missing_chunks; /* of a Zarr array or an HDF5 dataset, what chunks that are not stored read as:
+                             WEIR_MISSING_CHUNKS_... */
   const char* magnitude;  /* "u,v,w": datasets, in place of `dataset`, that are the components of the vectors whose
                            * length is the volume; NULL: none */
   int32_t levels;         /* of an AMReX plotfile: WEIR_LEVELS_COMPOSITE, one file; WEIR_LEVELS_SEPARATE, a file of each

@@ -180,7 +180,7 @@ class Grid:
 
     @property
     def background(self) -> float:
-        """What lies outside, and the most frequent value in files that weir made."""
+        """What lies outside; in files that weir made, the most frequent value of the histogram's fullest bin."""
         return self._core.background
 
     @property
