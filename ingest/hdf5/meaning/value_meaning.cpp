@@ -112,6 +112,10 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     for (const StoredValue& value : stored_value_attribute(object, name)) {
       meaning.mapping.missing.push_back(meant_unsigned ? as_unsigned(value, type.scalar) : value);
     }
+    if (const std::size_t count = attribute_values(object, name); count > kMaxAttributeValues) {
+      meaning.obstacle = cat("its attribute ", name, " has ", count, " values, and at most ", kMaxAttributeValues,
+                             " are read, so which voxels hold no data is unknown; shorten it");
+    }
   }
   const auto by_netcdf = netcdf_default_fill(type.scalar);
   if (meaning.mapping.missing.empty() && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
