@@ -1,5 +1,6 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -9,6 +10,8 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/file/hdf5_type.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {
@@ -22,8 +25,7 @@ std::string where_of(hid_t object) {
   return cat(file.data(), ": ", name.data());
 }
 
-/// An open attribute and how many values of which type it has; no values where
-/// it is absent.
+/// An open attribute and how many values of which type it has; no values where it is absent.
 struct Attribute {
   Attribute(hid_t owner, const char* called) : object(owner), name(called) {
     if (!has_attribute(object, name)) return;
@@ -89,6 +91,9 @@ std::vector<std::string> variable_texts(const Attribute& attribute) {
   return texts;
 }
 
+/// Values in a message.
+constexpr std::size_t kMostShown = 4;
+
 template <typename T>
 std::vector<StoredValue> stored(const std::vector<T>& values) {
   return {values.begin(), values.end()};
@@ -99,8 +104,7 @@ std::vector<StoredValue> stored(const std::vector<T>& values) {
 Error attribute_error(hid_t object, const char* name) {
   const std::string reason = hdf5_reason();  // before a further call overwrites it
   return input_error(where_of(object), cat("its attribute ", name, " cannot be read: ", reason,
-                                           "; its attributes are damaged, or of a later version "
-                                           "of HDF5: copy the "
+                                           "; its attributes are damaged, or of a later version of HDF5: copy the "
                                            "file again, or write it anew"));
 }
 
@@ -137,6 +141,22 @@ std::vector<std::string> text_attribute(hid_t object, const char* name) {
   const Attribute attribute(object, name);
   if (!attribute.fits() || attribute.kind != H5T_STRING) return {};
   return H5Tis_variable_str(attribute.type.get()) > 0 ? variable_texts(attribute) : fixed_texts(attribute);
+}
+
+std::string attribute_found(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.values == 0) return "empty";
+  std::vector<std::string> texts;
+  if (attribute.kind == H5T_STRING) {
+    for (const std::string& text : text_attribute(object, name)) texts.push_back(in_quotes(text));
+  } else if (attribute.fits()) {
+    for (const StoredValue& value : stored_value_attribute(object, name)) texts.push_back(stored_value_text(value));
+  }
+  if (texts.empty()) return cat("of type ", type_text(attribute.type.get()));
+  if (texts.size() == 1) return texts[0];
+  std::string shown;
+  for (std::size_t i = 0; i < std::min(texts.size(), kMostShown); ++i) shown += cat(i == 0 ? "" : ", ", texts[i]);
+  return cat(texts.size(), " values (", shown, texts.size() > kMostShown ? ", ...)" : ")");
 }
 
 }  // namespace weir
