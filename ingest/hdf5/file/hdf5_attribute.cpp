@@ -103,8 +103,8 @@ std::vector<StoredValue> stored(const std::vector<T>& values) {
 
 Error attribute_error(hid_t object, const char* name) {
   const std::string reason = hdf5_reason();  // before a further call overwrites it
-  return input_error(where_of(object), cat("its attribute ", name, " cannot be read: ", reason,
-                                           "; its attributes are damaged, or of a later version of HDF5: copy the "
+  return input_error(where_of(object), cat("its attributes cannot be read, looking for ", name, ": ", reason,
+                                           "; they are damaged, or of a later version of HDF5: copy the "
                                            "file again, or write it anew"));
 }
 

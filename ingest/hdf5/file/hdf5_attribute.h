@@ -32,9 +32,9 @@ std::size_t attribute_values(hid_t object, const char* name);
 /// What a message says that the attribute is: "0", "'half'", "2 values (1, 2)", "of type boolean", "empty".
 std::string attribute_found(hid_t object, const char* name);
 
-/// "PATH: /fields/density: its attribute NAME cannot be read: REASON; ...", kind input, of the call of the library that
-/// failed last. The library decodes an object's attributes until it finds the one that it is asked for: the damage may
-/// be to another of them.
+/// "PATH: /fields/density: its attributes cannot be read, looking for NAME: REASON; ...", kind input, of the call of
+/// the library that failed last. The library decodes an object's attributes until it finds the one that it is asked
+/// for: the damage may be to another of them.
 Error attribute_error(hid_t object, const char* name);
 
 }  // namespace weir

@@ -20,7 +20,7 @@ class Hdf5Attribute : public ::testing::Test {
   }
 
   const std::string remedy_ =
-      "; its attributes are damaged, or of a later version of HDF5: copy the file again, or write it anew";
+      "; they are damaged, or of a later version of HDF5: copy the file again, or write it anew";
   Scratch scratch_;
 };
 
@@ -34,9 +34,9 @@ data[data.find(b"scale_factor") - 6] ^= 0xff  # the length of the name
 open("a.h5", "wb").write(data)
 )");
   const std::string message = refused("a.h5");
-  EXPECT_TRUE(message.starts_with(scratch_.path("a.h5") + ": /q: its attribute ")) << message;
-  EXPECT_NE(message.find(" cannot be read: attribute name has different length than stored length" + remedy_),
-            std::string::npos)
+  EXPECT_TRUE(message.starts_with(scratch_.path("a.h5") + ": /q: its attributes cannot be read, looking for "))
+      << message;
+  EXPECT_NE(message.find(": attribute name has different length than stored length" + remedy_), std::string::npos)
       << message;
 }
 
@@ -50,7 +50,7 @@ assert data.count(b"GCOL") == 1  # the heap that the text lies in
 open("a.h5", "wb").write(data.replace(b"GCOL", b"lost"))
 )");
   EXPECT_EQ(refused("a.h5"), scratch_.path("a.h5") +
-                                 ": /q: its attribute _Unsigned cannot be read: bad global heap "
+                                 ": /q: its attributes cannot be read, looking for _Unsigned: bad global heap "
                                  "collection signature" +
                                  remedy_);
 }
@@ -67,7 +67,7 @@ assert data.count(b"GCOL") == 1
 open("a.h5", "wb").write(data.replace(b"GCOL", b"lost"))
 )");
   EXPECT_EQ(refused("a.h5"), scratch_.path("a.h5") +
-                                 ": /q: its attribute DIMENSION_LIST cannot be read: bad global "
+                                 ": /q: its attributes cannot be read, looking for DIMENSION_LIST: bad global "
                                  "heap collection signature" +
                                  remedy_);
 }
