@@ -17,6 +17,7 @@
 
 #include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
+#include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/options/help_words.h"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
   log_in_lines();
   weir::catch_interrupts();
+  weir::report_hdf5_crashes();
   std::signal(SIGPIPE, SIG_IGN);
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");

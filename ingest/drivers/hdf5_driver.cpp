@@ -1,6 +1,7 @@
 #include "ingest/drivers/hdf5_driver.h"
 
 #include "ingest/drivers/driver.h"
+#include "ingest/drivers/hdf5_crash.h"
 
 namespace weir {
 namespace {
@@ -12,11 +13,15 @@ const Hdf5Driver& driver_for(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_by_hdf5_driver(const std::string& path, const SourceOptions& options) {
-  return driver_for(path).open(path, options);
+  const Hdf5Driver& driver = driver_for(path);
+  const Hdf5Call call(path);
+  return driver.open(path, options);
 }
 
 std::vector<DatasetInfo> list_by_hdf5_driver(const std::string& path, const SourceOptions& options) {
-  return driver_for(path).list(path, options);
+  const Hdf5Driver& driver = driver_for(path);
+  const Hdf5Call call(path);
+  return driver.list(path, options);
 }
 
 }  // namespace weir

@@ -14,6 +14,10 @@
 
 namespace weir {
 
+/// How a message goes on that says which beginning a file lacks.
+inline constexpr std::string_view kNotAsNamed =
+    ": the file is of another format than its name says, or its beginning is lost";
+
 /// No header is longer: of a file without line ends, no more than this is read.
 inline constexpr std::size_t kHeaderLimit = std::size_t{1} << 20U;
 

@@ -38,7 +38,9 @@ constexpr std::array<TypeNames, 10> kNrrdTypes{
 class Fields {
  public:
   Fields(std::string_view text, bool whole, const std::string& path) : path_(path) {
-    if (!text.starts_with(kNrrdMagic)) throw Error(ErrorKind::input, cat(path, ": does not begin with NRRD000"));
+    if (!text.starts_with(kNrrdMagic)) {
+      throw Error(ErrorKind::input, cat(path, ": does not begin with ", kNrrdMagic, kNotAsNamed));
+    }
     LineReader lines(text);
     const std::string_view magic = *lines.next();
     const std::string_view version = magic.substr(kNrrdMagic.size());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/files/input_file.h"
@@ -134,8 +135,10 @@ HeaderVolume describe_nrrd(const std::string& path) {
 
 }  // namespace
 
-bool recognises_nrrd(std::string_view, std::span<const std::byte> head) {
-  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(kNrrdMagic);
+bool recognises_nrrd(std::string_view path, std::span<const std::byte> head) {
+  const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
+  const std::string name = lower_case(path);
+  return begin.starts_with(kNrrdMagic) || name.ends_with(".nrrd") || name.ends_with(".nhdr");
 }
 
 std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options) {

@@ -15,7 +15,7 @@
 
 namespace weir {
 
-/// By its magic, whatever the name.
+/// By its magic, whatever the name; and what only looks so, by a name (.nrrd, .nhdr).
 bool recognises_nrrd(std::string_view path, std::span<const std::byte> head);
 
 /// A first axis of one value (NRRD keeps channels there) is dropped, --index chooses along the axes after the next

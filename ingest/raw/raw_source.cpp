@@ -1,8 +1,11 @@
 #include "ingest/raw/raw_source.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string_view>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/raw/raw_name.h"
@@ -29,6 +32,15 @@ Error contradiction(const std::string& path, std::string_view key, std::string_v
 }
 
 std::string dims_text(const Index3& e) { return cat(e.x, ',', e.y, ',', e.z); }
+
+// The format's magic, behind a name that says it.
+void refuse_gzip(InputFile& file) {
+  constexpr std::array kMagic{std::byte{0x1F}, std::byte{0x8B}};
+  if (!lower_case(file.path()).ends_with(".gz") || file.size() < kMagic.size()) return;
+  std::array<std::byte, kMagic.size()> head{};
+  file.read_buffered(0, head, ReadPath::through);
+  if (head == kMagic) throw input_error(file.path(), "is packed by gzip; unpack it first, with gunzip -k");
+}
 
 RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
   const auto name = parse_raw_name(path);
@@ -76,6 +88,7 @@ void check_size(const InputFile& file, const RawShape& shape, std::uint64_t offs
 
 std::unique_ptr<VolumeSource> open_raw(const std::string& path, const SourceOptions& options) {
   auto file = std::make_unique<InputFile>(path, options.direct_io);
+  refuse_gzip(*file);
   const RawShape shape = resolve_shape(path, options);
   RawLayout layout{options.offset.value_or(0), shape.type, shape.big_endian, {}};
   check_size(*file, shape, layout.offset);

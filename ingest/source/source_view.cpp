@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -59,6 +60,20 @@ Error unusable(const std::string& path, bool given, std::string_view key, double
 
 }  // namespace
 
+std::string too_far_away(const Box& domain, const std::array<double, 3>& spacing, const std::array<double, 3>& origin) {
+  const std::array<std::int64_t, 3> begin{domain.lo.x, domain.lo.y, domain.lo.z};
+  const std::array<std::int64_t, 3> end{domain.hi.x, domain.hi.y, domain.hi.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const std::int64_t at : {begin[a], end[a]}) {
+      const double place = origin[a] + static_cast<double>(at) * spacing[a];
+      if (std::fabs(place) <= static_cast<double>(std::numeric_limits<float>::max())) continue;
+      return cat("reaches ", place, " along ", "xyz"[a], " with ", end[a] - begin[a], " voxels ", spacing[a],
+                 " apart, and float32 does not hold that");
+    }
+  }
+  return "";
+}
+
 std::unique_ptr<VolumeSource> crop_to(std::unique_ptr<VolumeSource> source, const VolumeRegion& region) {
   const SourceInfo& info = source->info();
   const Box box = region.in(info.domain());
@@ -102,6 +117,13 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
   }
   for (const double o : placed.origin) {
     if (!std::isfinite(o)) throw unusable(placed.path, options.origin.has_value(), "origin", o, "finite");
+    if (std::fabs(o) > kMostOrigin) {
+      throw unusable(placed.path, options.origin.has_value(), "origin", o, "within -1e+37 and 1e+37");
+    }
+  }
+  if (const std::string why = too_far_away(placed.domain(), placed.spacing, placed.origin); !why.empty()) {
+    throw Error(options.spacing ? ErrorKind::usage : ErrorKind::input,
+                compose(placed.path, ": ", why, "; give a smaller ", option("spacing")));
   }
   if (!options.spacing && !options.origin) return source;
   if (options.spacing) {  // what is said of the file's own is of no use

@@ -168,9 +168,12 @@ void check_place(const DenseArray& array) {
     }
   }
   for (const double o : array.origin) {
-    if (std::isfinite(o)) continue;
-    throw Error(ErrorKind::usage, cat(kPath, ": the origin has ", o, "; each must be finite"));
+    if (std::isfinite(o) && std::fabs(o) <= kMostOrigin) continue;
+    throw Error(ErrorKind::usage, cat(kPath, ": the origin has ", o, "; each must be ",
+                                      std::isfinite(o) ? "within -1e+37 and 1e+37" : "finite"));
   }
+  const std::string why = too_far_away({{}, array.extent}, array.spacing, array.origin);
+  if (!why.empty()) throw Error(ErrorKind::usage, cat(kPath, ": ", why, "; give a smaller spacing"));
 }
 
 }  // namespace

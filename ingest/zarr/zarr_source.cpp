@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/chunks/chunk_boxes.h"
@@ -14,6 +15,7 @@
 #include "ingest/zarr/array_choice.h"
 #include "ingest/zarr/storage/zarr_chunks.h"
 #include "ingest/zarr/store/open_store.h"
+#include "ingest/zarr/store/zip_directory.h"
 
 namespace weir {
 namespace {
@@ -97,15 +99,6 @@ class ZarrSource final : public VolumeSource {
   ChunkBoxes boxes_;
 };
 
-bool begins_as_zip(std::span<const std::byte> head) {
-  constexpr std::array kEntry{std::byte{'P'}, std::byte{'K'}, std::byte{3}, std::byte{4}};
-  constexpr std::array kEmpty{std::byte{'P'}, std::byte{'K'}, std::byte{5}, std::byte{6}};
-  const auto begins = [&](const auto& magic) {
-    return head.size() >= magic.size() && std::equal(magic.begin(), magic.end(), head.begin());
-  };
-  return begins(kEntry) || begins(kEmpty);
-}
-
 }  // namespace
 
 bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
@@ -113,8 +106,8 @@ bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
   const auto directory_head = head_in_directory(name);
   if (directory_head) return !is_plotfile_head(*directory_head);
   if (is_head(path)) return !is_plotfile_head(path);
-  const bool raw = path.ends_with(".raw");
-  return !raw && begins_as_zip(head);
+  const std::string lower = lower_case(path);
+  return lower.ends_with(".zip") || lower.ends_with(".ozx") || (!path.ends_with(".raw") && begins_as_zip(head));
 }
 
 std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOptions& options) {

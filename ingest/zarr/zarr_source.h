@@ -15,7 +15,7 @@
 namespace weir {
 
 /// A directory that holds zarr.json, .zgroup or .zarray, such a file itself, and a zip file, by its first bytes,
-/// `head`.
+/// `head`; and what only looks so, by a name (.zip, .ozx).
 bool recognises_zarr(std::string_view path, std::span<const std::byte> head);
 
 /// The array options.dataset, or the only one; of an image of several scales the finest. Its last three axes are z, y,

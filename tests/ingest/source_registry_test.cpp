@@ -112,6 +112,22 @@ const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSa
        return scratch.write_values("sample_4x3x2_uint8.raw", values);
      }}};
 
+TEST(SourceRegistry, FileThatIsNotWhatItsNameSays_IsNotTakenForRaw) {
+  const Scratch scratch;
+  const std::string not_as_named = ": the file is of another format than its name says, or its beginning is lost";
+  SourceOptions options;
+  options.dataset = "density";
+  for (const auto& [name, lacks] :
+       std::vector<std::pair<std::string, std::string>>{{"a.nrrd", "does not begin with NRRD000"},
+                                                        {"a.NHDR", "does not begin with NRRD000"},
+                                                        {"a.zarr.zip", "does not begin with PK, as zip files do"},
+                                                        {"a.ozx", "does not begin with PK, as zip files do"}}) {
+    const std::string path = scratch.write(name, std::vector<std::byte>(5000, std::byte{0xA5}));
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, options); }),
+              path + ": " + lacks + not_as_named);
+  }
+}
+
 TEST(SourceRegistry, OpensEveryFormat) {
   const Scratch scratch;
   std::vector<float> expected(24);

@@ -1,34 +1,60 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
 
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/file/hdf5_type.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {
 
-/// An open attribute and how many values of which type it has; none where it cannot be read.
+// "PATH: /fields/density"; PATH is the file that the object lies in.
+std::string where_of(hid_t object) {
+  std::array<char, 4096> file{};
+  std::array<char, 4096> name{};
+  H5Fget_name(object, file.data(), file.size() - 1);
+  H5Iget_name(object, name.data(), name.size() - 1);
+  return cat(file.data(), ": ", name.data());
+}
+
+/// An open attribute and how many values of which type it has; no values where it is absent.
 struct Attribute {
-  Attribute(hid_t object, const char* name) {
+  Attribute(hid_t owner, const char* called) : object(owner), name(called) {
     if (!has_attribute(object, name)) return;
     handle = Hdf5Handle(H5Aopen(object, name, H5P_DEFAULT));
+    if (!handle) throw attribute_error(object, name);
     type = Hdf5Handle(H5Aget_type(handle.get()));
+    if (!type) throw attribute_error(object, name);
     space = Hdf5Handle(H5Aget_space(handle.get()));
     const hssize_t points = H5Sget_simple_extent_npoints(space.get());
-    if (!type || points <= 0 || points > static_cast<hssize_t>(kMaxAttributeValues)) return;
+    if (points < 0) throw attribute_error(object, name);
     values = static_cast<std::size_t>(points);
-    kind = H5Tget_class(type.get());
+    if (values > 0) kind = H5Tget_class(type.get());
+  }
+
+  bool fits() const { return values <= kMaxAttributeValues; }
+
+  void read_into(hid_t memory_type, void* memory) const {
+    if (H5Aread(handle.get(), memory_type, memory) < 0) throw attribute_error(object, name);
   }
 
   template <typename T>
   std::vector<T> read_as(hid_t memory_type) const {
     std::vector<T> read(values);
-    if (H5Aread(handle.get(), memory_type, read.data()) < 0) return {};
+    read_into(memory_type, read.data());
     return read;
   }
 
+  hid_t object;
+  const char* name;
   Hdf5Handle handle;
   Hdf5Handle type;
   Hdf5Handle space;
@@ -46,7 +72,7 @@ std::vector<std::string> fixed_texts(const Attribute& attribute) {
   const std::size_t width = H5Tget_size(attribute.type.get());
   if (width == 0 || width > kMaxAttributeBytes / attribute.values) return {};
   std::vector<char> bytes(width * attribute.values);
-  if (H5Aread(attribute.handle.get(), attribute.type.get(), bytes.data()) < 0) return {};
+  attribute.read_into(attribute.type.get(), bytes.data());
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < attribute.values; ++i) texts.push_back(attribute_text(bytes.data() + i * width, width));
   return texts;
@@ -58,13 +84,15 @@ std::vector<std::string> variable_texts(const Attribute& attribute) {
   H5Tset_size(memory_type.get(), H5T_VARIABLE);
   H5Tset_cset(memory_type.get(), H5Tget_cset(attribute.type.get()));
   std::vector<char*> pointers(attribute.values, nullptr);
+  attribute.read_into(memory_type.get(), pointers.data());
   std::vector<std::string> texts;
-  if (H5Aread(attribute.handle.get(), memory_type.get(), pointers.data()) >= 0) {
-    for (const char* text : pointers) texts.push_back(text == nullptr ? "" : attribute_text(text, kMaxAttributeBytes));
-  }
+  for (const char* text : pointers) texts.push_back(text == nullptr ? "" : attribute_text(text, kMaxAttributeBytes));
   H5Dvlen_reclaim(memory_type.get(), attribute.space.get(), H5P_DEFAULT, pointers.data());
   return texts;
 }
+
+/// Values in a message.
+constexpr std::size_t kMostShown = 4;
 
 template <typename T>
 std::vector<StoredValue> stored(const std::vector<T>& values) {
@@ -73,16 +101,30 @@ std::vector<StoredValue> stored(const std::vector<T>& values) {
 
 }  // namespace
 
-bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, name) > 0; }
+Error attribute_error(hid_t object, const char* name) {
+  const std::string reason = hdf5_reason();  // before a further call overwrites it
+  return input_error(where_of(object), cat("its attributes cannot be read, looking for ", name, ": ", reason,
+                                           "; they are damaged, or of a later version of HDF5: copy the "
+                                           "file again, or write it anew"));
+}
+
+bool has_attribute(hid_t object, const char* name) {
+  const htri_t found = H5Aexists(object, name);
+  if (found < 0) throw attribute_error(object, name);
+  return found > 0;
+}
+
+std::size_t attribute_values(hid_t object, const char* name) { return Attribute(object, name).values; }
 
 std::vector<double> number_attribute(hid_t object, const char* name) {
   const Attribute attribute(object, name);
-  if (attribute.kind != H5T_INTEGER && attribute.kind != H5T_FLOAT) return {};
+  if (!attribute.fits() || (attribute.kind != H5T_INTEGER && attribute.kind != H5T_FLOAT)) return {};
   return attribute.read_as<double>(H5T_NATIVE_DOUBLE);
 }
 
 std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name) {
   const Attribute attribute(object, name);
+  if (!attribute.fits()) return {};
   if (attribute.kind == H5T_FLOAT) return stored(attribute.read_as<double>(H5T_NATIVE_DOUBLE));
   if (attribute.kind == H5T_INTEGER && H5Tget_sign(attribute.type.get()) == H5T_SGN_NONE) {
     return stored(attribute.read_as<std::uint64_t>(H5T_NATIVE_UINT64));
@@ -97,8 +139,24 @@ std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name) 
 
 std::vector<std::string> text_attribute(hid_t object, const char* name) {
   const Attribute attribute(object, name);
-  if (attribute.kind != H5T_STRING) return {};
+  if (!attribute.fits() || attribute.kind != H5T_STRING) return {};
   return H5Tis_variable_str(attribute.type.get()) > 0 ? variable_texts(attribute) : fixed_texts(attribute);
+}
+
+std::string attribute_found(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.values == 0) return "empty";
+  std::vector<std::string> texts;
+  if (attribute.kind == H5T_STRING) {
+    for (const std::string& text : text_attribute(object, name)) texts.push_back(in_quotes(text));
+  } else if (attribute.fits()) {
+    for (const StoredValue& value : stored_value_attribute(object, name)) texts.push_back(stored_value_text(value));
+  }
+  if (texts.empty()) return cat("of type ", type_text(attribute.type.get()));
+  if (texts.size() == 1) return texts[0];
+  std::string shown;
+  for (std::size_t i = 0; i < std::min(texts.size(), kMostShown); ++i) shown += cat(i == 0 ? "" : ", ", texts[i]);
+  return cat(texts.size(), " values (", shown, texts.size() > kMostShown ? ", ...)" : ")");
 }
 
 }  // namespace weir

@@ -11,6 +11,7 @@
 #include "ingest/drivers/hdf5_signature.h"
 #include "ingest/files/input_file.h"
 #include "ingest/hdf5/file/hdf5_error.h"
+#include "ingest/headers/header_text.h"
 
 namespace weir {
 namespace {
@@ -74,9 +75,7 @@ Hdf5Handle open_hdf5_file(const std::string& path) {
                 cat(path, ": NetCDF of before version 4, which is not HDF5; convert it with nccopy -k nc4"));
   }
   if (!has_hdf5_signature(path)) {
-    throw Error(ErrorKind::input, cat(path,
-                                      ": no HDF5 signature at 0, 512, 1024 ...: the file is of another format "
-                                      "than its name says, or its beginning is lost"));
+    throw Error(ErrorKind::input, cat(path, ": no HDF5 signature at 0, 512, 1024 ...", kNotAsNamed));
   }
   const Hdf5Handle properties = access_properties();
   Hdf5Handle opened(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.get()));

@@ -22,6 +22,7 @@ namespace {
 std::vector<Hdf5Handle> scales_of(hid_t dataset, std::size_t rank) {
   if (!has_attribute(dataset, "DIMENSION_LIST")) return {};
   const Hdf5Handle attribute(H5Aopen(dataset, "DIMENSION_LIST", H5P_DEFAULT));
+  if (!attribute) throw attribute_error(dataset, "DIMENSION_LIST");
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   const Hdf5Handle space(H5Aget_space(attribute.get()));
   const Hdf5Handle wanted(H5Tvlen_create(H5T_STD_REF_OBJ));
@@ -31,10 +32,9 @@ std::vector<Hdf5Handle> scales_of(hid_t dataset, std::size_t rank) {
   }
   std::vector<hvl_t> lists(rank, hvl_t{0, nullptr});
   std::vector<Hdf5Handle> scales;
-  if (H5Aread(attribute.get(), wanted.get(), lists.data()) >= 0) {
-    for (const hvl_t& list : lists) {
-      scales.emplace_back(list.len == 0 ? H5I_INVALID_HID : H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, list.p));
-    }
+  if (H5Aread(attribute.get(), wanted.get(), lists.data()) < 0) throw attribute_error(dataset, "DIMENSION_LIST");
+  for (const hvl_t& list : lists) {
+    scales.emplace_back(list.len == 0 ? H5I_INVALID_HID : H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, list.p));
   }
   H5Dvlen_reclaim(wanted.get(), space.get(), H5P_DEFAULT, lists.data());
   return scales;

@@ -60,8 +60,8 @@ double packing(hid_t object, const char* name, double fallback, std::string& obs
   const std::vector<StoredValue> values = stored_value_attribute(object, name);
   const double value = values.size() == 1 ? as_double(values[0]) : std::nan("");
   if (std::isfinite(value) && (value != 0.0 || fallback == 0.0)) return value;
-  obstacle = cat("its attribute ", name, fallback == 0.0 ? " is not one finite number" : " is not one number but 0",
-                 ", so what its values mean is unknown; correct or remove it");
+  obstacle = cat("its attribute ", name, " is ", attribute_found(object, name), " and not one finite number",
+                 fallback == 0.0 ? "" : " other than 0", ", so what its values mean is unknown; correct or remove it");
   return fallback;
 }
 
@@ -111,6 +111,10 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   for (const char* name : {"_FillValue", "missing_value"}) {
     for (const StoredValue& value : stored_value_attribute(object, name)) {
       meaning.mapping.missing.push_back(meant_unsigned ? as_unsigned(value, type.scalar) : value);
+    }
+    if (const std::size_t count = attribute_values(object, name); count > kMaxAttributeValues) {
+      meaning.obstacle = cat("its attribute ", name, " has ", count, " values, and at most ", kMaxAttributeValues,
+                             " are read, so which voxels hold no data is unknown; shorten it");
     }
   }
   const auto by_netcdf = netcdf_default_fill(type.scalar);

@@ -101,6 +101,15 @@ void read_extra64(std::span<const std::byte> extra, ZipEntry& entry, const std::
 
 }  // namespace
 
+bool begins_as_zip(std::span<const std::byte> head) {
+  constexpr std::array kEntry{std::byte{'P'}, std::byte{'K'}, std::byte{3}, std::byte{4}};
+  constexpr std::array kEmpty{std::byte{'P'}, std::byte{'K'}, std::byte{5}, std::byte{6}};
+  const auto begins = [&](const auto& magic) {
+    return head.size() >= magic.size() && std::equal(magic.begin(), magic.end(), head.begin());
+  };
+  return begins(kEntry) || begins(kEmpty);
+}
+
 ZipEntries read_zip_directory(const ZipBytes& file, std::uint64_t memory, const std::string& where) {
   const ZipCentral central = find_central(file, where);
   // The numbers of entries that a record of 16 bits gives may have wrapped: the bytes bound them.

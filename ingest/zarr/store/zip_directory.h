@@ -35,6 +35,9 @@ using ZipEntries = std::map<std::string, ZipEntry, std::less<>>;
 /// Memory for one entry, its name aside, in bytes.
 inline constexpr std::uint64_t kZipEntryBytes = 160;
 
+/// Whether a file whose first bytes are `head` begins with an entry or, empty, with the end record.
+bool begins_as_zip(std::span<const std::byte> head);
+
 /// Throws Error(input), beginning with `where`, where the file is no zip file, in several parts or damaged, and
 /// Error(usage) where the directory takes more than `memory` bytes, before any is taken.
 ZipEntries read_zip_directory(const ZipBytes& file, std::uint64_t memory, const std::string& where);

@@ -3,12 +3,14 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/files/input_file.h"
+#include "ingest/headers/header_text.h"
 #include "ingest/zarr/store/zip_directory.h"
 
 namespace weir {
@@ -157,6 +159,11 @@ class ZipStore final : public ZarrStore {
 }  // namespace
 
 std::unique_ptr<ZarrStore> make_zip_store(const std::string& path, std::uint64_t memory) {
+  std::array<std::byte, 4> head{};
+  InputFile file(path, DirectIo::off);
+  const auto begin = std::span(head).first(std::min<std::uint64_t>(head.size(), file.size()));
+  file.read_buffered(0, begin, ReadPath::through);
+  if (!begins_as_zip(begin)) throw input_error(path, cat("does not begin with PK, as zip files do", kNotAsNamed));
   return std::make_unique<ZipStore>(path, memory);
 }
 

@@ -231,6 +231,13 @@ TEST(RawSource, ImpossibleExtents) {
             named + ": extent 0x5x9 has 0 voxels along x; each axis must be 1 to 2147483647");
 }
 
+TEST(RawSource, FileThatIsPackedByGzip_IsToBeUnpacked) {
+  const Scratch scratch;
+  const std::string path =
+      scratch.write("v_7x5x9_uint8.raw.gz", std::vector{std::byte{0x1F}, std::byte{0x8B}, std::byte{8}});
+  EXPECT_EQ(refusal(ErrorKind::input, path), path + ": is packed by gzip; unpack it first, with gunzip -k");
+}
+
 TEST(RawSource, UnknownExtentOrTypeIsAskedFor) {
   const Scratch scratch;
   const std::string path = scratch.write_values("v.raw", ramp<std::uint8_t>());

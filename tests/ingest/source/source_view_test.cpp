@@ -103,6 +103,26 @@ TEST(SourceView, RefusesInvalidSpacingAndOrigin) {
   options.spacing.reset();
   options.origin = {0.0, std::nan(""), 0.0};
   EXPECT_EQ(refusal(options), path + ": --origin has nan; each must be finite");
+  options.origin = {1e300, 0.0, 0.0};
+  EXPECT_EQ(refusal(options), path + ": --origin has 1e+300; each must be within -1e+37 and 1e+37");
+  options.origin = {0.0, 0.0, -2e37};
+  EXPECT_EQ(refusal(options), path + ": --origin has -2e+37; each must be within -1e+37 and 1e+37");
+}
+
+// Its far end lies beyond the greatest float32, 3.4e38, and its origin does not.
+TEST(SourceView, VolumeThatReachesBeyondFloat32_IsRefused) {
+  const Scratch scratch;
+  SourceOptions options;
+  options.spacing = {1, 1, 1e37};
+  options.origin = {0, 0, 1e37};
+  const auto opened = [&](const std::string& name, std::size_t bytes) {
+    return place_source(open_raw(scratch.write(name, std::vector<std::byte>(bytes)), options), options);
+  };
+  EXPECT_EQ(opened("v_1x1x30_uint8.raw", 30)->info().origin, *options.origin);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { opened("v_1x1x35_uint8.raw", 35); }),
+            scratch.path("v_1x1x35_uint8.raw") +
+                ": reaches 3.6e+38 along z with 35 voxels 1e+37 apart, and float32 does not hold that; give a smaller "
+                "--spacing");
 }
 
 }  // namespace

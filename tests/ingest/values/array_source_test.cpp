@@ -208,6 +208,8 @@ TEST(ArraySource, RefusesInvalidArrays) {
             "memory: the spacing has inf; each must be finite and above 0");
   EXPECT_EQ(refusal(ErrorKind::usage, [](DenseArray& a) { a.origin[0] = kNoNumber; }),
             "memory: the origin has nan; each must be finite");
+  EXPECT_EQ(refusal(ErrorKind::usage, [](DenseArray& a) { a.origin[1] = -1e300; }),
+            "memory: the origin has -1e+300; each must be within -1e+37 and 1e+37");
   EXPECT_EQ(refusal(ErrorKind::usage,
                     [](DenseArray& a) {
                       a.type = ScalarType::uint8;

@@ -203,12 +203,35 @@ n.close()
     return message_of_error(ErrorKind::input, [&] { info_of("a.nc", name); });
   };
   const std::string unknown = ", so what its values mean is unknown; correct or remove it";
-  EXPECT_EQ(refused("bad"),
-            scratch_.path("a.nc") + ": /bad: its attribute scale_factor is not one number but 0" + unknown);
-  EXPECT_EQ(refused("zero"),
-            scratch_.path("a.nc") + ": /zero: its attribute scale_factor is not one number but 0" + unknown);
-  EXPECT_EQ(refused("list"),
-            scratch_.path("a.nc") + ": /list: its attribute add_offset is not one finite number" + unknown);
+  EXPECT_EQ(refused("bad"), scratch_.path("a.nc") +
+                                ": /bad: its attribute scale_factor is 'half' and not one finite number other than 0" +
+                                unknown);
+  EXPECT_EQ(refused("zero"), scratch_.path("a.nc") +
+                                 ": /zero: its attribute scale_factor is 0 and not one finite number other than 0" +
+                                 unknown);
+  EXPECT_EQ(refused("list"), scratch_.path("a.nc") +
+                                 ": /list: its attribute add_offset is 2 values (1, 2) and not one finite number" +
+                                 unknown);
+}
+
+TEST_F(Hdf5Placement, ScaleFactorThatIsNoNumber_IsShown) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, scale in [("nan", np.nan), ("list", [1, 2, 3, 4, 5]), ("complex", 1 + 2j), ("bool", True),
+                        ("none", h5py.Empty("f4"))]:
+        f[name] = values("f4")
+        f[name].attrs["scale_factor"] = scale
+)");
+  for (const auto& [name, found] :
+       std::vector<std::pair<std::string, std::string>>{{"nan", "nan"},
+                                                        {"list", "5 values (1, 2, 3, 4, ...)"},
+                                                        {"complex", "of type compound of 2 members"},
+                                                        {"bool", "of type boolean"},
+                                                        {"none", "empty"}}) {
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("a.h5", name); }),
+              scratch_.path("a.h5") + ": /" + name + ": its attribute scale_factor is " + found +
+                  " and not one finite number other than 0, so what its values mean is unknown; correct or remove it");
+  }
 }
 
 TEST_F(Hdf5Placement, OptionsAddToTheAttributesOfTheFile) {
