@@ -95,7 +95,7 @@ TEST(WrongOptions, Configuration) {
     const std::string message = message_of_error(ErrorKind::input, [&] { read_watch_options(reader, table); });
     EXPECT_EQ(message.substr(message.find(": ") + 2), wrong.reason.worded(key_wording));
   }
-  EXPECT_EQ(refused, 41);
+  EXPECT_EQ(refused, 44);
 }
 
 /// The members of weir.h that say the same; none where C cannot say it.
@@ -112,6 +112,10 @@ bool set_members(const GivenOptions& given, weir_convert_options& o) {
       o.budget_kind = WEIR_BUDGET_SIZE;
     } else if (key == "metric" && text == "farthest") {
       o.metric = WEIR_METRIC_FARTHEST;
+    } else if (key == "encoding" && (text == "fpn" || text == "packed")) {
+      o.encoding = text == "fpn" ? WEIR_ENCODING_FPN : WEIR_ENCODING_PACKED;
+    } else if (key == "fill" && text == "background") {
+      o.fill = WEIR_FILL_BACKGROUND;
     } else if (key == "background") {
       o.has_background = 1;
       o.background = static_cast<float>(number);
@@ -142,7 +146,7 @@ TEST(WrongOptions, CMembers) {
     EXPECT_EQ(weir_convert(&volume, values.data(), nullptr, &options, "/none/a.nvdb", &error), WEIR_ERROR_USAGE);
     EXPECT_EQ(std::string(error.message), wrong.reason.worded(c::c_wording));
   }
-  EXPECT_EQ(refused, 11);
+  EXPECT_EQ(refused, 14);
 }
 
 }  // namespace
