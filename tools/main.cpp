@@ -22,6 +22,7 @@
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/printable.h"
+#include "tools/report/standard_output.h"
 
 namespace {
 
@@ -51,9 +52,7 @@ void log_in_lines() {
   spdlog::set_formatter(std::move(formatter));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
   log_in_lines();
   weir::catch_interrupts();
@@ -111,4 +110,16 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail_internally(error);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = run(argc, argv);
+  try {
+    weir::finish_stdout();
+  } catch (const weir::Error& error) {
+    if (code == 0) return fail(error.what(), error.exit_code());  // else its own error was said
+  }
+  return code;
 }
