@@ -42,6 +42,21 @@ std::string bytes_of(T value) {
   return bytes;
 }
 
+TEST_F(Verify, NameThatSteersATerminal_IsOneLine) {
+  const std::string name = "den\nweir: ok \x1b[31m\xff" + std::string(1, '\0');
+  damage(192, name);
+  damage(4136, name);
+  const CommandResult result = verify();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err.find('\x1b'), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('\xff'), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("\nweir: ok"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("weir: " + volume_ +
+                            ": sidecar grid.name: found den\\nweir: ok \\x1b[31m\\xff, expected density\n"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
   for (const std::string name : {"step_0001.nvdb", "step_0010.nvdb"}) {
     fs::copy_file(volume_, directory_ / name);
