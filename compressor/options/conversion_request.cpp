@@ -19,6 +19,10 @@ const OptionRow* find_row(std::string_view key) {
 /// Before the volume is read: none of this depends on its values.
 void check_encoding(const ConversionOptions& options) {
   const Encoding encoding = options.encoding;
+  if (encoding != Encoding::packed && options.backend == CoderChoice::cuda) {
+    throw usage_error(compose(option("backend", "cuda"), " converts to ", option("encoding", "packed"),
+                              " alone; give that, or use ", option("backend", "auto")));
+  }
   if (encoding == Encoding::automatic || encoding == Encoding::float32) return;
   if (options.metric != Metric::sse) {
     throw usage_error(compose(option("encoding", encoding_name(encoding)), " selects by ", option("metric", "sse"),
@@ -86,6 +90,17 @@ void settle_gaps(const SourceOptions& source, ConversionOptions& options) {
                                  : option("nonfinite", "keep"),
                             " does not go with ", option("levels", "separate"),
                             ", whose voxels without a value become the background; use background"));
+}
+
+std::vector<OptionRow> watch_options() {
+  std::vector<OptionRow> rows;
+  for (const auto table : {input_options(), method_options()}) {
+    for (const ConversionOption& option : table) {
+      if (option.row.key != "stack") rows.push_back(option.row);
+    }
+  }
+  rows.push_back(conversion_option("backend"));
+  return rows;
 }
 
 ConversionRequest read_conversion_request(const GivenOptions& given) {
