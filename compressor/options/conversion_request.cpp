@@ -23,6 +23,10 @@ void check_encoding(const ConversionOptions& options) {
     throw usage_error(compose(option("backend", "cuda"), " converts to ", option("encoding", "packed"),
                               " alone; give that, or use ", option("backend", "auto")));
   }
+  if (encoding != Encoding::packed && options.preview != Preview::automatic) {
+    throw usage_error(compose(option("preview", options.preview == Preview::on ? "on" : "off"), " is for ",
+                              option("encoding", "packed"), "; give that, or leave out ", option("preview")));
+  }
   if (encoding == Encoding::automatic || encoding == Encoding::float32) return;
   if (options.metric != Metric::sse) {
     throw usage_error(compose(option("encoding", encoding_name(encoding)), " selects by ", option("metric", "sse"),

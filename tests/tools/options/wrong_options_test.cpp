@@ -96,7 +96,7 @@ TEST(WrongOptions, Configuration) {
     const std::string message = message_of_error(ErrorKind::input, [&] { read_watch_options(reader, table); });
     EXPECT_EQ(message.substr(message.find(": ") + 2), wrong.reason.worded(key_wording));
   }
-  EXPECT_EQ(refused, 46);
+  EXPECT_EQ(refused, 48);
 }
 
 /// The members of weir.h that say the same; none where C cannot say it.
@@ -115,6 +115,8 @@ bool set_members(const GivenOptions& given, weir_convert_options& o) {
       o.metric = WEIR_METRIC_FARTHEST;
     } else if (key == "encoding" && (text == "fpn" || text == "packed")) {
       o.encoding = text == "fpn" ? WEIR_ENCODING_FPN : WEIR_ENCODING_PACKED;
+    } else if (key == "preview" && (text == "on" || text == "off")) {
+      o.preview = text == "on" ? WEIR_PREVIEW_ON : WEIR_PREVIEW_OFF;
     } else if (key == "fill" && text == "background") {
       o.fill = WEIR_FILL_BACKGROUND;
     } else if (key == "backend" && text == "cuda") {
@@ -149,7 +151,7 @@ TEST(WrongOptions, CMembers) {
     EXPECT_EQ(weir_convert(&volume, values.data(), nullptr, &options, "/none/a.nvdb", &error), WEIR_ERROR_USAGE);
     EXPECT_EQ(std::string(error.message), wrong.reason.worded(c::c_wording));
   }
-  EXPECT_EQ(refused, 15);
+  EXPECT_EQ(refused, 17);
 }
 
 }  // namespace
