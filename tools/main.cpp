@@ -19,6 +19,7 @@
 #include "format/base/error.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/options/empty_names.h"
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/printable.h"
@@ -82,6 +83,7 @@ int run(int argc, char** argv) {
     weir::add_resume(app);
     weir::add_completion(app);
     weir::add_man(app);
+    weir::refuse_empty_names(app);
     std::vector<std::string> words = weir::with_help_option(app, {argv + std::min(argc, 1), argv + argc});
     std::ranges::reverse(words);  // as parse takes them
     app.parse(std::move(words));
