@@ -57,6 +57,13 @@ TEST_F(Verify, NameThatSteersATerminal_IsOneLine) {
       << result.err;
 }
 
+TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
+  const std::string none = directory_ / "none.nvdb";
+  const CommandResult result = run_weir({"verify", none, "--progress", "never"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err, "weir: structure: " + none + ": cannot open: No such file or directory\n");
+}
+
 TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
   for (const std::string name : {"step_0001.nvdb", "step_0010.nvdb"}) {
     fs::copy_file(volume_, directory_ / name);

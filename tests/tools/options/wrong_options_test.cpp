@@ -96,7 +96,7 @@ TEST(WrongOptions, Configuration) {
     const std::string message = message_of_error(ErrorKind::input, [&] { read_watch_options(reader, table); });
     EXPECT_EQ(message.substr(message.find(": ") + 2), wrong.reason.worded(key_wording));
   }
-  EXPECT_EQ(refused, 48);
+  EXPECT_EQ(refused, 49);
 }
 
 /// The members of weir.h that say the same; none where C cannot say it.
@@ -151,7 +151,7 @@ TEST(WrongOptions, CMembers) {
     EXPECT_EQ(weir_convert(&volume, values.data(), nullptr, &options, "/none/a.nvdb", &error), WEIR_ERROR_USAGE);
     EXPECT_EQ(std::string(error.message), wrong.reason.worded(c::c_wording));
   }
-  EXPECT_EQ(refused, 17);
+  EXPECT_EQ(refused, 18);
 }
 
 }  // namespace
