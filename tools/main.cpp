@@ -20,9 +20,11 @@
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/options/empty_names.h"
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/printable.h"
+#include "tools/report/standard_output.h"
 
 namespace {
 
@@ -52,9 +54,7 @@ void log_in_lines() {
   spdlog::set_formatter(std::move(formatter));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
   log_in_lines();
   weir::catch_interrupts();
@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
     weir::add_resume(app);
     weir::add_completion(app);
     weir::add_man(app);
+    weir::refuse_empty_names(app);
     std::vector<std::string> words = weir::with_help_option(app, {argv + std::min(argc, 1), argv + argc});
     std::ranges::reverse(words);  // as parse takes them
     app.parse(std::move(words));
@@ -113,4 +114,16 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail_internally(error);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = run(argc, argv);
+  try {
+    weir::finish_stdout();
+  } catch (const weir::Error& error) {
+    if (code == 0) return fail(error.what(), error.exit_code());  // else its own error was said
+  }
+  return code;
 }

@@ -10,8 +10,8 @@ namespace weir::c {
 namespace {
 
 constexpr std::array<std::string_view, 5> kBudgets{"rate", "size", "psnr", "max-error", "lossless"};
-constexpr std::array<std::string_view, 7> kChoices{"encoding",  "preview",        "metric", "fill",
-                                                   "nonfinite", "missing-policy", "levels"};
+constexpr std::array<std::string_view, 8> kChoices{"encoding",  "preview",        "metric", "fill",
+                                                   "nonfinite", "missing-policy", "levels", "backend"};
 
 bool holds(const auto& keys, const std::string& key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
 

@@ -19,6 +19,7 @@
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/options/empty_names.h"
 #include "tools/options/given_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
@@ -96,6 +97,7 @@ int run(int argc, char** argv, int rank) {
   app.set_version_flag("--version", WEIR_VERSION);
   Arguments arguments;
   add_convert(app, arguments);
+  weir::refuse_empty_names(app);
   try {
     app.parse(argc, argv);
     weir::MpiTeam team(MPI_COMM_WORLD);

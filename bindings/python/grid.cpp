@@ -84,6 +84,7 @@ std::shared_ptr<Grid::Opened> Grid::shared() const {
 Grid::Opened& Grid::opened() const { return *shared(); }
 
 std::string Grid::type() const { return std::string(grid_type_name(opened().grid().type())); }
+bool Grid::packed() const { return opened().grid().packed() != nullptr; }
 py::str Grid::name() const {
   const std::string& name = opened().grid().name();
   return py::reinterpret_steal<py::str>(

@@ -43,6 +43,7 @@ class Grid {
   bool closed() const { return file_ == nullptr; }
 
   std::string type() const;
+  bool packed() const;
   pybind11::str name() const;
   double background() const;
   std::tuple<double, double> range() const;  ///< smallest and largest active value, as the file says

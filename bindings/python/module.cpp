@@ -26,6 +26,7 @@ PYBIND11_MODULE(_core, m) {
       .def("close", &Grid::close)
       .def_property_readonly("closed", &Grid::closed)
       .def_property_readonly("type", &Grid::type)
+      .def_property_readonly("packed", &Grid::packed)
       .def_property_readonly("name", &Grid::name)
       .def_property_readonly("background", &Grid::background)
       .def_property_readonly("range", &Grid::range)

@@ -16,6 +16,28 @@ const OptionRow* find_row(std::string_view key) {
   return nullptr;
 }
 
+/// Before the volume is read: none of this depends on its values.
+void check_encoding(const ConversionOptions& options) {
+  const Encoding encoding = options.encoding;
+  if (encoding != Encoding::packed && options.backend == CoderChoice::cuda) {
+    throw usage_error(compose(option("backend", "cuda"), " converts to ", option("encoding", "packed"),
+                              " alone; give that, or use ", option("backend", "auto")));
+  }
+  if (encoding != Encoding::packed && options.preview != Preview::automatic) {
+    throw usage_error(compose(option("preview", options.preview == Preview::on ? "on" : "off"), " is for ",
+                              option("encoding", "packed"), "; give that, or leave out ", option("preview")));
+  }
+  if (encoding == Encoding::automatic || encoding == Encoding::float32) return;
+  if (options.metric != Metric::sse) {
+    throw usage_error(compose(option("encoding", encoding_name(encoding)), " selects by ", option("metric", "sse"),
+                              " only; use ", option("encoding", "float")));
+  }
+  if (encoding == Encoding::packed && options.fill != FillMode::mean) {
+    throw usage_error(compose(option("encoding", "packed"), " drops no block to the background; leave out ",
+                              option("fill", "background")));
+  }
+}
+
 /// What no option can see of itself.
 void check_method(const GivenOptions& given, const ConversionOptions& options) {
   const auto encoding = given.find("encoding");
@@ -26,6 +48,7 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
     throw usage_error(compose(option("metric", metric_name(options.metric)), " has no error target; ", option("psnr"),
                               " and ", option("max-error"), " select by sse"));
   }
+  check_encoding(options);
   if (options.budget.at_most && !options.budget.by_size()) {
     throw usage_error(compose(option("at-most"), " needs ", option("size"), " or ", option("rate")));
   }
@@ -71,6 +94,17 @@ void settle_gaps(const SourceOptions& source, ConversionOptions& options) {
                                  : option("nonfinite", "keep"),
                             " does not go with ", option("levels", "separate"),
                             ", whose voxels without a value become the background; use background"));
+}
+
+std::vector<OptionRow> watch_options() {
+  std::vector<OptionRow> rows;
+  for (const auto table : {input_options(), method_options()}) {
+    for (const ConversionOption& option : table) {
+      if (option.row.key != "stack") rows.push_back(option.row);
+    }
+  }
+  rows.push_back(conversion_option("backend"));
+  return rows;
 }
 
 ConversionRequest read_conversion_request(const GivenOptions& given) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "compressor/conversion_options.h"
 #include "format/base/index.h"
@@ -36,6 +37,9 @@ std::span<const ConversionOption> run_options();
 bool is_conversion_option(std::string_view key);
 /// The row of an option of one of the three tables, which must exist.
 const OptionRow& conversion_option(std::string_view key);
+/// What can be said of every file that a service watches: input and method, and which device encodes. A stack is many
+/// files, the job of a watch is one.
+std::vector<OptionRow> watch_options();
 
 /// What `given`, with keys of the three tables, asks for; what is not given has its standard value. Throws Error(usage)
 /// naming option, text and form where one cannot be read or two contradict each other; what load_scene throws. Whether

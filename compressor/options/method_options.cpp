@@ -25,8 +25,11 @@ double read_number(const OptionRow& row, const std::string& text, double least, 
 
 void read_rate(const OptionRow& row, const std::string& text, Request& request) {
   request.conversion.budget.kind = Budget::Kind::rate;
-  request.conversion.budget.rate =
-      read_number(row, text, kLeastRate, kMostRate, "a positive number: dense float32 bytes / file bytes");
+  const double number = parse_double(text).value_or(0);
+  const bool positive = number > 0 && std::isfinite(number);
+  request.conversion.budget.rate = read_number(
+      row, text, kLeastRate, kMostRate,
+      cat(positive ? "a number from 2^-20 to 2^60" : "a positive number", ": dense float32 bytes / file bytes"));
 }
 
 void read_psnr(const OptionRow& row, const std::string& text, Request& request) {

@@ -156,14 +156,6 @@ FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate
 std::uint64_t preview_bytes(const TreeLayout& layout) { return layout.blind_meta - layout.uppers; }
 
 FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
-  if (request.rule.metric != Metric::sse) {
-    throw Error(ErrorKind::usage, compose(option("encoding", "packed"), " selects by ", option("metric", "sse"),
-                                          " only; use ", option("encoding", "float")));
-  }
-  if (request.rule.fill.mode != FillMode::mean) {
-    throw Error(ErrorKind::usage, compose(option("encoding", "packed"), " drops no block to the background; leave out ",
-                                          option("fill", "background")));
-  }
   const auto plan_with = [&](bool preview) {
     Candidate candidate(request, Encoding::packed, rows, work, preview);
     return plan_by_budget(request, Encoding::packed, candidate);
@@ -185,13 +177,10 @@ FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirec
 
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
   if (encoding == Encoding::packed) return plan_packed(request, rows, work);
-  if (encoding != Encoding::float32 && !can_quantise(request)) {
+  if (encoding != Encoding::float32 && request.keeps_non_finite) {
     throw Error(ErrorKind::usage,
-                compose(option("encoding", encoding_name(encoding)),
-                        request.keeps_non_finite ? compose(" holds no NaN or infinite voxels, which ",
-                                                           option("nonfinite", "keep"), " asks for")
-                                                 : compose(" selects by ", option("metric", "sse"), " only"),
-                        "; use ", option("encoding", "float")));
+                compose(option("encoding", encoding_name(encoding)), " holds no NaN or infinite voxels, which ",
+                        option("nonfinite", "keep"), " asks for; use ", option("encoding", "float")));
   }
   Candidate candidate(request, encoding, rows, work);
   return plan_by_budget(request, encoding, candidate);

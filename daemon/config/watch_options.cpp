@@ -38,17 +38,6 @@ std::string value_text(const toml::node& node, const std::string& key, const cha
   return joined;
 }
 
-/// What can be said of every file that is watched. A stack is many files; the job of a watch is one.
-std::vector<OptionRow> watch_options() {
-  std::vector<OptionRow> rows;
-  for (const auto table : {input_options(), method_options()}) {
-    for (const ConversionOption& option : table) {
-      if (option.row.key != "stack") rows.push_back(option.row);
-    }
-  }
-  return rows;
-}
-
 /// Throws what is wrong with the given options in terms of keys, at the last of them that the message names: the one
 /// that made it wrong.
 [[noreturn]] void fail_at_key(TomlReader& reader, const toml::table& table, const Message& message,

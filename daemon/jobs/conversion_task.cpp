@@ -22,7 +22,9 @@ std::string output_directory(const WatchConfig& watch, const std::string& source
 
 std::string options_text(const WatchConfig& watch) {
   std::string text = cat("output=", watch.output, "/", watch.name);
-  for (const std::string& option : watch.convert_options) text += cat(' ', option);
+  for (const std::string& option : watch.convert_options) {
+    if (!option.starts_with("--backend=")) text += cat(' ', option);  // its bytes are the same
+  }
   return text;
 }
 

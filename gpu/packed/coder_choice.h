@@ -29,16 +29,12 @@ inline std::function<void(const Error&)> say_device_failure(const Notice& notice
 
 /// Of a conversion whose blocks are `packed`, or may be no such ones, under a ceiling of `memory` bytes; null: the CPU.
 /// What fails later, and with CoderChoice::automatic before, is said to `notice`, once: the CPU goes on. Throws
-/// Error(usage) for CoderChoice::cuda where blocks are not packed, or this build or this machine has no device, and
+/// Error(usage) for CoderChoice::cuda where this build or this machine has no device, and
 /// Error(io) where that has no room.
 inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
                                                 const Notice& notice) {
   if (choice == CoderChoice::cpu) return nullptr;
   if (choice == CoderChoice::automatic && (!packed || memory < kLeastMemoryOfDevice)) return nullptr;
-  if (!packed) {
-    throw Error(ErrorKind::usage, compose(option("backend", "cuda"), " converts to ", option("encoding", "packed"),
-                                          " alone; give that, or use ", option("backend", "auto")));
-  }
 #ifdef WEIR_HAVE_CUDA
   const auto failed = say_device_failure(notice);
   if (choice == CoderChoice::cuda) return make_device_coder(0, failed);

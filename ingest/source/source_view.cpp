@@ -81,7 +81,8 @@ std::unique_ptr<VolumeSource> crop_to(std::unique_ptr<VolumeSource> source, cons
     throw Error(
         ErrorKind::usage,
         compose(info.path, ": ", option("ghost", cat(region.ghost[0], ',', region.ghost[1], ',', region.ghost[2])),
-                " leaves no voxel of ", info.extent.x, " x ", info.extent.y, " x ", info.extent.z));
+                " leaves no voxel of ", info.extent.x, " x ", info.extent.y, " x ", info.extent.z,
+                "; it is taken from both ends of each axis, give fewer layers"));
   }
   return crop_source(std::move(source), box);
 }

@@ -183,8 +183,6 @@ TEST_F(FakeCoder, BackendsAreChosenByNameAndEncoding) {
   EXPECT_EQ(choose_coder(CoderChoice::automatic, false, kLeastMemoryOfDevice, {}), nullptr);
   EXPECT_NE(choose_coder(CoderChoice::automatic, true, kLeastMemoryOfDevice, {}), nullptr);
   EXPECT_EQ(choose_coder(CoderChoice::automatic, true, kLeastMemoryOfDevice - 1, {}), nullptr);
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [] { choose_coder(CoderChoice::cuda, false, 0, {}); }),
-            "--backend cuda converts to --encoding packed alone; give that, or use --backend auto");
   runtime().fail("cudaMallocAsync", 0, cudaErrorMemoryAllocation);
   std::vector<std::string> said;
   EXPECT_EQ(choose_coder(CoderChoice::automatic, true, kLeastMemoryOfDevice,

@@ -159,6 +159,7 @@ TEST_P(MissingValues, Keep_StoresTheFillValueAsData) {
             std::string::npos)
       << compared.err;
   EXPECT_EQ(run_weir({"compare", input_, output_, "--missing-policy", "keep"}).out, compared.out);
+  EXPECT_EQ(Json::parse(run_weir({"compare", input_, output_, "--json"}).out)["missing"], 6000);
   EXPECT_EQ(run_weir({"compare", input_, output_, "--missing-policy", "background"}).out,
             "lossless over valid voxels: all 18000 valid voxels read bit for bit\n"
             "missing    6000 of 24000 voxels (25 %) hold no data, left out of the error\n")

@@ -113,18 +113,19 @@ HistogramLabels labels_of(const NvdbFile& file, const Inspection& found) {
   return {printable(title), values.empty() ? "value" : printable(values)};
 }
 
+// Names and units are a foreign file's.
+void line(const char* key, const std::string& value) { std::cout << cat(key, one_line(value), '\n'); }
+
 void print_grid(const NvdbFile& file) {
   const NvdbGrid& g = file.grid();
   const Box box = g.index_bbox();
-  const auto line = [](const char* key, const std::string& value) { std::cout << cat(key, value, '\n'); };
   line("file        ", file.path());
   line("size        ", cat(file.bytes().size(), " bytes (", format_bytes(file.bytes().size()), "), grid at ",
                            g.grid_offset(), ", ", g.grid_bytes() - g.data_bytes(), " bytes of padding"));
   line("format      ", cat("NanoVDB ", nvdb_version_text(g.version()), ", head checksum ", hex(g.head_checksum(), 8),
                            ' ', checksum_state(g)));
-  line("grid        ",
-       cat('"', printable(g.name()), "\" ", grid_type_name(g.type()), g.packed() != nullptr ? " packed, " : ", ",
-           shown_text(box.extent()), " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
+  line("grid        ", cat('"', g.name(), "\" ", grid_type_name(g.type()), g.packed() != nullptr ? " packed, " : ", ",
+                           shown_text(box.extent()), " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", shown_text(g.voxel_size()), ", origin ", shown_text(g.world_origin())));
   const std::string range = g.value_min() <= g.value_max() ? range_text({g.value_min(), g.value_max()}) : "none finite";
   line("values      ", cat(range, ", background ", short_number(static_cast<double>(g.background()))));
@@ -182,7 +183,6 @@ std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& er
 std::string unit_text(const std::string& units) { return units.empty() ? "" : cat(" (", units, ')'); }
 
 void print_sidecar(const Sidecar& s) {
-  const auto line = [](const char* key, const std::string& value) { std::cout << cat(key, value, '\n'); };
   line("source      ",
        cat(s.source.path, s.source.dataset.empty() ? "" : ":", s.source.dataset, ", ", s.source.format, ' ',
            s.source.type, ", ", shown_text(s.source.extent), ", range ", range_text(s.value_range)));

@@ -29,6 +29,7 @@
 #include "tools/plot/color_bar.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
+#include "tools/report/standard_output.h"
 #include "tools/report/surface_warning.h"
 
 namespace weir {
@@ -63,7 +64,7 @@ void write_stdout(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw io_error("stdout", "write", errno);
+    if (written < 0) throw stdout_error(errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }

@@ -145,7 +145,7 @@ class Sweep {
       const Sidecar made = convert_volume(source_, options, control, files_);
       SweepResult result;
       result.seconds = seconds_since(start);
-      result.encoding = made.grid.type;
+      result.encoding = made.packed ? "packed" : made.grid.type;
       result.bytes = made.file.bytes;
       result.error = {made.error.mse,     made.error.rmse,    made.error.nmse,
                       made.error.psnr_db, made.error.max_abs, made.error.lossless};

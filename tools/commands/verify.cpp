@@ -16,6 +16,7 @@
 #include "tools/options/run_options.h"
 #include "tools/options/trace_option.h"
 #include "tools/options/volume_series.h"
+#include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/report/volume_verification.h"
 
@@ -67,9 +68,9 @@ Json verify_one(const std::string& path, const VerifyArguments& arguments) {
   for (const VolumeCheck& check : checks) {
     if (check.ok) continue;
     ok = false;
-    std::fprintf(stderr, "weir: %s\n", failure_text(path, check).c_str());
+    std::fprintf(stderr, "weir: %s\n", one_line(failure_text(path, check)).c_str());
   }
-  if (ok && !arguments.json) std::cout << path << ": all " << checks.size() << " checks hold\n";
+  if (ok && !arguments.json) std::cout << cat(one_line(path), ": all ", checks.size(), " checks hold\n");
   return to_json(path, ok, checks);
 }
 

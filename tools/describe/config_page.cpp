@@ -77,12 +77,8 @@ std::string entries_of(std::string_view table) {
 
 std::string conversion_entries() {
   std::string page;
-  for (const auto options : {input_options(), method_options()}) {
-    for (const ConversionOption& option : options) {
-      if (option.row.key == "stack") continue;
-      page += config_entry(key_wording({std::string(option.row.key), {}}), option.row.standard,
-                           std::string(option.row.help));
-    }
+  for (const OptionRow& row : watch_options()) {
+    page += config_entry(key_wording({std::string(row.key), {}}), row.standard, std::string(row.help));
   }
   return page;
 }

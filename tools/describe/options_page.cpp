@@ -42,8 +42,8 @@ std::string options_page() {
       table("Budget, method and policy", "key, keyword", method_options()),
       table("Use of the machine", "keyword of Python", run_options()),
       "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
-      "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`; memory, "
-      "threads and the like are the service's\n([operations.md](operations.md)).\n");
+      "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`, and "
+      "`backend`; memory, threads and the like are the\nservice's ([operations.md](operations.md)).\n");
 }
 
 }  // namespace weir

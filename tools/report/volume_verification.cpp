@@ -11,6 +11,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
+#include "format/io/real_path.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/report/read_sidecar.h"
@@ -71,7 +72,8 @@ auto checked(const std::string& name, std::vector<VolumeCheck>& checks, const Ru
 
 std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch) {
   std::vector<VolumeCheck> checks;
-  const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(sidecar_path(path)); });
+  std::optional<Sidecar> sidecar;
+  if (is_there(path)) sidecar = checked("sidecar", checks, [&] { return read_sidecar(sidecar_path(path)); });
   const auto file = checked("structure", checks, [&] {
     const TraceSpan span(watch.trace, "open");
     return std::make_unique<NvdbFile>(path);

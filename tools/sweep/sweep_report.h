@@ -14,10 +14,10 @@ namespace weir {
 
 /// What one method made of the volume at one rate.
 struct SweepResult {
-  std::string encoding;                      ///< what the values are stored as: the sidecar's grid.type, or "zfp"
-  std::uint64_t bytes = 0;                   ///< the file's size; of ZFP the stream's
-  Certificate error;                         ///< decoded values against the float32 source
-  double seconds = 0;                        ///< wall clock, from the first byte read to the last one on disk
+  std::string encoding;     ///< what the values are stored as: "packed", "zfp" or the sidecar's grid.type
+  std::uint64_t bytes = 0;  ///< the file's size; of ZFP the stream's
+  Certificate error;        ///< decoded values against the float32 source
+  double seconds = 0;       ///< wall clock, from the first byte read to the last one on disk
   std::optional<std::uint64_t> leaves_kept;  ///< none for ZFP
 };
 

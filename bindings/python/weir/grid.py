@@ -67,7 +67,8 @@ class Grid:
     def __repr__(self) -> str:
         if self.closed:
             return f"<weir.Grid {self._path!r}, closed>"
-        return f"<weir.Grid {self._path!r}, {' x '.join(map(str, self.extent))}, {self.type}>"
+        stored = "packed" if self._core.packed else self.type
+        return f"<weir.Grid {self._path!r}, {' x '.join(map(str, self.extent))}, {stored}>"
 
     def close(self) -> None:
         """Lets go of the file. Twice does no harm."""

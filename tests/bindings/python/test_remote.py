@@ -39,7 +39,7 @@ class Remote(FolderTest):
         server, url = self.served()
         with weir.open(url) as grid:
             self.assertIsInstance(grid, weir.RemoteGrid)
-            self.assertEqual(repr(grid), f"<weir.Grid '{url}', 264 x 264 x 264, float32>")
+            self.assertEqual(repr(grid), f"<weir.Grid '{url}', 264 x 264 x 264, packed>")
             self.assertEqual((grid.range, grid.spacing, grid.name), (self.here.range, self.here.spacing, "bumps"))
             for roi in (numpy.s_[0:9, 100:140, 3:264], numpy.s_[120:136, 120:136, 120:136], numpy.s_[263:264, 0:1, 5:6]):
                 self.assertTrue(same(grid.to_numpy(roi), self.here.to_numpy(roi)), roi)

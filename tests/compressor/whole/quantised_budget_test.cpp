@@ -155,15 +155,6 @@ TEST(QuantisedBudget, KeptNonFiniteVoxelsRefuseQuantisation) {
   EXPECT_TRUE(std::isnan(best.grid().value({0, 5, 0})));
 }
 
-TEST(QuantisedBudget, ThePapersMetricsRefuseQuantisation) {
-  MemoryVolume volume(kDomain, [](const Index3& i) { return pseudo_random(i, 100); });
-  ConversionOptions options;
-  options.encoding = Encoding::fpn;
-  options.metric = Metric::farthest;
-  expect_refused(volume, options, ErrorKind::usage,
-                 "--encoding fpn selects by --metric sse only; use --encoding float");
-}
-
 TEST(QuantisedBudget, ReplacedVoxelsAreOnTheLatticeOfTheirLeafOrWidenIt) {
   // Values 0..15 and a background of 3: 4 bits hold both; of 1000: the leaf spans it.
   for (const float background : {3.0F, 1000.0F}) {

@@ -40,6 +40,14 @@ TEST(WatchOptions, KeysBecomeCommandLineOptions) {
   EXPECT_EQ(read("component = 'magnitude'"), Arguments{"--component=magnitude"});
 }
 
+TEST(WatchOptions, Backend_IsAKey) {
+  EXPECT_EQ(read("backend = 'cpu'"), Arguments{"--backend=cpu"});
+  EXPECT_EQ(read("encoding = 'packed'\nbackend = 'cuda'"), (Arguments{"--encoding=packed", "--backend=cuda"}));
+  EXPECT_EQ(refusal("backend = 'gpu'"), "/etc/weir/c.toml:1:11: backend is \"gpu\", it must be auto, cpu or cuda");
+  EXPECT_EQ(refusal("rate = 4\nbackend = 'cuda'"),
+            "/etc/weir/c.toml:2:11: backend cuda converts to encoding packed alone; give that, or use backend auto");
+}
+
 TEST(WatchOptions, RelativeScenesStartAtTheConfigurationFile) {
   const TemporaryDirectory directory;
   std::filesystem::create_directory(directory / "looks");

@@ -70,8 +70,10 @@ TEST(SourceView, GhostCells_AreLeftOut_ButNotAllThereIs) {
   const auto inner = crop_to(open_ramp(scratch), region);
   EXPECT_EQ(inner->info().domain(), (Box{{2, 1, 0}, {8, 7, 6}}));
   region.ghost = {5, 0, 0};
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { crop_to(open_ramp(scratch), region); }),
-            scratch.path("v_10x8x6_uint16.raw") + ": --ghost 5,0,0 leaves no voxel of 10 x 8 x 6");
+  EXPECT_EQ(
+      message_of_error(ErrorKind::usage, [&] { crop_to(open_ramp(scratch), region); }),
+      scratch.path("v_10x8x6_uint16.raw") +
+          ": --ghost 5,0,0 leaves no voxel of 10 x 8 x 6; it is taken from both ends of each axis, give fewer layers");
 }
 
 TEST(SourceView, ReadsNothingOutsideTheRegion) {

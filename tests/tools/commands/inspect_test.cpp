@@ -27,6 +27,19 @@ TEST_F(Inspect, ShowsVolumeAndCertificate) {
   EXPECT_EQ(report["sidecar_matches"], true);
 }
 
+TEST_F(Inspect, TextThatSteersATerminal_IsOneLine) {
+  auto record = nlohmann::ordered_json::parse(read_file(sidecar_path(volume_)));
+  record["source"]["long_name"] = "l\nweir: fake";
+  record["source"]["units"] = "K\x1b[31m";
+  record["source"]["dataset"] = "/d\tata";
+  write_file(sidecar_path(volume_), record.dump());
+  const CommandResult text = run_weir({"inspect", volume_});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.out.find('\x1b'), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find('\t'), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\nquantity    l\\nweir: fake (K\\x1b[31m)\n"), std::string::npos) << text.out;
+}
+
 TEST_F(Inspect, DrawsTheHistogramAsPngAndSvg) {
   for (const auto& [name, begin] : {std::pair{"h.png", "\x89PNG"}, std::pair{"h.svg", "<?xml"}}) {
     const CommandResult result = run_weir({"inspect", volume_, "--plot", directory_ / name});

@@ -42,6 +42,28 @@ std::string bytes_of(T value) {
   return bytes;
 }
 
+TEST_F(Verify, NameThatSteersATerminal_IsOneLine) {
+  const std::string name = "den\nweir: ok \x1b[31m\xff" + std::string(1, '\0');
+  damage(192, name);
+  damage(4136, name);
+  const CommandResult result = verify();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err.find('\x1b'), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('\xff'), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("\nweir: ok"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("weir: " + volume_ +
+                            ": sidecar grid.name: found den\\nweir: ok \\x1b[31m\\xff, expected density\n"),
+            std::string::npos)
+      << result.err;
+}
+
+TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
+  const std::string none = directory_ / "none.nvdb";
+  const CommandResult result = run_weir({"verify", none, "--progress", "never"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err, "weir: structure: " + none + ": cannot open: No such file or directory\n");
+}
+
 TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
   for (const std::string name : {"step_0001.nvdb", "step_0010.nvdb"}) {
     fs::copy_file(volume_, directory_ / name);

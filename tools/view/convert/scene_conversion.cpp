@@ -9,6 +9,7 @@
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/real_path.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/convert_command.h"
 #include "tools/report/recorded_input.h"
@@ -53,6 +54,14 @@ std::string recorded_option(const Sidecar& sidecar, const std::string& key) {
   return found == given.end() ? "" : found->second;
 }
 
+// "STEM_scene.nvdb" in `directory`, or the first of "STEM_scene_2.nvdb" and so on where that is taken.
+std::string free_output(const fs::path& directory, const std::string& stem) {
+  for (int number = 1;; ++number) {
+    const std::string path = (directory / cat(stem, "_scene", number == 1 ? "" : cat('_', number), ".nvdb")).string();
+    if (!is_there(path) && !is_there(sidecar_path(path))) return as_path(path);
+  }
+}
+
 }  // namespace
 
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
@@ -66,7 +75,7 @@ SceneConversion scene_conversion(const std::string& volume, const std::string& s
   fs::path beside(source.empty() ? volume : source);
   if (!beside.has_filename()) beside = beside.parent_path();
   SceneConversion conversion;
-  conversion.output = as_path((beside.parent_path() / (fs::path(volume).stem().string() + "_scene.nvdb")).string());
+  conversion.output = free_output(beside.parent_path(), fs::path(volume).stem().string());
   std::vector<std::string>& words = conversion.arguments;
   words = {"convert", as_path(read)};
   for (const ConversionOption& option : input_options()) {

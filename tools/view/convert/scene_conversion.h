@@ -15,10 +15,11 @@ struct SceneConversion {
   std::string text;                    ///< the command for a shell, with the scene as "scene.toml", the last word
 };
 
-/// From `source`, of which `volume` is a preview, to "NAME_scene.nvdb" beside it; where that is empty, from the source
+/// From `source`, of which `volume` is a preview, to "NAME_scene.nvdb" beside it; where `source` is empty, from the one
 /// that `sidecar` names, a relative path as it leads from here or from the volume's directory, to a file beside the
-/// volume. It is read as the sidecar says. Throws Error(input) where that source is not there, of another size or
-/// written to since, and where the volume is one level of several.
+/// volume. A name that is taken is numbered, NAME_scene_2.nvdb. The source is read as the sidecar says. Throws
+/// Error(input) where it is not there, of another size or written to since, and where the volume is one level of
+/// several.
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request);
 

@@ -61,6 +61,17 @@ std::string refusal(const std::string& volume, const Sidecar& sidecar) {
   return "";
 }
 
+TEST_F(SceneConversionTest, NameThatIsTaken_IsNumbered) {
+  const Sidecar said = sidecar();
+  const auto output = [&] { return scene_conversion(volume_, "", said, of_rate(2)).output; };
+  EXPECT_EQ(output(), directory_ / "v_scene.nvdb");
+  write_file(directory_ / "v_scene.nvdb", "");
+  EXPECT_EQ(output(), directory_ / "v_scene_2.nvdb");
+  write_file(directory_ / "v_scene_2.nvdb.json", "{}");
+  write_file(directory_ / "v_scene_4.nvdb", "");
+  EXPECT_EQ(output(), directory_ / "v_scene_3.nvdb");
+}
+
 TEST_F(SceneConversionTest, OneOfSeveralVolumes_IsChosenAsTheSidecarHasIt) {
   Sidecar said = sidecar();
   said.weir.options = {{"dataset", "*"}, {"index", "time=*"}, {"component", "*"}};
