@@ -264,6 +264,21 @@ function(weir_loader_tests)
   weir_add_gtests(weir_tests_loader)
 endfunction()
 
+# weir_brick_tests(): the brick cache on the pretended CUDA runtime, its kernels' steps on the host, as the program
+# weir_tests_bricks, which needs CUDA's headers and no device. Headers in tests/fake_bricks/instead/ take the place of
+# those of the device.
+function(weir_brick_tests)
+  set(root ${PROJECT_SOURCE_DIR})
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_bricks/*.cpp)
+  add_executable(weir_tests_bricks ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
+                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/volume/texture.cpp
+                                   ${root}/gpu/cuda/volume/device_memory.cpp)
+  target_include_directories(weir_tests_bricks BEFORE PRIVATE ${root}/tests/fake_bricks/instead)
+  target_include_directories(weir_tests_bricks SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
+  target_link_libraries(weir_tests_bricks PRIVATE weir_gpu weir_test_support GTest::gtest_main)
+  weir_add_gtests(weir_tests_bricks)
+endfunction()
+
 # weir_coder_tests(): conversions whose packed blocks a device surveys and encodes, with the pretended CUDA runtime and the
 # kernels' steps on the host, as the program weir_tests_coder, which needs CUDA's headers and no device.
 function(weir_coder_tests)

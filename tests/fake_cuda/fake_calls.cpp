@@ -1,6 +1,7 @@
 // The functions of the CUDA runtime themselves, for a program that does not link it.
 #include <cuda_runtime_api.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -10,7 +11,6 @@ using weir::test::FakeRuntime;
 
 namespace {
 
-constexpr std::size_t kDeviceBytes = std::size_t{1} << 32U;
 constexpr int kLeastPriority = 0;
 
 FakeRuntime& runtime() { return FakeRuntime::instance(); }
@@ -70,7 +70,7 @@ const char* cudaGetErrorName(cudaError_t code) {
 const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
 
 cudaError_t cudaMallocAsync(void** memory, std::size_t bytes, cudaStream_t) {
-  WEIR_ENTER("cudaMallocAsync");
+  if (const cudaError_t code = runtime().enter_allocation("cudaMallocAsync", bytes); code != cudaSuccess) return code;
   return allocate(memory, bytes);
 }
 cudaError_t cudaFreeAsync(void* memory, cudaStream_t) {
@@ -90,8 +90,8 @@ cudaError_t cudaFreeHost(void* memory) {
   return release(memory);
 }
 cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
-  *total = kDeviceBytes;
-  *free = kDeviceBytes - runtime().allocated_bytes();
+  *total = runtime().capacity();
+  *free = *total - std::min<std::size_t>(*total, runtime().allocated_bytes());
   return cudaSuccess;
 }
 cudaError_t cudaHostRegister(void* memory, std::size_t bytes, unsigned flags) {
@@ -135,6 +135,11 @@ cudaError_t cudaMemset(void* memory, int value, std::size_t bytes) {
   std::memset(memory, value, bytes);
   return cudaSuccess;
 }
+cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStream_t) {
+  WEIR_ENTER("cudaMemsetAsync");
+  std::memset(memory, value, bytes);
+  return cudaSuccess;
+}
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   WEIR_ENTER("cudaEventCreateWithFlags");
   void* memory = nullptr;
@@ -170,6 +175,16 @@ cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const vo
   attributes->type = runtime().holds(number(address)) ? cudaMemoryTypeDevice : cudaMemoryTypeUnregistered;
   return cudaSuccess;
 }
+cudaError_t cudaDeviceSynchronize() {
+  WEIR_ENTER("cudaDeviceSynchronize");
+  return cudaSuccess;
+}
+// What is given back is free at once: the pool keeps nothing.
+cudaError_t cudaDeviceGetDefaultMemPool(cudaMemPool_t* pool, int) {
+  *pool = nullptr;
+  return cudaSuccess;
+}
+cudaError_t cudaMemPoolTrimTo(cudaMemPool_t, std::size_t) { return cudaSuccess; }
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) { return cudaStreamCreate(stream); }
 cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
 cudaError_t cudaStreamSynchronize(cudaStream_t) {

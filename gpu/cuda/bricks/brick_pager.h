@@ -79,6 +79,8 @@ class BrickPager {
   }
   /// As of the last turn.
   const BrickCounters& counters() const { return seen_; }
+  /// Bricks that had to go, in all.
+  std::uint64_t evicted() const { return evicted_; }
 
   /// Brings in a page for each region, the plan having as many, and says how many bricks are then missing.
   std::uint32_t bring_all_pages() {
@@ -204,6 +206,7 @@ class BrickPager {
 
   // Frees as many pages, those that were not used the longest, none that was used since the last turn.
   void drop_pages(std::uint32_t wanted) {
+    const std::uint32_t free_before = seen_.free_slots;
     machine_.each(kRegionBlocks * plan_.pages, StampPages{entries_.data(), page_stamps_.data(), turn_});
     std::vector<std::uint32_t> stamps(page_stamps_.size());
     page_stamps_.download(stamps);
@@ -224,6 +227,7 @@ class BrickPager {
     machine_.each(kRegionBlocks * static_cast<std::uint32_t>(pages.size()),
                   DropPages{table(), slots(), counters_.data(), turn_, listed_regions_.data(), listed_pages_.data()});
     read_counters();
+    evicted_ += seen_.free_slots - free_before;
   }
 
   // Evicts bricks until `wanted` slots are free, none that was used since the last turn. Returns how many are free.
@@ -237,6 +241,7 @@ class BrickPager {
     if (evicted > 0) {
       machine_.each(plan_.slots, EvictSlots{slots(), entries_.data(), counters_.data(), turn_, age, evicted});
     }
+    evicted_ += evicted;
     return seen_.free_slots + evicted;
   }
 
@@ -295,6 +300,7 @@ class BrickPager {
   std::uint32_t batch_;  // bricks whose blocks are likely to fit
   BrickCounters seen_;
   std::uint32_t turn_ = 0;
+  std::uint64_t evicted_ = 0;
 };
 
 }  // namespace weir

@@ -33,6 +33,9 @@ class DeviceVolume {
   /// `atlas_refusal`.
   BrickCache* atlas();
   const std::string& atlas_refusal() const { return atlas_refusal_; }
+  /// Does without the atlas from now on, since the device has refused something else for the reason `why`; false where
+  /// there is none.
+  bool drop_atlas(const std::string& why);
 
  private:
   template <class Block>
