@@ -100,7 +100,7 @@ class BrickCacheFault : public testing::Test {
   }
 
   // Looks blocks up until all of them are there and right, turn after turn; false where they do not come.
-  static bool come(BrickCache& cache, const std::vector<Int3>& blocks) {
+  static bool come(BrickCache& cache, const std::vector<Int3>& blocks, std::uint64_t* evicted = nullptr) {
     for (int turn = 0; turn < 20; ++turn) {
       const auto seen = cache.paged_sampler<Sampler>();
       std::size_t found = 0;
@@ -111,7 +111,8 @@ class BrickCacheFault : public testing::Test {
         ++found;
       }
       if (found == blocks.size()) return true;
-      cache.serve();
+      const PagingTurn served = cache.serve();
+      if (evicted != nullptr) *evicted += served.evicted;
     }
     return false;
   }
@@ -264,11 +265,13 @@ TEST_F(BrickCacheFault, AThousandEvictionsAndAsManyCaches_LeaveNothing) {
   const auto cache = make(grid(), kBudget);
   const std::uint64_t held = runtime().allocated_bytes();
   const std::uint64_t allocations = runtime().calls("allocation");
-  EXPECT_TRUE(come(*cache, stretch(0, 10000)));
-  EXPECT_EQ(cache->evicted(), 0U);
-  EXPECT_TRUE(come(*cache, stretch(16, 10000)));
-  EXPECT_TRUE(come(*cache, stretch(4, 10000)));
-  EXPECT_GT(cache->evicted(), 5000U);
+  std::uint64_t evicted = 0;
+  EXPECT_TRUE(come(*cache, stretch(0, 10000), &evicted));
+  EXPECT_EQ(evicted, 0U);
+  EXPECT_TRUE(come(*cache, stretch(16, 10000), &evicted));
+  EXPECT_EQ(evicted, 20000 - cache->bricks()) << "no more than have to go";
+  EXPECT_TRUE(come(*cache, stretch(4, 10000), &evicted));
+  EXPECT_GT(evicted, 10000U);
   EXPECT_EQ(runtime().allocated_bytes(), held);
   EXPECT_EQ(runtime().calls("allocation"), allocations) << "paging allocates nothing";
 

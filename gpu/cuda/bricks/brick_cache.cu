@@ -19,7 +19,7 @@ namespace weir {
 namespace {
 
 constexpr std::uint64_t kPageBytes = kRegionBlocks * sizeof(BrickEntry);
-constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t);
+constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t) + sizeof(float);
 // Of a block decoded with others: its values, and its share of the table of numbers.
 constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
 constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
@@ -232,10 +232,6 @@ std::uint64_t BrickCache::bytes() const {
 
 BrickCounters BrickCache::counters() const {
   return pager().with([](auto& pager) { return pager.counters(); });
-}
-
-std::uint64_t BrickCache::evicted() const {
-  return pager().with([](auto& pager) { return pager.evicted(); });
 }
 
 PagingTurn BrickCache::serve() {

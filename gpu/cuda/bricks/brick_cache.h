@@ -67,7 +67,6 @@ class BrickCache {
   std::uint64_t bytes() const;                     ///< of device memory
   std::uint64_t bricks() const { return slots_; }  ///< there is room for
   BrickCounters counters() const;                  ///< as of the last turn
-  std::uint64_t evicted() const;                   ///< bricks, since the cache was last made
 
   BlockSource& source() const { return *source_; }
   /// source().regions().

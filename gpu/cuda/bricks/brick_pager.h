@@ -41,6 +41,7 @@ class BrickPager {
         owners_(plan.slots),
         stamps_(plan.slots),
         free_(plan.slots),
+        middles_(plan.slots),
         counters_(1),
         bricks_(plan.most_requests),
         wanted_regions_(plan.pages),
@@ -74,13 +75,12 @@ class BrickPager {
   /// Bytes of what is here, without the texels.
   std::uint64_t bytes() const {
     return regions_.bytes() + entries_.bytes() + page_stamps_.bytes() + owners_.bytes() + stamps_.bytes() +
-           free_.bytes() + counters_.bytes() + bricks_.bytes() + wanted_regions_.bytes() + listed_regions_.bytes() +
-           listed_pages_.bytes() + keys_.bytes() + numbers_.bytes() + blocks_.bytes() + values_.bytes();
+           free_.bytes() + middles_.bytes() + counters_.bytes() + bricks_.bytes() + wanted_regions_.bytes() +
+           listed_regions_.bytes() + listed_pages_.bytes() + keys_.bytes() + numbers_.bytes() + blocks_.bytes() +
+           values_.bytes();
   }
   /// As of the last turn.
   const BrickCounters& counters() const { return seen_; }
-  /// Bricks that had to go, in all.
-  std::uint64_t evicted() const { return evicted_; }
 
   /// Brings in a page for each region, the plan having as many, and says how many bricks are then missing.
   std::uint32_t bring_all_pages() {
@@ -123,8 +123,10 @@ class BrickPager {
     turn.unfit = seen_.unfit > 0;
     turn.asked_pages = std::min(seen_.region_requests, plan_.pages);
     turn.asked_bricks = std::min(seen_.brick_requests, plan_.most_requests);
+    evicted_ = 0;
     turn.pages = serve_pages(turn.asked_pages);
     turn.bricks = std::min(turn.asked_bricks, make_room(turn.asked_bricks));
+    turn.evicted = evicted_;
     build(turn.bricks);
     machine_.each(turn.asked_bricks - turn.bricks, ForgetRequests{table(), bricks_.data() + turn.bricks});
     machine_.each(1, EndTurn{counters_.data()});
@@ -148,6 +150,7 @@ class BrickPager {
     owners_ = Array<std::uint32_t>(0);
     stamps_ = Array<std::uint32_t>(0);
     free_ = Array<std::uint32_t>(0);
+    middles_ = Array<float>(0);
     return entries;
   }
 
@@ -168,7 +171,7 @@ class BrickPager {
   }
 
   BrickSlots slots() const {
-    return {owners_.data(), stamps_.data(), free_.data(), plan_.slots, plan_.across, plan_.down};
+    return {owners_.data(), stamps_.data(), free_.data(), middles_.data(), plan_.slots, plan_.across, plan_.down};
   }
 
   void read_counters() { counters_.download(std::span(&seen_, 1)); }
@@ -288,6 +291,7 @@ class BrickPager {
   Array<std::uint32_t> owners_;
   Array<std::uint32_t> stamps_;
   Array<std::uint32_t> free_;
+  Array<float> middles_;
   Array<BrickCounters> counters_;
   Array<BlockId> bricks_;                // asked for
   Array<std::uint32_t> wanted_regions_;  // asked for
@@ -300,7 +304,7 @@ class BrickPager {
   std::uint32_t batch_;  // bricks whose blocks are likely to fit
   BrickCounters seen_;
   std::uint32_t turn_ = 0;
-  std::uint64_t evicted_ = 0;
+  std::uint32_t evicted_ = 0;  // bricks, in this turn
 };
 
 }  // namespace weir

@@ -37,6 +37,7 @@ struct Share {
 struct ShareDone {
   std::vector<Float3> sums;
   std::uint64_t missed = 0;  ///< as Picture
+  CacheCounts cache;         ///< as Picture
   bool drawn = false;        ///< there were samples for it
   std::string memory_note;   ///< as Picture
 };
@@ -225,9 +226,11 @@ class CudaBackend : public Backend {
     }
     Image image(options.width, options.height);
     std::uint64_t missed = 0;
+    CacheCounts counts;
     std::string memory_note;
     for (auto& share : shares) {
       const ShareDone part = share.get();
+      counts += part.cache;
       if (memory_note.empty()) memory_note = part.memory_note;
       for (std::size_t p = 0; p < part.sums.size(); ++p) image.pixels[p] += part.sums[p];
       if (part.drawn) missed = part.missed;  // the last sample is the last share's
@@ -237,7 +240,7 @@ class CudaBackend : public Backend {
     }
     const float scale = 1.0F / static_cast<float>(std::max(sampling.samples, 1U));
     for (Float3& pixel : image.pixels) pixel = pixel * scale;
-    return {std::move(image), setup.tone(), seconds_since(start), {}, missed, finest_level, note, memory_note};
+    return {std::move(image), setup.tone(), seconds_since(start), counts, missed, finest_level, note, memory_note};
   }
 
   // The finest level of detail that a picture is made with; 0: with voxels alone.
@@ -303,6 +306,7 @@ class CudaBackend : public Backend {
       return task;
     };
     std::uint64_t missed = 0;
+    CacheCounts counts;
     const auto run = [&](const auto& sampler) {
       const auto task = task_of(sampler);
       trace(share, sums.size(), sampling.cancel, done, [&](std::uint32_t first, std::uint32_t last) {
@@ -320,9 +324,13 @@ class CudaBackend : public Backend {
           const auto task_of_seen = [&](const auto& sampler) { return task_of(seen(sampler)); };
           const auto draw = [&]<class Sampler>(const Sampler&) {
             if (sampling.draft) {
-              missed = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums, done).missed;
+              const DraftReport draft = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums, done);
+              missed = draft.missed;
+              counts.evicted = draft.evicted;
             } else {
-              trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
+              const PagedReport report =
+                  trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
+              counts = {.decoded = report.decoded, .evicted = report.evicted};
             }
           };
           if (setup.mode() == RenderMode::path) {
@@ -343,7 +351,7 @@ class CudaBackend : public Backend {
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
-    return {sums.download(), missed, share.first < share.last,
+    return {sums.download(), missed, counts, share.first < share.last,
             volume.in_bricks() ? smaller_cache_note(volume.bricks(i).cache()) : ""};
   }
 
