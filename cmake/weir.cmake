@@ -183,6 +183,12 @@ function(weir_tests name)
   if(name STREQUAL "cuda")  # they try the renderer too
     set(library weir_cuda_backend weir_cuda_encode)
   endif()
+  if(name STREQUAL "cuda")  # tests/cuda/support/refused_allocations.h
+    foreach(function cudaMallocAsync cudaMallocAsync_ptsz cudaHostAlloc cudaMalloc3DArray cudaCreateTextureObject
+                     cudaCreateSurfaceObject cudaStreamCreateWithFlags cudaEventCreateWithFlags)
+      target_link_options(weir_tests_cuda PRIVATE LINKER:--wrap=${function})
+    endforeach()
+  endif()
   if(name STREQUAL "ingest" AND WEIR_HDF5)
     set(library weir_ingest_hdf5)
   endif()
