@@ -270,18 +270,20 @@ function(weir_loader_tests)
   weir_add_gtests(weir_tests_loader)
 endfunction()
 
-# weir_brick_tests(): the brick cache on the pretended CUDA runtime, its kernels' steps on the host, as the program
-# weir_tests_bricks, which needs CUDA's headers and no device. Headers in tests/fake_bricks/instead/ take the place of
-# those of the device.
+# weir_brick_tests(): the brick cache, and the CUDA back end's pictures of packed grids, on the pretended CUDA runtime,
+# kernels' steps on the host, as the program weir_tests_bricks, which needs CUDA's headers and no device. Headers in
+# tests/fake_bricks/instead/ take the place of those of the device.
 function(weir_brick_tests)
   set(root ${PROJECT_SOURCE_DIR})
-  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_bricks/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_bricks/*.cpp ${root}/gpu/cuda/load/*.cpp ${root}/gpu/cuda/render/*.cpp)
   add_executable(weir_tests_bricks ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
-                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/volume/texture.cpp
-                                   ${root}/gpu/cuda/volume/device_memory.cpp)
+                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/gpu/cuda/volume/texture.cpp ${root}/gpu/cuda/volume/device_memory.cpp
+                                   ${root}/tests/cuda/refused_memory_test.cpp ${root}/tests/cuda/paging_leak_test.cpp)
+  set_target_properties(weir_tests_bricks PROPERTIES UNITY_BUILD OFF)  # some name in unnamed namespaces what instead/ has
   target_include_directories(weir_tests_bricks BEFORE PRIVATE ${root}/tests/fake_bricks/instead)
   target_include_directories(weir_tests_bricks SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
-  target_link_libraries(weir_tests_bricks PRIVATE weir_gpu weir_test_support GTest::gtest_main)
+  target_link_libraries(weir_tests_bricks PRIVATE weir_gpu weir_test_support GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
   weir_add_gtests(weir_tests_bricks)
 endfunction()
 

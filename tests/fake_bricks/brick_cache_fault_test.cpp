@@ -12,7 +12,7 @@
 #include "format/nanovdb/nvdb_grid.h"
 #include "gpu/cuda/bricks/brick_cache.h"
 #include "gpu/math/narrow.h"
-#include "tests/fake_bricks/fake_array.h"
+#include "tests/fake_cuda/fake_array.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/gpu/bricks/host_machine.h"
 #include "tests/support/packed_grid.h"
@@ -44,12 +44,12 @@ class BrickCacheFault : public testing::Test {
 
   static FakeRuntime& runtime() { return FakeRuntime::instance(); }
 
-  // Of 256^3 voxels; where `odd`, one of them is no finite number, which 16 bits do not hold.
-  static const NvdbGrid& grid(bool odd = false) {
+  // Of 256^3 voxels, or of 176^3; where `odd`, one of them is no finite number, which 16 bits do not hold.
+  static const NvdbGrid& grid(bool odd = false, bool small = false) {
     struct Made {
-      explicit Made(bool odd) {
+      Made(bool odd, std::int64_t edge) {
         test::PackedGridOptions options;
-        options.domain = {{0, 0, 0}, {8 * kEdge, 8 * kEdge, 8 * kEdge}};
+        options.domain = {{0, 0, 0}, {8 * edge, 8 * edge, 8 * edge}};
         options.stream = [odd](const Index3& block) {
           const float value = value_of(narrow(block));
           if (!odd || block != kOdd) return test::constant_stream(value);
@@ -64,9 +64,10 @@ class BrickCacheFault : public testing::Test {
       test::PackedFile file;
       std::unique_ptr<NvdbGrid> grid;
     };
-    static const Made plain(false);
-    static const Made with_odd(true);
-    return odd ? *with_odd.grid : *plain.grid;
+    static const Made plain(false, kEdge);
+    static const Made with_odd(true, kEdge);
+    static const Made small_with_odd(true, 22);
+    return small ? *small_with_odd.grid : odd ? *with_odd.grid : *plain.grid;
   }
 
   static std::unique_ptr<BrickCache> make(const NvdbGrid& grid, std::uint64_t bytes,
@@ -216,6 +217,20 @@ TEST_F(BrickCacheFault, MadeAgainWhereAllAllocationsAreRefused_IsAnErrorAndComes
     EXPECT_TRUE(come(*cache, blocks));
     EXPECT_EQ(cache->texel_type(), TexelType::float32);
     EXPECT_EQ(cache->refusal(), "") << "it is as large as it was meant to be";
+  }
+}
+
+// 16 bits do not hold all, and of what the device has left, floats need more: it is the device that has too little.
+TEST_F(BrickCacheFault, MadeSmallerThanFloatsNeed_SaysWhatTheDeviceHasRefused) {
+  runtime().fail("allocation", 5, cudaErrorMemoryAllocation);
+  const auto cache = make(grid(true, true), 32 * kMiB);
+  EXPECT_LT(cache->bytes(), 24 * kMiB);
+  try {
+    come(*cache, {narrow(kOdd)});
+    FAIL();
+  } catch (const DeviceFull& refused) {
+    EXPECT_EQ(std::string(refused.what()), cache->refusal());
+    EXPECT_NE(cache->refusal().find(kRefused), std::string::npos) << cache->refusal();
   }
 }
 

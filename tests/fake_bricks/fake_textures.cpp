@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "tests/fake_bricks/fake_array.h"
+#include "tests/fake_cuda/fake_array.h"
 #include "tests/fake_cuda/fake_runtime.h"
 
 using weir::test::FakeArray;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "tests/fake_cuda/fake_array.h"
 #include "tests/fake_cuda/fake_runtime.h"
 
 using weir::test::FakeRuntime;
@@ -83,6 +84,7 @@ cudaError_t cudaFree(void* memory) {
 }
 cudaError_t cudaHostAlloc(void** memory, std::size_t bytes, unsigned) {
   WEIR_ENTER("cudaHostAlloc");
+  WEIR_ENTER("allocation");
   return allocate(memory, bytes);
 }
 cudaError_t cudaFreeHost(void* memory) {
@@ -119,6 +121,11 @@ cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaM
 }
 cudaError_t cudaMemcpy3DAsync(const cudaMemcpy3DParms* parts, cudaStream_t) {
   WEIR_ENTER("cudaMemcpy3DAsync");
+  if (parts->dstArray != nullptr) {  // all of an array, from as many texels in memory
+    auto& array = *reinterpret_cast<weir::test::FakeArray*>(parts->dstArray);
+    std::memcpy(&array + 1, parts->srcPtr.ptr, array.bytes());
+    return cudaSuccess;
+  }
   const auto row = [](const cudaPitchedPtr& all, const cudaPos& first, std::size_t y, std::size_t z) {
     return static_cast<char*>(all.ptr) + first.x + all.pitch * (first.y + y + all.ysize * (first.z + z));
   };
@@ -142,6 +149,7 @@ cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStre
 }
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   WEIR_ENTER("cudaEventCreateWithFlags");
+  WEIR_ENTER("allocation");
   void* memory = nullptr;
   allocate(&memory, 1);
   *event = static_cast<cudaEvent_t>(memory);
@@ -184,8 +192,23 @@ cudaError_t cudaDeviceGetDefaultMemPool(cudaMemPool_t* pool, int) {
   *pool = nullptr;
   return cudaSuccess;
 }
+cudaError_t cudaMemPoolSetAttribute(cudaMemPool_t, cudaMemPoolAttr, void*) { return cudaSuccess; }
+cudaError_t cudaMemPoolGetAttribute(cudaMemPool_t, cudaMemPoolAttr, void* value) {
+  const std::uint64_t bytes = runtime().allocated_bytes();
+  std::memcpy(value, &bytes, sizeof bytes);
+  return cudaSuccess;
+}
 cudaError_t cudaMemPoolTrimTo(cudaMemPool_t, std::size_t) { return cudaSuccess; }
-cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) { return cudaStreamCreate(stream); }
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
+  WEIR_ENTER("allocation");
+  return cudaStreamCreate(stream);
+}
+cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) { return cudaSuccess; }
+cudaError_t cudaMemcpyPeer(void* to, int, const void* from, int, std::size_t bytes) {
+  WEIR_ENTER("cudaMemcpyPeer");
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
 cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   WEIR_ENTER("cudaStreamSynchronize");

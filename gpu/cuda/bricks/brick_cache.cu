@@ -213,7 +213,10 @@ bool BrickCache::Needs::fit(TexelType type, std::uint64_t bytes) const {
 // Places for as many bricks as fit.
 void BrickCache::make_paged() {
   Needs needs = this->needs();
-  if (!needs.fit(type_, left_)) fail_too_small(needs);
+  if (!needs.fit(type_, left_)) {
+    if (!refusal_.empty()) throw DeviceFull(refusal_, 0);  // more was asked for than there was
+    fail_too_small(needs);
+  }
   const auto missing = std::ranges::count_if(
       regions_, [](const RegionEntry& region) { return (region.page & RegionEntry::kMissing) != 0; });
   needs.plan.pages = static_cast<std::uint32_t>(

@@ -351,8 +351,12 @@ class CudaBackend : public Backend {
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
-    return {sums.download(), missed, counts, share.first < share.last,
-            volume.in_bricks() ? smaller_cache_note(volume.bricks(i).cache()) : ""};
+    return {sums.download(), missed, counts, share.first < share.last, note_of(volume, i)};
+  }
+
+  static std::string note_of(CudaVolume& volume, std::size_t i) {
+    if (volume.dense()) return "";
+    return volume.in_bricks() ? memory_note(volume.bricks(i).cache()) : memory_note(volume.grid(i));
   }
 
   // Calls use<Filter>() with one known when this is compiled.

@@ -58,6 +58,7 @@ bool DeviceVolume::drop_atlas(const std::string& why) {
   if (!atlas_) return false;
   atlas_.reset();
   atlas_refusal_ = why;
+  atlas_dropped_ = true;
   return true;
 }
 

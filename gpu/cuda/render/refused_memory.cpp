@@ -15,10 +15,23 @@ bool make_room(BrickVolume& volume, const DeviceFull& refused) {
 
 bool make_room(DeviceVolume& volume, const DeviceFull& refused) { return volume.drop_atlas(refused.what()); }
 
-std::string smaller_cache_note(const BrickCache& cache) {
+namespace {
+
+std::string less_memory(const std::string& refusal) {
+  return cat("the device has less memory than was meant for the volume (", refusal, "); ");
+}
+
+}  // namespace
+
+std::string memory_note(const BrickCache& cache) {
   if (cache.refusal().empty()) return "";
-  return cat("the device has less memory than was meant for the volume (", cache.refusal(), "); a cache of ",
-             cache.bricks(), " bricks, ", format_bytes(cache.bytes()), ", does with less, and more slowly");
+  return cat(less_memory(cache.refusal()), "a cache of ", cache.bricks(), " bricks, ", format_bytes(cache.bytes()),
+             ", does with less, and more slowly");
+}
+
+std::string memory_note(const DeviceVolume& volume) {
+  if (!volume.atlas_dropped()) return "";
+  return less_memory(volume.atlas_refusal()) + "its voxels are looked up without bricks, more slowly";
 }
 
 }  // namespace weir

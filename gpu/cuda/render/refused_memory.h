@@ -18,7 +18,8 @@ Error refused_error(const Message& place, const DeviceFull& refused, const std::
 bool make_room(BrickVolume& volume, const DeviceFull& refused);
 bool make_room(DeviceVolume& volume, const DeviceFull& refused);
 
-/// What a picture's owner should know of a cache that is smaller than its budget; "" where it is not.
-std::string smaller_cache_note(const BrickCache& cache);
+/// Picture::memory_note of one of the volume.
+std::string memory_note(const BrickCache& cache);
+std::string memory_note(const DeviceVolume& volume);
 
 }  // namespace weir

@@ -23,6 +23,8 @@ bool refused() {
 
 std::uint64_t allocations() { return calls; }
 
+std::uint64_t refusal_step() { return 1; }
+
 RefusedAllocations::RefusedAllocations(std::uint64_t nth, bool lasting) {
   last_refused = lasting ? kNever : calls + nth;
   first_refused = calls + nth;

@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "gpu/math/vector3.h"
-#include "tests/fake_bricks/fake_array.h"
+#include "tests/fake_cuda/fake_array.h"
 
 namespace weir {
 
