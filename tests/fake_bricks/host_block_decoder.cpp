@@ -30,6 +30,7 @@ BlockDecoder::BlockDecoder(const PackedData& packed, const std::byte* data)
   view_.regions = static_cast<std::uint64_t>(header.regions.size());
   view_.constants = header.values;
   view_.constants.tables = frequencies_.data();
+  processors_ = narrow_threads_ = wide_threads_ = 1;  // of which the kernels make their grids
 }
 
 void BlockDecoder::decode(const BlockId* blocks, std::size_t most, const std::uint32_t* count_on_device, float* values,
