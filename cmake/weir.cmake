@@ -183,6 +183,12 @@ function(weir_tests name)
   if(name STREQUAL "cuda")  # they try the renderer too
     set(library weir_cuda_backend weir_cuda_encode)
   endif()
+  if(name STREQUAL "cuda")  # tests/cuda/support/refused_allocations.h
+    foreach(function cudaMallocAsync cudaMallocAsync_ptsz cudaHostAlloc cudaMalloc3DArray cudaCreateTextureObject
+                     cudaCreateSurfaceObject cudaStreamCreateWithFlags cudaEventCreateWithFlags)
+      target_link_options(weir_tests_cuda PRIVATE LINKER:--wrap=${function})
+    endforeach()
+  endif()
   if(name STREQUAL "ingest" AND WEIR_HDF5)
     set(library weir_ingest_hdf5)
   endif()
@@ -262,6 +268,23 @@ function(weir_loader_tests)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
   target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
   weir_add_gtests(weir_tests_loader)
+endfunction()
+
+# weir_brick_tests(): the brick cache, and the CUDA back end's pictures of packed grids, on the pretended CUDA runtime,
+# kernels' steps on the host, as the program weir_tests_bricks, which needs CUDA's headers and no device. Headers in
+# tests/fake_bricks/instead/ take the place of those of the device.
+function(weir_brick_tests)
+  set(root ${PROJECT_SOURCE_DIR})
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_bricks/*.cpp ${root}/gpu/cuda/load/*.cpp ${root}/gpu/cuda/render/*.cpp)
+  add_executable(weir_tests_bricks ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
+                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/gpu/cuda/volume/texture.cpp ${root}/gpu/cuda/volume/device_memory.cpp
+                                   ${root}/tests/cuda/refused_memory_test.cpp ${root}/tests/cuda/paging_leak_test.cpp)
+  set_target_properties(weir_tests_bricks PROPERTIES UNITY_BUILD OFF)  # some name in unnamed namespaces what instead/ has
+  target_include_directories(weir_tests_bricks BEFORE PRIVATE ${root}/tests/fake_bricks/instead)
+  target_include_directories(weir_tests_bricks SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
+  target_link_libraries(weir_tests_bricks PRIVATE weir_gpu weir_test_support GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
+  weir_add_gtests(weir_tests_bricks)
 endfunction()
 
 # weir_coder_tests(): conversions whose packed blocks a device surveys and encodes, with the pretended CUDA runtime and the

@@ -38,10 +38,11 @@ struct Picture {
   Image image;  ///< mean radiance
   ToneMapping tone;
   double render_s = 0;       ///< of the samples alone
-  CacheCounts cache = {};    ///< of a volume that was loaded "cached"
+  CacheCounts cache = {};    ///< of a volume that was loaded "cached"; of bricks on a device, which counts no look-ups
   std::uint64_t missed = 0;  ///< of a draft: pixels whose last sample did without something that was not there
   int finest_level = 0;      ///< of the levels of detail that it was made with; 0: voxels alone
   std::string levels_note;   ///< why it was made with coarser levels than it asked for, or none; empty: it was not
+  std::string memory_note;  ///< a warning that a device had less memory than was meant for the volume; empty: it had it
 };
 
 class Backend {

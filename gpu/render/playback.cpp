@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "format/base/error.h"
 #include "format/base/seconds_since.h"
 
 namespace weir {
@@ -52,7 +53,15 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
   };
   start_load(0);
   for (std::size_t step = 0; step < files.size(); ++step) {
-    std::unique_ptr<LoadedVolume> volume = loading.get();
+    std::unique_ptr<LoadedVolume> volume;
+    try {
+      volume = loading.get();
+    } catch (const Error& error) {
+      // Where two volumes find no room, one may.
+      if (error.kind() != ErrorKind::io || !done) throw;
+      done.reset();
+      volume = load(files[step], nullptr);
+    }
     start_load(step + 1);
     Picture picture = timed(report.render_s, [&] { return backend.render(*volume, scene, options, sampling); });
     report.load = volume->load_summary();

@@ -6,16 +6,14 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <random>
 #include <regex>
 
 #include "format/base/error.h"
 #include "gpu/cuda/render/cuda_backend.h"
 #include "tests/cuda/support/device_reads.h"
+#include "tests/cuda/support/packed_ball.h"
 #include "tests/stock/test_grid.h"
-#include "tests/support/packed_grid.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::brick_volume_test {
@@ -23,40 +21,18 @@ namespace {
 
 constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, RenderMode::mip};
 constexpr std::array kFilters{Filter::nearest, Filter::trilinear, Filter::stochastic};
-constexpr std::uint64_t kSmall = 50U << 20U;  // bytes, less than all bricks take
-constexpr std::uint64_t kSmallWithLevels = 76U << 20U;
+constexpr std::uint64_t kSmall = test::kSmallCache;
+constexpr std::uint64_t kSmallWithLevels = test::kSmallCacheWithLevels;
 
 class BrickVolumeTest : public testing::Test {
  protected:
   void SetUp() override { WEIR_NEEDS_DEVICE(); }
 
   std::shared_ptr<const NvdbFile> file(std::span<const std::byte> bytes) {
-    const std::string path = (directory_.path() / "grid.nvdb").string();
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    return std::make_shared<const NvdbFile>(path);
+    return test::written(directory_ / "grid.nvdb", bytes);
   }
 
-  // A rough ball of 200^3 voxels, its blocks raw; voxel 77 of the middle one is `odd`.
-  std::shared_ptr<const NvdbFile> ball(float odd = 0.5F) {
-    test::PackedGridOptions options;
-    options.domain = {{-3, 5, 0}, {197, 205, 200}};
-    options.range = {0, 2};
-    options.stream = [odd](const Index3& block) -> test::PackedBytes {
-      std::minstd_rand random(static_cast<std::uint32_t>(block.x * 7919 + block.y * 104729 + block.z * 1299709 + 1));
-      std::array<float, 512> values;
-      for (unsigned i = 0; i < 512; ++i) {
-        const double x = static_cast<double>(8 * block.x + (i >> 6U)) - 97;
-        const double y = static_cast<double>(8 * block.y + (i >> 3U & 7U)) - 105;
-        const double z = static_cast<double>(8 * block.z + (i & 7U)) - 100;
-        const double inside = std::max(0.0, 1 - std::sqrt(x * x + y * y + z * z) / 95);
-        values[i] = static_cast<float>(inside * (0.9 + 0.2 * static_cast<double>(random() & 65535U) / 65536));
-      }
-      if (block == Index3{12, 12, 12}) values[77] = odd;
-      return test::raw_stream(values);
-    };
-    return file(test::PackedGridBuilder::build(options).file);
-  }
+  std::shared_ptr<const NvdbFile> ball(float odd = 0.5F) { return file(test::packed_ball(200, odd).file); }
 
   static Image picture(Backend& backend, const LoadedVolume& volume, RenderMode mode, Filter filter,
                        std::uint32_t samples = 3, const std::optional<LevelOfDetail>& levels = std::nullopt) {
@@ -252,31 +228,6 @@ TEST_F(BrickVolumeTest, TooLittleMemoryNamesWhatWouldDo) {
     EXPECT_GT(picture(*backend, *backend->load(grid, 16, nullptr), RenderMode::dvr, Filter::trilinear, 1).pixels.size(),
               0U);
   }
-}
-
-TEST_F(BrickVolumeTest, LoadsAndEvictionsLeaveNoMemoryBehind) {
-  const auto grid = ball();
-  const auto small = cuda(kSmall);
-  const auto used = [] {
-    cudaDeviceSynchronize();
-    std::size_t free = 0;
-    std::size_t total = 0;
-    cudaMemPool_t pool = nullptr;
-    check_cuda(cudaDeviceGetDefaultMemPool(&pool, 0), "test");
-    check_cuda(cudaMemPoolTrimTo(pool, 0), "test");
-    check_cuda(cudaMemGetInfo(&free, &total), "test");
-    return total - free;
-  };
-  auto volume = small->load(grid, 16, nullptr);
-  picture(*small, *volume, RenderMode::dvr, Filter::trilinear, 1);
-  volume.reset();
-  const std::size_t before = used();
-  for (int i = 0; i < 20; ++i) {
-    volume = small->load(grid, 16, std::move(volume));
-    picture(*small, *volume, i % 2 == 0 ? RenderMode::dvr : RenderMode::path, Filter::trilinear, 1);
-  }
-  volume.reset();
-  EXPECT_LE(used(), before + (1U << 20U));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "gpu/cuda/runtime/check.h"
 #include "gpu/cuda/volume/device_memory.h"
 #include "tests/cuda/support/device_reads.h"
+#include "tests/cuda/support/refused_allocations.h"
 #include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"
 
@@ -271,6 +272,30 @@ TEST_F(CudaBackendTest, AGridThatTheDeviceHasNoRoomForStaysInHostMemory) {
   EXPECT_EQ(picture(*cuda, grid, {}, Filter::stochastic, 1, 16).pixels, expected.pixels);
   EXPECT_EQ(picture(*cuda, grid, {}, Filter::trilinear, 1, 16).pixels.size(), expected.pixels.size())
       << "without room for an atlas";
+}
+
+TEST_F(CudaBackendTest, APictureThatIsRefusedMemoryDoesWithoutTheAtlas) {
+  const auto cuda = make_cuda_backend({});
+  const auto grid = file(TestGrid({{0, 0, 0}, {41, 41, 41}}, ball));
+  Scene scene;
+  scene.mode = RenderMode::dvr;
+  const auto load = [&] { return cuda->load(grid, 16, nullptr); };
+  const auto draw = [&](LoadedVolume& volume) { return cuda->render(volume, scene, {}, {1, nullptr, {}}); };
+  auto volume = load();
+  const Picture expected = draw(*volume);
+  const std::uint64_t before = test::allocations();
+  draw(*volume);
+  const std::uint64_t count = test::allocations() - before;
+  ASSERT_GE(count, 3U);
+  for (std::uint64_t n = 0; n < count; ++n) {
+    volume = load();
+    EXPECT_EQ(draw(*volume).memory_note, "");
+    const test::RefusedAllocations refused(n, false);
+    const Picture found = draw(*volume);
+    EXPECT_LT(difference(found.image, expected.image, 0.02), 0.02F) << n;
+    EXPECT_TRUE(found.memory_note.ends_with("its voxels are looked up without bricks, more slowly"))
+        << found.memory_note;
+  }
 }
 
 TEST_F(CudaBackendTest, SeveralDevicesDrawTheSamePicture) {

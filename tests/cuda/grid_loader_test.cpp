@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +16,7 @@
 #include "format/base/text.h"
 #include "gpu/cuda/runtime/check.h"
 #include "tests/cuda/support/grid_file.h"
+#include "tests/cuda/support/process_resources.h"
 #include "tests/cuda/support/refusal.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
@@ -42,15 +41,6 @@ bool holds(const DeviceGrid& grid, const NvdbFile& file) {
   return std::ranges::equal(downloaded(grid), data);
 }
 
-// "VmLck", "VmPin", "VmRSS" in KiB.
-std::uint64_t status_kib(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with(key + ":")) return std::strtoull(line.c_str() + key.size() + 1, nullptr, 10);
-  }
-  return 0;
-}
-
 std::uint64_t free_device_bytes() {
   std::size_t free = 0;
   std::size_t total = 0;
@@ -58,11 +48,10 @@ std::uint64_t free_device_bytes() {
   return free;
 }
 
-auto open_descriptors() {
-  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
-}
-
+using test::mappings_of;
+using test::open_descriptors;
 using test::refusal;
+using test::status_kib;
 
 class GridLoader : public testing::Test {
  protected:
@@ -244,6 +233,7 @@ TEST_F(GridLoader, LeavesNothingBehindAfterAThousandLoads) {
   for (int n = 0; n < 1000; ++n) cycle(n);
   EXPECT_EQ(free_device_bytes(), device);
   EXPECT_EQ(open_descriptors(), descriptors);
+  EXPECT_EQ(mappings_of(name), 0);
   EXPECT_EQ(status_kib("VmLck") + status_kib("VmPin"), locked);
   if (!kSanitized) {
     EXPECT_LT(status_kib("VmRSS"), resident + 4096);

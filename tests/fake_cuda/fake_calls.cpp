@@ -1,16 +1,17 @@
 // The functions of the CUDA runtime themselves, for a program that does not link it.
 #include <cuda_runtime_api.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
+#include "tests/fake_cuda/fake_array.h"
 #include "tests/fake_cuda/fake_runtime.h"
 
 using weir::test::FakeRuntime;
 
 namespace {
 
-constexpr std::size_t kDeviceBytes = std::size_t{1} << 32U;
 constexpr int kLeastPriority = 0;
 
 FakeRuntime& runtime() { return FakeRuntime::instance(); }
@@ -70,7 +71,7 @@ const char* cudaGetErrorName(cudaError_t code) {
 const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
 
 cudaError_t cudaMallocAsync(void** memory, std::size_t bytes, cudaStream_t) {
-  WEIR_ENTER("cudaMallocAsync");
+  if (const cudaError_t code = runtime().enter_allocation("cudaMallocAsync", bytes); code != cudaSuccess) return code;
   return allocate(memory, bytes);
 }
 cudaError_t cudaFreeAsync(void* memory, cudaStream_t) {
@@ -83,6 +84,7 @@ cudaError_t cudaFree(void* memory) {
 }
 cudaError_t cudaHostAlloc(void** memory, std::size_t bytes, unsigned) {
   WEIR_ENTER("cudaHostAlloc");
+  WEIR_ENTER("allocation");
   return allocate(memory, bytes);
 }
 cudaError_t cudaFreeHost(void* memory) {
@@ -90,8 +92,8 @@ cudaError_t cudaFreeHost(void* memory) {
   return release(memory);
 }
 cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
-  *total = kDeviceBytes;
-  *free = kDeviceBytes - runtime().allocated_bytes();
+  *total = runtime().capacity();
+  *free = *total - std::min<std::size_t>(*total, runtime().allocated_bytes());
   return cudaSuccess;
 }
 cudaError_t cudaHostRegister(void* memory, std::size_t bytes, unsigned flags) {
@@ -119,6 +121,11 @@ cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaM
 }
 cudaError_t cudaMemcpy3DAsync(const cudaMemcpy3DParms* parts, cudaStream_t) {
   WEIR_ENTER("cudaMemcpy3DAsync");
+  if (parts->dstArray != nullptr) {  // all of an array, from as many texels in memory
+    auto& array = *reinterpret_cast<weir::test::FakeArray*>(parts->dstArray);
+    std::memcpy(&array + 1, parts->srcPtr.ptr, array.bytes());
+    return cudaSuccess;
+  }
   const auto row = [](const cudaPitchedPtr& all, const cudaPos& first, std::size_t y, std::size_t z) {
     return static_cast<char*>(all.ptr) + first.x + all.pitch * (first.y + y + all.ysize * (first.z + z));
   };
@@ -135,8 +142,14 @@ cudaError_t cudaMemset(void* memory, int value, std::size_t bytes) {
   std::memset(memory, value, bytes);
   return cudaSuccess;
 }
+cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStream_t) {
+  WEIR_ENTER("cudaMemsetAsync");
+  std::memset(memory, value, bytes);
+  return cudaSuccess;
+}
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   WEIR_ENTER("cudaEventCreateWithFlags");
+  WEIR_ENTER("allocation");
   void* memory = nullptr;
   allocate(&memory, 1);
   *event = static_cast<cudaEvent_t>(memory);
@@ -170,7 +183,32 @@ cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const vo
   attributes->type = runtime().holds(number(address)) ? cudaMemoryTypeDevice : cudaMemoryTypeUnregistered;
   return cudaSuccess;
 }
-cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) { return cudaStreamCreate(stream); }
+cudaError_t cudaDeviceSynchronize() {
+  WEIR_ENTER("cudaDeviceSynchronize");
+  return cudaSuccess;
+}
+// What is given back is free at once: the pool keeps nothing.
+cudaError_t cudaDeviceGetDefaultMemPool(cudaMemPool_t* pool, int) {
+  *pool = nullptr;
+  return cudaSuccess;
+}
+cudaError_t cudaMemPoolSetAttribute(cudaMemPool_t, cudaMemPoolAttr, void*) { return cudaSuccess; }
+cudaError_t cudaMemPoolGetAttribute(cudaMemPool_t, cudaMemPoolAttr, void* value) {
+  const std::uint64_t bytes = runtime().allocated_bytes();
+  std::memcpy(value, &bytes, sizeof bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemPoolTrimTo(cudaMemPool_t, std::size_t) { return cudaSuccess; }
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
+  WEIR_ENTER("allocation");
+  return cudaStreamCreate(stream);
+}
+cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) { return cudaSuccess; }
+cudaError_t cudaMemcpyPeer(void* to, int, const void* from, int, std::size_t bytes) {
+  WEIR_ENTER("cudaMemcpyPeer");
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
 cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   WEIR_ENTER("cudaStreamSynchronize");

@@ -37,12 +37,33 @@ void FakeRuntime::reset() {
   calls_.clear();
   attributes_ = {{cudaDevAttrHostRegisterReadOnlySupported, 1}};
   most_registered_ = 0;
+  capacity_ = std::uint64_t{1} << 32U;
   sticky_ = last_ = cudaSuccess;
 }
 
 void FakeRuntime::fail(const std::string& function, int nth, cudaError_t code, bool sticky) {
   const std::lock_guard lock(mutex_);
   faults_.push_back({function, calls_[function] + static_cast<std::uint64_t>(nth), code, sticky});
+}
+
+void FakeRuntime::fail_from(const std::string& function, int nth, cudaError_t code) {
+  const std::lock_guard lock(mutex_);
+  faults_.push_back({function, calls_[function] + static_cast<std::uint64_t>(nth), code, false, true});
+}
+
+void FakeRuntime::heal() {
+  const std::lock_guard lock(mutex_);
+  faults_.clear();
+}
+
+void FakeRuntime::set_capacity(std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  capacity_ = bytes;
+}
+
+std::uint64_t FakeRuntime::capacity() {
+  const std::lock_guard lock(mutex_);
+  return capacity_;
 }
 
 void FakeRuntime::set_attribute(cudaDeviceAttr attribute, int value) {
@@ -60,11 +81,18 @@ cudaError_t FakeRuntime::enter(const std::string& function) {
   const std::uint64_t call = calls_[function]++;
   if (sticky_ != cudaSuccess) return sticky_;
   for (const Fault& fault : faults_) {
-    if (fault.function != function || fault.call != call) continue;
+    if (fault.function != function || (fault.later ? call < fault.call : call != fault.call)) continue;
     if (fault.sticky) sticky_ = fault.code;
     return last_ = fault.code;
   }
   return cudaSuccess;
+}
+
+cudaError_t FakeRuntime::enter_allocation(const std::string& function, std::uint64_t bytes) {
+  if (const cudaError_t code = enter(function); code != cudaSuccess) return code;
+  if (const cudaError_t code = enter("allocation"); code != cudaSuccess) return code;
+  const std::lock_guard lock(mutex_);
+  return sum(allocated_) + bytes <= capacity_ ? cudaSuccess : last_ = cudaErrorMemoryAllocation;
 }
 
 cudaError_t FakeRuntime::take_last_error() {

@@ -20,11 +20,20 @@ class FakeRuntime {
 
   /// The `nth` call (0: the next) of `function` fails with `code`; a sticky one makes all later calls fail too.
   void fail(const std::string& function, int nth, cudaError_t code, bool sticky = false);
+  /// All later calls too, from that one on, until heal().
+  void fail_from(const std::string& function, int nth, cudaError_t code);
+  /// No call fails any more, but for what stuck.
+  void heal();
+  /// Memory of the device; reset() gives it 4 GiB.
+  void set_capacity(std::uint64_t bytes);
+  std::uint64_t capacity();
   void set_attribute(cudaDeviceAttr attribute, int value);
   int attribute(cudaDeviceAttr attribute);
 
   /// At the beginning of a call: what it returns.
   cudaError_t enter(const std::string& function);
+  /// The same of one that allocates device memory, and as "allocation" with all that do: there may be no room.
+  cudaError_t enter_allocation(const std::string& function, std::uint64_t bytes);
   /// Failures returned and not cleared by cudaGetLastError; a sticky one stays.
   cudaError_t take_last_error();
 
@@ -48,6 +57,7 @@ class FakeRuntime {
     std::uint64_t call;
     cudaError_t code;
     bool sticky;
+    bool later = false;  ///< calls, too
   };
 
   std::mutex mutex_;
@@ -57,6 +67,7 @@ class FakeRuntime {
   std::map<std::uintptr_t, std::uint64_t> registered_;
   std::map<std::uintptr_t, std::uint64_t> allocated_;
   std::uint64_t most_registered_ = 0;
+  std::uint64_t capacity_ = 0;
   cudaError_t sticky_ = cudaSuccess;
   cudaError_t last_ = cudaSuccess;
 };

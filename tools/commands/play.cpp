@@ -14,6 +14,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "format/base/error.h"
@@ -163,10 +164,14 @@ void play_series(const PlayArguments& arguments) {
     progress.update(before + done);
   };
   std::atomic<std::size_t> written{0};
+  bool warned = false;
   PlaybackReport report;
   try {
     report = play(*backend, volumes, request.scene, request.options, request.sampling,
                   [&](std::size_t frame, const Picture& picture) {
+                    if (!picture.memory_note.empty() && !std::exchange(warned, true)) {
+                      spdlog::warn("{}: {}", volumes[frame], picture.memory_note);
+                    }
                     write(frame, bar ? with_color_bar(picture, *bar) : picture);
                     ++written;
                   });

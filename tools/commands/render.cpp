@@ -111,6 +111,7 @@ void render(const RenderArguments& arguments) {
   Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
   if (bar) picture = with_color_bar(picture, *bar);
   progress.finish();
+  if (!picture.memory_note.empty()) spdlog::warn("{}: {}", arguments.input, picture.memory_note);
   const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
   if (arguments.json) {
     const nlohmann::json report{{"image", arguments.output},
@@ -132,6 +133,7 @@ void render(const RenderArguments& arguments) {
                                 {"cache", to_json(picture.cache)},
                                 {"finest_level", picture.finest_level},
                                 {"levels_note", picture.levels_note},
+                                {"memory_note", picture.memory_note},
                                 {"load_s", load_s},
                                 {"render_s", picture.render_s}};
     std::cout << report.dump(2) << '\n';

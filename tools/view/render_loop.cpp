@@ -1,5 +1,7 @@
 #include "tools/view/render_loop.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -189,6 +191,10 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
       };
     }
     Picture picture = backend_.render(*volume, view.scene, options, sampling);
+    if (!picture.memory_note.empty() && picture.memory_note != warned_) {
+      warned_ = picture.memory_note;
+      spdlog::warn("{}: {}", file, warned_);
+    }
     tone = picture.tone;
     pictures.push_back(std::move(picture.image));
   }

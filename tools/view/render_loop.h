@@ -103,6 +103,7 @@ class RenderLoop {
   std::map<ViewerId, Viewer> viewers_;
   std::optional<Turn> turn_;  // that is being drawn
   bool loaded_ = false;       // while the picture was drawn; of thread_ alone
+  std::string warned_;        // of, last: Picture::memory_note; of thread_ alone
   std::atomic<bool> cancel_{false};
   bool ended_ = false;
   std::thread thread_;

@@ -42,11 +42,18 @@ std::shared_ptr<LoadedVolume> VolumeShelf::get(const std::string& path) {
     const std::lock_guard lock(mutex_);
     if (auto volume = find(identity)) return volume;
   }
-  return load(path);
+  return load(path, false);
+}
+
+bool VolumeShelf::clear() {
+  const std::lock_guard lock(mutex_);
+  const bool held = !entries_.empty();
+  entries_.clear();
+  return held;
 }
 
 // The oldest volume makes room first: two of them might not fit into memory.
-std::shared_ptr<LoadedVolume> VolumeShelf::load(const std::string& path) {
+std::shared_ptr<LoadedVolume> VolumeShelf::load(const std::string& path, bool ahead) {
   const std::lock_guard one_at_a_time(loading_);
   const std::string identity = file_identity(path);  // before it is opened: one that takes its place is another
   {
@@ -55,7 +62,15 @@ std::shared_ptr<LoadedVolume> VolumeShelf::load(const std::string& path) {
     entries_.remove_if([&](const Entry& e) { return e.path == path; });
     while (entries_.size() >= capacity_) entries_.pop_back();
   }
-  std::shared_ptr<LoadedVolume> volume = backend_.load(std::make_shared<const NvdbFile>(path), 0, nullptr);
+  const auto file = std::make_shared<const NvdbFile>(path);
+  std::shared_ptr<LoadedVolume> volume;
+  try {
+    volume = backend_.load(file, 0, nullptr);
+  } catch (const Error& error) {
+    // Of device memory, say. What is ahead must not take the place of what is seen.
+    if (ahead || error.kind() != ErrorKind::io || !clear()) throw;
+    volume = backend_.load(file, 0, nullptr);
+  }
   const std::lock_guard lock(mutex_);
   entries_.push_front({path, identity, volume});
   return volume;
@@ -78,7 +93,7 @@ void VolumeShelf::fetch_ahead() {
     const std::string path = std::exchange(wanted_, {});
     lock.unlock();
     try {
-      load(path);
+      load(path, true);
     } catch (const std::exception&) {  // said when its turn comes
     }
     lock.lock();

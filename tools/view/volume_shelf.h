@@ -24,7 +24,7 @@ class VolumeShelf {
   VolumeShelf& operator=(const VolumeShelf&) = delete;
 
   /// The volume of the file that has the path now, which is loaded where it is not here. One thread, that which
-  /// renders. Throws as Backend::load and NvdbFile.
+  /// renders. Where it finds no room beside the others, these go. Throws as Backend::load and NvdbFile.
   std::shared_ptr<LoadedVolume> get(const std::string& path);
   /// Whether get() would return at once.
   bool has(const std::string& path) const;
@@ -39,7 +39,8 @@ class VolumeShelf {
   };
 
   std::shared_ptr<LoadedVolume> find(const std::string& identity);  // mutex_ held
-  std::shared_ptr<LoadedVolume> load(const std::string& path);
+  std::shared_ptr<LoadedVolume> load(const std::string& path, bool ahead);
+  bool clear();  // false: it was empty
   void fetch_ahead();
 
   Backend& backend_;

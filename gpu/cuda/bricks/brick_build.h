@@ -97,7 +97,7 @@ struct BuildBricks {
     if (thread.index() == 0) {
       shared.made = entry_for(range, shared.not_finite == 0);
       table.entry(table.regions[table.lattice.region_of(block)].page, block) = shared.made;
-      if (shared.made.brick != 0) own(shared.made, block);
+      if (shared.made.brick != 0) own(shared.made, block, 0.5F * range.min + 0.5F * range.max);
     }
     thread.meet();
     const BrickEntry made = shared.made;
@@ -152,11 +152,12 @@ struct BuildBricks {
     return entry;
   }
 
-  WEIR_HOST_DEVICE void own(const BrickEntry& made, const Int3& block) const {
+  WEIR_HOST_DEVICE void own(const BrickEntry& made, const Int3& block, float middle) const {
     const std::uint32_t slot = slots.slot(made.brick);
     const std::uint32_t page = table.regions[table.lattice.region_of(block)].page;
     slots.owners[slot] = page * kRegionBlocks + BlockLattice::position_of(block);
     slots.stamps[slot] = turn;
+    slots.middles[slot] = is_finite(middle) ? middle : 0;
   }
 
   WEIR_HOST_DEVICE void write(const Int3& at, float value, const BrickEntry& made) const {

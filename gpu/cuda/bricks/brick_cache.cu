@@ -12,13 +12,14 @@
 #include "gpu/cuda/bricks/brick_pager.h"
 #include "gpu/cuda/bricks/brick_texels.h"
 #include "gpu/cuda/bricks/device_machine.cuh"
+#include "gpu/cuda/volume/device_memory.h"
 
 namespace weir {
 
 namespace {
 
 constexpr std::uint64_t kPageBytes = kRegionBlocks * sizeof(BrickEntry);
-constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t);
+constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t) + sizeof(float);
 // Of a block decoded with others: its values, and its share of the table of numbers.
 constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
 constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
@@ -64,9 +65,9 @@ BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& b
 
 BrickCache::~BrickCache() = default;
 
-// Null where making it again with floats has failed.
+// Null after a failure.
 BrickCache::Pager& BrickCache::pager() const {
-  if (!pager_) throw Error(ErrorKind::io, "the cache of bricks could not be made again; load the grid once more");
+  if (!pager_) throw Error(ErrorKind::internal, "a cache of bricks is used that is to be restored first");
   return *pager_;
 }
 
@@ -85,11 +86,57 @@ BrickCache::Needs BrickCache::needs() const {
   return needs;
 }
 
-void BrickCache::make(TexelType type) {
-  type_ = type;
+void BrickCache::clear() {
   pager_.reset();
   whole_ = DeviceArray<BrickEntry>();
   texture_ = Texture();
+  slots_ = 0;
+}
+
+void BrickCache::restore() {
+  if (!pager_) make(type_);
+}
+
+bool BrickCache::shrink(std::uint64_t bytes, const std::string& why) {
+  const std::uint64_t held = pager_ ? std::min(left_, this->bytes()) : left_;
+  const std::uint64_t given = std::max(bytes, held / 8);
+  if (kept_ == BricksKept::all || held <= given) return false;
+  const std::uint64_t before = std::exchange(left_, held - given);
+  if (!needs().fit(type_, left_)) {
+    left_ = before;
+    return false;
+  }
+  refusal_ = why;
+  make(type_);
+  return true;
+}
+
+// With less and less of the budget where the device refuses: others take of it too.
+void BrickCache::make(TexelType type) {
+  const std::uint64_t before = left_;
+  const std::string refused_before = refusal_;
+  for (;;) {
+    try {
+      return make_within(type);
+    } catch (const DeviceFull& full) {
+      clear();
+      const std::uint64_t free = free_device_bytes(~std::uint64_t{0});
+      refusal_ = full.what();
+      left_ = std::min(left_ - left_ / 4, free);
+      if (kept_ == BricksKept::some && needs().fit(type, left_)) continue;
+      left_ = before;  // there may be room another time
+      refusal_ = refused_before;
+      throw;
+    } catch (...) {
+      clear();
+      throw;
+    }
+  }
+}
+
+void BrickCache::make_within(TexelType type) {
+  type_ = type;
+  clear();
   if (make_whole()) return;
   if (kept_ == BricksKept::all) {
     throw Error(ErrorKind::io, cat("all bricks of the grid do not fit into the ", format_bytes(left_),
@@ -133,7 +180,7 @@ bool BrickCache::make_whole() {
     whole_ = pager.take_table();
     return true;
   });
-  if (!fits) make(TexelType::float32);
+  if (!fits) make_within(TexelType::float32);
   return true;
 }
 
@@ -159,10 +206,17 @@ std::uint64_t BrickCache::Needs::least(TexelType type) const {
   return fixed + 20 * kPageBytes + 2 * kLeastSlots * (brick_bytes(type) + kSlotBytes);
 }
 
+bool BrickCache::Needs::fit(TexelType type, std::uint64_t bytes) const {
+  return table <= bytes / 20 && least(type) <= bytes;
+}
+
 // Places for as many bricks as fit.
 void BrickCache::make_paged() {
   Needs needs = this->needs();
-  if (needs.table > left_ / 20 || left_ < needs.least(type_)) fail_too_small(needs);
+  if (!needs.fit(type_, left_)) {
+    if (!refusal_.empty()) throw DeviceFull(refusal_, 0);  // more was asked for than there was
+    fail_too_small(needs);
+  }
   const auto missing = std::ranges::count_if(
       regions_, [](const RegionEntry& region) { return (region.page & RegionEntry::kMissing) != 0; });
   needs.plan.pages = static_cast<std::uint32_t>(
@@ -184,7 +238,13 @@ BrickCounters BrickCache::counters() const {
 }
 
 PagingTurn BrickCache::serve() {
-  const PagingTurn turn = pager().with([](auto& pager) { return pager.serve(); });
+  PagingTurn turn;
+  try {
+    turn = pager().with([](auto& pager) { return pager.serve(); });
+  } catch (...) {
+    clear();  // what was brought in is not known
+    throw;
+  }
   if (turn.unfit) make(TexelType::float32);
   return turn;
 }

@@ -45,10 +45,21 @@ constexpr std::uint64_t bytes_for_levels(std::uint64_t bytes) {
 class BrickCache {
  public:
   /// Texels have 16 bits, in a range of each brick's own, floats where that does not hold a brick's values (some not
-  /// finite). Throws Error(usage) where the budget is too small, with what would do, Error(io) where the device has no
-  /// room, Error(input) where blocks are damaged.
+  /// finite). Where the device has less room than the budget, a cache of `some` bricks is smaller. Throws Error(usage)
+  /// where the budget is too small, with what would do, DeviceFull where the device has no room for the smallest cache
+  /// (or for all bricks), Error(input) where blocks are damaged.
   BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& budget, BricksKept kept = BricksKept::some);
   ~BrickCache();
+
+  /// Makes it once more where a failure of serve() or shrink() has left nothing; to be called before a picture. Throws
+  /// as the constructor.
+  void restore();
+  /// Gives `bytes` back to the device for something else that it has refused for the reason `why`, and an eighth of
+  /// the cache at least; its bricks are to be brought in again. False, and nothing has changed, where a cache that much
+  /// smaller would hold too little, or holds all or nothing. Throws as the constructor.
+  bool shrink(std::uint64_t bytes, const std::string& why);
+  /// Why it is smaller than its budget: what the device has refused; empty: it is not.
+  const std::string& refusal() const { return refusal_; }
 
   /// Whether bricks come and go: there are fewer places than bricks, or an axis is too long for a BrickTable.
   bool paged() const { return paged_; }
@@ -81,7 +92,7 @@ class BrickCache {
   }
 
   /// Of a paged one: brings in what was looked up and missing since the last call. Where that was `unfit`, all that was
-  /// drawn is to be drawn again, from floats. Throws as the constructor.
+  /// drawn is to be drawn again, from floats. Throws as the constructor; the cache is gone then, until restore().
   PagingTurn serve();
   /// Throws Error(input) where a block that was decoded is damaged.
   void check();
@@ -96,13 +107,16 @@ class BrickCache {
     std::uint64_t table = 0;  // bytes of the regions'
     std::uint64_t fixed = 0;  // bytes of that, and of all that brings bricks in
 
-    std::uint64_t least(TexelType type) const;  // bytes of the smallest cache
+    std::uint64_t least(TexelType type) const;            // bytes of the smallest cache
+    bool fit(TexelType type, std::uint64_t bytes) const;  // a cache of so many
   };
 
   Pager& pager() const;
   PageTable pages();
   Needs needs() const;
+  void clear();
   void make(TexelType type);
+  void make_within(TexelType type);
   bool make_whole();
   void make_paged();
   [[noreturn]] void fail_too_small(const Needs& needs) const;
@@ -112,6 +126,7 @@ class BrickCache {
   std::vector<RegionEntry> regions_;  // as the source has them
   BrickBudget budget_;
   std::uint64_t left_;  // bytes of it
+  std::string refusal_;
   BricksKept kept_;
   TexelType type_ = TexelType::share16;
   bool paged_ = false;

@@ -41,6 +41,7 @@ class BrickPager {
         owners_(plan.slots),
         stamps_(plan.slots),
         free_(plan.slots),
+        middles_(plan.slots),
         counters_(1),
         bricks_(plan.most_requests),
         wanted_regions_(plan.pages),
@@ -74,8 +75,9 @@ class BrickPager {
   /// Bytes of what is here, without the texels.
   std::uint64_t bytes() const {
     return regions_.bytes() + entries_.bytes() + page_stamps_.bytes() + owners_.bytes() + stamps_.bytes() +
-           free_.bytes() + counters_.bytes() + bricks_.bytes() + wanted_regions_.bytes() + listed_regions_.bytes() +
-           listed_pages_.bytes() + keys_.bytes() + numbers_.bytes() + blocks_.bytes() + values_.bytes();
+           free_.bytes() + middles_.bytes() + counters_.bytes() + bricks_.bytes() + wanted_regions_.bytes() +
+           listed_regions_.bytes() + listed_pages_.bytes() + keys_.bytes() + numbers_.bytes() + blocks_.bytes() +
+           values_.bytes();
   }
   /// As of the last turn.
   const BrickCounters& counters() const { return seen_; }
@@ -121,8 +123,10 @@ class BrickPager {
     turn.unfit = seen_.unfit > 0;
     turn.asked_pages = std::min(seen_.region_requests, plan_.pages);
     turn.asked_bricks = std::min(seen_.brick_requests, plan_.most_requests);
+    evicted_ = 0;
     turn.pages = serve_pages(turn.asked_pages);
     turn.bricks = std::min(turn.asked_bricks, make_room(turn.asked_bricks));
+    turn.evicted = evicted_;
     build(turn.bricks);
     machine_.each(turn.asked_bricks - turn.bricks, ForgetRequests{table(), bricks_.data() + turn.bricks});
     machine_.each(1, EndTurn{counters_.data()});
@@ -146,6 +150,7 @@ class BrickPager {
     owners_ = Array<std::uint32_t>(0);
     stamps_ = Array<std::uint32_t>(0);
     free_ = Array<std::uint32_t>(0);
+    middles_ = Array<float>(0);
     return entries;
   }
 
@@ -166,7 +171,7 @@ class BrickPager {
   }
 
   BrickSlots slots() const {
-    return {owners_.data(), stamps_.data(), free_.data(), plan_.slots, plan_.across, plan_.down};
+    return {owners_.data(), stamps_.data(), free_.data(), middles_.data(), plan_.slots, plan_.across, plan_.down};
   }
 
   void read_counters() { counters_.download(std::span(&seen_, 1)); }
@@ -204,6 +209,7 @@ class BrickPager {
 
   // Frees as many pages, those that were not used the longest, none that was used since the last turn.
   void drop_pages(std::uint32_t wanted) {
+    const std::uint32_t free_before = seen_.free_slots;
     machine_.each(kRegionBlocks * plan_.pages, StampPages{entries_.data(), page_stamps_.data(), turn_});
     std::vector<std::uint32_t> stamps(page_stamps_.size());
     page_stamps_.download(stamps);
@@ -224,6 +230,7 @@ class BrickPager {
     machine_.each(kRegionBlocks * static_cast<std::uint32_t>(pages.size()),
                   DropPages{table(), slots(), counters_.data(), turn_, listed_regions_.data(), listed_pages_.data()});
     read_counters();
+    evicted_ += seen_.free_slots - free_before;
   }
 
   // Evicts bricks until `wanted` slots are free, none that was used since the last turn. Returns how many are free.
@@ -237,6 +244,7 @@ class BrickPager {
     if (evicted > 0) {
       machine_.each(plan_.slots, EvictSlots{slots(), entries_.data(), counters_.data(), turn_, age, evicted});
     }
+    evicted_ += evicted;
     return seen_.free_slots + evicted;
   }
 
@@ -283,6 +291,7 @@ class BrickPager {
   Array<std::uint32_t> owners_;
   Array<std::uint32_t> stamps_;
   Array<std::uint32_t> free_;
+  Array<float> middles_;
   Array<BrickCounters> counters_;
   Array<BlockId> bricks_;                // asked for
   Array<std::uint32_t> wanted_regions_;  // asked for
@@ -295,6 +304,7 @@ class BrickPager {
   std::uint32_t batch_;  // bricks whose blocks are likely to fit
   BrickCounters seen_;
   std::uint32_t turn_ = 0;
+  std::uint32_t evicted_ = 0;  // bricks, in this turn
 };
 
 }  // namespace weir

@@ -14,6 +14,7 @@ struct BrickSlots {
   std::uint32_t* owners = nullptr;  ///< numbers of their entries in the page table; kFree
   std::uint32_t* stamps = nullptr;  ///< turns in which they were last used
   std::uint32_t* free = nullptr;    ///< counters->free_slots numbers of slots
+  float* middles = nullptr;         ///< of the ranges of their bricks' values
   std::uint32_t count = 0;
   std::uint32_t across = 0;  ///< bricks along x of the texture
   std::uint32_t down = 0;    ///< and along y
@@ -91,7 +92,7 @@ struct EvictSlots {
     if (slots.owners[i] == BrickSlots::kFree || slots.age(i, turn) < least_age) return;
     if (atomic_add(&counters->evicted, 1U) >= wanted) return;
     BrickEntry& entry = entries[slots.owners[i]];
-    entry = {entry.low + 0.5F * entry.span, 0, 0, brick_state::kMissing};
+    entry = {slots.middles[i], 0, 0, brick_state::kMissing};
     slots.owners[i] = BrickSlots::kFree;
     slots.free[atomic_add(&counters->free_slots, 1U)] = i;
   }

@@ -2,10 +2,8 @@
 // tracer asks of it.
 #pragma once
 
-#include <cuda_runtime_api.h>
-#include <texture_indirect_functions.h>
-
 #include "gpu/cuda/bricks/page_table.h"
+#include "gpu/cuda/volume/texture_read.h"
 #include "gpu/math/random.h"
 #include "gpu/volume/volume_sampler.h"
 
@@ -46,12 +44,7 @@ struct FilteredBricks {
     const auto at = table.position(q);
     const BrickEntry entry = table.entry(at);
     if (entry.brick == 0) return entry.low;
-    const Float3 texel = Table::texel(entry, at);
-#if defined(__CUDA_ARCH__)
-    return entry.low + entry.span * tex3D<float>(texture, texel.x, texel.y, texel.z);
-#else
-    return texel.x * 0.0F;  // kernels alone see textures
-#endif
+    return entry.low + entry.span * read_texture(texture, Table::texel(entry, at));
   }
 };
 

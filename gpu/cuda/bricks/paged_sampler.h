@@ -21,24 +21,12 @@ struct PagedTable {
   WEIR_HOST_DEVICE Position position(const Float3& q) const { return positions.at(q); }
   WEIR_HOST_DEVICE BrickEntry entry(const Position& at) const {
     const BrickEntry found = pages.template find_or_request<kNoting>(positions.region(at), positions.in_region(at));
-#if defined(__CUDA_ARCH__)
-    if ((found.state & brick_state::kMissing) != 0) thread_missed() = true;
-#endif
+    if ((found.state & brick_state::kMissing) != 0) set_thread_missed(true);
     return found;
   }
   /// Whether the thread's look-ups have missed something since it was last set to false; on the host always false.
-  WEIR_HOST_DEVICE static bool missed() {
-#if defined(__CUDA_ARCH__)
-    return thread_missed();
-#else
-    return false;
-#endif
-  }
-  WEIR_HOST_DEVICE static void set_missed([[maybe_unused]] bool missed) {
-#if defined(__CUDA_ARCH__)
-    thread_missed() = missed;
-#endif
-  }
+  WEIR_HOST_DEVICE static bool missed() { return thread_missed(); }
+  WEIR_HOST_DEVICE static void set_missed(bool missed) { set_thread_missed(missed); }
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
     return Positions::texel(entry, at);
   }

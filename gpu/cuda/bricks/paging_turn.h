@@ -8,9 +8,10 @@ namespace weir {
 struct PagingTurn {
   std::uint32_t asked_pages = 0;
   std::uint32_t asked_bricks = 0;
-  std::uint32_t pages = 0;   ///< brought in
-  std::uint32_t bricks = 0;  ///< brought in
-  bool unfit = false;        ///< 16 bits do not hold some brick: all is to be made again with floats
+  std::uint32_t pages = 0;    ///< brought in
+  std::uint32_t bricks = 0;   ///< brought in
+  std::uint32_t evicted = 0;  ///< bricks that had to go
+  bool unfit = false;         ///< 16 bits do not hold some brick: all is to be made again with floats
 
   /// Whether what was used since the last turn, together with what was missing, is more than the cache holds.
   bool crowded() const { return pages < asked_pages || bricks < asked_bricks; }

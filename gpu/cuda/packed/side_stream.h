@@ -3,6 +3,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <cstddef>
 #include <utility>
 
 #include "gpu/cuda/runtime/check.h"
@@ -11,19 +12,20 @@ namespace weir {
 
 class SideStream {
  public:
-  SideStream() {
+  SideStream() : SideStream(nullptr) {  // which is destroyed where the rest throws
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
     check_cuda(cudaEventCreateWithFlags(&begin_, cudaEventDisableTiming), "making an event");
     check_cuda(cudaEventCreateWithFlags(&end_, cudaEventDisableTiming), "making an event");
   }
   ~SideStream() {
-    if (stream_ == nullptr) return;
-    cudaEventDestroy(begin_);
-    cudaEventDestroy(end_);
-    cudaStreamDestroy(stream_);
+    if (begin_ != nullptr) cudaEventDestroy(begin_);
+    if (end_ != nullptr) cudaEventDestroy(end_);
+    if (stream_ != nullptr) cudaStreamDestroy(stream_);
   }
   SideStream(SideStream&& other) noexcept
-      : stream_(std::exchange(other.stream_, nullptr)), begin_(other.begin_), end_(other.end_) {}
+      : stream_(std::exchange(other.stream_, nullptr)),
+        begin_(std::exchange(other.begin_, nullptr)),
+        end_(std::exchange(other.end_, nullptr)) {}
   SideStream& operator=(SideStream&& other) noexcept {
     std::swap(stream_, other.stream_);
     std::swap(begin_, other.begin_);
@@ -38,6 +40,7 @@ class SideStream {
   void join(cudaStream_t other) const { order(stream_, end_, other); }
 
  private:
+  explicit SideStream(std::nullptr_t) {}
   static void order(cudaStream_t first, cudaEvent_t event, cudaStream_t second) {
     check_cuda(cudaEventRecord(event, first), "recording an event");
     check_cuda(cudaStreamWaitEvent(second, event, 0), "waiting for an event");

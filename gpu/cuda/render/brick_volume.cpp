@@ -31,6 +31,11 @@ BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vecto
   cache_.emplace(std::move(source), budget);
 }
 
+bool BrickVolume::shrink(std::uint64_t bytes, const std::string& why) {
+  levels_.reset();  // a picture that has some makes them again
+  return cache_->shrink(bytes, why);
+}
+
 int BrickVolume::finest_level(int wanted) const {
   const BlockLattice lattice = cache_->source().lattice();
   return DevicePyramid::finest_within({lattice.shift, lattice.extent}, wanted, level_bytes_);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -25,6 +26,8 @@ class BrickVolume {
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }
   BrickCache& cache() { return *cache_; }
+  /// Gives device memory back that a picture was refused, for the reason `why`: as BrickCache::shrink.
+  bool shrink(std::uint64_t bytes, const std::string& why);
   DeviceMacrocells& cells() { return cells_; }
   /// The finest level of detail from `wanted` on that there is room for; 0: none.
   int finest_level(int wanted) const;

@@ -9,13 +9,12 @@
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
-#include "gpu/cuda/render/brick_volume.h"
+#include "gpu/cuda/render/cuda_volume.h"
 #include "gpu/cuda/render/device_room.h"
-#include "gpu/cuda/render/device_volume.h"
+#include "gpu/cuda/render/refused_memory.h"
 #include "gpu/cuda/render/render_kernel.h"
 #include "gpu/cuda/render/trace_paged.h"
 #include "gpu/cuda/runtime/check.h"
-#include "gpu/cuda/volume/dense_texture.h"
 #include "gpu/cuda/volume/device_environment.h"
 #include "gpu/cuda/volume/device_memory.h"
 #include "gpu/cuda/volume/device_samplers.h"
@@ -26,46 +25,6 @@ namespace weir {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// A file's grid, or a dense volume, on every device of the back end, in its order.
-class CudaVolume : public LoadedVolume {
- public:
-  CudaVolume(std::shared_ptr<const NvdbFile> file, std::vector<std::unique_ptr<DeviceVolume>> grids,
-             MacrocellGrid cells, LoadSummary summary)
-      : file_(std::move(file)),
-        grids_(std::move(grids)),
-        cells_(std::move(cells)),
-        info_(volume_info(file_->grid(), cells_)),
-        summary_(std::move(summary)) {}
-  CudaVolume(std::shared_ptr<const NvdbFile> file, std::vector<std::unique_ptr<BrickVolume>> bricks,
-             MacrocellGrid cells, LoadSummary summary)
-      : file_(std::move(file)),
-        bricks_(std::move(bricks)),
-        cells_(std::move(cells)),
-        info_(volume_info(file_->grid(), cells_)),
-        summary_(std::move(summary)) {}
-  CudaVolume(const VolumeInfo& info, std::vector<std::unique_ptr<DenseTexture>> textures, MacrocellGrid cells,
-             LoadSummary summary)
-      : textures_(std::move(textures)), cells_(std::move(cells)), info_(info), summary_(std::move(summary)) {}
-
-  const VolumeInfo& info() const override { return info_; }
-  const LoadSummary& load_summary() const override { return summary_; }
-  const MacrocellGrid& cells() const { return cells_; }
-  bool dense() const { return !textures_.empty(); }
-  bool in_bricks() const { return !bricks_.empty(); }
-  BrickVolume& bricks(std::size_t i) const { return *bricks_[i]; }
-  DeviceVolume& grid(std::size_t i) { return *grids_[i]; }
-  DenseTexture& texture(std::size_t i) { return *textures_[i]; }
-
- private:
-  std::shared_ptr<const NvdbFile> file_;  ///< kept: a zero-copy grid lies in its mapping
-  std::vector<std::unique_ptr<DeviceVolume>> grids_;
-  std::vector<std::unique_ptr<BrickVolume>> bricks_;
-  std::vector<std::unique_ptr<DenseTexture>> textures_;
-  MacrocellGrid cells_;
-  VolumeInfo info_;
-  LoadSummary summary_;
-};
 
 /// One device's part of a picture.
 struct Share {
@@ -78,7 +37,9 @@ struct Share {
 struct ShareDone {
   std::vector<Float3> sums;
   std::uint64_t missed = 0;  ///< as Picture
+  CacheCounts cache;         ///< as Picture
   bool drawn = false;        ///< there were samples for it
+  std::string memory_note;   ///< as Picture
 };
 
 /// Samples in turns that grow until one takes kLaunchSeconds; `launch` starts [first, last) on the default stream.
@@ -115,6 +76,48 @@ class CudaBackend : public Backend {
 
   std::unique_ptr<LoadedVolume> load(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
                                      std::unique_ptr<LoadedVolume> reuse) override {
+    const std::string path = file->path();
+    try {
+      return load_file(std::move(file), cell, std::move(reuse));
+    } catch (const DeviceFull& refused) {
+      throw refused_error(path, refused);
+    }
+  }
+
+  std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) override {
+    if (options_.levels) {
+      throw Error(ErrorKind::usage, compose("a dense volume has no levels of detail on a device; give ",
+                                            option("lod", "off"), " or ", option("backend", "cpu")));
+    }
+    MacrocellGrid cells = macrocells_of(*volume, cell == 0 ? kDeviceMacrocell : cell);
+    const auto start = Clock::now();
+    std::vector<std::unique_ptr<DenseTexture>> textures;
+    for (const int device : options_.devices) {
+      use_device(device);
+      try {
+        textures.push_back(std::make_unique<DenseTexture>(volume->view(), cells.bounds()));
+      } catch (const DeviceFull& refused) {
+        throw refused_error("a dense volume", refused);
+      }
+    }
+    const VolumeInfo info{volume->frame(), volume->range(), volume->background()};
+    return std::make_unique<CudaVolume>(info, std::move(textures), std::move(cells),
+                                        LoadSummary{"texture", volume->bytes(), seconds_since(start), ""});
+  }
+
+  Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
+                 const SampleOptions& sampling) override {
+    try {
+      return draw(static_cast<CudaVolume&>(volume), scene, options, sampling);
+    } catch (const DeviceFull& refused) {
+      throw refused_error(cat("a picture of ", options.width, " x ", options.height, " pixels"), refused,
+                          "make it smaller");
+    }
+  }
+
+ private:
+  std::unique_ptr<LoadedVolume> load_file(std::shared_ptr<const NvdbFile> file, std::int64_t cell,
+                                          std::unique_ptr<LoadedVolume> reuse) {
     const NvdbGrid& grid = file->grid();
     const std::int64_t edge = cell == 0 ? kDeviceMacrocell : cell;
     use_device(options_.devices.front());
@@ -134,18 +137,9 @@ class CudaBackend : public Backend {
     how.packed = true;
     const DeviceRoom room = room_for(grid, options_, buffer.capacity());
     if (!how.zero_copy) note = reason_for_zero_copy(grid, room);
+    DeviceGrid loaded = load_bytes(*file, std::move(buffer), how, note);
     const bool in_bricks =
         grid.packed() != nullptr || options_.levels || (!note.empty() && worth_bricks(grid, room.bytes));
-    how.zero_copy = how.zero_copy || !note.empty();
-    if (how.zero_copy && buffer.capacity() > 0) {
-      buffer = DeviceBuffer();
-      free_device_bytes(~std::uint64_t{0});
-    }
-    if (how.zero_copy && options_.devices.size() > 1) {
-      throw Error(ErrorKind::usage,
-                  cat(note.empty() ? "a grid in host memory" : note, "; several devices cannot share it, use one"));
-    }
-    DeviceGrid loaded = load_grid(*file, std::move(buffer), how, cudaStreamPerThread);
     const LoadReport& report = loaded.report();
     if (!report.note.empty()) note += cat(note.empty() ? "" : "; ", report.note);
     LoadSummary summary{cat(load_path_name(report.path), report.zero_copy ? ", zero-copy" : ""), report.bytes,
@@ -182,26 +176,30 @@ class CudaBackend : public Backend {
     return std::make_unique<CudaVolume>(std::move(file), std::move(grids), std::move(cells), std::move(summary));
   }
 
-  std::unique_ptr<LoadedVolume> load_dense(std::shared_ptr<const DenseVolume> volume, std::int64_t cell) override {
-    if (options_.levels) {
-      throw Error(ErrorKind::usage, compose("a dense volume has no levels of detail on a device; give ",
-                                            option("lod", "off"), " or ", option("backend", "cpu")));
+  // In host memory where there is a reason for that, in `note`, or where the device refuses to hold it.
+  DeviceGrid load_bytes(const NvdbFile& file, DeviceBuffer buffer, LoadOptions how, std::string& note) const {
+    const bool several = options_.devices.size() > 1;
+    if (!how.zero_copy && note.empty()) {
+      try {
+        return load_grid(file, std::move(buffer), how, cudaStreamPerThread);
+      } catch (const DeviceFull& refused) {
+        if (several) throw;
+        note = cat(refused.what(), ", so it stays in host memory");
+      }
     }
-    MacrocellGrid cells = macrocells_of(*volume, cell == 0 ? kDeviceMacrocell : cell);
-    const auto start = Clock::now();
-    std::vector<std::unique_ptr<DenseTexture>> textures;
-    for (const int device : options_.devices) {
-      use_device(device);
-      textures.push_back(std::make_unique<DenseTexture>(volume->view(), cells.bounds()));
+    if (several) {
+      throw Error(ErrorKind::usage,
+                  cat(note.empty() ? "a grid in host memory" : note, "; several devices cannot share it, use one"));
     }
-    const VolumeInfo info{volume->frame(), volume->range(), volume->background()};
-    return std::make_unique<CudaVolume>(info, std::move(textures), std::move(cells),
-                                        LoadSummary{"texture", volume->bytes(), seconds_since(start), ""});
+    how.zero_copy = true;
+    if (buffer.capacity() > 0) {
+      buffer = DeviceBuffer();
+      free_device_bytes(~std::uint64_t{0});
+    }
+    return load_grid(file, std::move(buffer), how, cudaStreamPerThread);
   }
 
-  Picture render(LoadedVolume& volume, const Scene& scene, const RenderOptions& options,
-                 const SampleOptions& sampling) override {
-    auto& loaded = static_cast<CudaVolume&>(volume);
+  Picture draw(CudaVolume& loaded, const Scene& scene, const RenderOptions& options, const SampleOptions& sampling) {
     const RenderSetup setup(loaded.info(), loaded.cells(), scene, options);
     const auto start = Clock::now();
     std::string note;
@@ -228,8 +226,12 @@ class CudaBackend : public Backend {
     }
     Image image(options.width, options.height);
     std::uint64_t missed = 0;
+    CacheCounts counts;
+    std::string memory_note;
     for (auto& share : shares) {
       const ShareDone part = share.get();
+      counts += part.cache;
+      if (memory_note.empty()) memory_note = part.memory_note;
       for (std::size_t p = 0; p < part.sums.size(); ++p) image.pixels[p] += part.sums[p];
       if (part.drawn) missed = part.missed;  // the last sample is the last share's
     }
@@ -238,10 +240,9 @@ class CudaBackend : public Backend {
     }
     const float scale = 1.0F / static_cast<float>(std::max(sampling.samples, 1U));
     for (Float3& pixel : image.pixels) pixel = pixel * scale;
-    return {std::move(image), setup.tone(), seconds_since(start), {}, missed, finest_level, note};
+    return {std::move(image), setup.tone(), seconds_since(start), counts, missed, finest_level, note, memory_note};
   }
 
- private:
   // The finest level of detail that a picture is made with; 0: with voxels alone.
   static int levels_for(const CudaVolume& volume, const RenderSetup& setup, std::string& note) {
     if (!setup.levels()) return 0;
@@ -255,10 +256,32 @@ class CudaBackend : public Backend {
     return levels_are_of_use(finest, setup.levels()->coarsest) ? finest : 0;
   }
 
+  // Once more and once more, from its first sample, while the volume can give up something for what was refused.
   ShareDone render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup, int finest_level,
                          const RenderOptions& options, const Share& share, const SampleOptions& sampling,
                          const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
+    std::uint64_t drawn = 0;     // samples
+    std::uint64_t reported = 0;  // of them
+    const auto report = [&](std::uint64_t samples) {
+      drawn += samples;
+      if (drawn > reported) done(drawn - std::exchange(reported, drawn));
+    };
+    for (;;) {
+      try {
+        if (volume.in_bricks()) volume.bricks(i).cache().restore();
+        return draw_share(volume, i, setup, finest_level, options, share, sampling, report);
+      } catch (const DeviceFull& refused) {
+        if (volume.dense()) throw;
+        if (!(volume.in_bricks() ? make_room(volume.bricks(i), refused) : make_room(volume.grid(i), refused))) throw;
+        drawn = 0;
+      }
+    }
+  }
+
+  ShareDone draw_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup, int finest_level,
+                       const RenderOptions& options, const Share& share, const SampleOptions& sampling,
+                       const std::function<void(std::uint64_t)>& done) const {
     std::optional<DeviceMacrocells> levelled;
     if (finest_level > 0)
       levelled.emplace(volume.bricks(i).levelled_cells(finest_level, volume.cells().lattice(), setup.levels()->choice,
@@ -283,6 +306,7 @@ class CudaBackend : public Backend {
       return task;
     };
     std::uint64_t missed = 0;
+    CacheCounts counts;
     const auto run = [&](const auto& sampler) {
       const auto task = task_of(sampler);
       trace(share, sums.size(), sampling.cancel, done, [&](std::uint32_t first, std::uint32_t last) {
@@ -300,9 +324,13 @@ class CudaBackend : public Backend {
           const auto task_of_seen = [&](const auto& sampler) { return task_of(seen(sampler)); };
           const auto draw = [&]<class Sampler>(const Sampler&) {
             if (sampling.draft) {
-              missed = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums, done).missed;
+              const DraftReport draft = trace_draft<Sampler>(cache, task_of_seen, share.first, share.last, sums, done);
+              missed = draft.missed;
+              counts.evicted = draft.evicted;
             } else {
-              trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
+              const PagedReport report =
+                  trace_paged<Sampler>(cache, task_of_seen, share.first, share.last, sums, sampling.cancel, done);
+              counts = {.decoded = report.decoded, .evicted = report.evicted};
             }
           };
           if (setup.mode() == RenderMode::path) {
@@ -323,7 +351,12 @@ class CudaBackend : public Backend {
     } else {
       run_filter(volume.grid(i), options.filter, run);
     }
-    return {sums.download(), missed, share.first < share.last};
+    return {sums.download(), missed, counts, share.first < share.last, note_of(volume, i)};
+  }
+
+  static std::string note_of(CudaVolume& volume, std::size_t i) {
+    if (volume.dense()) return "";
+    return volume.in_bricks() ? memory_note(volume.bricks(i).cache()) : memory_note(volume.grid(i));
   }
 
   // Calls use<Filter>() with one known when this is compiled.

@@ -54,4 +54,12 @@ BrickCache* DeviceVolume::atlas() {
   return atlas_ ? &*atlas_ : nullptr;
 }
 
+bool DeviceVolume::drop_atlas(const std::string& why) {
+  if (!atlas_) return false;
+  atlas_.reset();
+  atlas_refusal_ = why;
+  atlas_dropped_ = true;
+  return true;
+}
+
 }  // namespace weir

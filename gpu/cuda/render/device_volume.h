@@ -33,6 +33,10 @@ class DeviceVolume {
   /// `atlas_refusal`.
   BrickCache* atlas();
   const std::string& atlas_refusal() const { return atlas_refusal_; }
+  /// Does without the atlas from now on, since the device has refused something else for the reason `why`; false where
+  /// there is none.
+  bool drop_atlas(const std::string& why);
+  bool atlas_dropped() const { return atlas_dropped_; }
 
  private:
   template <class Block>
@@ -46,6 +50,7 @@ class DeviceVolume {
   DeviceMacrocells cells_;
   std::optional<BrickCache> atlas_;
   std::string atlas_refusal_;
+  bool atlas_dropped_ = false;
 };
 
 }  // namespace weir

@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks :
     std::uint32_t done = before;
     const std::uint32_t last = lesser(picture.samples, before + picture.at_once);
     while (done < last) {
-      thread_missed() = false;
+      set_thread_missed(false);
       const Float3 added = render_sample(task, kPath ? RenderMode::path : task.mode, x, y, picture.first + done);
       if (thread_missed()) {
         atomicAdd(&counts.missed, 1U);

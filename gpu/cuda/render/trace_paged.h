@@ -29,13 +29,15 @@ struct PagedReport {
   std::uint64_t turns = 0;          ///< in which bricks were brought in
   std::uint64_t bricks = 0;         ///< brought in
   std::uint64_t decoded = 0;        ///< blocks
+  std::uint64_t evicted = 0;        ///< bricks that had to go
   std::uint32_t least_tiles = ~0U;  ///< in one launch
 };
 
 /// What a draft took.
 struct DraftReport {
-  std::uint64_t bricks = 0;  ///< brought in
-  std::uint32_t missed = 0;  ///< pixels of the last sample that did without some bricks
+  std::uint64_t bricks = 0;   ///< brought in
+  std::uint64_t evicted = 0;  ///< bricks that had to go
+  std::uint32_t missed = 0;   ///< pixels of the last sample that did without some bricks
 };
 
 /// Adds samples [first, last) of every pixel to `sums` without waiting for bricks: where one is missing, a level of
@@ -62,6 +64,7 @@ DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     if (found.missed == 0) continue;
     const PagingTurn turn = cache.serve();
     report.bricks += turn.bricks;
+    report.evicted += turn.evicted;
     if (turn.unfit) task = task_of(cache.template paged_sampler<Sampler>());
   }
   if (report.bricks > 0) cache.check();
@@ -123,6 +126,7 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     const PagingTurn turn = cache.serve();
     ++report.turns;
     report.bricks += turn.bricks;
+    report.evicted += turn.evicted;
     brought += turn.bricks;
     if (turn.unfit) {
       task = task_of(cache.template paged_sampler<Sampler>());

@@ -7,9 +7,10 @@ namespace weir {
 
 std::string cuda_text(cudaError_t code) { return cat(cudaGetErrorName(code), ", ", cudaGetErrorString(code)); }
 
-void check_cuda(cudaError_t code, std::string_view what) {
+void check_cuda(cudaError_t code, std::string_view what, std::uint64_t bytes) {
   if (code == cudaSuccess) return;
   cudaGetLastError();
+  if (code == cudaErrorMemoryAllocation) throw DeviceFull(cat(what, ": ", cuda_text(code)), bytes);
   throw Error(ErrorKind::io, cat(what, ": ", cuda_text(code)));
 }
 

@@ -18,11 +18,12 @@ template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  /// Throws Error(io) where the device has no room.
-  explicit DeviceArray(std::size_t size) : size_(size) {
+  /// Throws DeviceFull where the device has no room.
+  explicit DeviceArray(std::size_t size) : DeviceArray() {  // which is destroyed where the rest throws
+    size_ = size;
     if (size > 0) {
-      check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaStreamPerThread),
-                 cat("allocating ", format_bytes(size * sizeof(T)), " of device memory"));
+      check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), bytes(), cudaStreamPerThread),
+                 cat("allocating ", format_bytes(bytes()), " of device memory"), bytes());
       check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "allocating device memory");
     }
   }

@@ -1,5 +1,7 @@
-// The pixels that a group of threads renders.
+// The pixels that a group of threads renders, and what each of those threads has missed.
 #pragma once
+
+#include "format/base/host_device.h"
 
 namespace weir {
 
@@ -8,11 +10,24 @@ inline constexpr unsigned kTileWidth = 8;
 inline constexpr unsigned kTileHeight = 16;
 
 #if defined(__CUDACC__)
-/// Whether this thread's look-ups have missed something since it was last set to false.
-__device__ inline bool& thread_missed() {
+__device__ inline bool& missed_of_thread() {
   __shared__ bool missed[kTileWidth * kTileHeight];
   return missed[threadIdx.y * kTileWidth + threadIdx.x];
 }
 #endif
+
+/// Whether this thread's look-ups have missed something since it was last set to false; on the host always false.
+WEIR_HOST_DEVICE inline bool thread_missed() {
+#if defined(__CUDA_ARCH__)
+  return missed_of_thread();
+#else
+  return false;
+#endif
+}
+WEIR_HOST_DEVICE inline void set_thread_missed([[maybe_unused]] bool missed) {
+#if defined(__CUDA_ARCH__)
+  missed_of_thread() = missed;
+#endif
+}
 
 }  // namespace weir

@@ -2,10 +2,8 @@
 // compile time. See gpu/volume/volume_sampler.h for what a tracer asks of them.
 #pragma once
 
-#include <cuda_runtime_api.h>
-#include <texture_indirect_functions.h>
-
 #include "gpu/cuda/volume/block_table.h"
+#include "gpu/cuda/volume/texture_read.h"
 
 namespace weir {
 
@@ -30,11 +28,7 @@ struct TextureSampler {
   WEIR_HOST_DEVICE float sample(const Float3& p, Random&) const { return smooth(p); }
   WEIR_HOST_DEVICE float smooth(const Float3& p) const {
     const Float3 q = nearest ? Float3{std::floor(p.x) + 0.5F, std::floor(p.y) + 0.5F, std::floor(p.z) + 0.5F} : p;
-#if defined(__CUDA_ARCH__)
-    return tex3D<float>(texture, q.x, q.y, q.z);
-#else
-    return q.x * 0.0F;  // kernels alone see textures
-#endif
+    return read_texture(texture, q);
   }
 };
 

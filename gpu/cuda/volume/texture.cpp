@@ -7,10 +7,14 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/volume/device_memory.h"
 
 namespace weir {
 
-Texture::Texture(const Int3& size, TexelType type) : size_(size), type_(type) {
+// The empty texture is destroyed where the rest throws.
+Texture::Texture(const Int3& size, TexelType type) : Texture() {
+  size_ = size;
+  type_ = type;
   const std::string extent = cat(size.x, " x ", size.y, " x ", size.z);
   if (max_component({static_cast<float>(size.x), static_cast<float>(size.y), static_cast<float>(size.z)}) >
       kMaxTextureEdge) {
@@ -21,8 +25,14 @@ Texture::Texture(const Int3& size, TexelType type) : size_(size), type_(type) {
       type == TexelType::float32 ? cudaCreateChannelDesc<float>() : cudaCreateChannelDesc<unsigned short>();
   const cudaExtent texels{static_cast<std::size_t>(size.x), static_cast<std::size_t>(size.y),
                           static_cast<std::size_t>(size.z)};
-  check_cuda(cudaMalloc3DArray(&array_, &format, texels, cudaArraySurfaceLoadStore),
-             cat("allocating a texture of ", extent, " voxels, ", format_bytes(bytes())));
+  const auto allocate = [&] { return cudaMalloc3DArray(&array_, &format, texels, cudaArraySurfaceLoadStore); };
+  cudaError_t code = allocate();
+  if (code == cudaErrorMemoryAllocation) {  // what the pool of DeviceArrays keeps for reuse may do
+    cudaGetLastError();
+    free_device_bytes(~std::uint64_t{0});
+    code = allocate();
+  }
+  check_cuda(code, cat("allocating a texture of ", extent, " voxels, ", format_bytes(bytes())), bytes());
   cudaResourceDesc resource{};
   resource.resType = cudaResourceTypeArray;
   resource.res.array.array = array_;

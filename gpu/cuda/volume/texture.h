@@ -22,7 +22,7 @@ class Texture {
  public:
   Texture() = default;
   /// size.x * size.y * size.z texels, uninitialised; read trilinear, unnormalised coordinates, clamped to the edge.
-  /// Throws Error(io) where the device has no room, Error(input) where it has no textures that large.
+  /// Throws DeviceFull where the device has no room, Error(input) where it has no textures that large.
   explicit Texture(const Int3& size, TexelType type = TexelType::float32);
   ~Texture();
   Texture(Texture&& other) noexcept;

@@ -41,6 +41,7 @@ TEST_F(BrickPagerProperty, RandomLookUpsFindWhatIsRightAndLoseNoSlot) {
   for_each_block([&](const Int3& block) { all.push_back(block); });
   std::size_t found = 0;
   std::size_t crowded = 0;
+  std::size_t evicted = 0;
   for (unsigned seed = 0; seed < 24; ++seed) {
     std::mt19937 random(seed);
     const auto between = [&](std::uint32_t low, std::uint32_t high) {
@@ -65,13 +66,16 @@ TEST_F(BrickPagerProperty, RandomLookUpsFindWhatIsRightAndLoseNoSlot) {
               ASSERT_EQ(difference(cache, entry, block), 0) << seed << ' ' << turn;
             },
             blocks);
-        crowded += cache.pager.serve().crowded() ? 1 : 0;
+        const PagingTurn served = cache.pager.serve();
+        crowded += served.crowded() ? 1 : 0;
+        evicted += served.evicted;
         expect_whole(cache, plan, seed);
       }
     }
   }
   EXPECT_GT(found, 20000U);
   EXPECT_GT(crowded, 100U);
+  EXPECT_GT(evicted, 1000U);
 }
 
 }  // namespace

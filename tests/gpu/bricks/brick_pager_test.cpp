@@ -208,6 +208,41 @@ TEST_F(BrickPagerTest, WhatIsAskedForComesInAndWhatWasUsedLongestAgoGoes) {
   EXPECT_LT(look_up(cache, right, a), 60U);
 }
 
+// Drafts go on with that until the brick is there again.
+TEST_F(BrickPagerTest, WhereABrickHadToGoIsTheMiddleOfItsRange) {
+  const auto expect_middles = [&](auto& cache, float tolerance) {
+    std::vector<Int3> all;
+    for_each_block([&](const Int3& block) { all.push_back(block); });
+    const auto ignore = [](const BrickEntry&, const Int3&) {};
+    const std::vector<Int3> first(all.begin(), all.begin() + 90);
+    const std::vector<Int3> others(all.begin() + 500, all.begin() + 600);
+    for (const auto& blocks : {first, others}) {
+      for (int i = 0; i < 4; ++i) {
+        look_up(cache, ignore, blocks);
+        cache.pager.serve();
+      }
+    }
+    int gone = 0;
+    for (const Int3& block : first) {
+      const BrickEntry entry = cache.pager.table().find(block);
+      if ((entry.state & brick_state::kMissing) == 0) continue;
+      ++gone;
+      MinMax range{kInfinity, -kInfinity};
+      for (std::int32_t n = 0; n < kBrickTexels; ++n) {
+        const float v = voxel({8 * block.x + n / (kBrickEdge * kBrickEdge), 8 * block.y + n / kBrickEdge % kBrickEdge,
+                               8 * block.z + n % kBrickEdge});
+        range = {lesser(range.min, v), greater(range.max, v)};
+      }
+      ASSERT_NEAR(entry.low, 0.5F * range.min + 0.5F * range.max, tolerance * (range.max - range.min));
+    }
+    EXPECT_GT(gone, 30);
+  };
+  Cache<float> floats(*grid_, plan(3, 120));
+  expect_middles(floats, 1e-6F);
+  Cache<std::uint16_t> words(*grid_, plan(3, 120));
+  expect_middles(words, 1e-4F);
+}
+
 TEST_F(BrickPagerTest, MoreThanTheCacheHoldsIsServedInPart) {
   Cache<float> cache(*grid_, plan(3, 100));
   std::vector<Int3> all;

@@ -42,6 +42,8 @@ class FakeBackend : public Backend {
                                      std::unique_ptr<LoadedVolume> reuse) override {
     if (reuse) ++reused;
     reuse.reset();
+    ++loads;
+    if (alive >= room) throw Error(ErrorKind::io, "no room");
     std::this_thread::sleep_for(load_time);
     return std::make_unique<CountedVolume>(alive, most, file->grid().background());
   }
@@ -63,6 +65,8 @@ class FakeBackend : public Backend {
   float fails_at = -1;
   std::atomic<int> alive{0};
   std::atomic<int> most{0};
+  int room = 2;  // volumes
+  int loads = 0;
   int reused = 0;
 };
 
@@ -156,6 +160,21 @@ TEST_F(Playback, MissingFile_FailsAfterTheFramesBefore) {
   EXPECT_NE(error().find(files_[2]), std::string::npos);
   EXPECT_EQ(frames_, (Frames{{0, 0}, {1, 1}}));
   EXPECT_EQ(backend_.alive, 0);
+}
+
+TEST_F(Playback, NoRoomForTwoVolumes_OneAfterTheOtherIsPlayed) {
+  make(4);
+  backend_.room = 1;
+  run();
+  EXPECT_EQ(frames_, (Frames{{0, 0}, {1, 1}, {2, 2}, {3, 3}}));
+  EXPECT_EQ(backend_.loads, 7) << "all but the first twice";
+}
+
+TEST_F(Playback, NoRoomForAnyVolume_IsTheErrorOfTheFirst) {
+  make(2);
+  backend_.room = 0;
+  EXPECT_EQ(error(), "no room");
+  EXPECT_EQ(backend_.loads, 1);
 }
 
 TEST_F(Playback, FailedRendering_FailsAfterTheFramesBefore) {
