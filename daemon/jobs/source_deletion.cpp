@@ -55,6 +55,10 @@ std::string certificate_fault(const Job& job, const std::string& path) {
   return {};
 }
 
+std::string hidden_name(const Job& job) {
+  return (fs::path(job.source).parent_path() / cat(".weir-delete-", job.id)).string();
+}
+
 // Why the outputs do not stand for the source; empty: they do.
 std::string outputs_fault(const Job& job) {
   if (job.result.outputs.empty()) return "it has no outputs";
@@ -163,6 +167,7 @@ void SourceDeletion::look() {
 }
 
 SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfig& watch) {
+  finish_interrupted(job, watch);
   if (is_gone(job.source)) return Outcome::over;
   if (!lies_in(watch, job.source) || job.options != options_text(watch) ||
       !PathFilter(watch).accepts_file(job.source.substr(watch.directory.size() + 1))) {
@@ -196,8 +201,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
 
 // Under a hidden name first, which is never a source: what took its place meanwhile gets its name back.
 SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, bool writers_known) {
-  const fs::path source(job.source);
-  const std::string doomed = (source.parent_path() / cat(".weir-delete-", job.id)).string();
+  const std::string doomed = hidden_name(job);
   try {
     files_->rename_new(job.source, doomed);
     if (identify(doomed) != job.identity) {
@@ -210,10 +214,32 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig
     keep(job, error.what());
     return Outcome::over;
   }
+  removed(job, watch, writers_known);
+  return Outcome::over;
+}
+
+void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writers_known) const {
   log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers_known ? "no" : "not known"}});
   // A marker left behind would call the next file of that name complete before it is.
   if (watch.complete == Completion::marker) files_->remove(job.source + watch.marker);
-  return Outcome::over;
+}
+
+// The source under its hidden name was to be deleted: all that must hold held. Its status has changed since.
+void SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) const {
+  const std::string doomed = hidden_name(job);
+  if (!files_->exists(doomed)) return;
+  try {
+    if (identify(doomed) == job.identity) {
+      files_->remove(doomed);
+      removed(job, watch, true);
+    } else if (!files_->exists(job.source)) {
+      files_->rename_new(doomed, job.source);
+    } else {
+      keep(job, cat(doomed, " is another file, which a deletion that was interrupted has left; give it a name"));
+    }
+  } catch (const Error& error) {
+    keep(job, error.what());
+  }
 }
 
 void SourceDeletion::keep(const Job& job, const std::string& reason) const {

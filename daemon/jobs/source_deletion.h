@@ -9,7 +9,8 @@
 //      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says;
 //   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
 //      Where that cannot be known, the writer must say itself that it is done (says_when_done).
-// Jobs of an earlier process are taken up a few at a time. One thread, that of the io_context.
+// Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. One thread,
+// that of the io_context.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -53,6 +54,8 @@ class SourceDeletion {
   void wait_until(Clock::time_point time);
   Outcome look_at(const Job& job, const WatchConfig& watch);
   Outcome remove(const Job& job, const WatchConfig& watch, bool writers_known);
+  void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
+  void finish_interrupted(const Job& job, const WatchConfig& watch) const;
   void keep(const Job& job, const std::string& reason) const;
   const WatchConfig* deleting_watch(const std::string& label) const;
 

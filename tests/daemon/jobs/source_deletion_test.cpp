@@ -78,6 +78,7 @@ class SourceDeletionTest : public testing::Test {
     EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
     return fs::exists(source_);
   }
+  std::string hidden(std::int64_t id) const { return directory_ / "in/.weir-delete-" + std::to_string(id); }
   bool logged(const std::string& text) const { return read_file(directory_ / "log").find(text) != std::string::npos; }
 
   TemporaryDirectory directory_;
@@ -227,6 +228,37 @@ TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsDeleted) {
   deletion_.configure(config_);
   EXPECT_FALSE(deletion_.idle());
   EXPECT_FALSE(stays());
+}
+
+// A process may be killed between the two steps of a deletion.
+TEST_F(SourceDeletionTest, LeftUnderTheHiddenName_IsDeletedByTheNextProcess) {
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  deletion_.configure(config_);
+  EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
+  EXPECT_EQ(list_directory(directory_ / "in"), std::vector<std::string>{});
+  EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+}
+
+TEST_F(SourceDeletionTest, AnotherFileUnderTheHiddenName_GetsItsNameBack) {
+  const std::int64_t id = convert();
+  fs::remove(source_);
+  write_file(hidden(id), "what came meanwhile");
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(read_file(source_), "what came meanwhile");
+  EXPECT_EQ(list_directory(directory_ / "in").size(), 1U);
+}
+
+TEST_F(SourceDeletionTest, AnotherFileUnderTheHiddenNameWhoseNameIsTaken_IsSaid) {
+  const std::int64_t id = convert();
+  write_file(hidden(id), "what came meanwhile");
+  write_file(source_, "newer");
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(read_file(hidden(id)), "what came meanwhile");
+  EXPECT_TRUE(logged(hidden(id) + " is another file, which a deletion that was interrupted has left; give it a name"))
+      << read_file(directory_ / "log");
 }
 
 TEST_F(SourceDeletionTest, WatchThatKeepsSources_DeletesNothing) {

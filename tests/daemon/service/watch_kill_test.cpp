@@ -177,7 +177,7 @@ TEST(WatchKill, WithPausingWritersAndDeletions_LosesNothing) {
   service.start();
   const bool all_gone = ServiceHarness::eventually([&] { return list_directory(service.in()).empty(); },
                                                    std::chrono::seconds(30 + kills));
-  EXPECT_TRUE(all_gone) << service.get("/api/jobs?limit=1000");
+  EXPECT_TRUE(all_gone) << testing::PrintToString(list_directory(service.in())) << service.get("/api/jobs?limit=1000");
   EXPECT_EQ(service.stop(), 0);
   EXPECT_EQ(service.leftovers(), Names{});
   EXPECT_EQ(writer.written().size(), static_cast<std::size_t>(kills));
