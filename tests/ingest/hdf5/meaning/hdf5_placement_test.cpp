@@ -228,7 +228,7 @@ with h5py.File("a.h5", "w") as f:
                                                         {"complex", "of type compound of 2 members"},
                                                         {"bool", "of type boolean"},
                                                         {"none", "empty"}}) {
-    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("a.h5", name); }),
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&, name = name] { info_of("a.h5", name); }),
               scratch_.path("a.h5") + ": /" + name + ": its attribute scale_factor is " + found +
                   " and not one finite number other than 0, so what its values mean is unknown; correct or remove it");
   }
