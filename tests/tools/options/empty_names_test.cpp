@@ -40,7 +40,6 @@ TEST_F(EmptyNames, Input_ExitsWith2) {
   expect_refused({"inspect", ""}, "the argument volume is empty; give a name");
   expect_refused({"verify", ""}, "the argument volume is empty; give a name");
   expect_refused({"compare", "", volume_}, "the argument input is empty; give a name");
-  expect_refused({"watch", ""}, "the argument config is empty; give a name");
 }
 
 }  // namespace
