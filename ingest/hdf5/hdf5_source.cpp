@@ -197,19 +197,11 @@ std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
 void note_unwritten(Opening& opening) {
   const Storage& storage = *opening.facts.storage;
   if (storage.kind != StorageKind::chunked || storage.chunk.empty()) return;
-  const hid_t dataset = opening.object.handle.get();
-  std::vector<hsize_t> low(storage.chunk.size());
-  std::vector<hsize_t> high(storage.chunk.size());
-  const Hdf5Handle space(H5Dget_space(dataset));
-  if (H5Sget_simple_extent_dims(space.get(), high.data(), nullptr) != static_cast<int>(high.size())) return;
-  if (!opening.slice.planar && !opening.slice.roles.interleaved()) {
-    for (std::size_t axis = 0; axis < opening.slice.positions.size(); ++axis) {
-      low[axis] = static_cast<hsize_t>(opening.slice.positions[axis]);
-      high[axis] = low[axis] + 1;
-    }
-  }
+  const bool behind = !opening.slice.planar && !opening.slice.roles.interleaved();
   const std::string where = opening.object.where();
-  const UnwrittenChunks unwritten = unwritten_chunks(dataset, storage, low, high, where);
+  const UnwrittenChunks unwritten = unwritten_chunks(
+      opening.object.handle.get(), storage,
+      behind ? std::span<const std::int64_t>(opening.slice.positions) : std::span<const std::int64_t>(), where);
   if (unwritten.count == 0) return;
   const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
   const char* const was = unwritten.count == 1 ? " was" : " were";

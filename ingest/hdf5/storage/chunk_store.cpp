@@ -13,6 +13,11 @@ namespace {
 
 /// What libhdf5 1.10 calls a failure is an answer: the index was read and does not name the chunk. Later ones
 /// say that it has 0 bytes.
+constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
+
+std::string chunk_place(const std::string& name, std::span<const hsize_t> corner) {
+  return cat(name, ": chunk at ", corner_text(corner));
+}
 
 }  // namespace
 
@@ -27,6 +32,13 @@ std::string corner_text(std::span<const hsize_t> corner) {
   std::string text;
   for (const hsize_t c : corner) text += cat(text.empty() ? "" : ", ", c);
   return text;
+}
+
+hsize_t stored_chunk_bytes(hid_t dataset, std::span<const hsize_t> corner, const std::string& name) {
+  hsize_t bytes = 0;
+  if (H5Dget_chunk_storage_size(dataset, corner.data(), &bytes) >= 0) return bytes;
+  if (hdf5_reason() == kNotAllocated) return 0;
+  throw hdf5_error(chunk_place(name, corner), "cannot be found, the file is damaged or being written");
 }
 
 ChunkStore::ChunkStore(hid_t dataset, std::string name) : dataset_(dataset), name_(std::move(name)) {
@@ -50,14 +62,10 @@ ChunkStore::ChunkStore(hid_t dataset, std::string name) : dataset_(dataset), nam
 }
 
 std::optional<ChunkStore::Chunk> ChunkStore::fetch(std::span<const hsize_t> corner, std::span<std::byte> into) const {
-  const auto where = [&] { return cat(name_, ": chunk at ", corner_text(corner)); };
+  const auto where = [&] { return chunk_place(name_, corner); };
   const Hdf5Lock lock;
   // The library keeps the place of the last chunk it looked up: both calls see the same one.
-  hsize_t bytes = 0;
-  if (H5Dget_chunk_storage_size(dataset_, corner.data(), &bytes) < 0) {
-    if (hdf5_reason() == kNotAllocated) return std::nullopt;
-    throw hdf5_error(where(), "cannot be found, the file is damaged or being written");
-  }
+  const hsize_t bytes = stored_chunk_bytes(dataset_, corner, name_);
   if (bytes == 0) return std::nullopt;
   if (bytes > into.size()) {
     throw Error(ErrorKind::input, cat(where(), ": takes ", bytes, " bytes, and at most ", into.size(),

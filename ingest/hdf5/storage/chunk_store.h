@@ -15,7 +15,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ingest/hdf5/filters/filter_pipeline.h"
@@ -32,11 +31,12 @@ struct ChunkLayout {
   bool is_partial(std::span<const hsize_t> corner) const;
 };
 
-/// What hdf5_reason() is of a chunk that the file does not hold.
-inline constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
-
 /// "0, 64, 128": a chunk's first element, in the file's order of axes.
 std::string corner_text(std::span<const hsize_t> corner);
+
+/// Bytes of the chunk of a dataset whose first element is `corner`, as stored; 0 where the file holds none. Messages
+/// begin with `name`. The caller holds Hdf5Lock. Throws Error(input).
+hsize_t stored_chunk_bytes(hid_t dataset, std::span<const hsize_t> corner, const std::string& name);
 
 /// Thread-safe; takes Hdf5Lock itself.
 class ChunkStore {

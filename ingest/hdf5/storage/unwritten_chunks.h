@@ -18,10 +18,10 @@ struct UnwrittenChunks {
   std::vector<hsize_t> first;  ///< first element of the first of them, slowest axis first, where they were looked up
 };
 
-/// Of the chunks that the part [low, high) of a chunked dataset touches, elements along each of its axes; where these
-/// are more than 65,536, of all chunks of the dataset. Where the file holds all of them that costs one look. Messages
-/// begin with `where`. The caller holds Hdf5Lock. Throws Error(input).
-UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::span<const hsize_t> low,
-                                 std::span<const hsize_t> high, const std::string& where);
+/// Of the chunks of a dataset at the positions `leading` of its slowest axes, and all along the others; where these are
+/// more than 65,536, of all its chunks. Where the file holds all of them that costs one look. Messages begin with
+/// `where`. The caller holds Hdf5Lock. Throws Error(input).
+UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::span<const std::int64_t> leading,
+                                 const std::string& where);
 
 }  // namespace weir
