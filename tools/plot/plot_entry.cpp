@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "format/base/error.h"
+#include "format/base/utf8.h"
 #include "ingest/drivers/driver.h"
 #include "tools/plot/plot_canvas.h"
 
@@ -19,28 +20,11 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
 /// `text` with what is no UTF-8, of which cairo draws nothing at all, as "?": a file's name may hold any bytes.
 std::string valid_utf8(std::string_view text) {
   std::string valid;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80                   ? 1
-                               : byte >= 0xC2 && byte < 0xE0 ? 2
-                               : byte >= 0xE0 && byte < 0xF0 ? 3
-                               : byte >= 0xF0 && byte < 0xF5 ? 4
-                                                             : 0;
-    std::size_t follow = 1;
-    while (follow < length && i + follow < text.size() &&
-           (static_cast<unsigned char>(text[i + follow]) & 0xC0U) == 0x80) {
-      ++follow;
-    }
-    const auto second = follow > 1 ? static_cast<unsigned char>(text[i + 1]) : 0U;
-    const bool outside = (byte == 0xE0 && second < 0xA0) || (byte == 0xED && second > 0x9F) ||
-                         (byte == 0xF0 && second < 0x90) || (byte == 0xF4 && second > 0x8F);
-    const bool good = length > 0 && follow == length && !outside && byte >= ' ';
-    if (good) {
-      valid += text.substr(i, length);
-    } else {
-      valid += '?';
-    }
-    i += good ? length : 1;
+  while (!text.empty()) {
+    const bool control = static_cast<unsigned char>(text.front()) < ' ';
+    const std::size_t good = control ? 0 : utf8_bytes(text);
+    valid += good > 0 ? text.substr(0, good) : "?";
+    text.remove_prefix(good > 0 ? good : 1);
   }
   return valid;
 }
