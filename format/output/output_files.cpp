@@ -166,7 +166,11 @@ void OutputFiles::reserve_ahead(std::uint64_t bytes) {
 }
 
 void OutputFiles::clear_for(std::uint64_t bytes) {
-  if (ahead_.valid() && ahead_.get() && ahead_bytes_ == bytes) return;
+  reserved_.reset();
+  if (ahead_.valid() && ahead_.get() && ahead_bytes_ == bytes) {
+    reserved_ = bytes;
+    return;
+  }
   volume().clear();
 }
 

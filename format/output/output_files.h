@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "format/io/file_system.h"
@@ -38,8 +39,8 @@ class OutputFiles {
   void reserve_ahead(std::uint64_t bytes);
   /// Makes the volume empty, so that it can be reserve()d and written. `bytes` is what it will be.
   void clear_for(std::uint64_t bytes);
-  /// Sets the volume's size and reserves its blocks; false where the file system cannot reserve.
-  bool reserve(std::uint64_t bytes) { return volume().preallocate(bytes); }
+  /// Sets the volume's size and reserves its blocks, unless they are; false where the file system cannot reserve.
+  bool reserve(std::uint64_t bytes) { return reserved_ == bytes || volume().preallocate(bytes); }
   File& volume() { return volume_ ? *volume_ : *partial_; }
 
   /// The protocol's end, see the numbered steps in the source. After it returned, both files are
@@ -63,6 +64,7 @@ class OutputFiles {
   std::shared_ptr<File> volume_;  // where not partial_
   std::future<bool> ahead_;       // whether ahead_bytes_ of the volume are reserved, and nothing is written
   std::uint64_t ahead_bytes_ = 0;
+  std::optional<std::uint64_t> reserved_;  // of the volume that clear_for() has left as it was
 };
 
 /// Throws what OutputFiles does where no output can be made at `path`, whose longest name of weir's own beside it is

@@ -68,6 +68,9 @@ TEST_F(OutputFilesTest, ReservesAheadOnceAndKeepsWhatIsReserved) {
     output_files.clear_for(6);
     EXPECT_EQ(output_files.volume().size(), reserved == 6 ? 6U : 0U);
     EXPECT_TRUE(output_files.reserve(6));
+    const std::vector<std::string> once{"create", "preallocate"};
+    const std::vector<std::string> anew{"create", "preallocate", "clear", "preallocate"};
+    EXPECT_EQ(files.calls(), reserved == 6 ? once : anew);
     output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
     output_files.clear_for(6);  // of another attempt
     EXPECT_EQ(output_files.volume().size(), 0U) << "nothing of the one before is left";
