@@ -62,7 +62,9 @@ std::optional<BudgetOutlook> look_ahead(VolumeSource& source, const ReadingPlan&
   quiet.cancel = stream.cancel;
   quiet.trace = stream.trace;
   BlockSurvey survey(source.info(), rows, nullptr, false, stream.trace, aim);
-  team.run([&] { survey_boxes(source, plan, leaf_boxes, quiet, reading.reading, survey); });
+  // A device copies short rows for many threads at once.
+  const Reading by = source.resident() == nullptr ? reading.reading : Reading::in_place;
+  team.run([&] { survey_boxes(source, plan, leaf_boxes, quiet, by, survey); });
   team.publish(rows.file());
   team.publish(rows.ladders()->file());
   FileRequest request;

@@ -72,6 +72,7 @@ class Bench {
     const auto best = [&](const std::string& what, const std::string& output, const auto& open) {
       Saved fastest;
       for (int run = 0; run < kRuns; ++run) {
+        remove_pair(output);  // a simulation gives each step a name of its own
         Saved saved = convert(output, budget, name_ + ", " + label, open);
         if (run == 0 || saved.seconds < fastest.seconds) fastest = std::move(saved);
       }
@@ -91,10 +92,8 @@ class Bench {
     const bool same = same_files(cpu, device);
     std::printf("%-12s %s: %s\n", name_.c_str(), label.c_str(), same ? "same bytes" : "OTHER BYTES");
     std::fflush(stdout);
-    for (const std::string& file : {cpu, device}) {
-      std::remove(file.c_str());
-      std::remove((file + ".json").c_str());
-    }
+    remove_pair(cpu);
+    remove_pair(device);
     return same;
   }
 
@@ -126,6 +125,11 @@ class Bench {
       saved.sidecar = convert_volume(*source, options, control, *files);
     });
     return saved;
+  }
+
+  static void remove_pair(const std::string& volume) {
+    std::remove(volume.c_str());
+    std::remove((volume + ".json").c_str());
   }
 
   static bool same_files(const std::string& a, const std::string& b) {

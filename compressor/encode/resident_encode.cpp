@@ -2,18 +2,18 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "compressor/encode/coded_regions.h"
 #include "compressor/encode/left_leaves.h"
 #include "compressor/encode/packed_encoder.h"
 #include "compressor/packed/block_values.h"
+#include "compressor/survey/one_ahead.h"
 #include "compressor/survey/surveyed_leaves.h"
 
 namespace weir {
@@ -32,14 +32,13 @@ class ResidentEncode {
     for (std::size_t i = 0; i < target_.tree.regions.size(); ++i) {
       if (target_.tree.regions[i].leaves > 0) regions.push_back(static_cast<std::int64_t>(i));
     }
-    // The device works on one group while another one is written.
-    const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
-    std::vector<std::unique_ptr<Part>> next = begin(regions, 0, at_once);
-    for (std::size_t first = 0; first < regions.size(); first += at_once) {
-      throw_if_cancelled(options_);
-      const std::vector<std::unique_ptr<Part>> group = std::move(next);
-      tbb::parallel_invoke([&] { next = begin(regions, first + at_once, at_once); }, [&] { end(group); });
-    }
+    one_ahead<std::unique_ptr<Part>>(
+        regions.size(), resident_.most_open(),
+        [&](std::size_t i, std::unique_ptr<Part>& part) { part = begin(regions[i]); },
+        [&](std::unique_ptr<Part>& part) {
+          end(*part);
+          part.reset();
+        });
   }
 
  private:
@@ -53,39 +52,30 @@ class ResidentEncode {
     std::optional<SurveyedLeaves> surveyed;
   };
 
-  std::vector<std::unique_ptr<Part>> begin(const std::vector<std::int64_t>& regions, std::size_t first,
-                                           std::size_t count) {
-    std::vector<std::unique_ptr<Part>> parts(first < regions.size() ? std::min(count, regions.size() - first) : 0);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
-      const TraceSpan span(target_.trace, "ask");
-      const std::int64_t region = regions[first + i];
-      const Box box = target_.tree.leaf_box(region);
-      parts[i] = std::make_unique<Part>(Part{region, box, nullptr, nullptr, LeftLeaves(box), std::nullopt});
-      Part& part = *parts[i];
-      part.blocks = resident_.open(target_.tree.leaves.nodes_box(box));
-      if (part.blocks) {
-        part.batch = std::make_unique<CodedBatch>(target_, box, std::span(&part.region, 1), *part.blocks,
-                                                  CodedBatch::Blocks::resident);
-      }
-      part.surveyed.emplace(target_.rows, box, source_.info());
-    });
-    return parts;
+  std::unique_ptr<Part> begin(std::int64_t region) {
+    throw_if_cancelled(options_);
+    const TraceSpan span(target_.trace, "ask");
+    const Box box = target_.tree.leaf_box(region);
+    auto part = std::make_unique<Part>(Part{region, box, nullptr, nullptr, LeftLeaves(box), std::nullopt});
+    part->blocks = resident_.open(target_.tree.leaves.nodes_box(box));
+    if (part->blocks) {
+      part->batch = std::make_unique<CodedBatch>(target_, box, std::span(&part->region, 1), *part->blocks,
+                                                 CodedBatch::Blocks::resident);
+    }
+    part->surveyed.emplace(target_.rows, box, source_.info());
+    return part;
   }
 
-  void end(const std::vector<std::unique_ptr<Part>>& parts) {
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) { take(*parts[i]); });
-    std::vector<std::pair<std::size_t, std::int64_t>> layers;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      for (std::int64_t x = parts[i]->box.lo.x; x < parts[i]->box.hi.x; ++x) layers.emplace_back(i, x);
-    }
-    tbb::parallel_for(std::size_t{0}, layers.size(), [&](std::size_t i) {
+  void end(Part& part) {
+    take(part);
+    tbb::parallel_for(part.box.lo.x, part.box.hi.x, [&](std::int64_t x) {
       const TraceSpan span(target_.trace, "encode");
-      const Part& part = *parts[layers[i].first];
       PackedLayerEncoder& encoder = *encoders_.local();
-      encoder.add_layer(part.region, places_of(part), *part.surveyed, layers[i].second, coded_of(part), part.left);
+      encoder.add_layer(part.region, places_of(part), *part.surveyed, x, coded_of(part), part.left);
       encoder.finish();
     });
-    for (const std::unique_ptr<Part>& part : parts) done_ += target_.tree.leaves.voxels(part->box).voxels();
+    const std::lock_guard lock(progress_);
+    done_ += target_.tree.leaves.voxels(part.box).voxels();
     if (options_.progress) options_.progress(done_, target_.tree.leaves.domain.voxels());
   }
 
@@ -125,6 +115,7 @@ class ResidentEncode {
   const EncodeTarget& target_;
   const StreamOptions& options_;
   tbb::enumerable_thread_specific<std::unique_ptr<PackedLayerEncoder>> encoders_;
+  std::mutex progress_;
   std::int64_t done_ = 0;
 };
 

@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "compressor/packed/block_values.h"
+#include "compressor/survey/one_ahead.h"
 
 namespace weir {
 namespace {
@@ -49,17 +50,9 @@ class ResidentSurvey {
 
   Survey run() {
     const std::vector<Box> boxes = leaf_boxes(leaves_.count);
-    // The device works on one group while the host takes what it has found of another.
-    const std::size_t at_once = std::max<std::size_t>(1, resident_.most_open() / 2);
-    std::vector<Begun> group(at_once);
-    std::vector<Begun> next(at_once);
-    begin(boxes, 0, next);
-    for (std::size_t first = 0; first < boxes.size(); first += at_once) {
-      throw_if_cancelled(options_);
-      group.swap(next);
-      begin(boxes, first + at_once, next);
-      end(group);
-    }
+    one_ahead<Begun>(
+        boxes.size(), resident_.most_open(), [&](std::size_t i, Begun& begun) { begin(boxes[i], begun); },
+        [&](Begun& begun) { end(begun); });
     count();
     return survey_.result(survey_.tally());
   }
@@ -67,65 +60,48 @@ class ResidentSurvey {
  private:
   // A box that the device works on, and what is kept of it. Used again, for the memory that it has.
   struct Begun {
-    bool used = false;
     BlockSurvey::FoundLeaves leaves{};
     std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read
     std::span<const float> left{};             // values of the leaves that are left
     std::vector<float> read{};                 // where the device does not give them
   };
 
-  // Boxes from `first` on, as many as the group takes.
-  void begin(const std::vector<Box>& boxes, std::size_t first, std::vector<Begun>& group) {
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      Begun& begun = group[i];
-      begun.used = first + i < boxes.size();
-      begun.blocks.reset();
-      if (!begun.used) continue;
-      const Box& box = boxes[first + i];
-      begun.leaves.begin(box);
-      begun.blocks = resident_.open(leaves_.nodes_box(box));
-      if (begun.blocks) begun.blocks->begin_survey(ask_);
-    }
+  void begin(const Box& box, Begun& begun) {
+    throw_if_cancelled(options_);
+    begun.leaves.begin(box);
+    begun.blocks = resident_.open(leaves_.nodes_box(box));
+    if (begun.blocks) begun.blocks->begin_survey(ask_);
   }
 
-  void end(std::vector<Begun>& group) {
-    std::vector<std::optional<SurveyedBlocks>> found(group.size());
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      if (group[i].blocks) found[i] = group[i].blocks->end_survey();
-      if (!found[i]) group[i].blocks.reset();
+  void end(Begun& begun) {
+    const Box& box = begun.leaves.leaf_box;
+    if (const auto found = begun.blocks ? begun.blocks->end_survey() : std::nullopt) {
+      survey_.take(*found, begun.leaves);
+      get_left(begun);
+      survey_left(begun);
+      survey_.write(begun.leaves);
+    } else {
+      survey_read(box);
     }
-    // All boxes at once: one alone is too little work for many threads.
-    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) {
-      if (!found[i]) return;
-      survey_.take(*found[i], group[i].leaves);
-      get_left(group[i]);
-    });
-    std::vector<std::pair<std::size_t, std::size_t>> left;  // box of the group, number among those it leaves
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      const Begun& begun = group[i];
-      if (begun.used && !begun.blocks) survey_read(begun.leaves.leaf_box);
-      for (std::size_t k = 0; begun.blocks && k < begun.leaves.left.size(); ++k) left.emplace_back(i, k);
-    }
+    begun.blocks.reset();
+    const std::lock_guard lock(progress_);
+    done_ += leaves_.voxels(box).voxels();
+    if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
+  }
+
+  void survey_left(Begun& begun) {
+    const std::vector<std::uint32_t>& left = begun.leaves.left;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
       const TraceSpan span(options_.trace, "survey");
-      for (std::size_t n = range.begin(); n < range.end(); ++n) {
-        Begun& begun = group[left[n].first];
-        const std::size_t k = left[n].second;
-        survey_.survey_left(begun.leaves, begun.leaves.left[k], begun.left.data() + kLeafVoxels * k);
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        survey_.survey_left(begun.leaves, left[k], begun.left.data() + kLeafVoxels * k);
       }
     });
-    tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) {
-      if (group[i].blocks) survey_.write(group[i].leaves);
-    });
-    for (const Begun& begun : group) {
-      if (begun.used) done_ += leaves_.voxels(begun.leaves.leaf_box).voxels();
-    }
-    if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
   }
 
   void get_left(Begun& begun) {
     const std::vector<std::uint32_t>& left = begun.leaves.left;
-    if (!begun.blocks || left.empty()) return;
+    if (left.empty()) return;
     const TraceSpan span(options_.trace, "read", kLeafVoxels * sizeof(float) * left.size());
     if (const auto values = begun.blocks->values(left)) {
       begun.left = *values;
@@ -177,6 +153,7 @@ class ResidentSurvey {
   const RungAsk ask_;
   const StreamOptions& options_;
   BlockSurvey survey_;
+  std::mutex progress_;
   std::int64_t done_ = 0;
 };
 
