@@ -65,6 +65,8 @@ KeyRange CutSearch::likely_keys(const GainRule& rule) {
   return {key_bits(rule.packed->window->low()), key_bits(rule.packed->window->high()) + 1};
 }
 
+KeyRange CutSearch::every_key() { return {kAllKeys.first, kAllKeys.end + 1}; }
+
 template <typename Begin>
 void CutSearch::for_each_key(const Begin& begin) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
@@ -96,7 +98,7 @@ CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& g
     };
   };
   Counted total(range);
-  if (holds(range) && goal.unit == 0) {
+  if (holds(goal.unit == 0 ? range : every_key())) {
     for_each_held(begin);
     total.outside = held_->outside();
   } else {

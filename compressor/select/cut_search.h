@@ -48,12 +48,15 @@ struct Threshold {
 class CutSearch {
  public:
   /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object. `held`: the steps
-  /// of likely_keys(), or null.
+  /// of likely_keys(), or of every_key() where an error is the goal, or null.
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held)
       : rule_(rule), rows_(rows), tree_(tree), held_(held) {}
 
   /// Where the cut is looked for first.
   static KeyRange likely_keys(const GainRule& rule);
+  /// Of what is required, too: saved errors outside of what is held would have to be summed in units that are not known
+  /// while it is.
+  static KeyRange every_key();
 
   /// The smallest key for which everything above it can be bought for `goal`.
   Threshold find_threshold(PurchaseGoal& goal) const;

@@ -95,8 +95,8 @@ class Candidate {
 
   // Of an error that every voxel must be within, and of what is kept without loss, there is nothing to choose.
   static Selection::Search search_of(const Budget& budget) {
-    const bool given = budget.kind == Budget::Kind::lossless || budget.kind == Budget::Kind::max_error;
-    return given ? Selection::Search::no : Selection::Search::yes;
+    if (budget.kind == Budget::Kind::lossless || budget.kind == Budget::Kind::max_error) return Selection::Search::no;
+    return budget.kind == Budget::Kind::psnr ? Selection::Search::of_error : Selection::Search::of_bytes;
   }
 
   static GainRule rule_of(const FileRequest& request, Encoding encoding, bool preview) {

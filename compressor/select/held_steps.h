@@ -15,7 +15,7 @@
 
 namespace weir {
 
-/// Of keys in a range; of others their bytes alone. Steps of one thread lie together.
+/// Of keys in a range; of others the bytes alone. Steps of one thread lie together.
 class HeldSteps {
  public:
   struct Step {

@@ -26,8 +26,9 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   };
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
-  if (search == Search::yes && rows_.team().alone()) {
-    held_ = std::make_unique<HeldSteps>(CutSearch::likely_keys(rule_), rows_.room().step_bytes);
+  if (search != Search::no && rows_.team().alone()) {
+    const KeyRange range = search == Search::of_bytes ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
+    held_ = std::make_unique<HeldSteps>(range, rows_.room().step_bytes);
   }
   tbb::enumerable_thread_specific<RegionGains> local_gains;
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {

@@ -48,11 +48,11 @@ struct SelectionBytes {
 
 class Selection {
  public:
-  /// Whether a cut will be searched for: steps are held for it then, where there is room.
-  enum class Search { no, yes };
+  /// Which cut will be searched for: steps are held for it, where there is room.
+  enum class Search { no, of_bytes, of_error };
 
   /// Computes sums and keys of all regions and upper nodes: one pass over the rows.
-  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree, Search search = Search::yes);
+  Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tree, Search search = Search::of_bytes);
 
   SelectionBytes bytes() const { return bytes_; }
 

@@ -106,7 +106,7 @@ TEST(HeldSteps, AnErrorIsCutAtTheSamePlaceWithAndWithoutThem) {
   for (const double share : {0.5, 1e-2, 1e-4}) {
     TreeRegions tree(volume.info().domain());
     TreeRegions other_tree(volume.info().domain());
-    Selection held(rule, with.rows, tree);
+    Selection held(rule, with.rows, tree, Selection::Search::of_error);
     Selection walked(rule, without.rows, other_tree);
     double error = 0;
     for (const Upper& upper : tree.uppers) error += upper.tile_error;
