@@ -19,8 +19,21 @@ namespace {
 
 struct Sample {
   float value;
-  std::uint32_t weight;  // voxels it stands for
+  std::uint32_t packed;  // twice the voxels it stands for, and 1 where it is several of that value
+
+  std::uint32_t weight() const { return packed >> 1U; }
+  bool repeated() const { return (packed & 1U) != 0; }
 };
+static_assert(std::max(kExactModeVoxels, kModeSamples* kLeafVoxels) < std::int64_t{1} << 31U);
+
+// Empty space gives one value over and over.
+void add_sample(float value, std::uint32_t weight, std::vector<Sample>& samples) {
+  if (!samples.empty() && samples.back().value == value) {
+    samples.back().packed = (samples.back().packed + 2 * weight) | 1U;
+  } else {
+    samples.push_back({value, 2 * weight});
+  }
+}
 
 std::size_t fullest(std::span<const std::uint64_t> counts) {
   return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
@@ -61,10 +74,10 @@ Background mode_of_samples(std::vector<Sample>& samples, double total, const std
     double weight = 0;
     std::size_t end = i;
     for (; end < samples.size() && samples[end].value == samples[i].value; ++end) {
-      weight += static_cast<double>(samples[end].weight);
+      weight += static_cast<double>(samples[end].weight());
     }
     // A leaf's sample stands for many voxels and is no evidence by itself; a counted voxel likewise.
-    if (end - i >= 2 && weight > most) {
+    if ((end - i >= 2 || samples[i].repeated()) && weight > most) {
       most = weight;
       best = {samples[i].value + 0.0F, method, weight / total};
     }
@@ -78,7 +91,7 @@ std::vector<Sample> all_voxels_in(const Survey& survey, std::size_t bin, VolumeS
   std::vector<Sample> samples;
   for_each_own_value(source, plan, options, team, [&](std::span<const float> values) {
     for (const float v : values) {
-      if (std::isfinite(v) && survey.histogram.bin_of(v) == bin) samples.push_back({v, 1});
+      if (std::isfinite(v) && survey.histogram.bin_of(v) == bin) add_sample(v, 1, samples);
     }
   });
   team.concatenate(samples);
@@ -102,7 +115,7 @@ std::vector<Sample> sampled_leaves(const Survey& survey, std::size_t bin, const 
         const LeafRow& row = piece[static_cast<std::size_t>(i)];
         if (!std::isfinite(row.sample)) continue;
         part.weight += row.finite;
-        if (survey.histogram.bin_of(row.sample) == bin) part.samples.push_back({row.sample, row.finite});
+        if (survey.histogram.bin_of(row.sample) == bin) add_sample(row.sample, row.finite, part.samples);
       }
     });
   });
