@@ -104,7 +104,13 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
     add_rungs(
         row, energy, transform_.largest(), [&](std::size_t rung) { return transform_.cost(ladder.step(rung)); },
         ladder);
-    if (near == NearRungs::yes) more = add_near_rungs(block, row, energy, ladder);
+    if (near == NearRungs::yes && energy > 0) {
+      rounded_.set(block);
+      const std::int32_t coarsest = coarsest_near_exponent(rounded_.exponent());
+      more = add_near_rungs(
+          row, energy, rounded_.exponent(),
+          [&](std::size_t rung) { return rounded_.cost(coarsest - static_cast<std::int32_t>(rung)); }, ladder);
+    }
   }
   const bool on_no_lattice = ladder.exact_bytes == kRawStreamBytes;
   if (near == NearRungs::yes && !may_be_exact && on_no_lattice && (more || is_sparse(row))) {
@@ -118,22 +124,35 @@ void LadderBuilder::set_exact(const LeafValues& block, FloatOrder order, PackedL
   ladder.exact = is_ordered(stream_) ? ExactKind::ordered : ExactKind::values;
 }
 
-std::optional<PackedLadder> LadderBuilder::build_from(const BlockFigures& figures, std::span<const RungCost> costs,
-                                                      const LeafRow& row) const {
+std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found, const LeafRow& row,
+                                                      NearRungs near) const {
+  const BlockFigures& figures = found.figures;
   if (figures.lattice != 0) return std::nullopt;
+  // Floats in order are looked at by build().
+  if (near == NearRungs::yes && (!aim_.window || is_sparse(row) || figures.transformed == 0)) return std::nullopt;
   PackedLadder ladder;
   ladder.exact_bytes = static_cast<std::uint16_t>(kRawStreamBytes);
   if (figures.transformed == 0) return ladder;
   bool enough = true;
   const auto cost_of = [&](std::size_t rung) {
     const std::size_t at = rung - figures.first_rung;
-    const bool known = rung >= figures.first_rung && at < figures.rungs && costs[at].bits != 0;
+    const bool known = rung >= figures.first_rung && at < figures.rungs && found.costs[at].bits != 0;
     enough = enough && known;
-    return known ? TransformBlock::Cost{costs[at].bits, costs[at].squared_error}
+    return known ? TransformBlock::Cost{found.costs[at].bits, found.costs[at].squared_error}
                  : TransformBlock::Cost{kNotCodedBits, 0};
   };
   add_rungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder);
-  return enough ? std::optional(ladder) : std::nullopt;
+  if (near == NearRungs::no) return enough ? std::optional(ladder) : std::nullopt;
+  const auto near_cost_of = [&](std::size_t rung) -> std::optional<RoundedBlock::Cost> {
+    const std::size_t at = rung - figures.first_near;
+    const bool known = rung >= figures.first_near && at < figures.near && found.near[at].bytes != 0;
+    enough = enough && known;
+    if (!known || found.near[at].bytes == kNoNearBytes) return std::nullopt;
+    return RoundedBlock::Cost{found.near[at].bytes, found.near[at].squared_error};
+  };
+  const std::int32_t exponent = rounded_exponent(std::max(std::fabs(row.min), std::fabs(row.max)));
+  const bool more = !(figures.energy > 0) || add_near_rungs(row, figures.energy, exponent, near_cost_of, ladder);
+  return enough && !more ? std::optional(ladder) : std::nullopt;
 }
 
 template <class CostOf>
@@ -175,17 +194,17 @@ void LadderBuilder::add_rungs(const LeafRow& row, double energy, double largest,
   }
 }
 
-bool LadderBuilder::add_near_rungs(const LeafValues& block, const LeafRow& row, double energy, PackedLadder& ladder) {
-  if (!(energy > 0)) return true;
-  rounded_.set(block);
-  const int finest = rounded_.exponent() - RoundedBlock::kMostBits;
-  const int coarsest = finest + static_cast<int>(PackedLadder::kMostNear) - 1;
+template <class CostOf>
+bool LadderBuilder::add_near_rungs(const LeafRow& row, double energy, std::int32_t exponent, const CostOf& cost_of,
+                                   PackedLadder& ladder) const {
+  const std::int32_t coarsest = coarsest_near_exponent(exponent);
+  const std::int32_t finest = coarsest - (kNearRungs - 1);
   if (coarsest > std::numeric_limits<std::int8_t>::max() || finest < std::numeric_limits<std::int8_t>::min())
     return true;
   ladder.near_exponent = static_cast<std::int8_t>(coarsest);
   // Sets a rung unless exact is shorter, or the block is of one value so rounded.
   const auto build_rung = [&](std::size_t rung) {
-    const auto cost = rounded_.cost(coarsest - static_cast<int>(rung));
+    const std::optional<RoundedBlock::Cost> cost = cost_of(rung);
     if (!cost || cost->bytes >= ladder.exact_bytes) return;
     ladder.near[rung] = {static_cast<std::uint16_t>(cost->bytes),
                          ErrorShare(std::min(1.0, cost->squared_error / energy))};

@@ -39,12 +39,17 @@ struct LadderAim {
   std::optional<KeyWindow> window{};
   BlockCoder* coder = nullptr;  ///< looks at the rungs of many blocks at a time, where there is one
 
-  /// Who looks at rungs in the survey. Exact kinds and near rungs are looked at here.
-  BlockCoder* surveying_coder() const {
-    return has_rungs() && !lattice && !(near_rungs && near == NearBlocks::all) ? coder : nullptr;
-  }
+  /// Who looks at rungs in the survey.
+  BlockCoder* surveying_coder() const { return has_rungs() && !lattice ? coder : nullptr; }
   /// Which rungs it looks at.
-  RungAsk rung_ask() const { return window ? RungAsk{false, window->step()} : RungAsk{}; }
+  RungAsk rung_ask() const {
+    RungAsk ask;
+    if (window) {
+      ask = {false, window->step(), {NearBlocks::none, false, window->exponent()}};
+    }
+    if (near_rungs) ask.near.blocks = near;
+    return ask;
+  }
 
   /// Which ladder a block gets in the survey.
   NearRungs near_for(const LeafRow& row, bool sampled) const {
@@ -65,9 +70,8 @@ class LadderBuilder {
   /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
   /// the survey knows of them.
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near);
-  /// The same of what a coder has found of the block, for NearRungs::no. Nullopt where that is not enough.
-  std::optional<PackedLadder> build_from(const BlockFigures& figures, std::span<const RungCost> costs,
-                                         const LeafRow& row) const;
+  /// The same of what a coder has found of the block. Nullopt where that is not enough.
+  std::optional<PackedLadder> build_from(const SurveyedBlock& found, const LeafRow& row, NearRungs near) const;
   /// Of one whose in-domain values have the same bits.
   static PackedLadder uniform();
   /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
@@ -82,8 +86,11 @@ class LadderBuilder {
   template <class CostOf>
   void add_rungs(const LeafRow& row, double energy, double largest, const CostOf& cost_of, PackedLadder& ladder) const;
   void set_exact(const LeafValues& block, FloatOrder order, PackedLadder& ladder);
-  // Returns whether a cut may choose what is finer than those it adds.
-  bool add_near_rungs(const LeafValues& block, const LeafRow& row, double energy, PackedLadder& ladder);
+  // Of a block whose largest |value| has that exponent; cost(rung) is RoundedBlock::cost() at its quantum. Returns
+  // whether a cut may choose what is finer than those it adds.
+  template <class CostOf>
+  bool add_near_rungs(const LeafRow& row, double energy, std::int32_t exponent, const CostOf& cost_of,
+                      PackedLadder& ladder) const;
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
 

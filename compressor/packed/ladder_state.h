@@ -6,15 +6,9 @@
 #include <optional>
 
 #include "compressor/packed/ladder_window.h"
+#include "format/packed/near_rungs.h"
 
 namespace weir {
-
-/// Which blocks have near rungs, besides the sampled ones.
-enum class NearBlocks : std::uint8_t {
-  none,
-  sparse,  ///< those most of whose values are zero, which near rungs suit at any budget
-  all      ///< where nearly everything is kept
-};
 
 struct LadderState {
   bool decided = false;            ///< before, the rest means nothing

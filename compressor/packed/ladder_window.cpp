@@ -7,8 +7,7 @@ std::size_t start_rung(const KeyWindow& window, const PackedLadder& ladder) {
 }
 
 std::size_t start_near_rung(const KeyWindow& window, const PackedLadder& ladder) {
-  return static_cast<std::size_t>(
-      std::clamp(ladder.near_exponent - window.exponent(), 0, static_cast<int>(PackedLadder::kMostNear) - 1));
+  return static_cast<std::size_t>(near_rung_about(ladder.near_exponent, window.exponent()));
 }
 
 LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row) {

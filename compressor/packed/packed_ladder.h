@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "format/packed/block_steps.h"
+#include "format/packed/near_rungs.h"
 
 namespace weir {
 
@@ -69,7 +70,7 @@ enum class ExactKind : std::uint8_t {
 struct PackedLadder {
   static constexpr std::size_t kMostRungs = kLadderRungs;
   static constexpr std::size_t kMeanRungs = kLadderMeanRungs;
-  static constexpr std::size_t kMostNear = 12;
+  static constexpr std::size_t kMostNear = kNearRungs;
 
   std::int16_t first_step = 0;  ///< step number of rung 0
   std::uint8_t count = 0;       ///< rungs, from coarse to fine, up to the last one that is built

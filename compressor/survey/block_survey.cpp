@@ -72,13 +72,12 @@ class BlockSurvey::Leaves {
   // Their ladders, once their rows are there, by what a coder has found of them where it has.
   void run_ladders(std::int64_t first, std::int64_t end, const std::optional<SurveyedBlocks>& found,
                    std::span<PackedLadder> ladders, Tally& tally) const {
-    const std::size_t costs = found ? found->costs.size() / found->figures.size() : 0;
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
       const LeafRow& row = rows_[at];
       const auto count = static_cast<std::size_t>(leaves_.voxels(leaf).voxels());
-      if (found && row.finite == count && !row.uniform() && aim_->near_for(row, sample_.has(leaf)) == NearRungs::no) {
-        const auto ladder =
-            tally.builder(*aim_).build_from(found->figures[at], found->costs.subspan(costs * at, costs), row);
+      if (found && row.finite == count && !row.uniform()) {
+        const NearRungs near = aim_->near_for(row, sample_.has(leaf));
+        const auto ladder = tally.builder(*aim_).build_from(found->block(at), row, near);
         if (ladder) {
           ladders[at] = *ladder;
           return;
@@ -288,10 +287,8 @@ bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::si
   if (row.uniform()) {
     leaves.ladders[at] = LadderBuilder::uniform();
   } else {
-    if (ladders_->near_for(row, sample_.has(leaf)) == NearRungs::yes) return false;
-    const std::size_t costs = found.costs.size() / found.figures.size();
-    const auto ladder =
-        tally.builder(*ladders_).build_from(found.figures[at], found.costs.subspan(costs * at, costs), row);
+    const NearRungs near = ladders_->near_for(row, sample_.has(leaf));
+    const auto ladder = tally.builder(*ladders_).build_from(found.block(at), row, near);
     if (!ladder) return false;
     leaves.ladders[at] = *ladder;
   }

@@ -10,22 +10,47 @@
 #include <span>
 #include <vector>
 
+#include "format/base/host_device.h"
 #include "format/base/index.h"
 #include "format/io/digest.h"
 #include "format/leaf/block_summary.h"
 #include "format/leaf/leaf_record.h"
 #include "format/packed/block_constants.h"
 #include "format/packed/block_steps.h"
+#include "format/packed/near_rungs.h"
 
 namespace weir {
 
 /// Who does that. automatic: a CUDA device where one answers and there is memory for it, else the CPU.
 enum class CoderChoice : std::uint8_t { automatic, cpu, cuda };
 
+/// Which near rungs of a ladder are looked at.
+struct NearAsk {
+  NearBlocks blocks{};      ///< that have some
+  bool all = true;          ///< else those about `wanted`
+  std::int32_t wanted = 0;  ///< exponent of a quantum
+
+  /// Of each block.
+  WEIR_HOST_DEVICE std::uint32_t most() const {
+    return blocks == NearBlocks::none ? 0U : all ? static_cast<std::uint32_t>(kNearRungs) : kAbout;
+  }
+  /// The first one of a ladder whose coarsest quantum has that exponent.
+  WEIR_HOST_DEVICE std::uint32_t first(std::int32_t coarsest) const {
+    if (all) return 0;
+    constexpr std::int32_t kCoarser = 2;
+    constexpr std::int32_t kLast = kNearRungs - static_cast<std::int32_t>(kAbout);
+    const std::int32_t rung = near_rung_about(coarsest, wanted) - kCoarser;
+    return static_cast<std::uint32_t>(rung < 0 ? 0 : rung > kLast ? kLast : rung);
+  }
+  /// A search among them hardly ever goes more than two to either side.
+  static constexpr std::uint32_t kAbout = 6;
+};
+
 /// Which rungs of a ladder are looked at.
 struct RungAsk {
   bool all = true;          ///< from kLadderMeanRungs on; else those about `wanted`
   std::int32_t wanted = 0;  ///< step
+  NearAsk near{};
 
   /// Of each block.
   std::uint32_t most() const { return all ? kLadderRungs - kLadderMeanRungs : kRungsAbout; }
@@ -40,6 +65,15 @@ struct RungCost {
   std::uint32_t unused = 0;
 };
 
+/// RoundedBlock::cost() of a near rung.
+struct NearCost {
+  double squared_error = 0;
+  std::uint32_t bytes = 0;  ///< 0: not looked at
+  std::uint32_t unused = 0;
+};
+/// Bytes of a near rung that there is not.
+inline constexpr std::uint32_t kNoNearBytes = ~0U;
+
 /// What TransformBlock::set() finds of a block.
 struct BlockFigures {
   double energy = 0;
@@ -50,7 +84,8 @@ struct BlockFigures {
   std::uint8_t rungs = 0;        ///< that were looked at
   std::uint8_t transformed = 0;  ///< 0: the values are too large or too small for that
   std::uint8_t lattice = 0;      ///< whether they may lie on a lattice; who has time looks closer
-  std::uint16_t unused = 0;
+  std::uint8_t first_near = 0;   ///< of the near rungs looked at
+  std::uint8_t near = 0;         ///< that were looked at
 };
 
 /// A stream to be written.
@@ -62,13 +97,27 @@ struct StreamAsk {
   std::int16_t step = 0;
 };
 
-/// What a survey finds of each block, and RungAsk::most() costs of each.
+/// What a survey finds of a block.
+struct SurveyedBlock {
+  const BlockFigures& figures;
+  std::span<const RungCost> costs;  ///< RungAsk::most(), of rungs from figures.first_rung on
+  std::span<const NearCost> near;   ///< NearAsk::most(), of near rungs from figures.first_near on
+};
+
+/// Of each.
 struct SurveyedBlocks {
   std::span<const BlockFigures> figures;
   std::span<const RungCost> costs;
+  std::span<const NearCost> near;
   /// Of resident blocks alone, of each that lies wholly in the volume and whose values are all finite; of one whose
   /// values are not, `finite` alone.
   std::span<const BlockSummary> summaries;
+
+  SurveyedBlock block(std::size_t at) const {
+    const std::size_t rungs = costs.size() / figures.size();
+    const std::size_t near_rungs = near.size() / figures.size();
+    return {figures[at], costs.subspan(rungs * at, rungs), near.subspan(near_rungs * at, near_rungs)};
+  }
 };
 
 /// Of a stream that was written: what the nodes above it need, and the digest of its block's values.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "format/packed/block_constants.h"
+#include "format/packed/stream_length.h"
 #include "format/packed/value_encoder.h"
 
 namespace weir {
@@ -17,9 +18,6 @@ struct Lattice {
   float quantum = 0;
   std::uint32_t bits = 0;  ///< of a code, at most 24
 };
-
-/// Most bytes of a stream: raw values.
-inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
 
 /// Whether values on no lattice are predicted as whole numbers in the floats' order; else they are raw.
 enum class FloatOrder { used, unused };

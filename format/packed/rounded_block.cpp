@@ -9,16 +9,12 @@
 #include "format/packed/block_scan.h"
 #include "format/packed/lattice_block.h"
 #include "format/packed/lattice_codes.h"
+#include "format/packed/near_rungs.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kFrontAt = 9;  // kind, minimum, quantum
-constexpr unsigned kEndBits = 6;
-constexpr unsigned kNumberBits = 24;  // of the first code
-constexpr int kUsualBits = 18;
-constexpr int kLeastExponent = -125;     // quanta are normal numbers
-constexpr int kMostExponent = 127 - 26;  // and the lattice's end is finite
+static_assert(kMostRoundedResidual <= RowCosts::kMostMagnitude);
 
 struct Rounded {
   std::int32_t low;
@@ -79,19 +75,18 @@ void RoundedBlock::set(std::span<const float, 512> values) {
   std::copy(values.begin(), values.end(), values_.begin());
   float largest = 0;
   for (const float v : values) largest = std::max(largest, std::fabs(v));
-  exponent_ = largest > 0 ? std::ilogb(largest) + 1 : kLeastExponent;
+  exponent_ = rounded_exponent(largest);
   predictor_ = 0;
-  if (find_codes(exponent_ - kUsualBits)) predictor_ = best_predictor(codes_, false, residuals_);
+  if (find_codes(exponent_ - kUsualRoundedBits)) predictor_ = best_predictor(codes_, false, residuals_);
 }
 
 bool RoundedBlock::find_codes(int quantum_exponent) {
-  if (quantum_exponent < std::max(kLeastExponent, exponent_ - kMostBits) || quantum_exponent > kMostExponent)
-    return false;
+  if (!is_quantum_exponent(quantum_exponent, exponent_)) return false;
   const double quantum = std::ldexp(1.0, quantum_exponent);
   std::array<std::int32_t, 512> multiples;
   const Rounded rounded = round_all(values_.data(), 1 / quantum, multiples.data());
   lowest_ = rounded.low;
-  if (rounded.high == rounded.low || rounded.high - rounded.low >= 1 << kNumberBits) return false;
+  if (rounded.high == rounded.low || rounded.high - rounded.low >= 1 << kRoundedNumberBits) return false;
   std::transform(multiples.begin(), multiples.end(), codes_.begin(),
                  [&](std::int32_t m) { return static_cast<std::uint32_t>(m - lowest_); });
   squared_error_ = rounded.squared_error * quantum * quantum;
@@ -102,17 +97,18 @@ std::optional<RoundedBlock::Cost> RoundedBlock::cost(int quantum_exponent) {
   if (!find_codes(quantum_exponent)) return std::nullopt;
   residuals_of(codes_, predictor_, false, residuals_);
   const ResidualSizes sizes = fill_magnitudes(residuals_, magnitudes_);
-  if (sizes.last_place == 0 || sizes.bits >= RowCosts::kMostMagnitude) return std::nullopt;
+  if (sizes.last_place == 0 || sizes.bits >= kMostRoundedResidual) return std::nullopt;
   const unsigned end = end_at(sizes.last_place);
-  const std::uint32_t bits = rows_.of(magnitudes_, end).stream_bits(end, kEndBits, kNumberBits) + kNumberBits;
-  const std::uint32_t bytes = static_cast<std::uint32_t>(kFrontAt) + (bits + 7) / 8;
+  const std::uint32_t bits =
+      rows_.of(magnitudes_, end).stream_bits(end, kRoundedEndBits, kRoundedNumberBits) + kRoundedNumberBits;
+  const std::uint32_t bytes = kRoundedFrontBytes + (bits + 7) / 8;
   if (bytes >= kRawStreamBytes) return std::nullopt;
   return Cost{bytes, squared_error_};
 }
 
 bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
   coarser_ = false;
-  for (; quantum_exponent <= kMostExponent; ++quantum_exponent) {
+  for (; quantum_exponent <= kMostQuantumExponent; ++quantum_exponent) {
     if (!find_codes(quantum_exponent)) return false;
     residuals_of(codes_, predictor_, false, residuals_);
     if (write(quantum_exponent, out)) return true;
@@ -122,13 +118,13 @@ bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
 }
 
 bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
-  if (out.size() <= kFrontAt) return false;
+  if (out.size() <= kRoundedFrontBytes) return false;
   StreamFront front;
   front.end = end_at(fill_magnitudes(residuals_, magnitudes_).last_place);
-  front.end_bits = kEndBits;
+  front.end_bits = kRoundedEndBits;
   front.number = codes_[0];
-  front.number_bits = kNumberBits;
-  if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kFrontAt))) return false;
+  front.number_bits = kRoundedNumberBits;
+  if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kRoundedFrontBytes))) return false;
   out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor_ << 2U |
                                   static_cast<unsigned>(LatticeKind::own) << 4U);
   quantum_ = static_cast<float>(std::ldexp(1.0, quantum_exponent));

@@ -18,9 +18,6 @@ class RoundedBlock {
   /// `tables`, as built_in_tables(), must outlive the object.
   explicit RoundedBlock(const std::uint16_t* tables = built_in_tables());
 
-  /// Values below that many quanta are rounded exactly.
-  static constexpr int kMostBits = 23;
-
   /// Takes 512 finite values (x << 6 | y << 3 | z).
   void set(std::span<const float, 512> values);
   /// The least with every |value| below 2^exponent.

@@ -1,5 +1,6 @@
 // In place of the kernels that survey and encode packed blocks: their steps, a block after the other.
 #include "gpu/cuda/encode/launch.h"
+#include "gpu/cuda/encode/near_steps.h"
 #include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
 #include "gpu/cuda/encode/summary_steps.h"
@@ -12,6 +13,14 @@ void launch_survey(const SurveyCall& call, cudaStream_t /*stream*/) {
   encode_detail::BlockStage stage;
   for (std::uint32_t b = 0; b < call.box.count(); ++b) {
     survey_block(encode_detail::HostWarp{}, call, *call.tables, b, stage);
+  }
+}
+
+void launch_near_survey(const NearCall& call, cudaStream_t /*stream*/) {
+  check_cuda(cudaStreamSynchronize(nullptr), "surveying blocks on the device");
+  encode_detail::NearStage stage;
+  for (std::uint32_t b = 0; b < call.box.count(); ++b) {
+    survey_near_rungs(encode_detail::HostWarp{}, call, *call.tables, b, stage);
   }
 }
 

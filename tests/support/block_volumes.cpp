@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
@@ -34,6 +35,28 @@ double waves(double x, double y, double z, int octaves) {
     sum += size * std::sin(f * x + 1.3 * o) * std::cos(f * y - 0.7 * o) * std::sin(f * (z + 0.31 * x) + o);
   }
   return sum;
+}
+
+BlockVolume mixed(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  BlockVolume volume{"mixed " + std::to_string(seed), {32, 32, 16}, std::vector<float>(32 * 32 * 16)};
+  for (std::int64_t b = 0; b < 32; ++b) {
+    const int exponent = static_cast<int>(std::floor(unit(random) * 60)) * (b % 4 == 0 ? 2 : 1);
+    const double roughness = std::pow(2.0, 8 * unit(random) - 8);
+    const double offset = b % 3 == 0 ? 0 : 4 * unit(random);
+    for (std::int64_t i = 0; i < 512; ++i) {
+      const Index3 in{i & 7, i >> 3 & 7, i >> 6};
+      const Index3 at = Index3{b % 4, b / 4 % 4, b / 16} * 8 + in;
+      double v = offset + std::sin(0.3 * static_cast<double>(in.x) + 0.2 * static_cast<double>(in.y * in.z)) +
+                 roughness * unit(random);
+      if (b % 5 == 0 && unit(random) > -0.4) v = 0;
+      if (b % 7 == 0) v = -std::fabs(v);
+      volume.values[static_cast<std::size_t>(linear_index(at, volume.extent))] =
+          static_cast<float>(std::ldexp(v, exponent));
+    }
+  }
+  return volume;
 }
 
 }  // namespace
@@ -81,6 +104,12 @@ std::vector<BlockVolume> block_volumes() {
   }));
   all.push_back(sampled("one voxel", {1, 1, 1}, [](double, double, double) { return 0.7; }));
   all.push_back(sampled("a row", {1, 1, 27}, [](double, double, double z) { return std::sin(z); }));
+  return all;
+}
+
+std::vector<BlockVolume> mixed_volumes() {
+  std::vector<BlockVolume> all;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) all.push_back(mixed(seed));
   return all;
 }
 

@@ -19,6 +19,9 @@ struct BlockVolume {
 
 std::vector<BlockVolume> block_volumes();
 
+/// Volumes each of whose blocks has another size, roughness and share of zeros.
+std::vector<BlockVolume> mixed_volumes();
+
 /// One of them. Throws std::out_of_range where there is none of that name.
 BlockVolume block_volume(const std::string& name);
 

@@ -28,6 +28,7 @@ struct BoxMemory {
   GrowingArray<float> values;
   GrowingArray<BlockFigures> figures;
   GrowingArray<RungCost> costs;
+  GrowingArray<NearCost> near;
   GrowingPinned pinned;
   // Of resident blocks.
   GrowingArray<BlockSummary> summaries;

@@ -138,15 +138,22 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
     call.most = ask.most();
     call.figures = memory_->figures.at_least(count);
     call.costs = memory_->costs.at_least(call.most * count);
+    const std::size_t nearly = ask.near.most() * count;
     const std::size_t summarized = place_ ? count : 0;
     Parts parts(memory_->pinned.at_least(Parts::bytes<BlockFigures>(count) + Parts::bytes<RungCost>(call.most * count) +
-                                         Parts::bytes<BlockSummary>(summarized)));
+                                         Parts::bytes<NearCost>(nearly) + Parts::bytes<BlockSummary>(summarized)));
     const auto figures = parts.next<BlockFigures>(count);
     const auto costs = parts.next<RungCost>(call.most * count);
+    const auto near = parts.next<NearCost>(nearly);
     const auto summaries = parts.next<BlockSummary>(summarized);
     const cudaStream_t stream = memory_->stream.get();
     const char* const what = "surveying on the device";
     launch_survey(call, stream);
+    if (nearly > 0) {
+      const NearCall of_near{box_, call.tables, ask.near, call.figures, memory_->near.at_least(nearly)};
+      launch_near_survey(of_near, stream);
+      copy_back(near, of_near.costs, stream, what);
+    }
     copy_back(figures, call.figures, stream, what);
     copy_back(costs, call.costs, stream, what);
     if (place_) {
@@ -154,7 +161,7 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
       launch_summaries({box_, *place_, coder_->digests.data(), found}, stream);
       copy_back(summaries, found, stream, what);
     }
-    return SurveyedBlocks{figures, costs, summaries};
+    return SurveyedBlocks{figures, costs, near, summaries};
   });
 }
 

@@ -81,6 +81,15 @@ struct SurveyCall {
   std::uint32_t most = 0;
 };
 
+/// What looks at near rungs of blocks that were surveyed.
+struct NearCall {
+  BlockBox box;
+  const CostTables* tables = nullptr;
+  NearAsk ask;
+  BlockFigures* figures = nullptr;  ///< of each block, as the survey has left them
+  NearCost* costs = nullptr;        ///< ask.most() of each block
+};
+
 /// What the first step of encoding finds of a block, and the second.
 struct alignas(16) StreamState {
   std::uint32_t signs[16];  ///< of what is not zero, by place

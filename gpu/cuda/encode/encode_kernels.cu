@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "gpu/cuda/encode/launch.h"
+#include "gpu/cuda/encode/near_steps.h"
 #include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
 #include "gpu/cuda/encode/summary_steps.h"
@@ -15,6 +16,7 @@ using namespace encode_detail;
 constexpr unsigned kWarps = 8;  // of a group
 constexpr unsigned kThreads = kWarps * kLanes;
 constexpr unsigned kSurveyGroups = 4;  // a multiprocessor, at least
+constexpr unsigned kNearGroups = 4;
 constexpr unsigned kCodeGroups = 5;
 constexpr unsigned kWordThreads = 128;
 constexpr unsigned kStatisticsWarps = 4;
@@ -38,6 +40,17 @@ __global__ void __launch_bounds__(kThreads, kSurveyGroups) survey_blocks(SurveyC
   const std::uint32_t count = call.box.count();
   for (std::uint32_t b = blockIdx.x * kWarps + warp; b < count; b += gridDim.x * kWarps) {
     survey_block(DeviceWarp{}, call, tables, b, stages[warp]);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads, kNearGroups) survey_all_near_rungs(NearCall call) {
+  __shared__ CostTables tables;
+  __shared__ NearStage stages[kWarps];
+  load_tables(tables, call.tables);
+  const unsigned warp = threadIdx.x / kLanes;
+  const std::uint32_t count = call.box.count();
+  for (std::uint32_t b = blockIdx.x * kWarps + warp; b < count; b += gridDim.x * kWarps) {
+    survey_near_rungs(DeviceWarp{}, call, tables, b, stages[warp]);
   }
 }
 
@@ -135,6 +148,11 @@ unsigned groups_for(std::uint32_t count, unsigned each) {
 
 void launch_survey(const SurveyCall& call, cudaStream_t stream) {
   survey_blocks<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
+  check_cuda(cudaGetLastError(), "surveying blocks on the device");
+}
+
+void launch_near_survey(const NearCall& call, cudaStream_t stream) {
+  survey_all_near_rungs<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
   check_cuda(cudaGetLastError(), "surveying blocks on the device");
 }
 

@@ -17,12 +17,15 @@ namespace weir {
 
 /// Symbols of transformed blocks, by band, level and symbol.
 inline constexpr unsigned kTransformSymbols = kPackedBands * kPackedLevels * kPackedSymbols;
+/// The first one of lattice blocks, by level and symbol, and those of both.
+inline constexpr unsigned kLatticeSymbol = kTransformSymbols;
+inline constexpr unsigned kCodedSymbols = kPackedTables * kPackedSymbols;
 
 /// Of contexts and costs.
 struct alignas(16) CostTables {
-  std::uint16_t cost[kTransformSymbols] = {};  ///< in 1/256 bits
-  std::uint16_t place[512] = {};               ///< by index: place | weight << 9 | band << 12
-  std::uint16_t index[512] = {};               ///< by place
+  std::uint16_t cost[kCodedSymbols] = {};  ///< in 1/256 bits
+  std::uint16_t place[512] = {};           ///< by index: place | weight << 9 | band << 12
+  std::uint16_t index[512] = {};           ///< by place
   std::uint8_t level[(kLevelSums + 15) / 16 * 16] = {};
 
   WEIR_HOST_DEVICE unsigned level_of(std::uint32_t t) const { return level[t < kLevelSums ? t : kLevelSums - 1]; }
@@ -44,8 +47,10 @@ struct alignas(16) CodeTables {
 /// By the tables of a file's constants, on the host.
 inline void make_encoder_tables(const std::uint16_t* tables, CostTables& costs, CodeTables& codes) {
   const SymbolCosts symbol_bits = symbol_costs(tables);
-  for (unsigned context = 0; context < kPackedBands * kPackedLevels; ++context) {
+  for (unsigned context = 0; context < kPackedTables; ++context) {
     std::copy(symbol_bits[context].begin(), symbol_bits[context].end(), costs.cost + kPackedSymbols * context);
+  }
+  for (unsigned context = 0; context < kPackedBands * kPackedLevels; ++context) {
     const std::uint16_t* table = tables + std::size_t{kPackedSymbols} * context;
     for (unsigned s = 0; s < kPackedSymbols; ++s) {
       const std::uint32_t end = s + 1 < kPackedSymbols ? table[s + 1] : 1U << kFrequencyBits;

@@ -11,6 +11,9 @@ namespace weir {
 /// Throws Error(io).
 void launch_survey(const SurveyCall& call, cudaStream_t stream);
 
+/// survey_near_rungs() of each block of the box, after launch_survey().
+void launch_near_survey(const NearCall& call, cudaStream_t stream);
+
 /// code_block(), put_words() and put_bytes() of each ask.
 void launch_encode(const EncodeCall& call, cudaStream_t stream);
 

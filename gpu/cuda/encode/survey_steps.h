@@ -9,6 +9,7 @@
 #include "format/packed/quantiser.h"
 #include "format/packed/stream_length.h"
 #include "gpu/cuda/encode/lattice_steps.h"
+#include "gpu/cuda/encode/symbol_sums.h"
 #include "gpu/cuda/encode/transform_steps.h"
 
 namespace weir {
@@ -23,33 +24,6 @@ struct GroupRung {
   bool counted = false;  // there is such a rung, and it is fine enough and not too fine
   bool coded = false;    // its largest magnitude is not too large
 };
-
-// Bits of the part of a magnitude that its extra bits leave, where that is not below an escape.
-WEIR_HOST_DEVICE inline std::uint32_t bits_of_escape(std::uint32_t high) {
-  return 5 + 31U - static_cast<unsigned>(__builtin_clz(high - (kEscape - 1)));
-}
-
-// Sums over coded values, but for the constant parts.
-struct SymbolSums {
-  std::uint32_t symbols = 0;
-  std::uint32_t raw = 0;
-  std::uint32_t nonzero = 0;
-};
-
-// One whose neighbours' weighed sum is t, in a context that begins at `first` of the costs.
-WEIR_HOST_DEVICE inline void add_value(const CostTables& tables, std::uint32_t first, std::uint32_t t, std::uint32_t m,
-                                       SymbolSums& sums) {
-  if ((t | m) == 0) {
-    sums.symbols += tables.cost[first];
-    return;
-  }
-  const unsigned extra = extra_bits(t);
-  const std::uint32_t high = m >> extra;
-  const std::uint32_t symbol = high < kEscape ? high : kEscape;
-  sums.symbols += tables.cost[first + kPackedSymbols * tables.level_of(t) + symbol];
-  sums.raw += extra + (high >= kEscape ? bits_of_escape(high) : 0);
-  sums.nonzero += m != 0 ? 1U : 0U;
-}
 
 // Magnitude of a coefficient, any sign.
 WEIR_HOST_DEVICE inline std::uint32_t magnitude_at(float coefficient, float scale) {
@@ -82,20 +56,6 @@ WEIR_HOST_DEVICE inline SymbolSums add_column(const CostTables& tables, const fl
     }
   }
   return sums;
-}
-
-// Those at places 1 to 3, which look at each other.
-WEIR_HOST_DEVICE inline void add_first_places(const CostTables& tables, const float* stage, float scale,
-                                              SymbolSums& sums) {
-  std::uint32_t before = 0;
-  WEIR_UNROLL
-  for (unsigned place = 1; place < 4; ++place) {
-    const unsigned index = place == 1 ? 1 : place == 2 ? 8 : 64;
-    const std::uint32_t m = magnitude_at(stage[stage_of(index)], scale);
-    const std::uint32_t known = tables.place[index];
-    add_value(tables, (known >> 12U) * kPackedLevels * kPackedSymbols, (known >> 9U & 7U) * before, m, sums);
-    before += m;
-  }
 }
 
 // Squared error of a lane's column in squared steps, what rows without a magnitude add to the block's, and the last
@@ -162,7 +122,11 @@ WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, con
     if (!rung(lane).coded || last(lane) == 0) return;
     const unsigned limit = kEndUnit * (last(lane) / kEndUnit + 1);
     SymbolSums sums = add_column(tables, stage.values, lane % kGroup, rung(lane).scale, limit);
-    if (lane % kGroup == 0) add_first_places(tables, stage.values, rung(lane).scale, sums);
+    if (lane % kGroup == 0) {
+      add_first_places(
+          tables, [&](unsigned index) { return magnitude_at(stage.values[stage_of(index)], rung(lane).scale); },
+          [](std::uint32_t known) { return (known >> 12U) * kPackedLevels * kPackedSymbols; }, sums);
+    }
     symbols(lane) = sums.symbols;
     raw(lane) = sums.raw;
     nonzero(lane) = sums.nonzero;

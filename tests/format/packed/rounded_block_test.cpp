@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "format/packed/near_rungs.h"
 #include "tests/format/packed/block_samples.h"
 
 namespace weir::rounded_block_test {
@@ -45,7 +46,7 @@ TEST(RoundedBlock, EncodesToItsCostWithItsError) {
       for (const float offset : {0.0F, -3.0F, 5e6F}) {
         const BlockValues values = sample(shape, numbers, amplitude, offset);
         block.set(values);
-        for (int bits = 6; bits <= RoundedBlock::kMostBits; ++bits) {
+        for (int bits = 6; bits <= kMostRoundedBits; ++bits) {
           const int exponent = block.exponent() - bits;
           const auto cost = block.cost(exponent);
           if (!cost) continue;
@@ -128,7 +129,7 @@ TEST(RoundedBlock, ValuesThatNoLatticeHoldsHaveNoCost) {
   block.set(sample(Shape::ramp, numbers, 0, 3));
   EXPECT_FALSE(block.cost(block.exponent() - 10)) << "one value";
   block.set(sample(Shape::ramp, numbers, 1, 0));
-  EXPECT_FALSE(block.cost(block.exponent() - RoundedBlock::kMostBits - 1)) << "more than 24 bits";
+  EXPECT_FALSE(block.cost(block.exponent() - kMostRoundedBits - 1)) << "more than 24 bits";
   for (const float amplitude : {1e-44F, 1e-38F, 3e38F}) {
     block.set(sample(Shape::ramp, numbers, amplitude, 0));
     EXPECT_FALSE(block.cost(block.exponent() - 20)) << amplitude;

@@ -1,0 +1,109 @@
+// Ladders of what the pretended device has found of blocks: bit by bit those that the host builds of their values.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "compressor/leaf/leaf_summary.h"
+#include "compressor/packed/ladder_builder.h"
+#include "format/base/error.h"
+#include "gpu/cuda/encode/device_coder.h"
+#include "tests/fake_cuda/fake_runtime.h"
+#include "tests/support/block_volumes.h"
+
+namespace weir::fake_coder_test {
+namespace {
+
+using test::BlockVolume;
+using test::FakeRuntime;
+
+class FoundLadders : public testing::Test {
+ protected:
+  FoundLadders() {
+    FakeRuntime::instance().reset();
+    coder_ = make_device_coder(0, [](const Error& error) { ADD_FAILURE() << error.what(); });
+  }
+  ~FoundLadders() override {
+    coder_.reset();
+    FakeRuntime::instance().reset();
+  }
+
+  // How many blocks what was found was enough for, and how many it was not; each ladder is compared.
+  struct Counts {
+    std::size_t built = 0;
+    std::size_t left = 0;
+  };
+  Counts compare(const LadderAim& aim, NearRungs near) {
+    LadderBuilder builder(aim);
+    Counts counts;
+    for (const BlockVolume& volume : volumes_) {
+      SCOPED_TRACE(volume.name);
+      const Box voxels{{0, 0, 0}, volume.extent};
+      const Index3 count{ceil_div(volume.extent.x, 8), ceil_div(volume.extent.y, 8), ceil_div(volume.extent.z, 8)};
+      const auto loaded = coder_->load(volume.values, voxels, {{0, 0, 0}, count * 8});
+      loaded->begin_survey(aim.rung_ask());
+      const auto found = loaded->end_survey();
+      for (std::int64_t b = 0; b < weir::volume(count); ++b) {
+        LeafValues values;
+        for (std::int64_t i = 0; i < 512; ++i) {
+          const Index3 voxel =
+              min(voxels.hi - Index3{1, 1, 1}, index_at(b, count) * 8 + Index3{i >> 6, i >> 3 & 7, i & 7});
+          values[static_cast<std::size_t>(i)] =
+              volume.values[static_cast<std::size_t>(linear_index(voxel, volume.extent))];
+        }
+        if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) continue;
+        const LeafRow row = summarize_leaf(values, 0);
+        if (row.uniform()) continue;
+        const auto ladder = builder.build_from(found->block(static_cast<std::size_t>(b)), row, near);
+        ++(ladder ? counts.built : counts.left);
+        if (!ladder) continue;
+        const PackedLadder expected = builder.build(values, row, near);
+        EXPECT_EQ(std::memcmp(&*ladder, &expected, sizeof expected), 0) << b;
+      }
+    }
+    return counts;
+  }
+
+  std::unique_ptr<BlockCoder> coder_;
+  std::vector<BlockVolume> volumes_ = [] {
+    std::vector<BlockVolume> all = test::block_volumes();
+    for (BlockVolume& volume : test::mixed_volumes()) all.push_back(std::move(volume));
+    return all;
+  }();
+};
+
+TEST_F(FoundLadders, WithNearRungsAreThoseOfTheHost_WhereverTheWindowLies) {
+  LadderAim aim;
+  aim.near_rungs = true;
+  Counts all;
+  for (const NearBlocks near : {NearBlocks::sparse, NearBlocks::all}) {
+    aim.near = near;
+    for (const double centre : {1e-24, 1e-14, 1e-9, 1e-5, 1e-2, 10.0, 1e6}) {
+      SCOPED_TRACE(centre);
+      aim.window = KeyWindow(centre);
+      const Counts counts = compare(aim, NearRungs::yes);
+      all.built += counts.built;
+      all.left += counts.left;
+    }
+  }
+  EXPECT_GT(all.built, 1500U);
+}
+
+TEST_F(FoundLadders, WithoutNearRungsAreThoseOfTheHost_WhetherTheyWereAskedForOrNot) {
+  LadderAim aim;
+  for (const bool asked : {false, true}) {
+    aim.near_rungs = asked;
+    aim.near = NearBlocks::all;
+    aim.window.reset();
+    EXPECT_GT(compare(aim, NearRungs::no).built, 300U);
+    aim.window = KeyWindow(1e-5);
+    EXPECT_GT(compare(aim, NearRungs::no).built, 300U);
+  }
+}
+
+}  // namespace
+}  // namespace weir::fake_coder_test
