@@ -1,8 +1,8 @@
 // weir_bench_save [EDGE [DIRECTORY]]: what it takes to save a step of EDGE^3 float32 values, 1024 by default, as a
-// packed file in DIRECTORY, /dev/shm by default: of values that lie on the device, with all of the selection, the
-// layout and the writing; of the same values in the host's memory by all cores; and a plain copy of them to page-locked
-// memory. For a cloud at rates 20 and 53, and turbulence at rate 8 and 60 dB. Files are compared byte by byte. Exits
-// with 1 where two differ; 2 for anything wrong.
+// packed file in DIRECTORY, /dev/shm by default, or in this process's memory: of values that lie on the device, with
+// all of the selection, the layout and the writing; of the same values in the host's memory by all cores; and a plain
+// copy of them to page-locked memory. For a cloud at rates 20 and 53, and turbulence at rate 8 and 60 dB. Files are
+// compared byte by byte. Exits with 1 where two differ; 2 for anything wrong.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "compressor/push/resident_source.h"
 #include "format/base/error.h"
 #include "format/base/trace.h"
+#include "format/io/memory_file_system.h"
 #include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/load/pinned_memory.h"
 #include "gpu/cuda/runtime/check.h"
@@ -69,11 +70,11 @@ class Bench {
   bool save(const std::string& label, const Budget& budget) {
     const std::string cpu = directory_ + "/cpu.nvdb";
     const std::string device = directory_ + "/device.nvdb";
-    const auto best = [&](const std::string& what, const std::string& output, const auto& open) {
+    const auto best = [&](const std::string& what, const std::string& output, const auto& files, const auto& open) {
       Saved fastest;
       for (int run = 0; run < kRuns; ++run) {
         remove_pair(output);  // a simulation gives each step a name of its own
-        Saved saved = convert(output, budget, name_ + ", " + label, open);
+        Saved saved = convert(*files(), output, budget, name_ + ", " + label, open);
         if (run == 0 || saved.seconds < fastest.seconds) fastest = std::move(saved);
       }
       say(label + ", " + what, fastest.seconds);
@@ -82,14 +83,19 @@ class Bench {
                   name_.c_str(), timing.survey_s, timing.encode_s,
                   static_cast<unsigned long long>(fastest.sidecar.file.bytes),
                   fastest.sidecar.error.psnr_db.value_or(0));
+      return fastest;
     };
-    best("by all cores, from the host's memory", cpu, [&] { return open_array(array_); });
-    best("on the device, from its memory", device, [&] {
+    const auto resident = [&] {
       return open_resident(make_resident_volume(0, values_.data(), array_info(array_).domain(),
                                                 [](const Error& error) { throw Error(error); }),
                            array_info(array_));
-    });
-    const bool same = same_files(cpu, device);
+    };
+    const auto disk = [] { return make_posix_file_system(); };
+    const auto memory = [] { return std::make_unique<MemoryFileSystem>(); };
+    const Saved by_cpu = best("by all cores, from the host's memory", cpu, disk, [&] { return open_array(array_); });
+    best("on the device, from its memory", device, disk, resident);
+    const Saved kept = best("the same, the file in this process's memory", "kept.nvdb", memory, resident);
+    const bool same = same_files(cpu, device) && kept.sidecar.file.digest == by_cpu.sidecar.file.digest;
     std::printf("%-12s %s: %s\n", name_.c_str(), label.c_str(), same ? "same bytes" : "OTHER BYTES");
     std::fflush(stdout);
     remove_pair(cpu);
@@ -105,7 +111,8 @@ class Bench {
   }
 
   template <typename Open>
-  static Saved convert(const std::string& output, const Budget& budget, const std::string& label, const Open& open) {
+  static Saved convert(FileSystem& files, const std::string& output, const Budget& budget, const std::string& label,
+                       const Open& open) {
     ConversionOptions options;
     options.output = output;
     options.overwrite = true;
@@ -118,11 +125,10 @@ class Bench {
     if (const char* const path = std::getenv("WEIR_BENCH_TRACE"))
       trace = std::make_unique<Trace>(path + ("/" + label) + ".json");
     control.trace = trace.get();
-    const std::unique_ptr<FileSystem> files = make_posix_file_system();
     Saved saved;
     saved.seconds = seconds_of([&] {
       const std::unique_ptr<VolumeSource> source = open();
-      saved.sidecar = convert_volume(*source, options, control, *files);
+      saved.sidecar = convert_volume(*source, options, control, files);
     });
     return saved;
   }
