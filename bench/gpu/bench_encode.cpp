@@ -1,8 +1,8 @@
 // weir_bench_encode [EDGE]: how fast the device surveys and encodes the packed blocks of a cloud and of turbulence of
 // EDGE^3 float32 values, 1024 by default and a multiple of 128, that lie in its memory, at rates 20 and 8; beside it
 // the CPU with all cores, the same blocks out of the host's memory through the device, and a plain copy of the values
-// to the host. Each cost, stream and decoded value is compared with the CPU's. Exits with 1 where one has other bits; 2
-// for anything wrong.
+// to the host. Each cost, near rung, stream and decoded value is compared with the CPU's. Exits with 1 where one has
+// other bits; 2 for anything wrong.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -18,6 +18,8 @@
 #include <vector>
 
 #include "bench/gpu/block_field.h"
+#include "bench/gpu/device_seconds.h"
+#include "bench/gpu/near_survey.h"
 #include "format/base/error.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
@@ -32,30 +34,7 @@
 namespace weir {
 namespace {
 
-constexpr int kRuns = 5;
 constexpr std::uint32_t kBatch = 1U << 16U;  // streams that are encoded at a time
-
-// The median of some runs on the device.
-double device_seconds(const std::function<void()>& work) {
-  cudaEvent_t begin{};
-  cudaEvent_t end{};
-  check_cuda(cudaEventCreate(&begin), "creating an event");
-  check_cuda(cudaEventCreate(&end), "creating an event");
-  std::vector<double> seconds;
-  for (int run = 0; run <= kRuns; ++run) {
-    check_cuda(cudaEventRecord(begin, cudaStreamPerThread), "recording an event");
-    work();
-    check_cuda(cudaEventRecord(end, cudaStreamPerThread), "recording an event");
-    check_cuda(cudaEventSynchronize(end), "waiting for the device");
-    float ms = 0;
-    check_cuda(cudaEventElapsedTime(&ms, begin, end), "reading an event");
-    if (run > 0) seconds.push_back(static_cast<double>(ms) / 1e3);  // the first one loads the kernels
-  }
-  cudaEventDestroy(begin);
-  cudaEventDestroy(end);
-  std::ranges::sort(seconds);
-  return seconds[seconds.size() / 2];
-}
 
 struct Surveyed {
   RungAsk ask;
@@ -82,13 +61,17 @@ class Bench {
     const Surveyed about = survey({false, step});
     say("survey, 8 rungs about the cut, on the device", about.seconds);
     const std::size_t other_costs = compare_costs(about) + (field_.edge <= 512 ? compare_costs(all) : 0);
+    // The exponent of the largest power of two that is no coarser than the step.
+    const std::size_t other_near = survey_near({NearBlocks::all, false, -((step + 1) >> 1)}, "6 near rungs about it") +
+                                   survey_near({NearBlocks::all}, "all near rungs and floats in order");
     make_asks(all, step);
     const std::size_t other_streams = encode();
     through_host(step);
-    std::printf("%-12s %zu blocks have other costs, %zu other streams or values: %s\n", name_.c_str(), other_costs,
-                other_streams, other_costs + other_streams == 0 ? "same bits" : "OTHER BITS");
+    const bool same = other_costs + other_near + other_streams == 0;
+    std::printf("%-12s %zu blocks have other costs, %zu other near rungs, %zu other streams or values: %s\n",
+                name_.c_str(), other_costs, other_near, other_streams, same ? "same bits" : "OTHER BITS");
     std::fflush(stdout);
-    return other_costs + other_streams == 0;
+    return same;
   }
 
  private:
@@ -128,6 +111,14 @@ class Bench {
     figures.download(surveyed.figures);
     costs.download(surveyed.costs);
     return surveyed;
+  }
+
+  std::size_t survey_near(const NearAsk& ask, const std::string& what) const {
+    const NearSurvey near(field_, values_.data(), tables_.data(), codes_.data(), ask);
+    say(("survey, " + what + ", on the device").c_str(), near.seconds());
+    std::size_t other = 0;
+    say(("survey, " + what + ", by the CPU").c_str(), seconds_of([&] { other = near.compare(); }));
+    return other;
   }
 
   // Bytes of all streams at a step.

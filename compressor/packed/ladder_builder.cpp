@@ -128,12 +128,15 @@ std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found
                                                       NearRungs near) const {
   const BlockFigures& figures = found.figures;
   if (figures.lattice != 0) return std::nullopt;
-  // Floats in order are looked at by build().
-  if (near == NearRungs::yes && (!aim_.window || is_sparse(row) || figures.transformed == 0)) return std::nullopt;
+  const bool nearly = near == NearRungs::yes;
   PackedLadder ladder;
   ladder.exact_bytes = static_cast<std::uint16_t>(kRawStreamBytes);
-  if (figures.transformed == 0) return ladder;
   bool enough = true;
+  const auto set_ordered = [&] {
+    enough = enough && figures.ordered_bytes != 0;
+    ladder.exact_bytes = figures.ordered_bytes;
+    ladder.exact = figures.ordered_bytes < kRawStreamBytes ? ExactKind::ordered : ExactKind::values;
+  };
   const auto cost_of = [&](std::size_t rung) {
     const std::size_t at = rung - figures.first_rung;
     const bool known = rung >= figures.first_rung && at < figures.rungs && found.costs[at].bits != 0;
@@ -141,8 +144,6 @@ std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found
     return known ? TransformBlock::Cost{found.costs[at].bits, found.costs[at].squared_error}
                  : TransformBlock::Cost{kNotCodedBits, 0};
   };
-  add_rungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder);
-  if (near == NearRungs::no) return enough ? std::optional(ladder) : std::nullopt;
   const auto near_cost_of = [&](std::size_t rung) -> std::optional<RoundedBlock::Cost> {
     const std::size_t at = rung - figures.first_near;
     const bool known = rung >= figures.first_near && at < figures.near && found.near[at].bytes != 0;
@@ -150,9 +151,17 @@ std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found
     if (!known || found.near[at].bytes == kNoNearBytes) return std::nullopt;
     return RoundedBlock::Cost{found.near[at].bytes, found.near[at].squared_error};
   };
-  const std::int32_t exponent = rounded_exponent(std::max(std::fabs(row.min), std::fabs(row.max)));
-  const bool more = !(figures.energy > 0) || add_near_rungs(row, figures.energy, exponent, near_cost_of, ladder);
-  return enough && !more ? std::optional(ladder) : std::nullopt;
+  // As build() does it.
+  const bool may_be_exact = nearly && !aim_.window;
+  if (may_be_exact) set_ordered();
+  bool more = true;
+  if (figures.transformed != 0) {
+    add_rungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder);
+    const std::int32_t exponent = rounded_exponent(std::max(std::fabs(row.min), std::fabs(row.max)));
+    if (nearly && figures.energy > 0) more = add_near_rungs(row, figures.energy, exponent, near_cost_of, ladder);
+  }
+  if (nearly && !may_be_exact && (more || is_sparse(row))) set_ordered();
+  return enough ? std::optional(ladder) : std::nullopt;
 }
 
 template <class CostOf>

@@ -24,7 +24,7 @@ namespace weir {
 /// Who does that. automatic: a CUDA device where one answers and there is memory for it, else the CPU.
 enum class CoderChoice : std::uint8_t { automatic, cpu, cuda };
 
-/// Which near rungs of a ladder are looked at.
+/// Which near rungs of a ladder are looked at; floats in order too where all are, or where most values are zero.
 struct NearAsk {
   NearBlocks blocks{};      ///< that have some
   bool all = true;          ///< else those about `wanted`
@@ -86,6 +86,9 @@ struct BlockFigures {
   std::uint8_t lattice = 0;      ///< whether they may lie on a lattice; who has time looks closer
   std::uint8_t first_near = 0;   ///< of the near rungs looked at
   std::uint8_t near = 0;         ///< that were looked at
+  /// Of the stream of floats in their own order, at most kRawStreamBytes; 0: not looked at.
+  std::uint16_t ordered_bytes = 0;
+  std::uint16_t unused[3] = {};
 };
 
 /// A stream to be written.

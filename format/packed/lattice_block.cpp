@@ -34,9 +34,9 @@ std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lat
   const bool ordered = kind == LatticeKind::ordered;
   const std::size_t front_at = kind == LatticeKind::own ? 9 : 1;
   StreamFront front;
-  front.end_bits = 6;
+  front.end_bits = kLatticeEndBits;
   front.number = codes[0];
-  front.number_bits = kind == LatticeKind::own ? 24 : ordered ? 32 : lattice.bits;
+  front.number_bits = kind == LatticeKind::own ? 24 : ordered ? kOrderedNumberBits : lattice.bits;
   BlockCodes residuals;
   const unsigned predictor = best_predictor(codes, ordered, residuals);
   MagnitudeRows magnitudes;

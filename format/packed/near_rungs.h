@@ -28,9 +28,8 @@ inline constexpr std::int32_t kMostQuantumExponent = 127 - 26;
 
 /// Magnitudes of residuals that are coded are below that.
 inline constexpr std::uint32_t kMostRoundedResidual = 1U << 23U;
-/// Of a stream: bytes of its kind, minimum and quantum; bits of its end, and of its first code.
+/// Of a stream: bytes of its kind, minimum and quantum, and bits of its first code.
 inline constexpr std::uint32_t kRoundedFrontBytes = 9;
-inline constexpr unsigned kRoundedEndBits = 6;
 inline constexpr unsigned kRoundedNumberBits = 24;
 
 /// The least exponent with `largest` < 2^exponent, of the largest |value| of a block; the least one of all quanta where

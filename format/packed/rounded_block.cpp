@@ -100,7 +100,7 @@ std::optional<RoundedBlock::Cost> RoundedBlock::cost(int quantum_exponent) {
   if (sizes.last_place == 0 || sizes.bits >= kMostRoundedResidual) return std::nullopt;
   const unsigned end = end_at(sizes.last_place);
   const std::uint32_t bits =
-      rows_.of(magnitudes_, end).stream_bits(end, kRoundedEndBits, kRoundedNumberBits) + kRoundedNumberBits;
+      rows_.of(magnitudes_, end).stream_bits(end, kLatticeEndBits, kRoundedNumberBits) + kRoundedNumberBits;
   const std::uint32_t bytes = kRoundedFrontBytes + (bits + 7) / 8;
   if (bytes >= kRawStreamBytes) return std::nullopt;
   return Cost{bytes, squared_error_};
@@ -121,7 +121,7 @@ bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
   if (out.size() <= kRoundedFrontBytes) return false;
   StreamFront front;
   front.end = end_at(fill_magnitudes(residuals_, magnitudes_).last_place);
-  front.end_bits = kRoundedEndBits;
+  front.end_bits = kLatticeEndBits;
   front.number = codes_[0];
   front.number_bits = kRoundedNumberBits;
   if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kRoundedFrontBytes))) return false;

@@ -11,6 +11,10 @@ namespace weir {
 /// Most bytes of a stream: raw values.
 inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
 
+/// Bits of the end of a stream of kind lattice, and of the first code of floats in order.
+inline constexpr unsigned kLatticeEndBits = 6;
+inline constexpr unsigned kOrderedNumberBits = 32;
+
 /// Bits of a front and of what lies behind it: `symbols` 1/256 bits of symbols, `raw` bits as they are and `nonzero`
 /// signs in a stream whose end, of `end_bits`, is `end` > 0, beside a number of `number_bits`.
 WEIR_HOST_DEVICE inline std::uint32_t coded_stream_bits(std::uint32_t symbols, std::uint32_t raw, std::uint32_t nonzero,

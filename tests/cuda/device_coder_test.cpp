@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
+#include "format/packed/lattice_block.h"
+#include "format/packed/rounded_block.h"
 #include "gpu/cuda/encode/device_blocks.h"
 #include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/resident_volume.h"
@@ -99,6 +104,54 @@ TEST(DeviceCoder, FiguresAndCostsAreThoseOfTheHost) {
     }
   }
   EXPECT_GT(compared, 5000U);
+}
+
+TEST(DeviceCoder, NearRungsAndFloatsInOrderAreThoseOfTheHost) {
+  WEIR_NEEDS_DEVICE();
+  const auto coder = make_device_coder(0, expect_no_failure);
+  RoundedBlock rounded;
+  const ValueEncoder ordered(built_in_tables(), ValueEncoder::Kind::lattice);
+  BlockConstants constants;
+  constants.tables = built_in_tables();
+  std::size_t rungs = 0;
+  std::size_t exact = 0;
+  std::vector<test::BlockVolume> volumes = test::block_volumes();
+  for (test::BlockVolume& volume : test::mixed_volumes()) volumes.push_back(std::move(volume));
+  for (const test::BlockVolume& volume : volumes) {
+    SCOPED_TRACE(volume.name);
+    const Blocks blocks(volume);
+    for (const NearAsk& near :
+         {NearAsk{NearBlocks::all}, NearAsk{NearBlocks::all, false, -9}, NearAsk{NearBlocks::sparse, false, -9}}) {
+      const auto loaded = coder->load(volume.values, blocks.voxels, blocks.blocks);
+      ASSERT_NE(loaded, nullptr);
+      loaded->begin_survey({near.all, 18, near});
+      const auto surveyed = loaded->end_survey();
+      ASSERT_TRUE(surveyed);
+      for (std::int64_t b = 0; b < weir::volume(blocks.count()); ++b) {
+        const SurveyedBlock found = surveyed->block(static_cast<std::size_t>(b));
+        const Values values = blocks.of(b);
+        const bool sparse = 2 * std::count(values.begin(), values.end(), 0.0F) > 512;
+        const bool has_some = all_finite(values) && found.figures.transformed != 0 && found.figures.lattice == 0 &&
+                              found.figures.energy > 0 && (near.blocks == NearBlocks::all || sparse);
+        ASSERT_EQ(found.figures.near, has_some ? near.most() : 0U) << b;
+        if (!has_some) continue;
+        rounded.set(values);
+        const std::int32_t coarsest = coarsest_near_exponent(rounded.exponent());
+        for (std::uint32_t k = 0; k < found.figures.near; ++k) {
+          const auto expected = rounded.cost(coarsest - static_cast<std::int32_t>(found.figures.first_near + k));
+          ASSERT_EQ(found.near[k].bytes, expected ? expected->bytes : kNoNearBytes) << b << ", " << k;
+          ASSERT_EQ(found.near[k].squared_error, expected ? expected->squared_error : 0) << b << ", " << k;
+          ++rungs;
+        }
+        std::array<std::byte, 4096> out;
+        const std::uint32_t bytes = encode_exact(ordered, constants, std::nullopt, values, out);
+        ASSERT_EQ(found.figures.ordered_bytes, near.all || sparse ? bytes : 0U) << b;
+        exact += found.figures.ordered_bytes != 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(rungs, 4000U);
+  EXPECT_GT(exact, 300U);
 }
 
 TEST(DeviceCoder, StreamsAndDecodedValuesAreThoseOfTheHost) {

@@ -18,7 +18,7 @@ void launch_survey(const SurveyCall& call, cudaStream_t /*stream*/) {
 
 void launch_near_survey(const NearCall& call, cudaStream_t /*stream*/) {
   check_cuda(cudaStreamSynchronize(nullptr), "surveying blocks on the device");
-  encode_detail::NearStage stage;
+  encode_detail::LatticeStage stage;
   for (std::uint32_t b = 0; b < call.box.count(); ++b) {
     survey_near_rungs(encode_detail::HostWarp{}, call, *call.tables, b, stage);
   }
@@ -29,7 +29,7 @@ void launch_encode(const EncodeCall& call, cudaStream_t /*stream*/) {
   encode_detail::CodeStage stage;
   for (std::uint32_t i = 0; i < call.count; ++i) {
     code_block(encode_detail::HostWarp{}, call, *call.tables, i, stage);
-    put_words(call, *call.codes, i);
+    put_words(call, call.codes->transform, i);
     put_bytes(encode_detail::HostWarp{}, call, i);
   }
 }

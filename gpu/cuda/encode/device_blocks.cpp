@@ -150,7 +150,8 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
     const char* const what = "surveying on the device";
     launch_survey(call, stream);
     if (nearly > 0) {
-      const NearCall of_near{box_, call.tables, ask.near, call.figures, memory_->near.at_least(nearly)};
+      const NearCall of_near{box_,     call.tables,  coder_->codes.data(),
+                             ask.near, call.figures, memory_->near.at_least(nearly)};
       launch_near_survey(of_near, stream);
       copy_back(near, of_near.costs, stream, what);
     }

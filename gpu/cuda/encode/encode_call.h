@@ -85,6 +85,7 @@ struct SurveyCall {
 struct NearCall {
   BlockBox box;
   const CostTables* tables = nullptr;
+  const CodeTables* codes = nullptr;
   NearAsk ask;
   BlockFigures* figures = nullptr;  ///< of each block, as the survey has left them
   NearCost* costs = nullptr;        ///< ask.most() of each block

@@ -16,7 +16,8 @@ using namespace encode_detail;
 constexpr unsigned kWarps = 8;  // of a group
 constexpr unsigned kThreads = kWarps * kLanes;
 constexpr unsigned kSurveyGroups = 4;  // a multiprocessor, at least
-constexpr unsigned kNearGroups = 4;
+constexpr unsigned kLatticeWarps = 4;
+constexpr unsigned kLatticeGroups = 7;
 constexpr unsigned kCodeGroups = 5;
 constexpr unsigned kWordThreads = 128;
 constexpr unsigned kStatisticsWarps = 4;
@@ -43,13 +44,13 @@ __global__ void __launch_bounds__(kThreads, kSurveyGroups) survey_blocks(SurveyC
   }
 }
 
-__global__ void __launch_bounds__(kThreads, kNearGroups) survey_all_near_rungs(NearCall call) {
+__global__ void __launch_bounds__(kLatticeWarps* kLanes, kLatticeGroups) survey_all_near_rungs(NearCall call) {
   __shared__ CostTables tables;
-  __shared__ NearStage stages[kWarps];
+  __shared__ LatticeStage stages[kLatticeWarps];
   load_tables(tables, call.tables);
   const unsigned warp = threadIdx.x / kLanes;
   const std::uint32_t count = call.box.count();
-  for (std::uint32_t b = blockIdx.x * kWarps + warp; b < count; b += gridDim.x * kWarps) {
+  for (std::uint32_t b = blockIdx.x * kLatticeWarps + warp; b < count; b += gridDim.x * kLatticeWarps) {
     survey_near_rungs(DeviceWarp{}, call, tables, b, stages[warp]);
   }
 }
@@ -65,8 +66,8 @@ __global__ void __launch_bounds__(kThreads, kCodeGroups) code_blocks(EncodeCall 
 }
 
 __global__ void __launch_bounds__(kWordThreads) put_all_words(EncodeCall call) {
-  __shared__ CodeTables codes;
-  load_tables(codes, call.codes);
+  __shared__ TransformCodes codes;
+  load_tables(codes, &call.codes->transform);
   for (std::uint32_t i = blockIdx.x * kWordThreads + threadIdx.x; i < call.count; i += gridDim.x * kWordThreads) {
     put_words(call, codes, i);
   }
@@ -152,7 +153,7 @@ void launch_survey(const SurveyCall& call, cudaStream_t stream) {
 }
 
 void launch_near_survey(const NearCall& call, cudaStream_t stream) {
-  survey_all_near_rungs<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
+  survey_all_near_rungs<<<groups_for(call.box.count(), kLatticeWarps), kLatticeWarps * kLanes, 0, stream>>>(call);
   check_cuda(cudaGetLastError(), "surveying blocks on the device");
 }
 

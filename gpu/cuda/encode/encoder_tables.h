@@ -40,8 +40,13 @@ struct SymbolCode {
 };
 inline constexpr unsigned kSymbolInverseBits = 44;
 
-struct alignas(16) CodeTables {
+struct alignas(16) TransformCodes {
   SymbolCode of[kTransformSymbols] = {};
+};
+
+struct alignas(16) CodeTables {
+  TransformCodes transform;
+  SymbolCode lattice[kPackedLevels * kPackedSymbols] = {};
 };
 
 /// By the tables of a file's constants, on the host.
@@ -49,12 +54,11 @@ inline void make_encoder_tables(const std::uint16_t* tables, CostTables& costs, 
   const SymbolCosts symbol_bits = symbol_costs(tables);
   for (unsigned context = 0; context < kPackedTables; ++context) {
     std::copy(symbol_bits[context].begin(), symbol_bits[context].end(), costs.cost + kPackedSymbols * context);
-  }
-  for (unsigned context = 0; context < kPackedBands * kPackedLevels; ++context) {
     const std::uint16_t* table = tables + std::size_t{kPackedSymbols} * context;
     for (unsigned s = 0; s < kPackedSymbols; ++s) {
       const std::uint32_t end = s + 1 < kPackedSymbols ? table[s + 1] : 1U << kFrequencyBits;
-      SymbolCode& code = codes.of[kPackedSymbols * context + s];
+      const unsigned at = kPackedSymbols * context + s;
+      SymbolCode& code = at < kTransformSymbols ? codes.transform.of[at] : codes.lattice[at - kTransformSymbols];
       code.low = table[s];
       code.frequency = end - table[s];
       if (code.frequency == 0) continue;

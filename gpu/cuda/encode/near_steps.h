@@ -6,23 +6,14 @@
 #include <cstdint>
 
 #include "format/base/host_device.h"
-#include "format/packed/lattice_codes.h"
 #include "format/packed/near_rungs.h"
 #include "format/packed/stream_length.h"
+#include "gpu/cuda/encode/residual_stream.h"
 #include "gpu/cuda/encode/symbol_sums.h"
 #include "gpu/cuda/encode/transform_steps.h"
 
 namespace weir {
 namespace encode_detail {
-
-using decode_detail::kStageX;
-using decode_detail::kStageY;
-
-// What a warp has of shared memory.
-struct alignas(16) NearStage {
-  float values[kStageWords];         // where stage_of() says
-  std::uint32_t codes[kStageWords];  // there too; then magnitudes of residuals
-};
 
 // 2^exponent, of a normal number.
 WEIR_HOST_DEVICE inline double wide_power_of_two(std::int32_t exponent) {
@@ -93,7 +84,7 @@ WEIR_HOST_DEVICE inline NearQuantum near_quantum(const NearValues& values, std::
 }
 
 template <class Warp>
-WEIR_HOST_DEVICE void fill_codes(const Warp& warp, const NearQuantum& quantum, NearStage& stage) {
+WEIR_HOST_DEVICE void fill_codes(const Warp& warp, const NearQuantum& quantum, LatticeStage& stage) {
   warp.each([&](unsigned lane) {
     WEIR_UNROLL
     for (unsigned k = 0; k < 16; ++k) {
@@ -104,91 +95,10 @@ WEIR_HOST_DEVICE void fill_codes(const Warp& warp, const NearQuantum& quantum, N
   });
 }
 
-// Of a voxel: its code less what is predicted of those before it; 0 of the first.
-template <class Sum>
-WEIR_HOST_DEVICE inline std::uint32_t residual_at(const std::uint32_t* codes, unsigned predictor, bool ordered,
-                                                  unsigned index) {
-  if (index == 0) return 0;
-  const std::uint32_t* at = codes + stage_of(index);
-  return *at - static_cast<std::uint32_t>(predict_at<Sum, kStageX, kStageY>(predictor, ordered, at, index >= 64,
-                                                                            (index & 56U) != 0, (index & 7U) != 0));
-}
-
-WEIR_HOST_DEVICE inline std::uint32_t size_of_residual(std::uint32_t residual) {
-  return residual >> 31U != 0 ? 0U - residual : residual;
-}
-
-// best_predictor() of residuals.h.
-template <class Sum, class Warp>
-WEIR_HOST_DEVICE unsigned choose_predictor(const Warp& warp, const std::uint32_t* codes, bool ordered) {
-  unsigned best = 0;
-  std::uint32_t least = ~0U;
-  typename Warp::template Own<std::uint32_t> bits;
-  WEIR_NO_UNROLL
-  for (unsigned predictor = 0; predictor < kPredictors; ++predictor) {
-    warp.each([&](unsigned lane) {
-      std::uint32_t sum = 0;
-      WEIR_NO_UNROLL
-      for (unsigned k = 0; k < 16; ++k) {
-        const std::uint32_t m = 3U * size_of_residual(residual_at<Sum>(codes, predictor, ordered, lane + kLanes * k));
-        sum += m == 0 ? 0U : 32U - static_cast<unsigned>(__builtin_clz(m));
-      }
-      bits(lane) = sum;
-    });
-    const std::uint32_t all = warp.of_all(bits, [](std::uint32_t a, std::uint32_t b) { return a + b; });
-    if (all < least) {
-      least = all;
-      best = predictor;
-    }
-  }
-  return best;
-}
-
-// Codes become magnitudes of residuals. Returns the last place that is not zero, and all bits of the magnitudes.
-struct ResidualBits {
-  std::uint32_t last = 0;
-  std::uint32_t bits = 0;
-};
-struct OwnResiduals {
-  std::uint32_t of[16];
-};
-
-template <class Sum, class Warp>
-WEIR_HOST_DEVICE ResidualBits code_residuals(const Warp& warp, const CostTables& tables, unsigned predictor,
-                                             bool ordered, std::uint32_t* codes) {
-  typename Warp::template Own<OwnResiduals> own;
-  typename Warp::template Own<std::uint32_t> last, bits;
-  warp.each([&](unsigned lane) {
-    WEIR_UNROLL
-    for (unsigned k = 0; k < 16; ++k) {
-      own(lane).of[k] = size_of_residual(residual_at<Sum>(codes, predictor, ordered, lane + kLanes * k));
-    }
-  });
-  warp.each([&](unsigned lane) {
-    std::uint32_t most = 0;
-    std::uint32_t all = 0;
-    WEIR_UNROLL
-    for (unsigned k = 0; k < 16; ++k) {
-      const unsigned index = lane + kLanes * k;
-      const std::uint32_t m = own(lane).of[k];
-      codes[stage_of(index)] = m;
-      const std::uint32_t place = m == 0 ? 0U : tables.place[index] & 511U;
-      most = place > most ? place : most;
-      all |= m;
-    }
-    last(lane) = most;
-    bits(lane) = all;
-  });
-  ResidualBits found;
-  found.last = warp.of_all(last, [](std::uint32_t a, std::uint32_t b) { return b > a ? b : a; });
-  found.bits = warp.of_all(bits, [](std::uint32_t a, std::uint32_t b) { return a | b; });
-  return found;
-}
-
-// Bytes of a stream of those magnitudes, whose last one is at `last` > 0.
+// Bytes of a stream of those residuals, whose last one that is not 0 is at place `last` > 0.
 template <class Warp>
-WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables& tables,
-                                             const std::uint32_t* magnitudes, std::uint32_t last) {
+WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables& tables, const std::uint32_t* residuals,
+                                             std::uint32_t last) {
   typename Warp::template Own<std::uint32_t> symbols, raw, nonzero;
   const unsigned end = last / kEndUnit + 1;
   warp.each([&](unsigned lane) {
@@ -199,14 +109,12 @@ WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables&
       const std::uint32_t known = tables.place[index];
       const unsigned place = known & 511U;
       if (place < 4 || place >= kEndUnit * end) continue;
-      const std::uint32_t* at = magnitudes + stage_of(index);
-      const std::uint32_t beside = (index >= 64 ? *(at - kStageX) : 0U) + ((index & 56U) != 0 ? *(at - kStageY) : 0U) +
-                                   ((index & 7U) != 0 ? *(at - 1) : 0U);
-      add_value(tables, kLatticeSymbol, beside * (known >> 9U & 7U), *at, sums);
+      add_value(tables, kLatticeSymbol, sizes_beside(residuals, index, ~0U) * (known >> 9U & 7U),
+                size_of_residual(residuals[stage_of(index)]), sums);
     }
     if (lane == 0) {
       add_first_places(
-          tables, [&](unsigned index) { return magnitudes[stage_of(index)]; },
+          tables, [&](unsigned index) { return size_of_residual(residuals[stage_of(index)]); },
           [](std::uint32_t) { return kLatticeSymbol; }, sums);
     }
     symbols(lane) = sums.symbols;
@@ -218,14 +126,14 @@ WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables&
   const std::uint32_t all_raw = warp.of_all(raw, sum);
   const std::uint32_t all_nonzero = warp.of_all(nonzero, sum);
   const std::uint32_t bits =
-      coded_stream_bits(all_symbols, all_raw, all_nonzero, end, kRoundedEndBits, kRoundedNumberBits) +
+      coded_stream_bits(all_symbols, all_raw, all_nonzero, end, kLatticeEndBits, kRoundedNumberBits) +
       kRoundedNumberBits;
   return kRoundedFrontBytes + (bits + 7) / 8;
 }
 
 // Squared errors of near rungs [first, first + kRungsAtOnce) in squared quanta, one a group of lanes.
 template <class Warp>
-WEIR_HOST_DEVICE void near_errors(const Warp& warp, const NearStage& stage, const NearValues& values,
+WEIR_HOST_DEVICE void near_errors(const Warp& warp, const LatticeStage& stage, const NearValues& values,
                                   std::int32_t coarsest, std::uint32_t first,
                                   typename Warp::template Own<double>& errors) {
   typename Warp::template Own<double> own;
@@ -250,13 +158,14 @@ WEIR_HOST_DEVICE void near_errors(const Warp& warp, const NearStage& stage, cons
 /// Costs of the near rungs of a block of the call that the survey has found to have some.
 template <class Warp>
 WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, const CostTables& tables,
-                                        std::uint32_t block, encode_detail::NearStage& stage) {
+                                        std::uint32_t block, encode_detail::LatticeStage& stage) {
   using namespace encode_detail;
   const BlockFigures& known = call.figures[block];
   if (known.transformed == 0 || known.lattice != 0 || !(known.energy > 0)) return;
   gather_block(warp, call.box, block, stage.values);
   const NearValues values = near_values(warp, stage.values);
-  if (call.ask.blocks == NearBlocks::sparse && !(2 * values.zeros > 512)) return;
+  const bool sparse = 2 * values.zeros > 512;
+  if (call.ask.blocks == NearBlocks::sparse && !sparse) return;
   unsigned predictor = 0;
   const NearQuantum usual = near_quantum(values, values.exponent - kUsualRoundedBits);
   if (usual.fits) {
@@ -275,7 +184,7 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
     std::uint32_t bytes = kRawStreamBytes;
     if (quantum.fits) {
       fill_codes(warp, quantum, stage);
-      const ResidualBits found = code_residuals<std::int32_t>(warp, tables, predictor, false, stage.codes);
+      const FoundResiduals found = find_residuals<std::int32_t>(warp, tables, predictor, false, stage.codes);
       if (found.last != 0 && found.bits < kMostRoundedResidual) {
         bytes = rounded_bytes(warp, tables, stage.codes, found.last);
       }
@@ -287,8 +196,11 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
           bytes < kRawStreamBytes ? NearCost{errors(lane) * size * size, bytes, 0} : NearCost{0, kNoNearBytes, 0};
     });
   }
+  const std::uint32_t ordered =
+      call.ask.all || sparse ? encode_detail::ordered_bytes(warp, tables, *call.codes, stage) : 0U;
   warp.each([&](unsigned lane) {
     if (lane > 0) return;
+    call.figures[block].ordered_bytes = static_cast<std::uint16_t>(ordered);
     call.figures[block].first_near = static_cast<std::uint8_t>(first);
     call.figures[block].near = static_cast<std::uint8_t>(call.ask.most());
   });

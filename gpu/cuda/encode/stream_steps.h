@@ -7,94 +7,23 @@
 
 #include "format/base/host_device.h"
 #include "gpu/cuda/encode/code_steps.h"
+#include "gpu/cuda/encode/word_writer.h"
 
 namespace weir {
 namespace encode_detail {
 
-// `count` <= 32 bits of words from bit `first` on, which may lie beyond the last of the 16 words: zeros then.
-WEIR_HOST_DEVICE inline std::uint32_t sign_bits(const std::uint32_t* words, std::uint32_t first, std::uint32_t count) {
-  const std::uint32_t at = first / 32;
-  const std::uint32_t low = at < 16 ? words[at] : 0U;
-  const std::uint32_t high = at + 1 < 16 ? words[at + 1] : 0U;
-  const std::uint64_t two = low | std::uint64_t{high} << 32U;
-  return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
-}
-
-// What lies where in a stream that has values.
-struct StreamParts {
-  unsigned states;
-  std::uint32_t late;   // signs that the states begin with, and
-  std::uint32_t moved;  // low bits of the number
-  std::uint32_t early;  // signs in front
-};
-
-WEIR_HOST_DEVICE inline StreamParts parts_of(const StreamState& state) {
-  StreamParts parts;
-  parts.states = states_of(state.end);
-  const std::uint32_t capacity = 16 * parts.states;
-  parts.late = state.nonzero < capacity ? state.nonzero : capacity;
-  const std::uint32_t rest = capacity - parts.late;
-  parts.moved = rest < state.number_bits ? rest : state.number_bits;
-  parts.early = state.nonzero - parts.late;
-  return parts;
-}
-
-// Words in the order in which they are made, as many as there is room for.
-class WordWriter {
- public:
-  WEIR_HOST_DEVICE WordWriter(std::uint16_t* words, std::uint32_t most) : words_(words), most_(most) {}
-
-  WEIR_HOST_DEVICE void put_symbol(std::uint32_t& x, const SymbolCode& symbol) {
-    if (x >= std::uint64_t{symbol.frequency} << (32U - kFrequencyBits)) emit(x);
-    const auto whole = static_cast<std::uint32_t>(x * symbol.inverse >> kSymbolInverseBits);
-    x = (whole << kFrequencyBits) + (x - whole * symbol.frequency) + symbol.low;
-  }
-  WEIR_HOST_DEVICE void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
-    if (bits == 0) return;
-    if (x >> (32U - bits) != 0) emit(x);
-    x = x << bits | value;
-  }
-  WEIR_HOST_DEVICE void put_escape(std::uint32_t& x, std::uint32_t high) {
-    const std::uint32_t over = high - (kEscape - 1);
-    const unsigned length = 31U - static_cast<unsigned>(__builtin_clz(over));
-    const std::uint32_t rest = over - (1U << length);
-    if (length > 16) put_raw(x, rest >> 16U, length - 16);
-    put_raw(x, rest & 0xFFFFU, length < 16 ? length : 16U);
-    put_raw(x, length, 5);
-  }
-  /// More than there is room for where it is not fits().
-  WEIR_HOST_DEVICE std::uint32_t count() const { return count_; }
-  WEIR_HOST_DEVICE bool fits() const { return count_ <= most_; }
-
- private:
-  WEIR_HOST_DEVICE void emit(std::uint32_t& x) {
-    if (count_ < most_) words_[count_] = static_cast<std::uint16_t>(x);
-    ++count_;
-    x >>= 16U;
-  }
-
-  std::uint16_t* words_;
-  std::uint32_t most_;
-  std::uint32_t count_ = 0;
-};
-
-WEIR_HOST_DEVICE inline void put_code(const CodeTables& codes, std::uint32_t code, std::uint32_t& x,
+WEIR_HOST_DEVICE inline void put_code(const TransformCodes& codes, std::uint32_t code, std::uint32_t& x,
                                       WordWriter& words) {
   const std::uint32_t context = code & ((1U << kExtraShift) - 1U);
   const unsigned extra = code >> kExtraShift & 31U;
   const std::uint32_t m = code >> kMagnitudeShift;
   const std::uint32_t high = m >> extra;
-  const bool escapes = high >= kEscape;
-  if (extra != 0 || escapes) {
-    words.put_raw(x, m & ((1U << extra) - 1U), extra);
-    if (escapes) words.put_escape(x, high);
-  }
-  words.put_symbol(x, codes.of[kPackedSymbols * context + (escapes ? kEscape : high)]);
+  words.put_value(x, m, extra, codes.of[kPackedSymbols * context + (high < kEscape ? high : kEscape)]);
 }
 
 // From the last place to the first.
 template <bool kTwo>
-WEIR_HOST_DEVICE void put_values(const CodeTables& codes, const Quad* coded, unsigned end, std::uint32_t& first,
+WEIR_HOST_DEVICE void put_values(const TransformCodes& codes, const Quad* coded, unsigned end, std::uint32_t& first,
                                  std::uint32_t& second, WordWriter& words) {
   Quad next = coded[kEndUnit / 4 * end - 1];
   WEIR_NO_UNROLL
@@ -123,20 +52,17 @@ WEIR_HOST_DEVICE inline std::uint32_t front_byte(std::uint64_t head, std::uint32
   return byte & 0xFFU;
 }
 
-WEIR_HOST_DEVICE inline unsigned bytes_of_state(std::uint32_t x) { return x >> 24U == 0 ? 3 : 4; }
-
 }  // namespace encode_detail
 
 /// Words and states of an ask that code_block() has not left.
-WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const CodeTables& codes, std::uint32_t i) {
+WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const TransformCodes& codes, std::uint32_t i) {
   using namespace encode_detail;
   StreamState& state = call.states[i];
   if (state.left != 0 || state.end == 0) return;
   const StreamParts parts = parts_of(state);
-  std::uint32_t payload = sign_bits(state.signs, parts.early, parts.late);
-  if (parts.moved > 0) payload |= (state.number & ((1U << parts.moved) - 1U)) << parts.late;
-  std::uint32_t first = kLeastState | (payload & 0xFFFFU);
-  std::uint32_t second = kLeastState | payload >> 16U;
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+  begin_states(state, parts, first, second);
   WordWriter words(call.words + call.words_at(i), call.asks[i].bytes / 2);
   const auto* coded = reinterpret_cast<const Quad*>(call.coded + std::size_t{512} * i);
   if (parts.states == 2) {

@@ -196,7 +196,7 @@ TEST_F(EncodeSteps, StreamsAndWhatTheyDecodeToAreThoseOfTheCpu) {
           call.made = &is_made;
           encode_detail::CodeStage stage;
           code_block(HostWarp{}, call, costs_, 0, stage);
-          put_words(call, codes_, 0);
+          put_words(call, codes_.transform, 0);
           put_bytes(HostWarp{}, call, 0);
           EXPECT_EQ(words[bytes / 2], 0xABCD) << "beyond the room for words";
           EXPECT_EQ(out[bytes], std::byte{0x5A}) << "beyond the stream";

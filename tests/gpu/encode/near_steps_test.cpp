@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "format/packed/lattice_block.h"
 #include "format/packed/rounded_block.h"
 #include "gpu/cuda/encode/survey_steps.h"
 #include "tests/gpu/encode/boxed_volume.h"
@@ -40,9 +44,9 @@ class NearSteps : public testing::Test {
     survey.most = survey.ask.most();
     survey.figures = found.figures.data();
     survey.costs = rungs.data();
-    NearCall call{box, &tables_, ask, found.figures.data(), found.costs.data()};
+    NearCall call{box, &tables_, &codes_, ask, found.figures.data(), found.costs.data()};
     encode_detail::BlockStage stage;
-    encode_detail::NearStage near_stage;
+    encode_detail::LatticeStage near_stage;
     for (std::uint32_t b = 0; b < box.count(); ++b) {
       survey_block(HostWarp{}, survey, tables_, b, stage);
       survey_near_rungs(HostWarp{}, call, tables_, b, near_stage);
@@ -113,6 +117,44 @@ TEST_F(NearSteps, NearRungsAboutAQuantumAreThoseAmongAll) {
           ASSERT_EQ(cost.squared_error, same.squared_error) << b << ", " << k;
         }
       }
+    }
+  }
+}
+
+TEST_F(NearSteps, FloatsInOrderTakeTheBytesThatTheCpuTakes) {
+  const ValueEncoder coder(built_in_tables(), ValueEncoder::Kind::lattice);
+  BlockConstants constants;
+  constants.tables = built_in_tables();
+  std::size_t shorter = 0;
+  std::size_t raw = 0;
+  for (const BlockVolume& volume : volumes()) {
+    SCOPED_TRACE(volume.name);
+    for (const Index3& before : kBefores) {
+      const Boxed boxed(volume, before);
+      const Found found = find(boxed.box, {NearBlocks::all});
+      for (std::uint32_t b = 0; b < boxed.box.count(); ++b) {
+        if (found.figures[b].near == 0) continue;
+        std::array<std::byte, 4096> out;
+        const std::uint32_t bytes = encode_exact(coder, constants, std::nullopt, boxed.block(b), out);
+        ASSERT_EQ(found.figures[b].ordered_bytes, bytes) << b;
+        ++(bytes < kRawStreamBytes ? shorter : raw);
+      }
+    }
+  }
+  EXPECT_GT(shorter, 500U);
+  EXPECT_GT(raw, 10U);
+}
+
+TEST_F(NearSteps, FloatsInOrderOfAWindowAreThoseOfSparseBlocks) {
+  for (const BlockVolume& volume : volumes()) {
+    SCOPED_TRACE(volume.name);
+    const Boxed boxed(volume, {0, 0, 0});
+    const Found all = find(boxed.box, {NearBlocks::all});
+    const Found found = find(boxed.box, {NearBlocks::all, false, -9});
+    for (std::uint32_t b = 0; b < boxed.box.count(); ++b) {
+      const Values values = boxed.block(b);
+      const bool is_sparse = 2 * std::count(values.begin(), values.end(), 0.0F) > 512;
+      ASSERT_EQ(found.figures[b].ordered_bytes, is_sparse ? all.figures[b].ordered_bytes : 0) << b;
     }
   }
 }
