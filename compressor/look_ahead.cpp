@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compressor/packed/block_sample.h"
+#include "compressor/survey/resident_survey.h"
 #include "compressor/survey/survey.h"
 #include "compressor/team/region_share.h"
 #include "format/base/trace.h"
@@ -61,10 +62,13 @@ std::optional<BudgetOutlook> look_ahead(VolumeSource& source, const ReadingPlan&
   StreamOptions quiet;
   quiet.cancel = stream.cancel;
   quiet.trace = stream.trace;
-  BlockSurvey survey(source.info(), rows, nullptr, false, stream.trace, aim);
-  // A device copies short rows for many threads at once.
-  const Reading by = source.resident() == nullptr ? reading.reading : Reading::in_place;
-  team.run([&] { survey_boxes(source, plan, leaf_boxes, quiet, by, survey); });
+  ResidentVolume* const resident = source.resident();
+  if (resident != nullptr && team.alone() && !aim.lattice) {
+    survey_resident_sample(*resident, source, rows, aim, leaf_boxes, quiet);
+  } else {
+    BlockSurvey survey(source.info(), rows, nullptr, false, stream.trace, aim);
+    team.run([&] { survey_boxes(source, plan, leaf_boxes, quiet, reading.reading, survey); });
+  }
   team.publish(rows.file());
   team.publish(rows.ladders()->file());
   FileRequest request;

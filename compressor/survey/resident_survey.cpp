@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compressor/packed/block_values.h"
@@ -40,19 +41,22 @@ std::vector<Box> leaf_boxes(const Index3& count) {
 class ResidentSurvey {
  public:
   ResidentSurvey(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
-                 const StreamOptions& options)
+                 const RungAsk& ask, const StreamOptions& options)
       : resident_(resident),
         source_(source),
         leaves_(rows.leaves()),
-        ask_(ladders.rung_ask()),
+        ask_(ask),
         options_(options),
         survey_(source.info(), rows, nullptr, false, options.trace, ladders, BlockSurvey::Counting::elsewhere) {}
 
-  Survey run() {
-    const std::vector<Box> boxes = leaf_boxes(leaves_.count);
+  void add(std::span<const Box> boxes) {
     one_ahead<Begun>(
         boxes.size(), resident_.most_open(), [&](std::size_t i, Begun& begun) { begin(boxes[i], begun); },
         [&](Begun& begun) { end(begun); });
+  }
+
+  Survey run() {
+    add(leaf_boxes(leaves_.count));
     count();
     return survey_.result(survey_.tally());
   }
@@ -161,7 +165,14 @@ class ResidentSurvey {
 
 Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                        const StreamOptions& options) {
-  return ResidentSurvey(resident, source, rows, ladders, options).run();
+  return ResidentSurvey(resident, source, rows, ladders, ladders.rung_ask(), options).run();
+}
+
+void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                            std::span<const Box> boxes, const StreamOptions& options) {
+  RungAsk ask = ladders.rung_ask();
+  if (ladders.near_rungs) ask.near.blocks = NearBlocks::all;
+  ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
 }
 
 }  // namespace weir

@@ -1,6 +1,8 @@
 // The survey of packed blocks of a volume that lies on a device: its values do not cross the host's memory.
 #pragma once
 
+#include <span>
+
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/survey/block_survey.h"
 #include "compressor/survey/row_store.h"
@@ -15,5 +17,10 @@ namespace weir {
 /// VolumeSource::read, and Error(interrupted).
 Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                        const StreamOptions& options);
+
+/// The same of some boxes of blocks (lattice positions), which are all of them sampled ones (BlockSample), without the
+/// figures of the whole.
+void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
+                            std::span<const Box> boxes, const StreamOptions& options);
 
 }  // namespace weir
