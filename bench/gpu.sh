@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, decoding, frames a second against
-# a dense texture, and whole pictures. Needs a CUDA device; the step `largest` 50 GB of disk and half of it in memory.
+# a dense texture, and whole pictures. Needs a CUDA device; the steps `largest` and `cold` 50 GB of disk and half of it
+# in memory, `giant` 75 GB.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
 #     --bin    a folder with weir, weir_tests_cuda and weir_bench_{load,decode,encode,save,frames,paging}; default: build/release, built
 #     --edge   of the cloud of cold and largest, default 2048
-#     STEP     checks, load, decode, encode, save, frames, paging, pictures, cold, largest; default: all of them
+#     STEP     checks, load, decode, encode, save, threads, frames, paging, pictures, cold, largest, giant; default: all
+#              but the last
 #
 # Exit code 1 where a check fails, or loading is below 0.8 of the device's rate.
 set -euo pipefail
@@ -16,15 +18,15 @@ while [[ ${1:-} == --* ]]; do
   case $1 in
     --bin) bin=$2 ;;
     --edge) edge=$2 ;;
-    *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
+    *) sed -n '6,10s/^# *//p' "$0" >&2; exit 2 ;;
   esac
   shift 2
 done
-[ $# -gt 0 ] || set -- checks load decode encode save frames paging pictures cold largest
+[ $# -gt 0 ] || set -- checks load decode encode save threads frames paging pictures cold largest
 for step; do
   case $step in
-    checks | load | decode | encode | save | frames | paging | pictures | cold | largest) ;;
-    *) sed -n '5,8s/^# *//p' "$0" >&2; exit 2 ;;
+    checks | load | decode | encode | save | threads | frames | paging | pictures | cold | largest | giant) ;;
+    *) sed -n '6,10s/^# *//p' "$0" >&2; exit 2 ;;
   esac
 done
 if [ -z "$bin" ]; then
@@ -132,6 +134,28 @@ encode() {
   done
 }
 
+# converted ARGUMENTS...: seconds of the survey and of all of a conversion of the 1024^3 cloud.
+converted() {
+  "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --resume off \
+    -o "$work/cloud1024.nvdb" --overwrite --json --progress never --log-level error "$@" >"$work/c.json" || failed=1
+  sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json"
+}
+# Whole conversions by 1, 2, 4 ... threads, the best of three (of one by one thread), and one read of the file.
+threads() {
+  local name=$work/cloud1024.raw
+  quiet "$bin/weir" sample cloud --dims 1024,1024,1024 -o "$name"
+  printf '== conversions of cloud 1024 to a twentieth; reading it once: %s\n' "$(seconds dd if="$name" of=/dev/null bs=8M)"
+  for encoding in float fpn packed; do
+    for ((n = 1; n <= $(nproc); n *= 2)); do
+      for ((run = 0; run < (n == 1 ? 1 : 3); ++run)); do
+        converted --encoding "$encoding" --threads "$n"
+      done | awk -v what="$encoding, $n threads" 'NR == 1 || $2 < best { best = $2; survey = $1 }
+          END { printf "%-20s %6.2f s, survey %5.2f, rest %5.2f\n", what, best, survey, best - survey }'
+    done
+  done
+  rm "$work"/*
+}
+
 decode() {
   packed cloud 20 53.3
   packed turbulence 10.667 20 50
@@ -208,6 +232,39 @@ cold() {
     grep -E '"(load_s|render_s)"' "$work/log" | tr -d '\n' | tr -s ' '; echo
     rm "$work/p.png"
   done
+  echo "== the same, 360 x 270 pixels, seconds of rendering: all bricks; 2 GiB of device memory; 2 GiB, --lod 2"
+  for mode in "path --spp 32" dvr iso mip; do
+    printf '%-16s' "$mode"
+    smaller "$file" "$mode"
+    smaller "$file" "$mode" --device-memory 2GiB
+    smaller "$file" "$mode" --device-memory 2GiB --lod 2
+    echo
+  done
+  rm "$work"/*
+}
+# smaller FILE MODE ARGUMENTS...: the seconds of a small picture.
+smaller() {
+  local mode
+  read -ra mode <<<"$2"
+  timeout 300 "$bin/weir" render "$1" -o "$work/p.png" --overwrite --mode "${mode[@]}" --size 360x270 --json --progress never \
+    --log-level error "${@:3}" >"$work/p.json" || failed=1
+  printf '%9.3f' "$(sed -nE 's/.*"render_s": *([0-9.]+).*/\1/p' "$work/p.json")"
+}
+
+# Larger than any device: 4096^3 of uint8, without loss.
+giant() {
+  local name=$work/cloud4096
+  quiet "$bin/weir" sample cloud --dims 4096,4096,4096 --type uint8 -o "$name.raw"
+  printf '== cloud 4096, uint8, packed without loss: %s, ' "$(seconds "$bin/weir" convert "$name.raw" --dims 4096,4096,4096 \
+    --type uint8 --memory 4GiB --encoding packed --lossless -o "$name.nvdb" --progress never --log-level error)"
+  rm "$name.raw"
+  printf '%s bytes; seconds of rendering with 2 GiB of device memory, and --lod 3\n' "$(stat -c %s "$name.nvdb")"
+  for mode in dvr iso mip; do
+    printf '%-16s' "$mode"
+    smaller "$name.nvdb" $mode --device-memory 2GiB
+    smaller "$name.nvdb" $mode --device-memory 2GiB --lod 3
+    echo
+  done
   rm "$work"/*
 }
 
@@ -222,7 +279,9 @@ for step; do
     frames) frames ;;
     paging) paging ;;
     pictures) pictures ;;
+    threads) threads ;;
     cold) cold ;;
+    giant) giant ;;
     largest) cloud "$edge" ;;
   esac
 done
