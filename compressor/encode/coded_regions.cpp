@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "format/packed/block_steps.h"
+#include "format/packed/stream_length.h"
 
 namespace weir {
 namespace {
@@ -10,6 +11,14 @@ namespace {
 // Blocks whose values, codes and streams a batch has at most, but for what one region has: 16 MiB of values.
 constexpr std::size_t kMostBlocks = 8192;
 constexpr std::size_t kRegionBlocks = 4096;
+
+// Of a stream that was planned; nullopt where the caller encodes it.
+std::optional<StreamAskKind> kind_of(const PackedTarget& packed, std::int16_t step, std::uint32_t bytes) {
+  if (step >= kLeastStep && step <= kMostStep) return StreamAskKind::transform;
+  if (PlannedStreams::is_near(step)) return StreamAskKind::rounded;
+  const bool exact = step == PlannedStreams::kExactStep && bytes < kRawStreamBytes && !packed.lattice;
+  return exact ? std::optional(StreamAskKind::exact) : std::nullopt;
+}
 
 }  // namespace
 
@@ -53,12 +62,16 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
     const Index3 leaf = box.lo + index_at(i, box.extent());
     const std::size_t position = target.tree.mask_position(leaf);
     const std::int16_t step = streams.plan().steps[position];
-    if (!streams.kept(position) || step < kLeastStep || step > kMostStep || !asks_for(target, leaf)) continue;
+    if (!streams.kept(position) || !asks_for(target, leaf)) continue;
+    const std::optional<StreamAskKind> kind = kind_of(*target.packed, step, streams.bytes(position));
+    if (!kind) continue;
+    const bool rounded = *kind == StreamAskKind::rounded;
     const std::uint32_t offset = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
     coded.set(leaf, asks_.size());
     asks_.push_back({streams.plan().region.means,
                      static_cast<std::uint32_t>(linear_index(leaf - leaf_box.lo, leaf_box.extent())), offset,
-                     static_cast<std::uint16_t>(streams.bytes(position)), step});
+                     static_cast<std::uint16_t>(streams.bytes(position)),
+                     rounded ? static_cast<std::int16_t>(step - PlannedStreams::kNearStep) : step, *kind});
   }
   regions_.push_back({region, std::move(places), box, std::move(coded)});
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -149,15 +148,14 @@ class PackedEncoder final : public PackedLayerEncoder {
     if (packed_.rule.preview) write_corner(leaf);
   }
 
-  static bool is_near(std::int16_t step) { return std::abs(step - PlannedStreams::kNearStep) <= 128; }
   // Whether it is the step of a quantiser.
   static bool transforms(std::int16_t step) {
-    return !is_near(step) && step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep;
+    return !PlannedStreams::is_near(step) && step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep;
   }
 
   void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
-    if (is_near(step)) {
+    if (PlannedStreams::is_near(step)) {
       rounded_.set(values_);
       if (!rounded_.encode(step - PlannedStreams::kNearStep, stream)) fail({}, "cannot be rounded");
       return;
@@ -200,8 +198,8 @@ class PackedEncoder final : public PackedLayerEncoder {
   // Whether write_stream() has left what the stream decodes to, which is then put there.
   bool know_values(const PlannedStreams& plan, std::size_t position) {
     const std::int16_t step = plan.steps[position];
-    shortened_ = is_near(step) ? rounded_.coarser() : transforms(step) && transform_.dropped();
-    if (is_near(step)) {
+    shortened_ = PlannedStreams::is_near(step) ? rounded_.coarser() : transforms(step) && transform_.dropped();
+    if (PlannedStreams::is_near(step)) {
       rounded_.decoded(packed_.constants, decoded_);
       return true;
     }

@@ -66,6 +66,8 @@ struct PlannedStreams {
   static constexpr std::int16_t kExactStep = 0x7FFF;    ///< the exact kind
   static constexpr std::int16_t kBoundedStep = 0x7FFE;  ///< that of values rounded to within --max-error
   static constexpr std::int16_t kNearStep = 0x4000;     ///< plus exponent: rounded to multiples of 2^exponent
+
+  static bool is_near(std::int16_t step) { return step >= kNearStep - 128 && step <= kNearStep + 128; }
 };
 static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
 

@@ -91,6 +91,13 @@ struct BlockFigures {
   std::uint16_t unused[3] = {};
 };
 
+/// What a stream has.
+enum class StreamAskKind : std::uint8_t {
+  transform,  ///< coefficients, quantised at a step
+  rounded,    ///< values rounded to multiples of 2^step
+  exact       ///< every bit, in so many bytes, where the source's type does not say that values lie on a lattice
+};
+
 /// A stream to be written.
 struct StreamAsk {
   MeanRange means;           ///< of the block's region
@@ -98,6 +105,7 @@ struct StreamAsk {
   std::uint32_t offset = 0;  ///< among all streams: sums of `bytes`
   std::uint16_t bytes = 0;
   std::int16_t step = 0;
+  StreamAskKind kind{};
 };
 
 /// What a survey finds of a block.

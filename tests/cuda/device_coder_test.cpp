@@ -210,6 +210,59 @@ TEST(DeviceCoder, StreamsAndDecodedValuesAreThoseOfTheHost) {
   EXPECT_GT(compared, 3000U);
 }
 
+TEST(DeviceCoder, StreamsOfRoundedValuesAndOfFloatsInOrderAreThoseOfTheHost) {
+  WEIR_NEEDS_DEVICE();
+  const auto coder = make_device_coder(0, expect_no_failure);
+  RoundedBlock rounded;
+  const ValueEncoder ordered(built_in_tables(), ValueEncoder::Kind::lattice);
+  std::size_t compared = 0;
+  for (const test::BlockVolume& volume : test::mixed_volumes()) {
+    SCOPED_TRACE(volume.name);
+    const Blocks blocks(volume);
+    const BlockConstants constants = constants_of(volume);
+    const auto loaded = coder->load(volume.values, blocks.voxels, blocks.blocks);
+    ASSERT_NE(loaded, nullptr);
+    for (std::int32_t rung = 0; rung < kNearRungs; rung += 3) {
+      std::vector<StreamAsk> asks;
+      std::vector<std::vector<std::byte>> expected;
+      const auto ask = [&](std::uint32_t b, std::vector<std::byte> stream, std::int32_t step, StreamAskKind kind) {
+        const std::uint32_t offset = asks.empty() ? 0 : asks.back().offset + asks.back().bytes;
+        asks.push_back(
+            {{}, b, offset, static_cast<std::uint16_t>(stream.size()), static_cast<std::int16_t>(step), kind});
+        expected.push_back(std::move(stream));
+      };
+      for (std::uint32_t b = 0; b < weir::volume(blocks.count()); ++b) {
+        const Values values = blocks.of(b);
+        rounded.set(values);
+        const std::int32_t exponent = coarsest_near_exponent(rounded.exponent()) - rung;
+        if (const auto cost = rounded.cost(exponent)) {
+          std::vector<std::byte> stream(cost->bytes);
+          if (rounded.encode(exponent, stream) && !rounded.coarser()) {
+            ask(b, std::move(stream), exponent, StreamAskKind::rounded);
+          }
+        }
+        std::vector<std::byte> stream(4096);
+        stream.resize(encode_exact(ordered, constants, std::nullopt, values, stream));
+        if (is_ordered(stream)) ask(b, std::move(stream), 0, StreamAskKind::exact);
+      }
+      ASSERT_FALSE(asks.empty());
+      const auto pending = loaded->encode(asks, constants);
+      ASSERT_NE(pending, nullptr);
+      const auto found = pending->wait();
+      ASSERT_TRUE(found);
+      for (std::size_t i = 0; i < asks.size(); ++i) {
+        if (found->made[i] == 0) continue;
+        ASSERT_EQ(std::memcmp(expected[i].data(), found->bytes.data() + asks[i].offset, asks[i].bytes), 0) << i;
+        Values decoded;
+        ASSERT_TRUE(decode_block(constants, {}, expected[i].data(), asks[i].bytes, decoded.data()));
+        ASSERT_EQ(std::memcmp(decoded.data(), found->decoded.data() + 512 * i, sizeof decoded), 0) << i;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 1000U);
+}
+
 // The steps' results on the host, which tests/fake_coder/ compares with the CPU's own code.
 TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost) {
   WEIR_NEEDS_DEVICE();

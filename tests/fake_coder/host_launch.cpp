@@ -1,10 +1,12 @@
 // In place of the kernels that survey and encode packed blocks: their steps, a block after the other.
+#include "gpu/cuda/encode/lattice_code_steps.h"
 #include "gpu/cuda/encode/launch.h"
 #include "gpu/cuda/encode/near_steps.h"
 #include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
 #include "gpu/cuda/encode/summary_steps.h"
 #include "gpu/cuda/runtime/check.h"
+#include "tests/fake_coder/support.h"
 
 namespace weir {
 
@@ -27,8 +29,12 @@ void launch_near_survey(const NearCall& call, cudaStream_t /*stream*/) {
 void launch_encode(const EncodeCall& call, cudaStream_t /*stream*/) {
   check_cuda(cudaStreamSynchronize(nullptr), "encoding blocks on the device");
   encode_detail::CodeStage stage;
+  encode_detail::LatticeStage lattice_stage;
   for (std::uint32_t i = 0; i < call.count; ++i) {
     code_block(encode_detail::HostWarp{}, call, *call.tables, i, stage);
+    if (call.asks[i].kind != StreamAskKind::transform) {
+      code_lattice_block(encode_detail::HostWarp{}, call, *call.tables, i, lattice_stage);
+    }
     put_words(call, call.codes->transform, i);
     put_bytes(encode_detail::HostWarp{}, call, i);
   }
@@ -54,6 +60,7 @@ void launch_summaries(const SummaryCall& call, cudaStream_t /*stream*/) {
 
 void launch_values(const ValuesCall& call, cudaStream_t /*stream*/) {
   float stage[kStageWords];
+  fake_coder_test::values_copied() += call.count;
   for (std::uint32_t i = 0; i < call.count; ++i) copy_block(encode_detail::HostWarp{}, call, i, stage);
 }
 

@@ -91,6 +91,24 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
   }
 }
 
+// Budgets that buy all near rungs and floats in order, and those of a window.
+TEST_F(Resident, NearlyLosslessBlocksOfACloudStayOnTheDevice) {
+  MemoryVolume volume = cloud({{0, 0, 0}, {272, 208, 160}});
+  for (const Budget& budget : {budget_of(Budget::Kind::rate, 3), budget_of(Budget::Kind::psnr, 130)}) {
+    ConversionOptions options = with(budget);
+    options.resume = Resume::off;
+    options.background = 0.0F;
+    options.preview = Preview::off;
+    const Result expected = convert_by(nullptr, volume, options);
+    const std::uint64_t before = values_copied();
+    const Result result = convert_by(nullptr, *on_device(volume), options);
+    EXPECT_EQ(result.file == expected.file, true);
+    const auto& [none, mean, transform, lattice, raw] = result.sidecar.packed->blocks;
+    EXPECT_GT(lattice, transform);
+    EXPECT_LT(values_copied() - before, lattice / 8) << "those on a lattice of their own";
+  }
+}
+
 TEST_F(Resident, HardCasesHaveTheBytesOfTheHost) {
   for (const test::HardCase& c : test::hard_cases()) {
     SCOPED_TRACE(c.name);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,12 @@ inline test::MemoryVolume cloud(const Box& domain = kOdd) {
 }
 inline test::MemoryVolume turbulence(const Box& domain = kOdd) {
   return {domain, [](const Index3& i) { return static_cast<float>(40 * waves(i, 7)); }};
+}
+
+/// Blocks whose values the pretended device has given to the host, so far.
+inline std::atomic<std::uint64_t>& values_copied() {
+  static std::atomic<std::uint64_t> count{0};
+  return count;
 }
 
 struct Result {

@@ -157,12 +157,13 @@ WEIR_HOST_DEVICE inline std::uint32_t code_of_mean(const MeanRange& range, std::
 
 }  // namespace encode_detail
 
-/// The state, codes and decoded values of an ask of the call.
+/// The state, codes and decoded values of an ask of the call that is of a transform.
 template <class Warp>
 WEIR_HOST_DEVICE void code_block(const Warp& warp, const EncodeCall& call, const CostTables& tables, std::uint32_t i,
                                  encode_detail::CodeStage& stage) {
   using namespace encode_detail;
   const StreamAsk ask = call.asks[i];
+  if (ask.kind != StreamAskKind::transform) return;
   StreamState& state = call.states[i];
   float* decoded = call.decoded + std::size_t{512} * i;
   gather_block(warp, call.box, ask.block, stage.values);

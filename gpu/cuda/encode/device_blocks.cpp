@@ -1,5 +1,6 @@
 #include "gpu/cuda/encode/device_blocks.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "gpu/cuda/encode/launch.h"
@@ -49,6 +50,8 @@ class DeviceStreams final : public PendingStreams {
     StreamAsk* const asked = memory_->asks.at_least(count);
     call.asks = asked;
     call.count = static_cast<std::uint32_t>(count);
+    call.on_lattices = std::any_of(asks.begin(), asks.end(),
+                                   [](const StreamAsk& ask) { return ask.kind != StreamAskKind::transform; });
     call.states = memory_->states.at_least(count);
     call.coded = memory_->coded.at_least(512 * count);
     call.words = memory_->words.at_least(bytes / 2 + count + 1);

@@ -101,7 +101,9 @@ struct alignas(16) StreamState {
   std::uint8_t end;     ///< in units of kEndUnit places; 0: a mean alone
   std::uint8_t number_bits;
   std::uint8_t left;  ///< to the host
-  std::uint8_t unused;
+  // Of streams that are not of a transform.
+  std::uint8_t head;  ///< first byte
+  float lattice[2];   ///< minimum and quantum
 };
 
 /// What writes streams.
@@ -111,7 +113,8 @@ struct EncodeCall {
   const CostTables* tables = nullptr;
   const CodeTables* codes = nullptr;
   const StreamAsk* asks = nullptr;
-  std::uint32_t count = 0;  ///< of asks; the rest is by ask
+  std::uint32_t count = 0;   ///< of asks; the rest is by ask
+  bool on_lattices = false;  ///< some asks are not of a transform
   StreamState* states = nullptr;
   std::uint32_t* coded = nullptr;  ///< 512 of each, by place: see code_steps.h
   std::uint16_t* words = nullptr;  ///< those of an ask begin at words_at()

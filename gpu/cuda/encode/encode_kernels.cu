@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "gpu/cuda/encode/lattice_code_steps.h"
 #include "gpu/cuda/encode/launch.h"
 #include "gpu/cuda/encode/near_steps.h"
 #include "gpu/cuda/encode/record_steps.h"
@@ -62,6 +63,18 @@ __global__ void __launch_bounds__(kThreads, kCodeGroups) code_blocks(EncodeCall 
   const unsigned warp = threadIdx.x / kLanes;
   for (std::uint32_t i = blockIdx.x * kWarps + warp; i < call.count; i += gridDim.x * kWarps) {
     code_block(DeviceWarp{}, call, tables, i, stages[warp]);
+  }
+}
+
+__global__ void __launch_bounds__(kLatticeWarps* kLanes, kLatticeGroups) code_lattice_blocks(EncodeCall call) {
+  __shared__ CostTables tables;
+  __shared__ LatticeStage stages[kLatticeWarps];
+  load_tables(tables, call.tables);
+  const unsigned warp = threadIdx.x / kLanes;
+  for (std::uint32_t i = blockIdx.x * kLatticeWarps + warp; i < call.count; i += gridDim.x * kLatticeWarps) {
+    if (call.asks[i].kind != StreamAskKind::transform) {
+      code_lattice_block(DeviceWarp{}, call, tables, i, stages[warp]);
+    }
   }
 }
 
@@ -160,6 +173,9 @@ void launch_near_survey(const NearCall& call, cudaStream_t stream) {
 void launch_encode(const EncodeCall& call, cudaStream_t stream) {
   const unsigned groups = groups_for(call.count, kWarps);
   code_blocks<<<groups, kThreads, 0, stream>>>(call);
+  if (call.on_lattices) {
+    code_lattice_blocks<<<groups_for(call.count, kLatticeWarps), kLatticeWarps * kLanes, 0, stream>>>(call);
+  }
   put_all_words<<<groups_for(call.count, kWordThreads), kWordThreads, 0, stream>>>(call);
   put_all_bytes<<<groups, kThreads, 0, stream>>>(call);
   check_cuda(cudaGetLastError(), "encoding blocks on the device");

@@ -14,7 +14,7 @@ void launch_survey(const SurveyCall& call, cudaStream_t stream);
 /// survey_near_rungs() of each block of the box, after launch_survey().
 void launch_near_survey(const NearCall& call, cudaStream_t stream);
 
-/// code_block(), put_words() and put_bytes() of each ask.
+/// code_block() or code_lattice_block(), put_words() and put_bytes() of each ask.
 void launch_encode(const EncodeCall& call, cudaStream_t stream);
 
 /// add_statistics() and make_record() of each ask, whose streams were written before.

@@ -34,31 +34,37 @@ struct NearValues {
   float high = 0;
   std::uint32_t zeros = 0;
   std::int32_t exponent = 0;
+  bool finite = false;  // all are; else the rest means nothing
 };
 
 template <class Warp>
 WEIR_HOST_DEVICE NearValues near_values(const Warp& warp, const float* stage) {
   typename Warp::template Own<float> low, high;
-  typename Warp::template Own<std::uint32_t> zeros;
+  typename Warp::template Own<std::uint32_t> zeros, others;
   warp.each([&](unsigned lane) {
     float least = stage[stage_of(lane)];
     float most = least;
     std::uint32_t none = 0;
+    std::uint32_t bad = 0;
     WEIR_UNROLL
     for (unsigned k = 0; k < 16; ++k) {
       const float v = stage[stage_of(lane + kLanes * k)];
       least = v < least ? v : least;
       most = v > most ? v : most;
       none += v == 0 ? 1U : 0U;
+      bad += v - v == 0 ? 0U : 1U;
     }
     low(lane) = least;
     high(lane) = most;
     zeros(lane) = none;
+    others(lane) = bad;
   });
   NearValues values;
   values.low = warp.of_all(low, [](float a, float b) { return b < a ? b : a; });
   values.high = warp.of_all(high, [](float a, float b) { return b > a ? b : a; });
-  values.zeros = warp.of_all(zeros, [](std::uint32_t a, std::uint32_t b) { return a + b; });
+  const auto sum = [](std::uint32_t a, std::uint32_t b) { return a + b; };
+  values.zeros = warp.of_all(zeros, sum);
+  values.finite = warp.of_all(others, sum) == 0;
   const float below = values.low < 0 ? -values.low : values.low;
   const float above = values.high < 0 ? -values.high : values.high;
   values.exponent = rounded_exponent(below > above ? below : above);
@@ -93,6 +99,15 @@ WEIR_HOST_DEVICE void fill_codes(const Warp& warp, const NearQuantum& quantum, L
       stage.codes[at] = static_cast<std::uint32_t>(m - quantum.lowest);
     }
   });
+}
+
+// The best predictor where values have the usual bits. Leaves codes on the stage.
+template <class Warp>
+WEIR_HOST_DEVICE unsigned rounded_predictor(const Warp& warp, const NearValues& values, LatticeStage& stage) {
+  const NearQuantum usual = near_quantum(values, values.exponent - kUsualRoundedBits);
+  if (!usual.fits) return 0;
+  fill_codes(warp, usual, stage);
+  return choose_predictor<std::int32_t>(warp, stage.codes, false);
 }
 
 // Bytes of a stream of those residuals, whose last one that is not 0 is at place `last` > 0.
@@ -166,12 +181,7 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
   const NearValues values = near_values(warp, stage.values);
   const bool sparse = 2 * values.zeros > 512;
   if (call.ask.blocks == NearBlocks::sparse && !sparse) return;
-  unsigned predictor = 0;
-  const NearQuantum usual = near_quantum(values, values.exponent - kUsualRoundedBits);
-  if (usual.fits) {
-    fill_codes(warp, usual, stage);
-    predictor = choose_predictor<std::int32_t>(warp, stage.codes, false);
-  }
+  const unsigned predictor = rounded_predictor(warp, values, stage);
   const std::int32_t coarsest = coarsest_near_exponent(values.exponent);
   const std::uint32_t first = call.ask.first(coarsest);
   NearCost* costs = call.costs + std::size_t{call.ask.most()} * block;

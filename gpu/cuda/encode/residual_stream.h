@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "format/base/host_device.h"
-#include "format/packed/near_rungs.h"
 #include "format/packed/stream_length.h"
 #include "gpu/cuda/encode/residual_steps.h"
 #include "gpu/cuda/encode/word_writer.h"

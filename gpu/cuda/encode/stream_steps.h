@@ -54,11 +54,11 @@ WEIR_HOST_DEVICE inline std::uint32_t front_byte(std::uint64_t head, std::uint32
 
 }  // namespace encode_detail
 
-/// Words and states of an ask that code_block() has not left.
+/// Words and states of an ask of a transform that code_block() has not left.
 WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const TransformCodes& codes, std::uint32_t i) {
   using namespace encode_detail;
   StreamState& state = call.states[i];
-  if (state.left != 0 || state.end == 0) return;
+  if (call.asks[i].kind != StreamAskKind::transform || state.left != 0 || state.end == 0) return;
   const StreamParts parts = parts_of(state);
   std::uint32_t first = 0;
   std::uint32_t second = 0;
@@ -84,8 +84,12 @@ WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::u
   const StreamAsk ask = call.asks[i];
   std::byte* out = call.out + ask.offset;
   const auto kind = state.end == 0 ? StreamKind::mean : StreamKind::transform;
-  const auto head_byte = static_cast<std::byte>(static_cast<unsigned>(kind) |
-                                                static_cast<unsigned>(ask.step - call.constants.coarsest) << 2U);
+  const bool transformed = ask.kind == StreamAskKind::transform;
+  const auto head_byte = static_cast<std::byte>(
+      transformed ? static_cast<unsigned>(kind) | static_cast<unsigned>(ask.step - call.constants.coarsest) << 2U
+                  : unsigned{state.head});
+  // Minimum and quantum lie in front of the bits.
+  const std::uint32_t bits_at = ask.kind == StreamAskKind::rounded ? kRoundedFrontBytes : 1;
   std::uint64_t head = state.number;
   std::uint32_t bits = state.number_bits;
   std::uint32_t early = 0;
@@ -93,8 +97,8 @@ WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::u
   unsigned state_bytes[2] = {0, 0};
   if (state.end > 0) {
     const StreamParts parts = parts_of(state);
-    head = state.end - 1U;
-    bits = 5;
+    head = transformed ? state.end - 1U : state.end;
+    bits = transformed ? 5 : kLatticeEndBits;
     for (unsigned s = 0; s < parts.states; ++s) {
       state_bytes[s] = bytes_of_state(state.state[s]);
       head |= std::uint64_t{state_bytes[s] == 3 ? 1U : 0U} << bits++;
@@ -104,17 +108,22 @@ WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::u
     early = parts.early;
     back = 2U * state.words + state_bytes[0] + state_bytes[1];
   }
-  const std::uint32_t front = 1 + (bits + early + 7) / 8;
+  const std::uint32_t front = bits_at + (bits + early + 7) / 8;
   // A mean's stream may be shorter than its bits, as the planned bytes of all.
-  const bool fits = state.left == 0 && (state.end == 0 || front + back <= ask.bytes);
+  const bool fits = state.left == 0 && (state.end == 0 || front + back <= ask.bytes) &&
+                    (ask.kind != StreamAskKind::exact || front + back == ask.bytes);
   const std::uint16_t* words = call.words + call.words_at(i);
   warp.each([&](unsigned lane) {
     if (lane == 0) call.made[i] = fits ? 1 : 0;
     if (!fits) return;
     for (std::uint32_t at = lane; at < ask.bytes; at += kLanes) {
       std::uint32_t byte = 0;
-      if (at > 0 && at < front) {
-        byte = front_byte(head, bits, state, early, at - 1);
+      if (at > 0 && at < bits_at) {
+        std::uint32_t parameter;
+        __builtin_memcpy(&parameter, &state.lattice[(at - 1) / 4], sizeof parameter);
+        byte = parameter >> (8 * ((at - 1) % 4)) & 0xFFU;
+      } else if (at > 0 && at < front) {
+        byte = front_byte(head, bits, state, early, at - bits_at);
       } else if (at + back >= ask.bytes) {
         const std::uint32_t behind = at + back - ask.bytes;
         const std::uint32_t of_states = behind - 2U * state.words;
