@@ -13,6 +13,7 @@
 #include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"
 #include "compressor/select/file_size.h"
+#include "compressor/survey/spill_sums.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
@@ -77,6 +78,17 @@ void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const 
   if (bytes >= kLeastBytes && bytes < dense) output.reserve_ahead(bytes);
 }
 
+// What was surveyed by an earlier process does not count if its files are not as it wrote them.
+void forget_damaged(Journal& journal, const SurveyStores& stores, const std::optional<LadderAim>& aim) {
+  const SurveyState& survey = journal.state.survey;
+  if (survey.done.empty()) return;
+  const bool all = journal.state.ladders.rebuilt;
+  const RebuiltLadders rebuilt{all || (aim && !aim->background && !aim->keeps_non_finite), all};
+  const auto damaged =
+      damaged_spill(stores.rows, stores.faces ? &*stores.faces : nullptr, survey.done, survey.tally.sums, rebuilt);
+  if (damaged) journal.forget(cat(journal.path_of(std::string(*damaged)), " is damaged"));
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
@@ -113,6 +125,17 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   // Survey.
   const auto voxels = static_cast<std::uint64_t>(domain.voxels());
   const NodeLattice& leaves = reading.survey.lattice;
+  const std::optional<Visibility> visibility =
+      visibility_of(options, source.places() == nullptr ? domain : source.places()->origin_domain());
+  const auto spill = [&](const char* name) -> std::shared_ptr<File> {
+    if (journal != nullptr) return journal->open(name);
+    return work.spill_records();
+  };
+  std::optional<LadderAim> ladders = surveyed_ladders(options, info);
+  SurveyStores stores{RowStore(spill("rows"), leaves, memory.selection, team), {}, {}};
+  if (visibility) stores.faces.emplace(spill("faces"), leaves);
+  if (ladders) stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
+  if (journal != nullptr) forget_damaged(*journal, stores, ladders);
   SurveyState from_nothing;
   SurveyState& surveyed = journal == nullptr ? from_nothing : journal->state.survey;
   Pauses pauses;
@@ -123,17 +146,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     }
   }
   team.run([&] { start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey)); });
-  const std::optional<Visibility> visibility =
-      visibility_of(options, source.places() == nullptr ? domain : source.places()->origin_domain());
-  const auto spill = [&](const char* name) -> std::shared_ptr<File> {
-    if (journal != nullptr) return journal->open(name);
-    return work.spill_records();
-  };
-  SurveyStores stores{RowStore(spill("rows"), leaves, memory.selection, team), {}, {}};
-  if (visibility) stores.faces.emplace(spill("faces"), leaves);
-  std::optional<LadderAim> ladders = surveyed_ladders(options, info);
   if (ladders) {
-    stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
     LadderState& state = journal == nullptr ? stores.ladders : journal->state.ladders;
     if (!state.decided && surveyed.done.empty()) {
       if (const auto outlook = look_ahead(source, reading, stores.rows, options, *ladders, stream)) {

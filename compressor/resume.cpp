@@ -67,7 +67,7 @@ void clear_after_commit(FileSystem& files, const std::string& output) {
 
 std::string continued_notice(const std::string& output, const Checkpoint& state, std::int64_t leaves) {
   return cat(output, ": continues a conversion that was interrupted, survey ", 100 * state.survey.done.size() / leaves,
-             " %, encode ", 100 * state.encoded.size() / leaves, " % done");
+             " %, encode ", 100 * state.encoded.done.size() / leaves, " % done");
 }
 
 Error ended_with(const Error& error, Journal& journal) {

@@ -87,6 +87,7 @@ int run(int argc, char** argv) {
     weir::add_man(app);
     weir::refuse_empty_names(app);
     std::vector<std::string> words = weir::with_help_option(app, {argv + std::min(argc, 1), argv + argc});
+    weir::refuse_empty_values(app, words);
     std::ranges::reverse(words);  // as parse takes them
     app.parse(std::move(words));
     if (app.get_subcommands().empty()) {

@@ -6,8 +6,10 @@
 #include "bindings/c/open_grid.h"
 #include "bindings/c/status.h"
 #include "bindings/c/weir_cuda.h"
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "gpu/cuda/expand/expanded_grid.h"
+#include "gpu/cuda/runtime/check.h"
 
 struct weir_cuda_grid {
   std::optional<weir::DeviceGrid> grid;
@@ -27,15 +29,30 @@ using namespace weir::c;
 
 namespace {
 
+// What the CUDA runtime says names no file, and no remedy.
+void load_into(weir_cuda_grid& to, const NvdbFile& file, const std::optional<GridType>& as, void* stream) {
+  try {
+    to.load(file, as, static_cast<cudaStream_t>(stream));
+  } catch (const DeviceFull& full) {
+    throw Error(ErrorKind::io, cat(file.path(), ": its grid of ", format_bytes(file.grid().data_bytes()),
+                                   " has no room on the device: ", full.what(),
+                                   "; free memory of the device, or make another device current"));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io || std::string_view(error.what()).starts_with(file.path())) throw;
+    throw Error(ErrorKind::io, cat(file.path(), ": cannot be loaded onto the device: ", error.what(),
+                                   "; see whether nvidia-smi shows the device, and what earlier work on it returned"));
+  }
+}
+
 void load(const weir_grid* grid, const std::optional<GridType>& as, void* stream, weir_cuda_grid** loaded) {
   const NvdbFile* const file = required(grid, "grid")->file();
   if (file == nullptr) throw usage("grid is one in memory; open a file with weir_open, or copy weir_grid_data");
   if (*required(loaded, "loaded") != nullptr) {
-    (*loaded)->load(*file, as, static_cast<cudaStream_t>(stream));
+    load_into(**loaded, *file, as, stream);
     return;
   }
   auto made = std::make_unique<weir_cuda_grid>();
-  made->load(*file, as, static_cast<cudaStream_t>(stream));
+  load_into(*made, *file, as, stream);
   *loaded = made.release();
 }
 

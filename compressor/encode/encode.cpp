@@ -131,20 +131,21 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
 }  // namespace
 
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options, Reading reading, BoxSet* done, const Pauses& pauses) {
-  if (source.resident() != nullptr && target.packed != nullptr && target.rows.team().alone() && done == nullptr) {
+                   const StreamOptions& options, Reading reading, EncodedState* state, const Pauses& pauses) {
+  if (source.resident() != nullptr && target.packed != nullptr && target.rows.team().alone() && state == nullptr) {
     return encode_resident(*source.resident(), source, target, options);
   }
   const TreeRegions& tree = target.tree;
-  BoxSet nothing;
-  BoxSet& known = done == nullptr ? nothing : *done;
+  EncodedState nothing;
+  EncodedState& known = state == nullptr ? nothing : *state;
+  const EncodedSums before = known.sums;
   const OwnLeaves own(plan.lattice, target.rows.team());
   std::vector<Box> parts;  // what is not done
   std::vector<Box> leaf_boxes;
   std::vector<Box> voxel_boxes;
   std::vector<std::size_t> part_of;  // by leaf box
   for (std::int64_t i = 0; i < plan.size(); ++i) {
-    for (const Box& missing : known.missing_from(plan.leaf_box(i))) {
+    for (const Box& missing : known.done.missing_from(plan.leaf_box(i))) {
       for (const Box& part : own.of(missing)) {
         parts.push_back(part);
         const Box kept = trim_to_kept(tree, target.choices, part);
@@ -155,10 +156,13 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       }
     }
   }
+  tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>> encoders([&] { return make_encoder(target); });
   std::size_t told = 0;
   const auto tell = [&](std::size_t boxes_done) {
     const std::size_t end = boxes_done == part_of.size() ? parts.size() : part_of[boxes_done];
-    for (; told < end; ++told) known.add(parts[told]);
+    for (; told < end; ++told) known.done.add(parts[told]);
+    known.sums = before;
+    for (const std::unique_ptr<LayerEncoder>& encoder : encoders) known.sums.add(encoder->sums());
   };
   StreamOptions stream = options;
   stream.in_parts = target.packed == nullptr || target.packed->coder == nullptr;  // a coder is given all voxels
@@ -169,7 +173,6 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       pauses.save();
     };
   }
-  tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>> encoders([&] { return make_encoder(target); });
   if (reading == Reading::in_place) {
     const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
       for (std::int64_t i = begin; i < end; ++i) action(i);

@@ -5,18 +5,18 @@
 #include <cstdint>
 
 #include "compressor/encode/layer_encoder.h"
+#include "compressor/survey/encoded_state.h"
 #include "compressor/survey/pauses.h"
-#include "format/base/box_set.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"
 
 namespace weir {
 
-/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `done`, where given, holds
-/// the positions of the leaf lattice that are done already, by any plan; it is updated when `pauses` ask for it, and is
-/// the whole lattice in the end. Throws Error(input) where the values of a leaf are not those that the survey saw.
+/// Encodes all kept leaves; the bytes do not depend on the plan or the number of threads. `state`, where given, holds
+/// what is done already, by any plan; it is updated when `pauses` ask for it, and is of the whole lattice in the end.
+/// Throws Error(input) where the values of a leaf are not those that the survey saw.
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
-                   const StreamOptions& options, Reading reading = Reading::ahead, BoxSet* done = nullptr,
+                   const StreamOptions& options, Reading reading = Reading::ahead, EncodedState* state = nullptr,
                    const Pauses& pauses = {});
 
 }  // namespace weir

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compressor/encode/encode.h"
+#include "compressor/encode/encoded_sums.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
@@ -39,7 +40,7 @@ void adopt_plan(Journal& journal, const Digest& plan) {
   Checkpoint& state = journal.state;
   if (state.plan == plan) return;
   state.plan = plan;
-  if (state.encoded.empty()) return;
+  if (state.encoded.done.empty()) return;
   state.encoded = {};
   journal.save_now();
 }
@@ -54,11 +55,29 @@ std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   adopt_plan(*job.journal, plan_digest(file));
   job.output.write_to(job.journal->open("volume"));
   std::shared_ptr<File> records = job.journal->open("records");
-  if (job.journal->state.encoded.empty()) {
+  if (job.journal->state.encoded.done.empty()) {
     job.output.volume().clear();
     records->clear();
   }
   return records;
+}
+
+// What an earlier process wrote counts if its files are as it wrote them.
+void check_written(const EncodeJob& job, const EncodeTarget& target, File& records) {
+  Checkpoint& state = job.journal->state;
+  if (state.encoded.done.empty()) return;
+  const EncodedSums written = sums_of_written(target, state.encoded.done);
+  const bool volume = written.volume == state.encoded.sums.volume && has_empty_padding(target);
+  if (volume && written.records == state.encoded.sums.records) return;
+  const char* const damaged = volume ? "records" : "volume";
+  if (job.notice) {
+    job.notice(cat(job.journal->output(), ": what was encoded of it is encoded again: ", job.journal->path_of(damaged),
+                   " is damaged"));
+  }
+  state.encoded = {};
+  job.journal->save_now();
+  job.output.volume().clear();
+  records.clear();
 }
 
 FilePlan select_file(const EncodeJob& job, FileRequest& request) {
@@ -76,30 +95,32 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   EncodedFile encoded;
   encoded.file = select_file(job, request);
   const FilePlan& file = encoded.file;
-  std::shared_ptr<File> records = open_targets(job, file);
-  if (job.planned) job.planned(file.size.bytes);
-  if (!job.output.reserve(file.size.bytes) && job.notice) {
-    job.notice(
-        cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
-  }
-  encoded.records = std::make_unique<RecordStore>(std::move(records), file.plan.kept);
+  const std::shared_ptr<File> records = open_targets(job, file);
+  encoded.records = std::make_unique<RecordStore>(records, file.plan.kept);
   if (file.packed) {
     const bool bounded = request.budget.kind == Budget::Kind::max_error;
     encoded.packed = std::make_unique<PackedTarget>(
         PackedTarget{*file.streams, *file.packed, request.packed.constants, request.packed.lattice,
                      bounded ? std::optional(request.budget.target) : std::nullopt, job.coder});
   }
+  const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
+  const EncodeTarget target{
+      *file.tree,          *file.choices,    file.plan.layout, file.fill,        grid_type_of(file.encoding), fit,
+      job.output.volume(), *encoded.records, job.rows,         job.stream.trace, encoded.packed.get()};
+  if (job.journal != nullptr) check_written(job, target, *records);
+  if (job.planned) job.planned(file.size.bytes);
+  if (!job.output.reserve(file.size.bytes) && job.notice) {
+    job.notice(
+        cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+  }
   job.pass_started();
   const TraceSpan span(job.stream.trace, "encode pass");
-  const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
   Pauses pauses;
   if (job.journal != nullptr) pauses = {[&] { return job.journal->due(); }, [&] { job.journal->save(); }};
   Team& team = job.rows.team();
   team.run([&] {
-    encode_leaves(job.source, job.plan,
-                  {*file.tree, *file.choices, file.plan.layout, file.fill, grid_type_of(file.encoding), fit,
-                   job.output.volume(), *encoded.records, job.rows, job.stream.trace, encoded.packed.get()},
-                  job.stream, job.reading, job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
+    encode_leaves(job.source, job.plan, target, job.stream, job.reading,
+                  job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
   });
   encoded.records->publish(team);
   encoded.errors = sum_leaf_errors(*file.tree, *encoded.records, nullptr, team);

@@ -10,6 +10,7 @@
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/packed_region.h"
 #include "compressor/select/tree_regions.h"
+#include "compressor/survey/encoded_state.h"
 #include "compressor/survey/row_store.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "format/base/trace.h"
@@ -74,6 +75,9 @@ class LayerEncoder {
                          const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) = 0;
   /// Writes what is still held; call before the thread turns to another block.
   virtual void finish() = 0;
+
+  /// Checksums of all that it has written, after finish().
+  virtual EncodedSums sums() const = 0;
 };
 
 }  // namespace weir

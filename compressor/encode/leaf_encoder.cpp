@@ -61,10 +61,13 @@ class LeafEncoder final : public LayerEncoder {
       at += size;
       first = end;
     }
+    add_sums();
     bytes_.clear();
     records_.clear();
     leaves_.clear();
   }
+
+  EncodedSums sums() const override { return sums_; }
 
  private:
   static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
@@ -75,6 +78,16 @@ class LeafEncoder final : public LayerEncoder {
     std::uint64_t offset;
     LeafWidth width;
   };
+
+  void add_sums() {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      const std::size_t size = leaf_bytes(leaves_[i].width);
+      sums_.volume += placed_checksum(leaves_[i].offset, std::span<const std::byte>(bytes_).subspan(at, size));
+      sums_.records += record_checksum(leaves_[i].ordinal, records_[i]);
+      at += size;
+    }
+  }
 
   void gather(const LeafInBlock& seen, const Index3& leaf, const Leaf& place) {
     const Box node = target_.tree.leaves.node_box(leaf);
@@ -162,6 +175,7 @@ class LeafEncoder final : public LayerEncoder {
   std::vector<Leaf> leaves_;  // held, encoded or not
   std::vector<std::byte> bytes_;
   std::vector<LeafRecord> records_;
+  EncodedSums sums_;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "compressor/team/team.h"
 #include "format/base/index.h"
+#include "format/io/digest.h"
 #include "format/io/file_system.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/leaf_record.h"
@@ -27,6 +28,11 @@ void set_active(LeafRecord& record, const LeafMask& mask, const Box& node, const
 
 /// Statistics of the active voxels of the leaf at `node`, whose in-domain voxels are `inside`.
 NodeStatistics active_statistics(const LeafRecord& record, const Box& node, const Box& inside);
+
+/// Of a record with its place.
+inline std::uint64_t record_checksum(std::uint64_t ordinal, const LeafRecord& record) {
+  return placed_checksum(ordinal, std::as_bytes(std::span(&record, 1)));
+}
 
 /// Records by leaf ordinal. Thread-safe for different leaves.
 class RecordStore {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include "compressor/encode/coded_regions.h"
 #include "compressor/encode/record_batch.h"
+#include "compressor/encode/stream_pieces.h"
 #include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/inside_voxels.h"
 #include "compressor/leaf/leaf_difference.h"
@@ -16,8 +16,8 @@
 #include "compressor/packed/block_values.h"
 #include "compressor/packed/exact_block.h"
 #include "format/base/error.h"
-#include "format/base/little_endian.h"
 #include "format/base/text.h"
+#include "format/io/digest.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/rounded_block.h"
@@ -77,54 +77,19 @@ class PackedEncoder final : public PackedLayerEncoder {
     records_.flush();
   }
 
+  EncodedSums sums() const override { return {volume_sum_, records_.sum()}; }
+
  private:
   static constexpr std::size_t kHeldBytes = std::size_t{1} << 18U;
-
-  std::uint64_t packed_chunks_offset() const {
-    return packed::kRegionsOffset + target_.tree.regions.size() * packed::region::kEntryBytes;
-  }
-
-  // The ends of a group's streams, before the first of them.
-  void add_ends(std::uint64_t chunk, const StreamPlaces& places, std::size_t position) {
-    using packed::chunk::kGroupBlocks;
-    const std::size_t group = position / kGroupBlocks;
-    const std::size_t first = group * kGroupBlocks + static_cast<std::size_t>(std::countr_zero(places.mask(group)));
-    if (position != first) return;
-    std::array<std::byte, 2 * kGroupBlocks> ends{};
-    std::size_t count = 0;
-    for (std::size_t p = first; p < (group + 1) * kGroupBlocks; ++p) {
-      if (!places.kept(p)) continue;
-      store(std::span(ends), 2 * count++,
-            static_cast<std::uint16_t>(places.offset(p) + places.bytes(p) - places.base(group)));
-    }
-    append(chunk + places.base(group), std::span(ends).first(2 * count));
-  }
-
-  // Where a kept leaf goes.
-  struct KeptPlace {
-    const StreamPlaces& places;
-    std::size_t position;
-    std::uint64_t offset;   // of its stream, in the file
-    std::uint64_t ordinal;  // of its record
-  };
 
   // Calls visit(leaf, place) for the kept leaves of layer `x` of a region, as far as they lie in `box`, each behind its
   // end.
   template <typename Visit>
-  void for_each_kept(std::int64_t region_index, const StreamPlaces& places, const Box& box, std::int64_t x,
+  void for_each_kept(std::int64_t region, const StreamPlaces& places, const Box& box, std::int64_t x,
                      const Visit& visit) {
-    const TreeRegions& tree = target_.tree;
-    const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
-    const std::uint64_t chunk = target_.layout.packed_data + packed_chunks_offset() + region.first_byte;
-    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-        const Index3 leaf{x, y, z};
-        const std::size_t position = tree.mask_position(leaf);
-        if (!places.kept(position)) continue;
-        add_ends(chunk, places, position);
-        visit(leaf, {places, position, chunk + places.offset(position), region.first_leaf + places.ordinal(position)});
-      }
-    }
+    for_each_kept_stream(
+        target_, region, places, box, x,
+        [&](std::uint64_t offset, std::span<const std::byte> ends) { append(offset, ends); }, visit);
   }
 
   void begin_leaf(const Index3& leaf) {
@@ -210,8 +175,9 @@ class PackedEncoder final : public PackedLayerEncoder {
     if (!is_corner(target_.tree.leaves, leaf)) return;
     std::array<std::byte, nvdb::kFloatLeafBytes> image{};
     encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
-    const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
-    target_.out.write_at(target_.layout.leaves + ordinal * nvdb::kFloatLeafBytes, image);
+    const std::uint64_t offset = corner_offset(target_, leaf);
+    target_.out.write_at(offset, image);
+    volume_sum_ += placed_checksum(offset, image);
   }
 
   LeafLoss loss() const {
@@ -237,6 +203,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     if (!bytes_.empty() && offset != first_byte_ + bytes_.size()) flush_bytes();
     if (bytes_.empty()) first_byte_ = offset;
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    volume_sum_ += placed_checksum(offset, bytes);
     if (bytes_.size() >= kHeldBytes) flush_bytes();
   }
 
@@ -269,6 +236,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   std::vector<std::byte> exact_;
   std::uint64_t first_byte_ = 0;
   std::vector<std::byte> bytes_;  // to be written from first_byte_ on
+  std::uint64_t volume_sum_ = 0;  // of the checksums of what was appended, and of corners
   RecordBatch records_;
 };
 

@@ -29,6 +29,8 @@ class RecordBatch {
   void add(std::uint64_t ordinal, const LeafRecord& record);
   /// Writes what is still held.
   void flush();
+  /// Of the checksums of all records that were written.
+  std::uint64_t sum() const { return sum_; }
 
  private:
   static constexpr std::size_t kHeldRecords = 1024;
@@ -43,6 +45,7 @@ class RecordBatch {
   std::array<LeafLoss, kLeafBatch> losses_{};
   std::uint64_t first_ = 0;  // ordinal of the first record held
   std::vector<LeafRecord> held_;
+  std::uint64_t sum_ = 0;
 };
 
 }  // namespace weir

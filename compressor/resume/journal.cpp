@@ -117,6 +117,7 @@ ConversionIdentity as_saved(ConversionIdentity identity) {
 
 Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentity identity, JournalOptions options)
     : files_(files),
+      output_(output),
       options_(std::move(options)),
       directory_(hidden_directory_of(output)),
       spill_directory_(spill_directory_for(output, options_.work_dir)) {
@@ -149,9 +150,22 @@ void Journal::adopt(const std::string& output, const ConversionIdentity& identit
   }
   remove_leftovers(files_, output);
   remove_all(files_, directory_, spill_directory_);
-  if (!reason.empty() && options_.notice) {
-    options_.notice(cat(output, ": an interrupted conversion of it is not continued: ", reason));
-  }
+  if (!reason.empty()) say_not_continued(reason);
+}
+
+void Journal::say_not_continued(const std::string& reason) {
+  if (!options_.notice) return;
+  options_.notice(cat(output_, ": an interrupted conversion of it is not continued: ", reason));
+}
+
+void Journal::forget(const std::string& reason) {
+  say_not_continued(reason);
+  remove_present(files_, in(directory_, kJournal));
+  saved_.clear();
+  Checkpoint anew;
+  anew.identity = std::move(state.identity);
+  anew.spill_directory = spill_directory_;
+  state = std::move(anew);
 }
 
 Journal::~Journal() {
@@ -167,18 +181,18 @@ Journal::~Journal() {
     }
     remove_present(files_, in(directory_, kNewJournal));
     for (const auto& [name, file] : open_) {
-      if (!saved_.contains(name)) files_.remove(place_of(name));
+      if (!saved_.contains(name)) files_.remove(path_of(name));
     }
   } catch (const Error&) {
     // The failure that led here is the one to report; the next conversion of this output removes what is left.
   }
 }
 
-std::string Journal::place_of(const std::string& name) const { return place_in(directory_, spill_directory_, name); }
+std::string Journal::path_of(const std::string& name) const { return place_in(directory_, spill_directory_, name); }
 
 std::shared_ptr<File> Journal::open(const std::string& name) {
   std::shared_ptr<File>& file = open_[name];
-  if (!file) file = files_.open(place_of(name));
+  if (!file) file = files_.open(path_of(name));
   return file;
 }
 
@@ -194,9 +208,11 @@ bool Journal::due() {
 void Journal::save() {
   wait();
   for (const auto& [name, file] : open_) {
-    if (is_of_encoding(name) ? !state.encoded.empty() : !state.survey.done.empty()) state.files[name] = file->size();
+    if (is_of_encoding(name) ? !state.encoded.done.empty() : !state.survey.done.empty())
+      state.files[name] = file->size();
   }
-  if (state.encoded.empty()) std::erase_if(state.files, [](const auto& file) { return is_of_encoding(file.first); });
+  if (state.encoded.done.empty())
+    std::erase_if(state.files, [](const auto& file) { return is_of_encoding(file.first); });
   last_save_ = Clock::now();
   saving_files_ = state.files;
   const bool waits = options_.interval_s == 0 || (options_.cancel != nullptr && *options_.cancel);

@@ -52,7 +52,11 @@ class Journal {
   /// How far the conversion is; the conversion changes and saves it.
   Checkpoint state;
 
+  /// As it was given.
+  const std::string& output() const { return output_; }
   const std::string& directory() const { return directory_; }
+  /// Of a file that open() gives.
+  std::string path_of(const std::string& name) const;
 
   /// "rows", "faces", "ladders", "records" or "volume", with what is in it.
   std::shared_ptr<File> open(const std::string& name);
@@ -66,18 +70,23 @@ class Journal {
   /// Whether a process could go on from here if this one ended.
   bool resumable() const { return !saved_.empty(); }
 
+  /// Nothing of what an earlier process left counts any more, with a notice of `reason`: `state` is that of a new
+  /// conversion. Open files stay open, with what is in them.
+  void forget(const std::string& reason);
+
   /// Removes everything, the journal first; what cannot be removed stays.
   void discard() noexcept;
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  void say_not_continued(const std::string& reason);
   void adopt(const std::string& output, const ConversionIdentity& identity);
-  std::string place_of(const std::string& name) const;
   void write(const std::vector<std::shared_ptr<File>>& open, const std::string& text);
   void wait();
 
   FileSystem& files_;
+  std::string output_;
   JournalOptions options_;
   std::string directory_;
   std::string spill_directory_;  // Checkpoint::spill_directory

@@ -66,6 +66,10 @@ class BlockSurvey::Leaves {
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
       rows_[at] =
           survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], ladders_.empty() ? nullptr : &ladders_[at], tally);
+      const std::int64_t linear = leaves_.linear(leaf);
+      tally.sums.add(linear, rows_[at]);
+      if (!faces_.empty()) tally.sums.add(linear, faces_[at]);
+      if (!ladders_.empty()) add_sum(leaf, rows_[at], ladders_[at], tally);
     });
   }
 
@@ -80,15 +84,21 @@ class BlockSurvey::Leaves {
         const auto ladder = tally.builder(*aim_).build_from(found->block(at), row, near);
         if (ladder) {
           ladders[at] = *ladder;
+          add_sum(leaf, row, ladders[at], tally);
           return;
         }
       }
       std::array<float, kLeafVoxels> values;
       ladders[at] = ladder_of(leaf, gather(leaf, values), row, tally);
+      add_sum(leaf, row, ladders[at], tally);
     });
   }
 
  private:
+  void add_sum(const Index3& leaf, const LeafRow& row, const PackedLadder& ladder, Tally& tally) const {
+    tally.sums.add(leaves_.linear(leaf), ladder, ladder_part(row, leaves_.voxels(leaf).voxels()));
+  }
+
   // Calls visit(at, leaf) for leaves [first, end) of the block, x fastest.
   template <typename Visit>
   void for_each_leaf(std::int64_t first, std::int64_t end, const Visit& visit) const {

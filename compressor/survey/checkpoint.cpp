@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 5 ";
+constexpr std::string_view kFormat = "weir checkpoint 6 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -54,7 +54,8 @@ Json to_json(const SurveyTally& t) {
        {{"inexact", t.loss.inexact},
         {"overflow", t.loss.overflow},
         {"max_abs_error", bits(t.loss.max_abs_error)},
-        {"unmarked", t.loss.unmarked}}}};
+        {"unmarked", t.loss.unmarked}}},
+      {"sums", {{"rows", t.sums.rows}, {"faces", t.sums.faces}, {"ladders", t.sums.ladders}}}};
 }
 
 SurveyTally tally_of(const Json& json) {
@@ -77,6 +78,9 @@ SurveyTally tally_of(const Json& json) {
   loss.at("overflow").get_to(t.loss.overflow);
   t.loss.max_abs_error = double_of(loss.at("max_abs_error"));
   loss.at("unmarked").get_to(t.loss.unmarked);
+  const Json& sums = json.at("sums");
+  t.sums = {sums.at("rows").get<std::uint64_t>(), sums.at("faces").get<std::uint64_t>(),
+            sums.at("ladders").get<std::array<std::uint64_t, 3>>()};
   return t;
 }
 
@@ -89,7 +93,9 @@ Checkpoint checkpoint_of(const Json& json) {
   for (std::size_t i = 0; i < c.plan.bytes.size(); ++i) {
     c.plan.bytes[i] = static_cast<std::byte>(json.at("plan").at(i).get<unsigned>());
   }
-  c.encoded = boxes_of(json.at("encoded"));
+  c.encoded.done = boxes_of(json.at("encoded"));
+  c.encoded.sums = {json.at("encoded_sums").at("volume").get<std::uint64_t>(),
+                    json.at("encoded_sums").at("records").get<std::uint64_t>()};
   if (json.contains("background")) {
     const Json& found = json["background"];
     c.background = {float_of(found.at("value")), found.at("method").get<std::string>(), double_of(found.at("share"))};
@@ -127,7 +133,8 @@ std::string to_text(const Checkpoint& c) {
               {"rebuilt", c.ladders.rebuilt},
               {"moves", c.ladders.moves}}},
             {"plan", c.plan.bytes},
-            {"encoded", to_json(c.encoded)}};
+            {"encoded", to_json(c.encoded.done)},
+            {"encoded_sums", {{"volume", c.encoded.sums.volume}, {"records", c.encoded.sums.records}}}};
   if (c.background) {
     json["background"] = {
         {"value", bits(c.background->value)}, {"method", c.background->method}, {"share", bits(c.background->share)}};

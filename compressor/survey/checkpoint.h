@@ -10,8 +10,8 @@
 #include "compressor/leaf/encoding.h"
 #include "compressor/packed/ladder_state.h"
 #include "compressor/survey/background.h"
+#include "compressor/survey/encoded_state.h"
 #include "compressor/survey/survey_tally.h"
-#include "format/base/box_set.h"
 #include "format/io/digest.h"
 
 namespace weir {
@@ -36,8 +36,8 @@ struct Checkpoint {
   LadderState ladders;                   ///< of a packed file
   std::optional<Background> background;  ///< once it is found
   std::optional<Attempt> attempt;
-  Digest plan;     ///< of the file that is being encoded (encode_attempts.h)
-  BoxSet encoded;  ///< positions of the leaf lattice whose leaves and records are written
+  Digest plan;  ///< of the file that is being encoded (encode_attempts.h)
+  EncodedState encoded;
 };
 
 /// A line with version and digest, then JSON.

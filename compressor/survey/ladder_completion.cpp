@@ -9,6 +9,7 @@
 
 #include "compressor/packed/block_sample.h"
 #include "compressor/packed/block_values.h"
+#include "compressor/survey/spill_sums.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
 
@@ -17,8 +18,8 @@ namespace {
 
 // Whether the ladder of a leaf is built anew.
 bool is_incomplete(const MissingLadders& missing, const NodeLattice& leaves, const Index3& leaf, const LeafRow& row) {
-  if (row.finite < leaves.voxels(leaf).voxels()) return (missing.filled || missing.all) && row.finite > 0;
-  return missing.all && !row.uniform();
+  const LadderPart part = ladder_part(row, leaves.voxels(leaf).voxels());
+  return part != LadderPart::kept && (missing.all || (missing.filled && part == LadderPart::filled));
 }
 
 // The leaves of a box to read: whole in x, because rows are what a file is read by.

@@ -20,6 +20,7 @@ void SurveyTally::merge(const SurveyTally& other) {
   value_counts.resize(std::max(value_counts.size(), other.value_counts.size()));
   for (std::size_t i = 0; i < other.value_counts.size(); ++i) value_counts[i] += other.value_counts[i];
   loss.add(other.loss);
+  sums.add(other.sums);
 }
 
 }  // namespace weir

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compressor/survey/range_histogram.h"
+#include "compressor/survey/spill_sums.h"
 #include "format/base/box_set.h"
 #include "ingest/source/volume_source.h"
 
@@ -26,6 +27,7 @@ struct SurveyTally {
   RangeHistogram histogram;                 ///< of the finite values that `value_counts` does not count
   std::vector<std::uint64_t> value_counts;  ///< of every value of an 8- or 16-bit type
   ConversionLoss loss;
+  SpillSums sums;  ///< of their rows, faces and ladders, where a checkpoint may be made of it
 
   /// `other` is of the same volume.
   void merge(const SurveyTally& other);

@@ -23,7 +23,8 @@ std::string output_directory(const WatchConfig& watch, const std::string& source
 std::string options_text(const WatchConfig& watch) {
   std::string text = cat("output=", watch.output, "/", watch.name);
   for (const std::string& option : watch.convert_options) {
-    if (!option.starts_with("--backend=")) text += cat(' ', option);  // its bytes are the same
+    const bool same_bytes = option.starts_with("--backend=") || option.starts_with("--direct-io=");
+    if (!same_bytes) text += cat(' ', option);
   }
   return text;
 }

@@ -72,6 +72,11 @@ constexpr const char* kFromVersion1[] = {
 
 constexpr const char* kFromVersion2[] = {"ALTER TABLE jobs ADD COLUMN rendering INTEGER NOT NULL DEFAULT 0"};
 
+// Options that an output's bytes do not depend on are no part of the text any more: what was done stays done.
+constexpr const char* kFromVersion3[] = {
+    "UPDATE jobs SET options = replace(replace(replace(options, ' --direct-io=auto', ''), ' --direct-io=on', ''), "
+    "' --direct-io=off', '') WHERE instr(options, ' --direct-io=') > 0"};
+
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);
   statement.step();
@@ -123,6 +128,9 @@ Database open_whole(const std::string& path) {
     }
     if (version <= 2) {
       for (const char* change : kFromVersion2) database.run(change);
+    }
+    if (version <= 3) {
+      for (const char* change : kFromVersion3) database.run(change);
     }
   }
   if (version != kStateVersion) database.run(cat("PRAGMA user_version=", kStateVersion));

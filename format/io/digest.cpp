@@ -52,6 +52,10 @@ Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::
 
 Digest leaf_digest(std::span<const float> values) { return piece_digest(std::as_bytes(values)); }
 
+std::uint64_t placed_checksum(std::uint64_t place, std::span<const std::byte> bytes) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), place);
+}
+
 void DigestStream::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
 
 DigestStream::DigestStream() : state_(XXH3_createState()) {

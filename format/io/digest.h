@@ -41,6 +41,10 @@ Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::
 /// The same of the float32 values of a leaf inside the domain (x fastest), as little-endian bytes.
 Digest leaf_digest(std::span<const float> values);
 
+/// xxh3-64 of bytes that lie at `place`, which is its seed: sums of these over the pieces of a file tell whether all
+/// are as they were, in whatever order they are written.
+std::uint64_t placed_checksum(std::uint64_t place, std::span<const std::byte> bytes);
+
 /// Combines digests as they come, in constant memory. Not thread-safe.
 class DigestStream {
  public:

@@ -13,34 +13,48 @@ namespace weir {
 namespace {
 
 // Of the thread's Hdf5Call. A handler can be told nothing but by what lives as long as the program.
-thread_local const std::string* message_now = nullptr;
+thread_local const std::string* line_now = nullptr;
+std::atomic<const Hdf5Reads*> reads_now{nullptr};
+static_assert(std::atomic<const std::string*>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a handler reads them");
+
+// Of the thread that calls it; null where it is not in the library.
+const std::string* line_of_thread() {
+  if (line_now != nullptr) return line_now;
+  const Hdf5Reads* const reads = reads_now;
+  return reads != nullptr && reads->thread == ::gettid() ? reads->line.load() : nullptr;
+}
 
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGABRT};
 
 // Calls nothing but what POSIX allows in a handler. The signal has its default action again (SA_RESETHAND).
 void end_with_message(int signal) {
-  if (message_now == nullptr) {
+  const std::string* const line = line_of_thread();
+  if (line == nullptr) {
     ::raise(signal);  // it comes when the handler returns
     return;
   }
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message_now->data(), message_now->size());
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line->data(), line->size());
   ::_exit(static_cast<int>(ErrorKind::input));
 }
 
 }  // namespace
 
-Hdf5Call::Hdf5Call(const std::string& path)
-    : message_(cat("weir: ", path,
-                   ": the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy the file "
-                   "again, or write it anew")) {
+std::string hdf5_crash_line(const std::string& where) {
+  std::string line = cat("weir: ", where,
+                         ": the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy the "
+                         "file again, or write it anew");
   // One line, whatever characters the path has.
   std::replace_if(
-      message_.begin(), message_.end(), [](char c) { return (c >= 0 && c < 32) || c == 127; }, '?');
-  message_ += '\n';
-  message_now = &message_;
+      line.begin(), line.end(), [](char c) { return (c >= 0 && c < 32) || c == 127; }, '?');
+  return line + '\n';
 }
 
-Hdf5Call::~Hdf5Call() { message_now = nullptr; }
+void watch_hdf5_reads(const Hdf5Reads& reads) { reads_now = &reads; }
+
+Hdf5Call::Hdf5Call(const std::string& path) : line_(hdf5_crash_line(path)) { line_now = &line_; }
+
+Hdf5Call::~Hdf5Call() { line_now = nullptr; }
 
 void report_hdf5_crashes() {
   for (const int signal : kCrashes) {

@@ -1,9 +1,22 @@
 // What a program says when libhdf5 crashes at a damaged file: some versions read beyond the memory of damaged metadata.
 #pragma once
 
+#include <atomic>
 #include <string>
 
 namespace weir {
+
+/// The line that report_hdf5_crashes() prints, with its end: `where` is the file, or file and dataset.
+std::string hdf5_crash_line(const std::string& where);
+
+/// Which thread reads values in the library, and the line to print of them: one at a time, under the library's lock.
+struct Hdf5Reads {
+  std::atomic<const std::string*> line{nullptr};
+  std::atomic<int> thread{0};  ///< as gettid() counts; 0: none
+};
+
+/// Makes report_hdf5_crashes() look there, too: a driver has its own. `reads` must live as long as the program.
+void watch_hdf5_reads(const Hdf5Reads& reads);
 
 /// While one exists, the thread that made it is in the library for the file `path`. One at a time in a thread.
 class Hdf5Call {
@@ -14,12 +27,13 @@ class Hdf5Call {
   Hdf5Call& operator=(const Hdf5Call&) = delete;
 
  private:
-  std::string message_;
+  std::string line_;
 };
 
-/// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call end
-/// it with a line of the file and exit code 3, since nothing that the library holds can be trusted any more. Elsewhere
-/// they do what they did, as where something else handles them already, like a sanitizer.
+/// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call, or
+/// that reads values as Hdf5Reads says, end it with a line of the file and exit code 3, since nothing that the library
+/// holds can be trusted any more. Elsewhere they do what they did, as where something else handles them already, like a
+/// sanitizer.
 void report_hdf5_crashes();
 
 }  // namespace weir

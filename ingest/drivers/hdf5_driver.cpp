@@ -7,7 +7,9 @@ namespace weir {
 namespace {
 
 const Hdf5Driver& driver_for(const std::string& path) {
-  return *static_cast<const Hdf5Driver*>(load_driver("hdf5", path + ": is an HDF5 file"));
+  const Hdf5Driver& driver = *static_cast<const Hdf5Driver*>(load_driver("hdf5", path + ": is an HDF5 file"));
+  watch_hdf5_reads(*driver.reads);
+  return driver;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ingest/drivers/hdf5_crash.h"
 #include "ingest/source/dataset_info.h"
 #include "ingest/source/source_options.h"
 #include "ingest/source/volume_source.h"
@@ -15,6 +16,7 @@ namespace weir {
 struct Hdf5Driver {
   std::unique_ptr<VolumeSource> (*open)(const std::string& path, const SourceOptions& options);
   std::vector<DatasetInfo> (*list)(const std::string& path, const SourceOptions& options);
+  const Hdf5Reads* reads;
 };
 
 /// The functions of the driver for the HDF5 file `path`. Throw Error(input) where there is no driver (load_driver).

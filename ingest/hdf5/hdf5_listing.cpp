@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_file.h"
@@ -95,15 +96,29 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
 
 }  // namespace
 
-std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions& /*options*/) {
+std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions& options) {
   const Hdf5Lock lock;
   const Hdf5Handle file = open_hdf5_file(path);
   std::vector<DatasetInfo> datasets;
-  walk_datasets(file.get(), "/", [&](std::string name, Hdf5Handle handle) {
-    if (is_bare_dimension(handle.get())) return;
+  const auto add_damaged = [&](const std::string& name, const std::string& why) {
+    if (!options.lists_damaged) throw input_error(path, cat(name, ": ", why));
+    DatasetInfo& info = datasets.emplace_back();
+    info.name = name;
+    info.obstacle = why;
+  };
+  const auto add_dataset = [&](std::string name, Hdf5Handle handle) {
     const Hdf5Object object{std::move(handle), path, std::move(name)};
-    datasets.push_back(described(object, dataset_facts(file.get(), object)));
-  });
+    try {
+      if (is_bare_dimension(object.handle.get())) return;
+      datasets.push_back(described(object, dataset_facts(file.get(), object)));
+    } catch (const Error& error) {
+      if (!options.lists_damaged || error.kind() != ErrorKind::input) throw;
+      const std::string text = error.what();
+      const std::string where = object.where() + ": ";
+      add_damaged(object.name, text.starts_with(where) ? text.substr(where.size()) : text);
+    }
+  };
+  walk_datasets(file.get(), "/", add_dataset, add_damaged);
   return datasets;
 }
 

@@ -16,7 +16,7 @@ namespace weir {
 struct DatasetInfo {
   std::string name;                   ///< as --dataset takes it; empty where the file holds one volume and no name
   std::vector<std::int64_t> extents;  ///< as the file orders them: slowest axis first for HDF5, x first for headers
-  std::string type;                   ///< "float32", "big-endian float64", ...
+  std::string type;                   ///< "float32", "big-endian float64", ...; empty where it cannot be opened
   std::string layout;                 ///< "contiguous", "chunked 64 x 64 x 64, gzip, shuffle", ...
   std::vector<std::pair<std::string, std::string>> attributes;  ///< those that matter: units, missing value, spacing
   std::size_t leading_axes = 0;                                 ///< how many positions --index must give

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -183,6 +184,143 @@ TEST_F(ResumeTest, DamagedStateStartsAnew) {
   EXPECT_EQ(after([](CrashFileSystem& files) { files.remove(kHidden + "rows"); }), missing);
   EXPECT_EQ(after([](CrashFileSystem& files) { files.open(kHidden + "rows")->clear(); }), missing);
   EXPECT_EQ(after([](CrashFileSystem& files) { files.remove(kHidden + "journal"); }), "");
+}
+
+// Flips a bit of byte `at` of a file that an interrupted conversion has left.
+void flip_bit(FileSystem& files, const std::string& path, std::uint64_t at) {
+  const auto file = files.open(path);
+  std::array<std::byte, 1> byte{};
+  file->read_at(at, byte);
+  byte[0] ^= std::byte{16};
+  file->write_at(at, byte);
+}
+
+const std::string kSurveyedAgain = "out.nvdb: an interrupted conversion of it is not continued: ";
+const std::string kEncodedAgain = "out.nvdb: what was encoded of it is encoded again: ";
+
+// Whatever byte of whichever file is damaged, the output is that of an undisturbed conversion; that a byte on which it
+// depends is damaged is said.
+class ResumeOfDamage : public ResumeTest {
+ protected:
+  using ResumeTest::ResumeTest;
+
+  // After an interruption once `bytes` of the pass are done, of bytes all over the file. Returns of how many it was
+  // said.
+  int same_bytes(const ConversionOptions& options, const std::string& pass, std::uint64_t bytes,
+                 const std::string& name, const std::string& reason) {
+    constexpr std::uint64_t kPlaces = 5;
+    const Result expected = undisturbed(options);
+    int said = 0;
+    for (std::uint64_t place = 0; place < kPlaces; ++place) {
+      SCOPED_TRACE(cat(pass, ": ", name, ", place ", place));
+      CrashFileSystem files;
+      EXPECT_EQ(interrupted(options, files, pass, bytes), kKept);
+      const std::uint64_t size = files.content(kHidden + name).size();
+      flip_bit(files, kHidden + name, size * place / kPlaces);
+      const Result result = run(options, files);
+      EXPECT_TRUE(files.content("out.nvdb") == expected.file);
+      EXPECT_EQ(result.record, expected.record);
+      for (const std::string& notice : result.notices) {
+        if (!notice.ends_with("is damaged")) continue;
+        EXPECT_EQ(notice, cat(reason, kHidden, name, " is damaged"));
+        ++said;
+      }
+    }
+    return said;
+  }
+  void expect_same_bytes(const ConversionOptions& options, const std::string& pass, std::uint64_t bytes,
+                         const std::string& name, const std::string& reason) {
+    EXPECT_GE(same_bytes(options, pass, bytes, name, reason), 1) << pass << ": " << name;
+  }
+};
+
+TEST_F(ResumeOfDamage, Float) {
+  ConversionOptions options = base();
+  expect_same_bytes(options, "survey", 4 << 20, "rows", kSurveyedAgain);
+  options.budget.kind = Budget::Kind::lossless;
+  const std::uint64_t half = static_cast<std::uint64_t>(kDomain.voxels()) * sizeof(float) / 2;
+  expect_same_bytes(options, "encode", half, "rows", kSurveyedAgain);
+  expect_same_bytes(options, "encode", half, "records", kEncodedAgain);
+  expect_same_bytes(options, "encode", half, "volume", kEncodedAgain);
+}
+
+TEST_F(ResumeOfDamage, Quantised) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::fpn;
+  options.budget.rate = 5;
+  expect_same_bytes(options, "encode", 4 << 20, "records", kEncodedAgain);
+  expect_same_bytes(options, "encode", 4 << 20, "volume", kEncodedAgain);
+}
+
+// Of 10 MiB that are asked for, 3 are in use.
+TEST_F(ResumeOfDamage, Padding) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::fp4;
+  options.budget.kind = Budget::Kind::size;
+  options.budget.bytes = 10 << 20;
+  const Result expected = undisturbed(options);
+  CrashFileSystem files;
+  EXPECT_EQ(interrupted(options, files, "encode", 4 << 20), kKept);
+  flip_bit(files, kHidden + "volume", options.budget.bytes - 1);
+  const Names notices = run(options, files).notices;
+  EXPECT_EQ(std::ranges::count(notices, cat(kEncodedAgain, kHidden, "volume is damaged")), 1);
+  EXPECT_TRUE(files.content("out.nvdb") == expected.file);
+}
+
+TEST_F(ResumeOfDamage, Faces) {
+  ConversionOptions options = base();
+  Scene scene;
+  scene.volume.range = {-100, 110};
+  scene.volume.opacity = {{0, 0}, {0.6, 0}, {0.8, 0.3}, {1, 1}};
+  options.scene = SceneFile{scene, "s.toml"};
+  expect_same_bytes(options, "survey", 4 << 20, "faces", kSurveyedAgain);
+  expect_same_bytes(options, "encode", 1 << 20, "faces", kSurveyedAgain);
+}
+
+TEST_F(ResumeOfDamage, Packed) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 12U << 20U;
+  options.budget.rate = 12;
+  expect_same_bytes(options, "survey", 4 << 20, "ladders", kSurveyedAgain);
+  same_bytes(options, "encode", 4 << 20, "ladders", kSurveyedAgain);  // they are built again
+  expect_same_bytes(options, "encode", 4 << 20, "records", kEncodedAgain);
+}
+
+TEST_F(ResumeOfDamage, PackedStreams) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 12U << 20U;
+  options.budget.rate = 5;
+  for (const Preview preview : {Preview::on, Preview::off}) {
+    options.preview = preview;
+    expect_same_bytes(options, "encode", 6 << 20, "volume", kEncodedAgain);
+  }
+}
+
+// Ladders are built again after the survey: of blocks with missing values, or of all, which is not damage.
+class ResumeOfDamagedHoles : public ResumeOfDamage {
+ protected:
+  ResumeOfDamagedHoles()
+      : ResumeOfDamage([](const Index3& i) {
+          const bool missing = i.x > -30 && (i.x * 7 + i.y * 13 + i.z * 29) % 317 == 0;
+          return missing ? NAN : std::round(200 * ripples(i));
+        }) {}
+};
+
+TEST_F(ResumeOfDamagedHoles, PackedNearlyLossless) {
+  ConversionOptions options = base();
+  options.encoding = Encoding::packed;
+  options.memory = 12U << 20U;
+  options.non_finite = NonFinitePolicy::background;
+  for (const double rate : {4.0, 12.0}) {
+    options.budget.rate = rate;
+    CrashFileSystem files;
+    EXPECT_EQ(interrupted(options, files, "encode", 4 << 20), kKept);
+    const Result result = run(options, files);
+    for (const std::string& notice : result.notices) EXPECT_EQ(notice.find("damaged"), std::string::npos) << notice;
+  }
+  expect_same_bytes(options, "survey", 4 << 20, "ladders", kSurveyedAgain);
 }
 
 TEST_F(ResumeTest, TooLittleMemory_KeepsTheSavedState) {

@@ -60,7 +60,7 @@ TEST_F(ExpandedGridTest, AGridThatIsNotPackedIsCopiedAsItIs) {
   const std::span<const std::byte> data = stock.grid().data();
   EXPECT_TRUE(bytes_of(grid) == std::vector<std::byte>(data.begin(), data.end()));
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { load_grid_as(stock, GridType::fp16, {}); }),
-            path_ + ": is a grid of float32, not fp16; packed grids alone are expanded");
+            path_ + ": is a grid of float32, not fp16; load it as it is: packed grids alone are expanded");
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { load_grid_as(stock, GridType::fpn, {}); }),
             "a grid is expanded to float32 or fp16, not to fpn");
 }

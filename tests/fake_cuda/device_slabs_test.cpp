@@ -144,8 +144,10 @@ TEST_F(DeviceSlabsTest, AFailedCopyEndsThemWithItsMessage) {
 
 TEST_F(DeviceSlabsTest, NoRoomIsAnErrorThatLeavesNothing) {
   runtime().fail("cudaHostAlloc", 0, cudaErrorMemoryAllocation);
-  EXPECT_EQ(refusal([&] { DeviceSlabs(kExtent, 4, 0, keep()); }, ErrorKind::io),
-            "page-locking 23.3 MiB of host memory: cudaErrorMemoryAllocation, pretended");
+  EXPECT_EQ(
+      refusal([&] { DeviceSlabs(kExtent, 4, 0, keep()); }, ErrorKind::io),
+      "slabs cross the bus through memory that is locked: page-locking 23.3 MiB of host memory: "
+      "cudaErrorMemoryAllocation, pretended; allow more (ulimit -l), free some, or push the values from host memory");
   runtime().fail("cudaMallocAsync", 0, cudaErrorMemoryAllocation);
   EXPECT_EQ(refusal([&] { DeviceSlabs(kExtent, 4, 5 * kPlaneBytes, keep()); }, ErrorKind::io),
             "allocating 937.5 KiB of device memory: cudaErrorMemoryAllocation, pretended");

@@ -167,8 +167,10 @@ void view(const ViewArguments& arguments) {
   signals.async_wait([&](boost::system::error_code error, int) {
     if (!error) io.stop();
   });
-  const NvdbFile readable(files.steps.front());  // what cannot be read ends the command, and not a person's patience
-  if (!files.against.empty()) const NvdbFile comparable(files.against.front());
+  // What cannot be read at all ends the command, and not a person's patience.
+  for (const std::string& fault : begin_with_readable(files)) {
+    spdlog::warn("{}; the page begins with {}", fault, files.steps.front());
+  }
   ListenAddress address = settings.address;
   const std::string token = arguments.for_program ? settings.token : "";
   ViewServer server(io, std::move(settings), std::move(files), *backend);

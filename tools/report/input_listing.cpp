@@ -22,15 +22,18 @@ std::string extents_text(const std::vector<std::int64_t>& extents) {
 
 InputListing list_input(const std::string& path, const SourceOptions& options) {
   const SourceFormat& format = format_of(path);
-  return {path, std::string(format.name), format.container, format.list(path, options)};
+  SourceOptions all = options;
+  all.lists_damaged = true;
+  return {path, std::string(format.name), format.container, format.list(path, all)};
 }
 
 void print_text(const InputListing& listing) {
   std::cout << cat(printable(listing.path), ": ", listing.format, ", ", listing.datasets.size(),
                    listing.datasets.size() == 1 ? " volume\n" : " datasets\n");
   for (const DatasetInfo& dataset : listing.datasets) {
-    std::cout << cat('\n', dataset.name.empty() ? "" : printable(dataset.name) + ": ", extents_text(dataset.extents),
-                     ' ', dataset.type, dataset.layout.empty() ? "" : ", ", dataset.layout, '\n');
+    const std::string what = dataset.type.empty() ? "damaged" : cat(extents_text(dataset.extents), ' ', dataset.type);
+    std::cout << cat('\n', dataset.name.empty() ? "" : printable(dataset.name) + ": ", what,
+                     dataset.layout.empty() ? "" : ", ", dataset.layout, '\n');
     for (const auto& [name, value] : dataset.attributes) {
       std::cout << cat("  ", printable(name), ": ", printable(value), '\n');
     }

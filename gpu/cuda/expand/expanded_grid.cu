@@ -92,7 +92,7 @@ DeviceGrid load_grid_as(const NvdbFile& file, GridType as, DeviceBuffer&& buffer
   if (grid.packed() == nullptr) {
     if (grid.type() == as) return load_grid(file, std::move(buffer), options, stream);
     throw Error(ErrorKind::input, cat(file.path(), ": is a grid of ", grid_type_name(grid.type()), ", not ",
-                                      grid_type_name(as), "; packed grids alone are expanded"));
+                                      grid_type_name(as), "; load it as it is: packed grids alone are expanded"));
   }
   LoadOptions how = options;
   how.packed = true;

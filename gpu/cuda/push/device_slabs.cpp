@@ -71,7 +71,10 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
 
   std::string refusal;
   pinned_ = PinnedMemory::make(device_bytes > 0 ? piece_bytes : count * piece_bytes, refusal);
-  if (!pinned_) throw Error(ErrorKind::io, refusal);
+  if (!pinned_) {
+    throw Error(ErrorKind::io, cat("slabs cross the bus through memory that is locked: ", refusal,
+                                   "; allow more (ulimit -l), free some, or push the values from host memory"));
+  }
   if (device_bytes > 0) {
     staged_ = DeviceArray<std::byte>(count * piece_bytes);
     stream_.emplace();

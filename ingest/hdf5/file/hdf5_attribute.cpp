@@ -1,7 +1,6 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -15,15 +14,6 @@
 
 namespace weir {
 namespace {
-
-// "PATH: /fields/density"; PATH is the file that the object lies in.
-std::string where_of(hid_t object) {
-  std::array<char, 4096> file{};
-  std::array<char, 4096> name{};
-  H5Fget_name(object, file.data(), file.size() - 1);
-  H5Iget_name(object, name.data(), name.size() - 1);
-  return cat(file.data(), ": ", name.data());
-}
 
 /// An open attribute and how many values of which type it has; no values where it is absent.
 struct Attribute {
@@ -103,9 +93,9 @@ std::vector<StoredValue> stored(const std::vector<T>& values) {
 
 Error attribute_error(hid_t object, const char* name) {
   const std::string reason = hdf5_reason();  // before a further call overwrites it
-  return input_error(where_of(object), cat("its attributes cannot be read, looking for ", name, ": ", reason,
-                                           "; they are damaged, or of a later version of HDF5: copy the "
-                                           "file again, or write it anew"));
+  return input_error(object_text(object), cat("its attributes cannot be read, looking for ", name, ": ", reason,
+                                              "; they are damaged, or of a later version of HDF5: copy the "
+                                              "file again, or write it anew"));
 }
 
 bool has_attribute(hid_t object, const char* name) {

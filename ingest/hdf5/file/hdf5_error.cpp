@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "format/base/text.h"
@@ -27,6 +28,14 @@ std::string hdf5_reason() {
       reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
   while (reason.ends_with(' ') || reason.ends_with('.')) reason.pop_back();
   return reason.empty() ? "no reason given" : reason;
+}
+
+std::string object_text(hid_t object) {
+  std::array<char, 4096> file{};
+  std::array<char, 4096> name{};
+  H5Fget_name(object, file.data(), file.size() - 1);
+  H5Iget_name(object, name.data(), name.size() - 1);
+  return cat(file.data(), ": ", name.data());
 }
 
 Error hdf5_error(const std::string& where, const std::string& what) {

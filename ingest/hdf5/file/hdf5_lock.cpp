@@ -1,6 +1,7 @@
 #include "ingest/hdf5/file/hdf5_lock.h"
 
 #include <hdf5.h>
+#include <unistd.h>
 
 namespace weir {
 namespace {
@@ -10,9 +11,23 @@ std::recursive_mutex& library_mutex() {
   return mutex;
 }
 
+Hdf5Reads& reads() {
+  static Hdf5Reads now;
+  return now;
+}
+
 }  // namespace
 
 // A library built with thread-safety has one error stack per thread, so silencing it once would not do.
 Hdf5Lock::Hdf5Lock() : guard_(library_mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Hdf5ReadLock::Hdf5ReadLock(const std::string& crash_line) {
+  reads().line = &crash_line;
+  reads().thread = ::gettid();
+}
+
+Hdf5ReadLock::~Hdf5ReadLock() { reads().thread = 0; }
+
+const Hdf5Reads& hdf5_reads() { return reads(); }
 
 }  // namespace weir

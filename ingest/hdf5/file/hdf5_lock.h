@@ -3,6 +3,9 @@
 #pragma once
 
 #include <mutex>
+#include <string>
+
+#include "ingest/drivers/hdf5_crash.h"
 
 namespace weir {
 
@@ -19,5 +22,21 @@ class Hdf5Lock {
  private:
   std::lock_guard<std::recursive_mutex> guard_;
 };
+
+/// Holds the lock for reading values: a crash of the library meanwhile is one at what `crash_line` names
+/// (hdf5_crash_line), which outlives the object.
+class Hdf5ReadLock {
+ public:
+  explicit Hdf5ReadLock(const std::string& crash_line);
+  ~Hdf5ReadLock();
+  Hdf5ReadLock(const Hdf5ReadLock&) = delete;
+  Hdf5ReadLock& operator=(const Hdf5ReadLock&) = delete;
+
+ private:
+  Hdf5Lock lock_;
+};
+
+/// Who holds an Hdf5ReadLock.
+const Hdf5Reads& hdf5_reads();
 
 }  // namespace weir

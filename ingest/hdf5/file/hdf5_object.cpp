@@ -1,6 +1,9 @@
 #include "ingest/hdf5/file/hdf5_object.h"
 
+#include "format/base/error.h"
+#include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/file/hdf5_error.h"
 
 namespace weir {
 
@@ -14,6 +17,17 @@ std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name) {
     if (group) groups.push_back(std::move(group));
   }
   return groups;
+}
+
+Hdf5Handle open_linked(hid_t group, const std::string& name) {
+  H5L_info_t info;
+  if (name.empty() || H5Lexists(group, name.c_str(), H5P_DEFAULT) <= 0) return {};
+  Hdf5Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT));
+  if (object) return object;
+  const std::string reason = hdf5_reason();  // before a further call overwrites it
+  if (H5Lget_info(group, name.c_str(), &info, H5P_DEFAULT) < 0 || info.type != H5L_TYPE_HARD) return {};
+  throw input_error(object_text(group),
+                    cat("its member ", name, " cannot be opened: ", reason, "; the file is damaged"));
 }
 
 bool is_dataset(hid_t object) { return H5Iget_type(object) == H5I_DATASET; }

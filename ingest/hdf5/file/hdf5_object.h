@@ -21,6 +21,10 @@ struct Hdf5Object {
 /// that cannot be opened are left out. The caller holds Hdf5Lock.
 std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name);
 
+/// The object that a link of `group` leads to; invalid where there is no such link, or one of another place that leads
+/// nowhere. Throws Error(input) where the file has it and it cannot be opened. The caller holds Hdf5Lock.
+Hdf5Handle open_linked(hid_t group, const std::string& name);
+
 bool is_dataset(hid_t object);
 
 /// A component of an openPMD record that is the same everywhere: a group with the attributes `value` and

@@ -8,6 +8,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/headers/header_text.h"
 
@@ -41,11 +42,14 @@ Error too_deep(const Group& group) {
 
 class GroupWalk {
  public:
-  explicit GroupWalk(const std::function<void(std::string, Hdf5Handle)>& visit) : visit_(visit) {}
+  using Visit = std::function<void(std::string, Hdf5Handle)>;
+  using Damaged = std::function<void(std::string, const std::string&)>;
+  GroupWalk(const Visit& visit, const Damaged& damaged) : visit_(visit), damaged_(damaged) {}
 
   void run(hid_t file, const std::string& name) {
     Hdf5Handle root(H5Oopen(file, name.c_str(), H5P_DEFAULT));
-    if (!root || !is_new(root.get())) return;
+    if (!root) return say_damaged(name, "cannot be opened");
+    if (!is_new(name, root.get())) return;
     groups_.push_back({name == "/" ? "" : name, std::move(root), 0});
     // External links wait until all there is in the file itself has its name.
     while (!groups_.empty() || !external_.empty()) {
@@ -66,19 +70,33 @@ class GroupWalk {
   }
 
  private:
-  bool is_new(hid_t object) {
+  // Right after the call of the library that failed.
+  void say_damaged(const std::string& name, const char* what) {
+    damaged_(name, cat(what, ": ", hdf5_reason(), "; the file is damaged"));
+  }
+
+  bool is_new(const std::string& path, hid_t object) {
     H5O_info_t info;
-    return H5Oget_info2(object, &info, H5O_INFO_BASIC) >= 0 && seen_.emplace(info.fileno, info.addr).second;
+    if (H5Oget_info2(object, &info, H5O_INFO_BASIC) >= 0) return seen_.emplace(info.fileno, info.addr).second;
+    say_damaged(path, "cannot be opened");
+    return false;
   }
 
   void enter(const Group& group) {
     if (group.depth > kMaxGroupDepth) throw too_deep(group);
     std::vector<Link> links;
-    H5Literate(group.handle.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &links);
+    if (H5Literate(group.handle.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &links) < 0) {
+      say_damaged(group.name.empty() ? "/" : group.name, "what it holds cannot be listed");
+    }
     for (const Link& link : links) {
       std::string path = group.name + '/' + link.name;
       if (!link.external) {
-        take(path, Hdf5Handle(H5Oopen(group.handle.get(), link.name.c_str(), H5P_DEFAULT)), group.depth + 1);
+        Hdf5Handle object(H5Oopen(group.handle.get(), link.name.c_str(), H5P_DEFAULT));
+        if (!object) {
+          say_damaged(path, "cannot be opened");
+          continue;
+        }
+        take(path, std::move(object), group.depth + 1);
       } else if (followed_ < kMaxExternalLinks) {
         ++followed_;
         external_.push_back(std::move(path));
@@ -87,7 +105,7 @@ class GroupWalk {
   }
 
   void take(const std::string& path, Hdf5Handle object, int depth) {
-    if (!object || !is_new(object.get())) return;
+    if (!is_new(path, object.get())) return;
     if (is_dataset(object.get()) || is_openpmd_constant(object.get())) {
       visit_(path, std::move(object));
     } else if (H5Iget_type(object.get()) == H5I_GROUP) {
@@ -95,7 +113,8 @@ class GroupWalk {
     }
   }
 
-  const std::function<void(std::string, Hdf5Handle)>& visit_;
+  const Visit& visit_;
+  const Damaged& damaged_;
   std::set<std::pair<unsigned long, haddr_t>> seen_;
   std::deque<Group> groups_;
   std::deque<std::string> external_;
@@ -106,8 +125,9 @@ class GroupWalk {
 }  // namespace
 
 void walk_datasets(hid_t file, const std::string& name,
-                   const std::function<void(std::string name, Hdf5Handle object)>& visit) {
-  GroupWalk(visit).run(file, name);
+                   const std::function<void(std::string name, Hdf5Handle object)>& visit,
+                   const std::function<void(std::string name, const std::string& why)>& damaged) {
+  GroupWalk(visit, damaged).run(file, name);
 }
 
 }  // namespace weir

@@ -61,7 +61,7 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
   std::size_t datasets = 0;
   std::string obstacle;  // of the one that comes nearest to a volume: the most axes, then the most values
   std::pair<std::size_t, double> nearest;
-  walk_datasets(file, "/", [&](std::string name, Hdf5Handle handle) {
+  const auto look_at = [&](std::string name, Hdf5Handle handle) {
     if (is_bare_dimension(handle.get())) return;
     ++datasets;
     const DatasetFacts facts = dataset_facts(file, {std::move(handle), path, name});
@@ -76,6 +76,10 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
       nearest = size;
       obstacle = cat(name, ": ", facts.obstacle);
     }
+  };
+  walk_datasets(file, "/", look_at, [&](const std::string& name, const std::string& why) {
+    throw input_error(path, compose(name, ": ", why, ", and may hold a volume, too; choose one with ",
+                                    option("dataset"), ", or copy the file again"));
   });
   if (datasets == 0) throw Error(ErrorKind::input, cat(path, ": holds no dataset"));
   if (candidates.empty()) {

@@ -10,16 +10,20 @@
 #include <utility>
 #include <vector>
 
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/meaning/time_axis.h"
 
 namespace weir {
 namespace {
 
-// The first scale of each axis; invalid where it has none. Empty where the attribute is not what it should be.
-std::vector<Hdf5Handle> scales_of(hid_t dataset, std::size_t rank) {
+// The first scale of each axis; invalid where it has none, and with a note where it cannot be opened. Empty where the
+// attribute is not what it should be.
+std::vector<Hdf5Handle> scales_of(hid_t dataset, std::span<AxisPlace> axes) {
+  const std::size_t rank = axes.size();
   if (!has_attribute(dataset, "DIMENSION_LIST")) return {};
   const Hdf5Handle attribute(H5Aopen(dataset, "DIMENSION_LIST", H5P_DEFAULT));
   if (!attribute) throw attribute_error(dataset, "DIMENSION_LIST");
@@ -33,8 +37,12 @@ std::vector<Hdf5Handle> scales_of(hid_t dataset, std::size_t rank) {
   std::vector<hvl_t> lists(rank, hvl_t{0, nullptr});
   std::vector<Hdf5Handle> scales;
   if (H5Aread(attribute.get(), wanted.get(), lists.data()) < 0) throw attribute_error(dataset, "DIMENSION_LIST");
-  for (const hvl_t& list : lists) {
+  for (std::size_t i = 0; i < rank; ++i) {
+    const hvl_t& list = lists[i];
     scales.emplace_back(list.len == 0 ? H5I_INVALID_HID : H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, list.p));
+    if (list.len > 0 && !scales.back() && !axes[i].spacing) {
+      axes[i].note = cat("its coordinates cannot be opened (", hdf5_reason(), "), taken as indices");
+    }
   }
   H5Dvlen_reclaim(wanted.get(), space.get(), H5P_DEFAULT, lists.data());
   return scales;
@@ -110,7 +118,11 @@ std::vector<double> coordinate_values(hid_t dataset) {
     return {};
   }
   std::vector<double> values(static_cast<std::size_t>(points));
-  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return {};
+  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    const std::string reason = hdf5_reason();  // before a further call overwrites it
+    throw input_error(object_text(dataset),
+                      cat("its coordinates cannot be read: ", reason, "; the file is cut short or damaged"));
+  }
   return values;
 }
 
@@ -151,7 +163,7 @@ bool is_bare_dimension(hid_t dataset) {
 
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes) {
   if (H5Iget_type(dataset) != H5I_DATASET) return;
-  const std::vector<Hdf5Handle> scales = scales_of(dataset, axes.size());
+  const std::vector<Hdf5Handle> scales = scales_of(dataset, axes);
   const bool grows = first_axis_grows(dataset, axes.size());
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (!scales[i] || H5Iget_type(scales[i].get()) != H5I_DATASET) continue;

@@ -27,8 +27,8 @@ void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 /// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values.
 bool is_bare_dimension(hid_t dataset);
 
-/// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none; empty where it is another. The
-/// caller holds Hdf5Lock.
+/// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none; empty where it is another. Throws
+/// Error(input) where they cannot be read. The caller holds Hdf5Lock.
 std::vector<double> coordinate_values(hid_t dataset);
 
 /// What place_by_scales makes of the coordinates of one axis.

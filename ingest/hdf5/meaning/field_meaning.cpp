@@ -8,6 +8,7 @@
 
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
+#include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/openpmd.h"
 #include "ingest/hdf5/meaning/space_axis.h"
@@ -37,8 +38,7 @@ std::optional<TimePoint> auxiliary_time(const Hdf5Object& object, std::span<cons
                                         std::size_t extent) {
   for (const std::string& name : split(text_of(object.handle.get(), "coordinates"), ' ')) {
     for (const Hdf5Handle& group : groups) {
-      if (name.empty() || H5Lexists(group.get(), name.c_str(), H5P_DEFAULT) <= 0) continue;
-      const Hdf5Handle coordinate(H5Oopen(group.get(), name.c_str(), H5P_DEFAULT));
+      const Hdf5Handle coordinate = open_linked(group.get(), name);
       if (!coordinate) continue;
       if (auto time = time_in(coordinate.get(), at, extent)) return time;
     }

@@ -19,7 +19,9 @@ constexpr std::size_t kMostNearNames = 8;  // in a message
 
 std::vector<std::string> dataset_names(hid_t file, const std::string& group) {
   std::vector<std::string> names;
-  walk_datasets(file, group, [&](std::string name, const Hdf5Handle&) { names.push_back(std::move(name)); });
+  walk_datasets(
+      file, group, [&](std::string name, const Hdf5Handle&) { names.push_back(std::move(name)); },
+      [](const std::string&, const std::string&) {});  // they are for a message
   return names;
 }
 

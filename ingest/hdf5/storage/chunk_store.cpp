@@ -41,7 +41,8 @@ hsize_t stored_chunk_bytes(hid_t dataset, std::span<const hsize_t> corner, const
   throw hdf5_error(chunk_place(name, corner), "cannot be found, the file is damaged or being written");
 }
 
-ChunkStore::ChunkStore(hid_t dataset, std::string name) : dataset_(dataset), name_(std::move(name)) {
+ChunkStore::ChunkStore(hid_t dataset, std::string name)
+    : dataset_(dataset), name_(std::move(name)), crash_line_(hdf5_crash_line(name_)) {
   const Hdf5Lock lock;
   const Hdf5Handle space(H5Dget_space(dataset_));
   const Hdf5Handle creation(H5Dget_create_plist(dataset_));
@@ -63,7 +64,7 @@ ChunkStore::ChunkStore(hid_t dataset, std::string name) : dataset_(dataset), nam
 
 std::optional<ChunkStore::Chunk> ChunkStore::fetch(std::span<const hsize_t> corner, std::span<std::byte> into) const {
   const auto where = [&] { return chunk_place(name_, corner); };
-  const Hdf5Lock lock;
+  const Hdf5ReadLock lock(crash_line_);
   // The library keeps the place of the last chunk it looked up: both calls see the same one.
   const hsize_t bytes = stored_chunk_bytes(dataset_, corner, name_);
   if (bytes == 0) return std::nullopt;

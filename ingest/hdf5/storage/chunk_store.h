@@ -61,6 +61,7 @@ class ChunkStore {
  private:
   hid_t dataset_;
   std::string name_;
+  std::string crash_line_;
   ChunkLayout layout_;
   FilterPipeline pipeline_;
 };

@@ -17,7 +17,10 @@ constexpr std::uint64_t kChunkCopies = 2;
 class LibraryBoxes final : public StoredBoxes {
  public:
   LibraryBoxes(Hdf5Handle dataset, const Storage& storage, ArrayPlace place, std::string where)
-      : dataset_(std::move(dataset)), place_(std::move(place)), where_(std::move(where)) {
+      : dataset_(std::move(dataset)),
+        place_(std::move(place)),
+        where_(std::move(where)),
+        crash_line_(hdf5_crash_line(where_)) {
     const Hdf5Lock lock;
     type_ = Hdf5Handle(H5Dget_type(dataset_.get()));
     space_ = Hdf5Handle(H5Dget_space(dataset_.get()));
@@ -32,7 +35,7 @@ class LibraryBoxes final : public StoredBoxes {
   std::uint64_t working_bytes() const override { return library_bytes_ + kHdf5MetadataBytes; }
 
   void read(const Box& box, std::span<std::byte> stored) override {
-    const Hdf5Lock lock;
+    const Hdf5ReadLock lock(crash_line_);
     const Hdf5Handle in_file = select_box(space_.get(), place_, box);
     const auto values = static_cast<hsize_t>(H5Sget_select_npoints(in_file.get()));
     const Hdf5Handle in_memory(H5Screate_simple(1, &values, nullptr));
@@ -46,6 +49,7 @@ class LibraryBoxes final : public StoredBoxes {
   Hdf5Handle dataset_;
   ArrayPlace place_;
   std::string where_;
+  std::string crash_line_;
   Hdf5Handle type_;
   Hdf5Handle space_;
   Index3 chunk_{0, 0, 0};

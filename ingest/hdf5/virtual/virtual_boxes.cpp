@@ -50,6 +50,7 @@ class VirtualBoxes final : public StoredBoxes {
         index_(std::move(index)),
         components_(components),
         where_(std::move(where)),
+        crash_line_(hdf5_crash_line(where_)),
         type_(H5Dget_type(dataset_.get())),
         space_(H5Dget_space(dataset_.get())),
         mappings_(
@@ -88,7 +89,7 @@ class VirtualBoxes final : public StoredBoxes {
   }
 
   void read(const Box& box, std::span<std::byte> stored) override {
-    const Hdf5Lock lock;
+    const Hdf5ReadLock lock(crash_line_);
     const Hdf5Handle wanted = select_box(space_.get(), ArrayPlace::behind(index_), box);
     const AxisBox placed = axis_box(index_, box, components_);
     std::vector<hsize_t> dims;
@@ -132,6 +133,7 @@ class VirtualBoxes final : public StoredBoxes {
   std::vector<std::int64_t> index_;
   std::int64_t components_;
   std::string where_;
+  std::string crash_line_;
   Hdf5Handle type_;
   Hdf5Handle space_;
   std::vector<VirtualMapping> mappings_;

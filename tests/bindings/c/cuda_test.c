@@ -138,6 +138,9 @@ int main(void) {
   if (cudaGetDeviceCount(&devices) != cudaSuccess || devices == 0) {
     CHECK_STATUS(WEIR_ERROR_IO, weir_cuda_load(a, NULL, &loaded, &error));
     CHECK(loaded == NULL);
+    CHECK(strncmp(error.message, path_of("a.nvdb"), strlen(path_of("a.nvdb"))) == 0);
+    CHECK(strstr(error.message, ": cannot be loaded onto the device: ") != NULL);
+    CHECK(strstr(error.message, "; see whether nvidia-smi shows the device") != NULL);
     printf("no device: %s\n", error.message);
   } else {
     CHECK_OK(weir_cuda_load(a, NULL, &loaded, &error));

@@ -105,7 +105,7 @@ TEST(Journal, EncodedLeaves_KeepTheVolumeAndRecordFiles) {
     begin_survey(journal);
     journal.open("records")->preallocate(20);
     journal.open("volume")->preallocate(30);
-    journal.state.encoded.add(kSome);
+    journal.state.encoded.done.add(kSome);
     journal.save();
   }
   EXPECT_EQ(files.names(), all);

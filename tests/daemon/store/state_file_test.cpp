@@ -58,10 +58,10 @@ TEST_F(StateFile, NewerVersion_IsRefusedAndUnchanged) {
   make();
   Database(path_).run("PRAGMA user_version=7");
   EXPECT_EQ(refusal(), path_ +
-                           ": has version 7, this weir knows versions up to 3; run the newer weir or name another "
+                           ": has version 7, this weir knows versions up to 4; run the newer weir or name another "
                            "file as state in [service]");
   EXPECT_EQ(kind_, ErrorKind::input);
-  Database(path_).run("PRAGMA user_version=3");
+  Database(path_).run("PRAGMA user_version=4");
   EXPECT_EQ(marked(), 42);
 }
 
@@ -85,7 +85,7 @@ TEST_F(StateFile, Version1_IsUpgraded) {
   EXPECT_EQ(notice_, "");
   Statement row = database.prepare("SELECT user_version, max_error, min, max FROM outputs, pragma_user_version");
   ASSERT_TRUE(row.step());
-  EXPECT_EQ(row.integer(0), 3);
+  EXPECT_EQ(row.integer(0), 4);
   for (const int column : {1, 2, 3}) EXPECT_EQ(row.real_or_none(column), std::nullopt);
   Statement problem = database.prepare("SELECT problem FROM jobs");
   ASSERT_TRUE(problem.step());
@@ -107,8 +107,32 @@ TEST_F(StateFile, Version2_IsUpgraded) {
   const Database database = open_state_file(path_, notice_);
   Statement version = database.prepare("PRAGMA user_version");
   ASSERT_TRUE(version.step());
-  EXPECT_EQ(version.integer(0), 3);
+  EXPECT_EQ(version.integer(0), 4);
   database.run("UPDATE jobs SET rendering = 1");
+}
+
+TEST_F(StateFile, Version3_KeepsJobsWithoutTheOptionsThatChangeNoByte) {
+  make();
+  {
+    const Database old(path_);
+    for (const char* options :
+         {"output=/o/ --direct-io=off --rate=8.0", "output=/o/ --rate=4", "output=/o/ --direct-io=auto"}) {
+      old.prepare(
+             "INSERT INTO jobs (watch, source, options, bytes, mtime_ns, inode, state, discovered_ms, changed_ms) "
+             "VALUES ('w', ?, ?, 0, 0, 0, 'done', 0, 0)")
+          .bind(options)
+          .bind(options)
+          .step();
+    }
+    old.run("PRAGMA user_version=3");
+  }
+  const Database database = open_state_file(path_, notice_);
+  EXPECT_EQ(notice_, "");
+  Statement row = database.prepare("SELECT options FROM jobs ORDER BY id");
+  for (const char* options : {"output=/o/ --rate=8.0", "output=/o/ --rate=4", "output=/o/"}) {
+    ASSERT_TRUE(row.step());
+    EXPECT_EQ(row.text(0), options);
+  }
 }
 
 TEST_F(StateFile, DatabaseOfAnotherProgram_IsRefusedAndUnchanged) {

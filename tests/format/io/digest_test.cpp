@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "tests/support/temporary_directory.h"
@@ -20,6 +21,13 @@ std::vector<std::byte> pattern(std::size_t bytes) {
 }
 
 // The reference values are of `xxhsum -H2` (xxHash 0.8), which prints the canonical form.
+TEST(PlacedChecksum, IsXxh3OfTheBytesWithTheirPlaceAsSeed) {
+  EXPECT_EQ(placed_checksum(0, {}), 0x2D06800538D394C2U);  // the XXH3_64bits of nothing
+  const std::array<std::byte, 3> bytes{std::byte{1}, std::byte{2}, std::byte{3}};
+  EXPECT_EQ(placed_checksum(5, bytes), placed_checksum(5, bytes));
+  EXPECT_NE(placed_checksum(5, bytes), placed_checksum(6, bytes));
+}
+
 TEST(Digest, IsXxh3InCanonicalForm) {
   EXPECT_EQ(piece_digest({}).hex(), "99aa06d3014798d86001c324468d497f");
   const std::string text = "weir";

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "format/base/text.h"
 #include "tests/tools/support/converted_volume.h"
 
 namespace weir::empty_names_test {
@@ -40,6 +41,31 @@ TEST_F(EmptyNames, Input_ExitsWith2) {
   expect_refused({"inspect", ""}, "the argument volume is empty; give a name");
   expect_refused({"verify", ""}, "the argument volume is empty; give a name");
   expect_refused({"compare", "", volume_}, "the argument input is empty; give a name");
+}
+
+// The parser takes the next word for the value.
+TEST_F(EmptyNames, ValueBehindAnEqualsSign_ExitsWith2) {
+  const auto line = [](const char* name) {
+    return cat("--", name, "= has nothing behind it; give a value, or leave it out");
+  };
+  expect_refused({"convert", raw_, "--output=", "--lossless"}, line("output"));
+  expect_refused({"convert", raw_, "--lossless", "--output="}, line("output"));
+  expect_refused({"convert", "--work-dir=", raw_, "-o", directory_ / "o.nvdb"}, line("work-dir"));
+  expect_refused({"convert", "--overwrite=", raw_, "-o", directory_ / "o.nvdb"}, line("overwrite"));
+  expect_refused({"render", volume_, "--output=", "a.png"}, line("output"));
+  expect_refused({"inspect", volume_, "--plot=", "--json"}, line("plot"));
+  expect_refused({"jobs", "--address=", "x"}, line("address"));
+}
+
+TEST_F(EmptyNames, ShortNameWithAnEqualsSign_ExitsWith2) {
+  expect_refused({"convert", raw_, "-o=a.nvdb", "--lossless"},
+                 "-o=a.nvdb is read as the name =a.nvdb; write -o NAME or --output=NAME");
+}
+
+TEST_F(EmptyNames, FileThatEndsInAnEqualsSign_IsTaken) {
+  const CommandResult result = run_weir({"verify", "--", "--output="});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err, "weir: structure: --output=: cannot open: No such file or directory\n");
 }
 
 }  // namespace

@@ -98,6 +98,36 @@ TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
   EXPECT_EQ(run_weir({"view", directory_ / "broken.nvdb"}).exit_code, 3);
 }
 
+TEST_F(ViewCommandTest, DamagedFirstStep_IsSaidAndTheOthersAreShown) {
+  const std::string steps = directory_ / "steps";
+  std::filesystem::create_directory(steps);
+  write_file(steps + "/s_1.nvdb", "no volume");
+  std::filesystem::copy(volume_, steps + "/s_2.nvdb");
+  std::filesystem::copy(volume_, steps + "/s_3.nvdb");
+  ChildProcess child({WEIR_COMMAND, "view", steps});
+  const std::uint16_t port = port_of(child);
+  ASSERT_NE(port, 0);
+  EXPECT_NE(child.err_so_far().find(cat(steps, "/s_1.nvdb: ")), std::string::npos) << child.err_so_far();
+  EXPECT_NE(child.err_so_far().find(cat("; the page begins with ", steps, "/s_2.nvdb\n")), std::string::npos)
+      << child.err_so_far();
+  ViewClient client(port);
+  client.show(1, true, {{"step", 0}});
+  EXPECT_EQ(client.frame().value().header["step"], 0);
+  const nlohmann::json state = nlohmann::json::parse(get(port, "/api/state").second);
+  EXPECT_EQ(state["steps"], nlohmann::json::parse(R"(["s_2.nvdb", "s_1.nvdb", "s_3.nvdb"])"));
+  EXPECT_EQ(state["order"], nlohmann::json::parse("[1, 0, 2]"));
+  client.show(2, true, {{"step", 1}});
+  EXPECT_TRUE(client.text("error").value()["message"].get<std::string>().starts_with(steps + "/s_1.nvdb: "));
+}
+
+TEST_F(ViewCommandTest, NoReadableStep_IsRefused) {
+  write_file(directory_ / "a_1.nvdb", "no volume");
+  write_file(directory_ / "a_2.nvdb", "no volume");
+  const CommandResult result = run_weir({"view", directory_ / "a_*.nvdb"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_TRUE(result.err.starts_with(cat("weir: ", directory_ / "a_2.nvdb", ": "))) << result.err;
+}
+
 TEST_F(ViewCommandTest, AFileOfAnotherSuffixIsShownAsItIs) {
   const std::string copy = directory_ / "result.grid";
   std::filesystem::copy_file(volume_, copy);

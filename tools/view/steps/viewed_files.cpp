@@ -8,6 +8,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
+#include "format/nanovdb/nvdb_file.h"
 #include "ingest/files/numbered_series.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source_registry.h"
@@ -25,6 +26,16 @@ bool is_directory(const std::string& path) {
 std::string title_of(const std::string& input) {
   const fs::path path(input);
   return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+// The others keep their order.
+void begin_with(ViewedFiles& files, std::size_t step) {
+  const auto put_first = [&](std::vector<std::string>& paths) {
+    const auto at = paths.begin() + static_cast<std::ptrdiff_t>(step);
+    std::rotate(paths.begin(), at, at + 1);
+  };
+  put_first(files.steps);
+  if (files.against.size() > 1) put_first(files.against);
 }
 
 }  // namespace
@@ -87,9 +98,26 @@ ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& again
       throw input_error(choice.input,
                         cat("is not there; name another file of its series, such as ", files.steps.front()));
     }
-    std::rotate(files.steps.begin(), named, named + 1);
+    begin_with(files, static_cast<std::size_t>(named - files.steps.begin()));
   }
   return files;
+}
+
+std::vector<std::string> begin_with_readable(ViewedFiles& files) {
+  if (files.against.size() == 1) const NvdbFile comparable(files.against.front());
+  const bool named = files.choice.series && !is_directory(files.choice.input);
+  std::vector<std::string> faults;
+  for (std::size_t step = 0;; ++step) {
+    try {
+      const NvdbFile readable(files.steps[step]);
+      if (files.against.size() > 1) const NvdbFile comparable(files.against[step]);
+      begin_with(files, step);
+      return faults;
+    } catch (const Error& error) {
+      if (named || step + 1 == files.steps.size()) throw;
+      faults.emplace_back(error.what());
+    }
+  }
 }
 
 }  // namespace weir

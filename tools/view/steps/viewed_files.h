@@ -22,7 +22,7 @@ std::vector<std::string> find_steps(const StepChoice& choice);
 struct ViewedFiles {
   std::string title;                 ///< what was named, without its folders
   std::string key;                   ///< the same text for what is the same, and for nothing else; tells no path
-  std::vector<std::string> steps;    ///< the file of a `series` first, then those beside it; else in natural order
+  std::vector<std::string> steps;    ///< what a page shows at first, then the others in natural order
   std::vector<std::string> against;  ///< none, one for all steps, or one for each
   SeriesHeads heads;                 ///< of the steps
   StepChoice choice{};
@@ -38,5 +38,10 @@ std::string viewed_key(const StepChoice& choice, const std::string& against);
 /// `against` is a file, a pattern or a directory, or empty. Nothing is opened but heads. Throws as find_steps, and
 /// Error(usage) where `against` has neither one file nor as many as there are steps.
 ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& against);
+
+/// Puts the first step that can be read before the others, with the file that it is compared with where each has its
+/// own, and returns why those that were before it cannot be. Throws as NvdbFile where none can, where the first one was
+/// named, or where the one file of `against` cannot be read.
+std::vector<std::string> begin_with_readable(ViewedFiles& files);
 
 }  // namespace weir

@@ -1,0 +1,127 @@
+// HDF5 files in which something besides the values of a volume cannot be read: what depends on it is an error, what is
+// only listed is said.
+#include <algorithm>
+
+#include "ingest/hdf5/hdf5_source.h"
+#include "tests/ingest/hdf5/support/h5py_file.h"
+
+namespace weir::hdf5_damage_test {
+namespace {
+
+// In scripts: writes `bytes` at an address of a closed file.
+constexpr const char* kPatch = R"(
+def patch(name, at, bytes):
+    with open(name, "r+b") as f: f.seek(at); f.write(bytes)
+)";
+
+class Hdf5Damage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  }
+  void write(const std::string& script) { write_by_h5py(scratch_, kPatch + script); }
+  std::string refused(const std::string& file, const SourceOptions& options = {}) {
+    return message_of_error(ErrorKind::input, [&] { all_values(*open_source(scratch_.path(file), options)); });
+  }
+  std::string list_refused(const std::string& file) {
+    return message_of_error(ErrorKind::input, [&] { list_hdf5(scratch_.path(file), {}); });
+  }
+  std::vector<DatasetInfo> listed(const std::string& file) {
+    SourceOptions options;
+    options.lists_damaged = true;
+    return list_hdf5(scratch_.path(file), options);
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Hdf5Damage, DatasetThatCannotBeOpened_IsListedWithItsObstacleAndNotPassedOver) {
+  write(R"(
+with h5py.File("a.h5", "w", libver="latest") as f:
+    f["bad"] = values("f4")
+    f["good"] = values("f4"); expect("good", f["good"])
+    at = h5py.h5o.get_info(f["bad"].id).addr
+patch("a.h5", at, b"????")
+)");
+  const auto all = listed("a.h5");
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].name, "/bad");
+  EXPECT_EQ(all[0].type, "");
+  EXPECT_TRUE(all[0].obstacle.starts_with("cannot be opened: ") && all[0].obstacle.ends_with("; the file is damaged"))
+      << all[0].obstacle;
+  EXPECT_EQ(all[1].name, "/good");
+  EXPECT_EQ(all[1].obstacle, "");
+  const std::string at = scratch_.path("a.h5") + ": /bad: " + all[0].obstacle;
+  EXPECT_EQ(list_refused("a.h5"), at);
+  EXPECT_EQ(refused("a.h5"), at + ", and may hold a volume, too; choose one with --dataset, or copy the file again");
+  expect_reads(scratch_, "a.h5", dataset_options("good"), "good");
+}
+
+TEST_F(Hdf5Damage, GroupThatCannotBeListed_IsSaid) {
+  write(R"(
+with h5py.File("a.h5", "w") as f: f["v"] = values("f4")
+at = open("a.h5", "rb").read().index(b"SNOD")
+patch("a.h5", at, b"????")
+)");
+  const auto all = listed("a.h5");
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].name, "/");
+  EXPECT_TRUE(all[0].obstacle.starts_with("what it holds cannot be listed: ") &&
+              all[0].obstacle.ends_with("; the file is damaged"))
+      << all[0].obstacle;
+  EXPECT_EQ(list_refused("a.h5"), scratch_.path("a.h5") + ": /: " + all[0].obstacle);
+  EXPECT_EQ(refused("a.h5"), scratch_.path("a.h5") + ": /: " + all[0].obstacle +
+                                 ", and may hold a volume, too; choose one with --dataset, or copy the file again");
+}
+
+TEST_F(Hdf5Damage, CoordinatesThatCannotBeRead_AreAnErrorThatNamesThem) {
+  write(R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4", (4, 4, 4))
+    z = f.create_dataset("z", data=np.arange(4.0), chunks=(4,), fletcher32=True)
+    z.make_scale("z"); f["v"].dims[0].attach_scale(z)
+    at = z.id.get_chunk_info(0).byte_offset
+patch("a.h5", at, b"\1")
+)");
+  const std::string message = refused("a.h5", dataset_options("v"));
+  EXPECT_TRUE(message.starts_with(scratch_.path("a.h5") + ": /z: its coordinates cannot be read: ") &&
+              message.ends_with("; the file is cut short or damaged"))
+      << message;
+  const auto all = listed("a.h5");
+  const auto volume = std::ranges::find(all, "/v", &DatasetInfo::name);
+  ASSERT_NE(volume, all.end());
+  EXPECT_EQ(volume->obstacle, message);
+}
+
+TEST_F(Hdf5Damage, ScaleThatIsGone_IsSaidOfTheAxis) {
+  write(R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4", (4, 4, 4)); expect("v", f["v"])
+    f["z"] = np.arange(4.0) * 3
+    f["z"].make_scale("z"); f["v"].dims[0].attach_scale(f["z"])
+    at = h5py.h5o.get_info(f["z"].id).addr
+patch("a.h5", at, b"\xff" * 16)
+)");
+  const auto source = open_source(scratch_.path("a.h5"), dataset_options("v"));
+  const std::string& note = source->info().details.axes[2].note;
+  EXPECT_TRUE(note.starts_with("its coordinates cannot be opened (") && note.ends_with("), taken as indices")) << note;
+  expect_reads(scratch_, "a.h5", dataset_options("v"), "v");
+}
+
+TEST_F(Hdf5Damage, AuxiliaryTimeThatCannotBeOpened_IsAnErrorThatNamesIt) {
+  write(R"(
+with h5py.File("a.h5", "w", libver="latest") as f:
+    f["v"] = values("f4", (4, 4, 4))
+    f["v"].attrs["coordinates"] = "time"
+    f["time"] = 3.0
+    at = h5py.h5o.get_info(f["time"].id).addr
+patch("a.h5", at, b"????")
+)");
+  const std::string message = refused("a.h5", dataset_options("v"));
+  EXPECT_TRUE(message.starts_with(scratch_.path("a.h5") + ": /: its member time cannot be opened: ") &&
+              message.ends_with("; the file is damaged"))
+      << message;
+}
+
+}  // namespace
+}  // namespace weir::hdf5_damage_test
