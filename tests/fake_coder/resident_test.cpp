@@ -73,8 +73,7 @@ TEST_F(Resident, FilesHaveTheBytesOfTheHostWhateverTheBudgetAndTheThreads) {
   }
 }
 
-// So many blocks that a sample of them is looked at first, which is read, as is what finds the background of a volume
-// of that size. Then nothing is.
+// So many blocks that a sample of them is looked at first. Nothing is read, of a volume whose background is given.
 TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
   for (const bool smooth : {true, false}) {
     SCOPED_TRACE(smooth);
@@ -87,7 +86,7 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
     const std::unique_ptr<VolumeSource> source = on_device(volume);
     const Result result = convert_by(nullptr, *source, options);
     EXPECT_EQ(result.file == expected.file, true);
-    EXPECT_LT(source->bytes_read(), volume.values().size_bytes() / 8);
+    EXPECT_EQ(source->bytes_read(), 0U);
   }
 }
 
