@@ -178,7 +178,7 @@ std::vector<RunningView> ServiceControl::running() const {
     view.seconds = run.work->seconds();
     view.source_bytes = run.job.identity.bytes;
     view.rss_bytes = run.work->resident_bytes();
-    view.stall = run.work->stall(kQuiet);
+    view.stall = run.work->stall(kQuiet, kOpening);
     views.push_back(std::move(view));
   }
   return views;

@@ -84,9 +84,15 @@ void ConversionJob::look() {
   if (std::exchange(activity_, activity) != activity) heard_ = std::chrono::steady_clock::now();
 }
 
-std::string ConversionJob::stall(std::chrono::seconds quiet) const {
-  const auto passed = std::chrono::steady_clock::now() - heard_;
-  if (worker_ == nullptr || passed < quiet) return {};
+std::string ConversionJob::stall(std::chrono::seconds quiet, std::chrono::seconds opening) const {
+  const auto now = std::chrono::steady_clock::now();
+  const auto passed = now - heard_;
+  if (worker_ == nullptr) return {};
+  if (passed < quiet) {
+    if (spoken_ || now - begun_ < opening) return {};
+    return cat(step_, " computes for ", std::chrono::duration_cast<std::chrono::seconds>(now - begun_).count(),
+               " s and has not begun to read values: the file may be damaged, cancel the job to end it");
+  }
   const char state = worker_->process_state();
   const char* const why = state == 'T'   ? "it was stopped by a signal; SIGCONT lets it go on"
                           : state == 'D' ? "it waits for a device or a file server"
@@ -107,7 +113,8 @@ void ConversionJob::run(std::string_view step, std::vector<std::string> argument
     return;
   }
   step_ = step;
-  heard_ = std::chrono::steady_clock::now();
+  begun_ = heard_ = std::chrono::steady_clock::now();
+  spoken_ = false;
   fraction_.reset();
   WorkerCommand command{task_.program, {"weir", std::string(step)}, task_.nice, task_.io_class};
   for (std::string& argument : arguments) command.arguments.push_back(std::move(argument));
@@ -146,6 +153,7 @@ void ConversionJob::convert() {
 
 void ConversionJob::heard(std::string_view line) {
   heard_ = std::chrono::steady_clock::now();
+  spoken_ = true;
   const nlohmann::json told = nlohmann::json::parse(line, nullptr, false);
   if (!told.is_object()) return;
   if (told.contains("output")) {

@@ -61,8 +61,9 @@ class ConversionJob {
   double seconds() const;                                       ///< since the start
   /// Sees whether the step does anything; call it now and then.
   void look();
-  /// Why the step has said and done nothing for `quiet`, as far as look() saw; empty: it has.
-  std::string stall(std::chrono::seconds quiet) const;
+  /// Why the step has said and done nothing for `quiet`, as far as look() saw, or has computed for `opening` and not
+  /// said a word yet, as where a library runs in circles in a damaged file; empty: it has.
+  std::string stall(std::chrono::seconds quiet, std::chrono::seconds opening) const;
   std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
 
  private:
@@ -89,6 +90,8 @@ class ConversionJob {
   Ended ended_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or seen to be at work
+  std::chrono::steady_clock::time_point begun_ = started_;  ///< the step
+  bool spoken_ = false;                                     ///< the step has announced something
   std::uint64_t activity_ = 0;                              ///< of the process, at the last look
   std::unique_ptr<WorkerProcess> worker_;
   std::string_view step_ = "convert";

@@ -280,7 +280,7 @@ void JobRunner::failed(const RunningJob& run, const TaskReport& report) {
 void JobRunner::look_for_stalls() {
   for (auto& [id, run] : running_) {
     run.work->look();
-    const std::string stall = run.work->stall(kQuiet);
+    const std::string stall = run.work->stall(kQuiet, kOpening);
     if (!stall.empty() && !run.stall_said) {
       log_.warn("stalled", {{"job", id}, {"source", run.job.source}, {"reason", stall}});
     }

@@ -29,6 +29,8 @@ namespace weir {
 
 /// A conversion that reports nothing for so long is reported as stalled.
 inline constexpr std::chrono::seconds kQuiet{60};
+/// So is one that computes for so long before it reports anything.
+inline constexpr std::chrono::seconds kOpening{300};
 
 struct RunningJob {
   Job job;

@@ -61,7 +61,7 @@ InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& 
   if (::fstat(buffered_.get(), &status) != 0) throw io_error(shown, "look at it", errno);
   if (S_ISDIR(status.st_mode)) throw open_error(shown, "is a directory; name a file in it");
   if (!S_ISREG(status.st_mode)) throw open_error(shown, "is not a regular file; copy its content to one");
-  if (status.st_size == 0) throw open_error(shown, "is empty (0 bytes)");
+  if (status.st_size == 0) throw open_error(shown, "is empty (0 bytes); copy it again, or write it anew");
   size_ = static_cast<std::uint64_t>(status.st_size);
   state_ = state_of(path, status);
 

@@ -92,7 +92,11 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   if (const std::string taken = take_recorded_input(input, file, given, options); !taken.empty()) {
     spdlog::info("{}: read with {}, as {} records", input, taken, sidecar_path(volume));
   }
-  return {std::move(file), open_source(input, options)};
+  std::unique_ptr<VolumeSource> source = open_source(input, options);
+  if (const std::string other = other_input_note(file, source->info()); !other.empty()) {
+    spdlog::warn("{}: {}", volume, other);
+  }
+  return {std::move(file), std::move(source)};
 }
 
 /// That of INPUT and OUT.nvdb, and behind it those of --vector.

@@ -1,6 +1,7 @@
 #include "tools/report/recorded_input.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
@@ -88,6 +89,24 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
     note("--roi", box_text(record->grid.index_bbox));
   }
   return taken;
+}
+
+std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
+  const std::optional<Sidecar> record = record_of(file);
+  if (!record || record->source.format != source.format) return {};
+  std::string was;
+  std::string is;
+  const auto compare = [&](const char* option, const std::string& recorded, const std::string& given) {
+    if (recorded == given) return;
+    for (const auto& [text, value] : {std::pair(&was, &recorded), std::pair(&is, &given)}) {
+      *text += cat(text->empty() ? "" : " ", value->empty() ? "no " : "", option, value->empty() ? "" : " ", *value);
+    }
+  };
+  compare("--dataset", record->source.dataset, source.dataset);
+  compare("--index", index_text(record->source.index), index_text(source.index));
+  compare("--component", record->source.component, source.details.component);
+  if (was.empty()) return {};
+  return cat("was converted with ", was, ", as ", sidecar_path(file.path()), " records, and is compared with ", is);
 }
 
 }  // namespace weir

@@ -8,6 +8,7 @@
 #include "format/base/option_row.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 
@@ -17,6 +18,11 @@ namespace weir {
 /// "--dataset /rho --index 3"; empty: nothing.
 std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
                                 SourceOptions& options);
+
+/// Where the sidecar beside `file`, if it is this file's own and of the format of `source`, records another dataset,
+/// index or component than `source` is: "was converted with --index 1, as a.nvdb.json records, and is compared with
+/// --index 0"; else empty.
+std::string other_input_note(const NvdbFile& file, const SourceInfo& source);
 
 /// As --index takes it: "3,0".
 std::string index_text(const std::vector<std::int64_t>& index);

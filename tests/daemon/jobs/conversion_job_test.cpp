@@ -105,19 +105,33 @@ TEST_F(ConversionJobTest, StoppedProcess_IsTheReasonGivenForAStall) {
   std::string stall;
   const TaskReport report = run(slow, [&](ConversionJob& job) {
     if (!stall.empty() || !job.fraction()) return;
-    EXPECT_EQ(job.stall(std::chrono::seconds(60)), "");
+    EXPECT_EQ(job.stall(std::chrono::seconds(60), std::chrono::seconds(0)), "");
     job.look();
     std::ifstream children(cat("/proc/self/task/", ::gettid(), "/children"));
     pid_t child = 0;
     ASSERT_TRUE(children >> child);
     ::kill(child, SIGSTOP);
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
-    stall = job.stall(std::chrono::seconds(1));
+    stall = job.stall(std::chrono::seconds(1), std::chrono::seconds(60));
     ::kill(child, SIGCONT);
   });
   EXPECT_EQ(report.end, TaskEnd::done) << report.result.reason;
   EXPECT_TRUE(stall.starts_with("nothing done by convert for ")) << stall;
   EXPECT_TRUE(stall.ends_with(" s: it was stopped by a signal; SIGCONT lets it go on")) << stall;
+}
+
+// As where libhdf5 runs in circles in a damaged heap.
+TEST_F(ConversionJobTest, ProcessThatComputesAndSaysNothing_IsAStall) {
+  ConversionTask endless = task(write_source("a_8x8x8_uint8.raw", 512));
+  endless.program = directory_ / "weir";
+  write_file(endless.program, "#!/bin/sh\nwhile :; do :; done\n");
+  fs::permissions(endless.program, fs::perms::owner_all);
+  boost::asio::io_context io;
+  ConversionJob job(io, endless, [](const TaskReport&) {});
+  EXPECT_EQ(job.stall(std::chrono::seconds(60), std::chrono::seconds(60)), "");
+  EXPECT_EQ(
+      job.stall(std::chrono::seconds(60), std::chrono::seconds(0)),
+      "convert computes for 0 s and has not begun to read values: the file may be damaged, cancel the job to end it");
 }
 
 TEST_F(ConversionJobTest, LosslessOverValidVoxelsAlone_HasAnInfinitePsnr) {

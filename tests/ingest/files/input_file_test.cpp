@@ -58,7 +58,8 @@ TEST(InputFile, RefusesMissingEmptyAndNonRegularFiles) {
   EXPECT_EQ(open_refusal(scratch.path("none.raw")),
             scratch.path("none.raw") + ": cannot open for reading: No such file or directory");
   EXPECT_EQ(open_refusal(scratch.path("")), scratch.path("") + ": is a directory; name a file in it");
-  EXPECT_EQ(open_refusal(scratch.write("empty.raw", {})), scratch.path("empty.raw") + ": is empty (0 bytes)");
+  EXPECT_EQ(open_refusal(scratch.write("empty.raw", {})),
+            scratch.path("empty.raw") + ": is empty (0 bytes); copy it again, or write it anew");
   ASSERT_EQ(::mkfifo(scratch.path("pipe.raw").c_str(), 0600), 0);
   EXPECT_EQ(open_refusal(scratch.path("pipe.raw")),
             scratch.path("pipe.raw") + ": is not a regular file; copy its content to one");

@@ -208,7 +208,7 @@ TEST(RawSource, MissingEmptyDirectory) {
   const std::string missing = scratch.path("m_4x4x4_uint8.raw");
   EXPECT_EQ(refusal(ErrorKind::input, missing), missing + ": cannot open for reading: No such file or directory");
   const std::string empty = scratch.write("e_4x4x4_uint8.raw", {});
-  EXPECT_EQ(refusal(ErrorKind::input, empty), empty + ": is empty (0 bytes)");
+  EXPECT_EQ(refusal(ErrorKind::input, empty), empty + ": is empty (0 bytes); copy it again, or write it anew");
   const std::string directory = scratch.path("d_4x4x4_uint8.raw");
   std::filesystem::create_directory(directory);
   EXPECT_EQ(refusal(ErrorKind::input, directory), directory + ": is a directory; name a file in it");

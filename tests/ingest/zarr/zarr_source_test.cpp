@@ -70,7 +70,7 @@ TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
   EXPECT_EQ(files.message(ErrorKind::input),
             "run.zarr/c/0/0/1: chunk at 0, 0, 2: takes 9 bytes, and at most 8 can be right; the file is damaged");
   files.write("c/0/0/1", "");
-  EXPECT_EQ(files.message(ErrorKind::input), "run.zarr/c/0/0/1: is empty (0 bytes)");
+  EXPECT_EQ(files.message(ErrorKind::input), "run.zarr/c/0/0/1: is empty (0 bytes); copy it again, or write it anew");
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"crc32c"}])"));
   files.write("c/0/0/0", std::string(12, '\0'));
   std::filesystem::remove(files.path("c/0/0/1"));  // of two that are damaged, the threads would decide which is named

@@ -67,7 +67,7 @@ TEST_F(BadInput, Directory) {
 
 TEST_F(BadInput, EmptyFile) {
   const std::string path = bytes("empty_8x8x8_uint8.raw", 0);
-  expect_convert_refused(path, {}, 3, path + ": is empty (0 bytes)");
+  expect_convert_refused(path, {}, 3, path + ": is empty (0 bytes); copy it again, or write it anew");
 }
 
 TEST_F(BadInput, SizeThatDoesNotMatchDims) {

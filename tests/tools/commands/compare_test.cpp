@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "format/base/text.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
 #include "tools/spectrum/block_transform.h"
@@ -192,7 +193,12 @@ TEST(Compare, IndexOfTheConversion_IsTakenFromTheSidecar) {
   const CommandResult compared = run_weir({"compare", nrrd, volume});
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
   EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n");
-  EXPECT_EQ(nlohmann::json::parse(run_weir({"compare", nrrd, volume, "--index", "0", "--json"}).out)["different"], 60);
+  const CommandResult other = run_weir({"compare", nrrd, volume, "--index", "0", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(other.out)["different"], 60);
+  EXPECT_TRUE(other.err.ends_with(cat(" warning ", volume, ": was converted with --index 1, as ", volume,
+                                      ".json records, and is compared with --index 0\n")))
+      << other.err;
+  EXPECT_EQ(run_weir({"compare", nrrd, volume, "--index", "1"}).err, "");
 }
 
 TEST(Compare, NonFiniteVoxelsAreCounted) {
