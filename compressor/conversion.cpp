@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "compressor/conversion_control.h"
@@ -19,6 +21,7 @@
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
+#include "ingest/drivers/hdf5_crash.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/cell_places.h"
 
@@ -185,6 +188,10 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   WorkDirectory work(files, options.output, options.work_dir);
   std::unique_ptr<Journal> journal;
   if (team.alone()) journal = open_journal(source.info(), options, control, output, files);
+  std::vector<std::string> begun =
+      journal ? journal->paths() : std::vector<std::string>{hidden_directory_of(options.output)};
+  begun.push_back(options.output + ".partial");  // the lock last: who has it may begin
+  const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, resident_bytes());
     if (journal) journal->discard();

@@ -190,6 +190,15 @@ Journal::~Journal() {
 
 std::string Journal::path_of(const std::string& name) const { return place_in(directory_, spill_directory_, name); }
 
+std::vector<std::string> Journal::paths() const {
+  std::vector<std::string> paths;
+  for (const std::string_view name : {kJournal, kNewJournal, kVolume}) paths.push_back(in(directory_, name));
+  for (const std::string_view name : kSpills) paths.push_back(path_of(std::string(name)));
+  if (!spill_directory_.empty()) paths.push_back(spill_directory_);
+  paths.push_back(directory_);
+  return paths;
+}
+
 std::shared_ptr<File> Journal::open(const std::string& name) {
   std::shared_ptr<File>& file = open_[name];
   if (!file) file = files_.open(path_of(name));

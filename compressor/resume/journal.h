@@ -57,6 +57,8 @@ class Journal {
   const std::string& directory() const { return directory_; }
   /// Of a file that open() gives.
   std::string path_of(const std::string& name) const;
+  /// Of all that discard() removes, in its order.
+  std::vector<std::string> paths() const;
 
   /// "rows", "faces", "ladders", "records" or "volume", with what is in it.
   std::shared_ptr<File> open(const std::string& name);

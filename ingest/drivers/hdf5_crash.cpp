@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -15,6 +16,7 @@ namespace {
 // Of the thread's Hdf5Call. A handler can be told nothing but by what lives as long as the program.
 thread_local const std::string* line_now = nullptr;
 std::atomic<const Hdf5Reads*> reads_now{nullptr};
+std::atomic<const std::vector<std::string>*> removed_now{nullptr};
 static_assert(std::atomic<const std::string*>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a handler reads them");
 
@@ -35,6 +37,11 @@ void end_with_message(int signal) {
     return;
   }
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line->data(), line->size());
+  if (const std::vector<std::string>* const paths = removed_now) {
+    for (const std::string& path : *paths) {
+      if (::unlink(path.c_str()) != 0) ::rmdir(path.c_str());
+    }
+  }
   ::_exit(static_cast<int>(ErrorKind::input));
 }
 
@@ -55,6 +62,10 @@ void watch_hdf5_reads(const Hdf5Reads& reads) { reads_now = &reads; }
 Hdf5Call::Hdf5Call(const std::string& path) : line_(hdf5_crash_line(path)) { line_now = &line_; }
 
 Hdf5Call::~Hdf5Call() { line_now = nullptr; }
+
+Hdf5CrashRemoval::Hdf5CrashRemoval(std::vector<std::string> paths) : paths_(std::move(paths)) { removed_now = &paths_; }
+
+Hdf5CrashRemoval::~Hdf5CrashRemoval() { removed_now = nullptr; }
 
 void report_hdf5_crashes() {
   for (const int signal : kCrashes) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 namespace weir {
 
@@ -28,6 +29,19 @@ class Hdf5Call {
 
  private:
   std::string line_;
+};
+
+/// While one exists, such a crash removes `paths`, files and empty directories, in their order: what a conversion has
+/// begun. One at a time.
+class Hdf5CrashRemoval {
+ public:
+  explicit Hdf5CrashRemoval(std::vector<std::string> paths);
+  ~Hdf5CrashRemoval();
+  Hdf5CrashRemoval(const Hdf5CrashRemoval&) = delete;
+  Hdf5CrashRemoval& operator=(const Hdf5CrashRemoval&) = delete;
+
+ private:
+  std::vector<std::string> paths_;
 };
 
 /// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call, or

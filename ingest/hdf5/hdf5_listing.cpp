@@ -100,11 +100,12 @@ std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions&
   const Hdf5Lock lock;
   const Hdf5Handle file = open_hdf5_file(path);
   std::vector<DatasetInfo> datasets;
-  const auto add_damaged = [&](const std::string& name, const std::string& why) {
-    if (!options.lists_damaged) throw input_error(path, cat(name, ": ", why));
+  const auto add_unread = [&](const UnreadObject& unread) {
+    if (!options.lists_damaged && unread.elsewhere) return;
+    if (!options.lists_damaged) throw input_error(path, cat(unread.name, ": ", unread.why));
     DatasetInfo& info = datasets.emplace_back();
-    info.name = name;
-    info.obstacle = why;
+    info.name = unread.name;
+    info.obstacle = unread.why;
   };
   const auto add_dataset = [&](std::string name, Hdf5Handle handle) {
     const Hdf5Object object{std::move(handle), path, std::move(name)};
@@ -115,10 +116,10 @@ std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions&
       if (!options.lists_damaged || error.kind() != ErrorKind::input) throw;
       const std::string text = error.what();
       const std::string where = object.where() + ": ";
-      add_damaged(object.name, text.starts_with(where) ? text.substr(where.size()) : text);
+      add_unread({object.name, text.starts_with(where) ? text.substr(where.size()) : text});
     }
   };
-  walk_datasets(file.get(), "/", add_dataset, add_damaged);
+  walk_datasets(file.get(), "/", add_dataset, add_unread);
   return datasets;
 }
 

@@ -52,7 +52,7 @@ struct SourceOptions {
 
   MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: of Zarr arrays and HDF5 datasets
 
-  bool lists_damaged = false;  ///< a list has what is too damaged to be opened, with its obstacle; else it is an error
+  bool lists_damaged = false;  ///< a list has what cannot be opened, with its obstacle; else damage is an error
 
   bool stack = false;  ///< --stack: the path is a pattern, the volume many files on top of each other along z
 

@@ -31,7 +31,7 @@ void print_text(const InputListing& listing) {
   std::cout << cat(printable(listing.path), ": ", listing.format, ", ", listing.datasets.size(),
                    listing.datasets.size() == 1 ? " volume\n" : " datasets\n");
   for (const DatasetInfo& dataset : listing.datasets) {
-    const std::string what = dataset.type.empty() ? "damaged" : cat(extents_text(dataset.extents), ' ', dataset.type);
+    const std::string what = dataset.type.empty() ? "not read" : cat(extents_text(dataset.extents), ' ', dataset.type);
     std::cout << cat('\n', dataset.name.empty() ? "" : printable(dataset.name) + ": ", what,
                      dataset.layout.empty() ? "" : ", ", dataset.layout, '\n');
     for (const auto& [name, value] : dataset.attributes) {

@@ -43,8 +43,8 @@ Error too_deep(const Group& group) {
 class GroupWalk {
  public:
   using Visit = std::function<void(std::string, Hdf5Handle)>;
-  using Damaged = std::function<void(std::string, const std::string&)>;
-  GroupWalk(const Visit& visit, const Damaged& damaged) : visit_(visit), damaged_(damaged) {}
+  using Unread = std::function<void(const UnreadObject&)>;
+  GroupWalk(const Visit& visit, const Unread& unread) : visit_(visit), unread_(unread) {}
 
   void run(hid_t file, const std::string& name) {
     Hdf5Handle root(H5Oopen(file, name.c_str(), H5P_DEFAULT));
@@ -57,7 +57,10 @@ class GroupWalk {
         const std::string link = std::move(external_.front());
         external_.pop_front();
         Hdf5Handle object(H5Oopen(file, link.c_str(), H5P_DEFAULT));
-        if (!object) continue;
+        if (!object) {
+          unread_({link, cat("leads to another file, and cannot be followed: ", hdf5_reason()), true});
+          continue;
+        }
         // A file closed and opened again has another number: what is new could not be told from what is not.
         kept_.emplace_back(H5Iget_file_id(object.get()));
         take(link, std::move(object), 1);
@@ -72,7 +75,7 @@ class GroupWalk {
  private:
   // Right after the call of the library that failed.
   void say_damaged(const std::string& name, const char* what) {
-    damaged_(name, cat(what, ": ", hdf5_reason(), "; the file is damaged"));
+    unread_({name, cat(what, ": ", hdf5_reason(), "; the file is damaged")});
   }
 
   bool is_new(const std::string& path, hid_t object) {
@@ -100,6 +103,8 @@ class GroupWalk {
       } else if (followed_ < kMaxExternalLinks) {
         ++followed_;
         external_.push_back(std::move(path));
+      } else if (followed_++ == kMaxExternalLinks) {
+        unread_({path, cat("is a link to another file, and ", kMaxExternalLinks, " of these are followed")});
       }
     }
   }
@@ -114,7 +119,7 @@ class GroupWalk {
   }
 
   const Visit& visit_;
-  const Damaged& damaged_;
+  const Unread& unread_;
   std::set<std::pair<unsigned long, haddr_t>> seen_;
   std::deque<Group> groups_;
   std::deque<std::string> external_;
@@ -126,8 +131,8 @@ class GroupWalk {
 
 void walk_datasets(hid_t file, const std::string& name,
                    const std::function<void(std::string name, Hdf5Handle object)>& visit,
-                   const std::function<void(std::string name, const std::string& why)>& damaged) {
-  GroupWalk(visit, damaged).run(file, name);
+                   const std::function<void(const UnreadObject&)>& unread) {
+  GroupWalk(visit, unread).run(file, name);
 }
 
 }  // namespace weir

@@ -77,8 +77,9 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
       obstacle = cat(name, ": ", facts.obstacle);
     }
   };
-  walk_datasets(file, "/", look_at, [&](const std::string& name, const std::string& why) {
-    throw input_error(path, compose(name, ": ", why, ", and may hold a volume, too; choose one with ",
+  walk_datasets(file, "/", look_at, [&](const UnreadObject& unread) {
+    if (unread.elsewhere) return;
+    throw input_error(path, compose(unread.name, ": ", unread.why, ", and may hold a volume, too; choose one with ",
                                     option("dataset"), ", or copy the file again"));
   });
   if (datasets == 0) throw Error(ErrorKind::input, cat(path, ": holds no dataset"));

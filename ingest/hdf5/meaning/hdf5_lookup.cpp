@@ -21,7 +21,7 @@ std::vector<std::string> dataset_names(hid_t file, const std::string& group) {
   std::vector<std::string> names;
   walk_datasets(
       file, group, [&](std::string name, const Hdf5Handle&) { names.push_back(std::move(name)); },
-      [](const std::string&, const std::string&) {});  // they are for a message
+      [](const UnreadObject&) {});  // they are for a message
   return names;
 }
 

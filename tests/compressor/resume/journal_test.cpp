@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
@@ -71,6 +72,19 @@ TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
     EXPECT_EQ(files.names(), saved);
     EXPECT_TRUE(Journal(files, "o.nvdb", kIdentity, options).resumable());
   }
+}
+
+TEST(Journal, PathsAreOfAllThatItLeaves) {
+  CrashFileSystem files;
+  Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
+  for (const char* name : {"rows", "faces", "ladders", "records", "volume"}) journal.open(name)->preallocate(10);
+  journal.state.survey.done.add(kSome);
+  journal.state.encoded.done.add(kSome);
+  journal.save();
+  const Names paths = journal.paths();
+  EXPECT_EQ(paths.front(), "./.o.nvdb.work/journal");
+  EXPECT_EQ(paths.back(), "./.o.nvdb.work");
+  for (const std::string& name : files.names()) EXPECT_EQ(std::ranges::count(paths, name), 1) << name;
 }
 
 TEST(Journal, RestoresOnlyTheSavedState) {

@@ -2,10 +2,16 @@
 #include "ingest/drivers/hdf5_crash.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
 #include "tests/support/sanitized.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::hdf5_crash_test {
 namespace {
@@ -39,6 +45,29 @@ TEST_P(Hdf5Crash, Elsewhere_EndsByTheSignal) {
         ::raise(GetParam());
       },
       ::testing::KilledBySignal(GetParam()), "^$");
+}
+
+TEST_P(Hdf5Crash, WithinTheLibrary_RemovesWhatWasBegun) {
+  const TemporaryDirectory directory;
+  const std::string work = directory / ".o.nvdb.work";
+  const std::string kept = directory / "kept";
+  for (const std::string& made : {work, kept}) std::filesystem::create_directory(made);
+  for (const char* name : {"o.nvdb.partial", "kept/journal"}) std::ofstream(directory / name) << "begun";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    report_hdf5_crashes();
+    const Hdf5CrashRemoval removal({work, kept, directory / "o.nvdb.partial"});
+    const Hdf5Call call("/data/a.h5");
+    ::raise(GetParam());
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;
+  EXPECT_FALSE(std::filesystem::exists(work));
+  EXPECT_FALSE(std::filesystem::exists(directory / "o.nvdb.partial"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "kept/journal"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Hdf5Crash, ::testing::Values(SIGSEGV, SIGBUS, SIGABRT));

@@ -74,6 +74,34 @@ patch("a.h5", at, b"????")
                                  ", and may hold a volume, too; choose one with --dataset, or copy the file again");
 }
 
+TEST_F(Hdf5Damage, LinkToAFileThatIsNotThere_IsListedAndNoObstacleToOthers) {
+  write(R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4"); expect("v", f["v"])
+    f["away"] = h5py.ExternalLink("none.h5", "/v")
+)");
+  const auto all = listed("a.h5");
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1].name, "/away");
+  EXPECT_TRUE(all[1].obstacle.starts_with("leads to another file, and cannot be followed: ")) << all[1].obstacle;
+  EXPECT_EQ(list_hdf5(scratch_.path("a.h5"), {}).size(), 1U);
+  expect_reads(scratch_, "a.h5", {}, "v");
+}
+
+TEST_F(Hdf5Damage, OneLinkTooMany_IsSaid) {
+  write(R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4")
+    for i in range(258): f[f"away{i:03}"] = h5py.ExternalLink("none.h5", "/v")
+)");
+  const auto all = listed("a.h5");
+  ASSERT_EQ(all.size(), 258U);
+  EXPECT_EQ(all[0].name, "/away256");
+  EXPECT_EQ(all[0].obstacle, "is a link to another file, and 256 of these are followed");
+  EXPECT_EQ(list_refused("a.h5"),
+            scratch_.path("a.h5") + ": /away256: is a link to another file, and 256 of these are followed");
+}
+
 TEST_F(Hdf5Damage, CoordinatesThatCannotBeRead_AreAnErrorThatNamesThem) {
   write(R"(
 with h5py.File("a.h5", "w") as f:
