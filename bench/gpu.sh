@@ -120,25 +120,29 @@ packed() {
 # The survey and the encoding of 1024^3 values; then the whole command with either backend, to the same bytes.
 encode() {
   "$bin/weir_bench_encode" || failed=1
-  for kind in cloud turbulence; do
-    local name=$work/${kind}1024
+  for what in "cloud 20" "cloud 8" "turbulence 8"; do
+    local kind=${what% *} name=$work/${what% *}1024
     [ -e "$name.raw" ] || quiet "$bin/weir" sample "$kind" --dims 1024,1024,1024 -o "$name.raw"
     for backend in cpu cuda cpu cuda; do
-      "$bin/weir" convert "$name.raw" --dims 1024,1024,1024 --type float32 --memory 8GiB --encoding packed --rate 20 \
-        --backend "$backend" -o "$name.$backend.nvdb" --overwrite --resume off --json --progress never --log-level error \
-        >"$work/c.json" || failed=1
-      printf '%-44s %s\n' "$kind, --backend $backend" "$(grep -E '"(survey_s|encode_s|total_s)"' "$work/c.json" | tr -d '\n' | tr -s ' ')"
+      "$bin/weir" convert "$name.raw" --dims 1024,1024,1024 --type float32 --memory 6GiB --encoding packed \
+        --rate "${what#* }" --backend "$backend" -o "$name.$backend.nvdb" --overwrite --resume off --json --progress never \
+        --log-level error >"$work/c.json" || failed=1
+      sed -nE "s/.*\"survey_s\": *([0-9.]+).*\"total_s\": *([0-9.]+).*\"peak_rss_bytes\": *([0-9]+).*/\\2 \\1 \\3/p" "$work/c.json" |
+        awk -v what="$what, --backend $backend" '{ printf "%-32s %.2f s, survey %.2f, %d MiB\n", what, $1, $2, $3 / 1048576 }'
     done
     cmp "$name.cpu.nvdb" "$name.cuda.nvdb" || failed=1
-    rm "$name".*
+    rm "$name".c*
+    [ "$what" = "cloud 20" ] || rm "$name".*
   done
 }
 
-# converted ARGUMENTS...: seconds of the survey and of all of a conversion of the 1024^3 cloud.
+# converted ARGUMENTS...: seconds of the survey, of all and of the selection of a conversion of the 1024^3 cloud.
 converted() {
   "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --resume off \
-    -o "$work/cloud1024.nvdb" --overwrite --json --progress never --log-level error "$@" >"$work/c.json" || failed=1
-  sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json"
+    -o "$work/cloud1024.nvdb" --overwrite --trace "$work/t.json" --json --progress never --log-level error "$@" \
+    >"$work/c.json" || failed=1
+  sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json" | tr '\n' ' '
+  sed -nE 's/.*"name":"select".*"dur":([0-9.]+).*/\1/p' "$work/t.json" | awk '{ sum += $1 } END { print sum / 1e6 }'
 }
 # Whole conversions by 1, 2, 4 ... threads, the best of three (of one by one thread), and one read of the file.
 threads() {
@@ -149,8 +153,8 @@ threads() {
     for ((n = 1; n <= $(nproc); n *= 2)); do
       for ((run = 0; run < (n == 1 ? 1 : 3); ++run)); do
         converted --encoding "$encoding" --threads "$n"
-      done | awk -v what="$encoding, $n threads" 'NR == 1 || $2 < best { best = $2; survey = $1 }
-          END { printf "%-20s %6.2f s, survey %5.2f, rest %5.2f\n", what, best, survey, best - survey }'
+      done | awk -v what="$encoding, $n threads" 'NR == 1 || $2 < best { best = $2; survey = $1; select = $3 }
+          END { printf "%-20s %6.2f s, survey %5.2f, rest %5.2f, of that selection %5.3f\n", what, best, survey, best - survey, select }'
     done
   done
   rm "$work"/*
