@@ -138,7 +138,7 @@ encode() {
 
 # converted ARGUMENTS...: seconds of the survey, of all and of the selection of a conversion of the 1024^3 cloud.
 converted() {
-  "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --resume off \
+  "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --backend cpu --resume off \
     -o "$work/cloud1024.nvdb" --overwrite --trace "$work/t.json" --json --progress never --log-level error "$@" \
     >"$work/c.json" || failed=1
   sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json" | tr '\n' ' '
