@@ -54,7 +54,6 @@ TEST_F(EmptyNames, ValueBehindAnEqualsSign_ExitsWith2) {
   expect_refused({"convert", "--overwrite=", raw_, "-o", directory_ / "o.nvdb"}, line("overwrite"));
   expect_refused({"render", volume_, "--output=", "a.png"}, line("output"));
   expect_refused({"inspect", volume_, "--plot=", "--json"}, line("plot"));
-  expect_refused({"jobs", "--address=", "x"}, line("address"));
 }
 
 TEST_F(EmptyNames, ShortNameWithAnEqualsSign_ExitsWith2) {
