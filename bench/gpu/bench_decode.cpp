@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/gpu/device_seconds.h"
 #include "format/base/error.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/cuda/packed/block_decoder.h"
@@ -20,38 +21,7 @@
 namespace weir {
 namespace {
 
-constexpr int kRuns = 10;
 constexpr std::size_t kBatch = std::size_t{1} << 18U;  // blocks: 512 MiB of values
-
-/// Seconds between two points of a stream.
-class DeviceClock {
- public:
-  DeviceClock() {
-    check_cuda(cudaEventCreate(&begin_), "creating an event");
-    check_cuda(cudaEventCreate(&end_), "creating an event");
-  }
-  ~DeviceClock() {
-    cudaEventDestroy(begin_);
-    cudaEventDestroy(end_);
-  }
-  DeviceClock(const DeviceClock&) = delete;
-  DeviceClock& operator=(const DeviceClock&) = delete;
-
-  template <class Work>
-  double seconds(const Work& work) {
-    check_cuda(cudaEventRecord(begin_, cudaStreamPerThread), "recording an event");
-    work();
-    check_cuda(cudaEventRecord(end_, cudaStreamPerThread), "recording an event");
-    check_cuda(cudaEventSynchronize(end_), "waiting for the device");
-    float ms = 0;
-    check_cuda(cudaEventElapsedTime(&ms, begin_, end_), "reading an event");
-    return static_cast<double>(ms) / 1e3;
-  }
-
- private:
-  cudaEvent_t begin_{};
-  cudaEvent_t end_{};
-};
 
 /// Of all blocks with a stream, region by region.
 std::vector<BlockId> blocks_of(const PackedData& packed) {
@@ -91,7 +61,6 @@ bool measure(const std::string& path) {
   const std::size_t batch = std::min(kBatch, blocks.size());
   DeviceArray<float> values(512 * batch);
   DeviceArray<float> copy(512 * batch);
-  DeviceClock clock;
 
   std::size_t different = 0;
   BlockDecoder::Counts counts;
@@ -107,21 +76,15 @@ bool measure(const std::string& path) {
     different += differing(*packed, blocks, first, host);
   }
 
-  std::vector<double> decode_s;
-  std::vector<double> copy_s;
-  for (int run = 0; run < kRuns; ++run) {
-    decode_s.push_back(clock.seconds([&] { decoder.decode(ids.data(), batch, values.data(), cudaStreamPerThread); }));
-    copy_s.push_back(clock.seconds([&] {
-      check_cuda(
-          cudaMemcpyAsync(copy.data(), values.data(), copy.bytes(), cudaMemcpyDeviceToDevice, cudaStreamPerThread),
-          "copying on the device");
-    }));
-  }
-  std::ranges::sort(decode_s);
-  std::ranges::sort(copy_s);
+  const double decode_s =
+      device_seconds([&] { decoder.decode(ids.data(), batch, values.data(), cudaStreamPerThread); });
+  const double copy_s = device_seconds([&] {
+    check_cuda(cudaMemcpyAsync(copy.data(), values.data(), copy.bytes(), cudaMemcpyDeviceToDevice, cudaStreamPerThread),
+               "copying on the device");
+  });
   const double bytes = static_cast<double>(values.bytes());
-  const double rate = bytes / decode_s[kRuns / 2] / 1e9;
-  const double copied = bytes / copy_s[kRuns / 2] / 1e9;
+  const double rate = bytes / decode_s / 1e9;
+  const double copied = bytes / copy_s / 1e9;
   const auto voxels = static_cast<double>(packed->regions().domain.voxels());
   const double of_volume = rate * voxels / (512.0 * static_cast<double>(blocks.size()));
   const double bits = 8.0 * static_cast<double>(packed->bytes().size()) / (512.0 * static_cast<double>(blocks.size()));

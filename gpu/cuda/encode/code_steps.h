@@ -8,6 +8,7 @@
 
 #include "format/base/host_device.h"
 #include "format/packed/block_decode.h"
+#include "gpu/cuda/encode/sign_bits.h"
 #include "gpu/cuda/encode/survey_steps.h"
 #include "gpu/cuda/packed/stream_queue.h"
 
@@ -85,7 +86,7 @@ WEIR_HOST_DEVICE inline std::uint32_t code_of(const CostTables& tables, const Co
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t write_codes(const Warp& warp, const CostTables& tables, unsigned limit, CodeStage& stage,
                                            std::uint32_t* codes) {
-  typename Warp::template Own<std::uint32_t> signs, count, before;
+  typename Warp::template Own<std::uint32_t> signs, count;
   warp.each([&](unsigned lane) {
     if (kOwnPlaces * lane >= limit) return;
     std::uint32_t held = 0;
@@ -107,16 +108,8 @@ WEIR_HOST_DEVICE std::uint32_t write_codes(const Warp& warp, const CostTables& t
     }
     signs(lane) = held;
     count(lane) = bits;
-    before(lane) = bits;
   });
-  const std::uint32_t all = warp.add_before(before);
-  warp.each([&](unsigned lane) {
-    if (count(lane) == 0) return;
-    const std::uint32_t first = before(lane);
-    warp.set_bits(&stage.signs[first / 32], signs(lane) << (first % 32));
-    if (first % 32 + count(lane) > 32) warp.set_bits(&stage.signs[first / 32 + 1], signs(lane) >> (32 - first % 32));
-  });
-  return all;
+  return join_signs(warp, signs, count, stage.signs);
 }
 
 // Coefficients become what is decoded of the stream, and these values.

@@ -7,6 +7,7 @@
 #include "format/base/host_device.h"
 #include "format/packed/stream_length.h"
 #include "gpu/cuda/encode/residual_steps.h"
+#include "gpu/cuda/encode/sign_bits.h"
 #include "gpu/cuda/encode/word_writer.h"
 
 namespace weir::encode_detail {
@@ -19,7 +20,7 @@ static_assert(kPackedLevels * kPackedSymbols <= 1U << kRawShift);
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t find_symbols(const Warp& warp, const CostTables& tables, unsigned limit,
                                             LatticeStage& stage) {
-  typename Warp::template Own<std::uint32_t> signs, count, before;
+  typename Warp::template Own<std::uint32_t> signs, count;
   constexpr unsigned kOwn = 512 / kLanes;  // places of a lane, one after the other
   warp.each([&](unsigned lane) {
     if (lane < 17) stage.signs[lane] = 0;
@@ -49,16 +50,8 @@ WEIR_HOST_DEVICE std::uint32_t find_symbols(const Warp& warp, const CostTables& 
     }
     signs(lane) = held;
     count(lane) = bits;
-    before(lane) = bits;
   });
-  const std::uint32_t all = warp.add_before(before);
-  warp.each([&](unsigned lane) {
-    if (count(lane) == 0) return;
-    const std::uint32_t first = before(lane);
-    warp.set_bits(&stage.signs[first / 32], signs(lane) << (first % 32));
-    if (first % 32 + count(lane) > 32) warp.set_bits(&stage.signs[first / 32 + 1], signs(lane) >> (32 - first % 32));
-  });
-  return all;
+  return join_signs(warp, signs, count, stage.signs);
 }
 
 // From the last place to the first.
