@@ -11,16 +11,23 @@ namespace {
 
 // The 3-D Lorenzo predictor's: what is left of the codes after differences along each axis in turn.
 WEIR_SIMD void difference_all(const std::uint32_t* codes, std::uint32_t* residuals) {
-  std::uint32_t along_x[512];
-  for (unsigned i = 0; i < 64; ++i) along_x[i] = codes[i];
-  for (unsigned i = 64; i < 512; ++i) along_x[i] = codes[i] - codes[i - 64];
-  std::uint32_t along_y[512];
   for (unsigned x = 0; x < 512; x += 64) {
-    for (unsigned i = x; i < x + 8; ++i) along_y[i] = along_x[i];
-    for (unsigned i = x + 8; i < x + 64; ++i) along_y[i] = along_x[i] - along_x[i - 8];
+    Words8 beside{};
+    for (unsigned i = x; i < x + 64; i += 8) {
+      Words8 along_x;
+      __builtin_memcpy(&along_x, codes + i, sizeof along_x);
+      if (x > 0) {
+        Words8 left;
+        __builtin_memcpy(&left, codes + i - 64, sizeof left);
+        along_x -= left;
+      }
+      const Words8 along_y = along_x - beside;
+      beside = along_x;
+      const Words8 row = along_y - __builtin_shufflevector(along_y, Words8{}, 8, 0, 1, 2, 3, 4, 5, 6);
+      __builtin_memcpy(residuals + i, &row, sizeof row);
+    }
   }
   residuals[0] = 0;
-  for (unsigned i = 1; i < 512; ++i) residuals[i] = along_y[i] - (i % 8 == 0 ? 0 : along_y[i - 1]);
 }
 
 // A row of codes, and those beside it.
