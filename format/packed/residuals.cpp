@@ -170,9 +170,11 @@ WEIR_SIMD void predict_ordered_medians(const std::uint32_t* codes, std::uint32_t
   predict_rows<PredictMedian, Doubles8>(codes, residuals);
 }
 
-// What residuals take about: the bits of three times each magnitude.
+// What residuals take about: the bits of three times each magnitude. That is 0, of no bits, or 2 or more, with two bits
+// more than its half's exponent.
 WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
-  const Ints8 none{};
+  constexpr std::int32_t kNone = 127 - 2;  // the biased exponent less the bits
+  const Ints8 none = Ints8{} + kNone;
   Ints8 sum{};
   for (unsigned i = 0; i < 512; i += 8) {
     Words8 r;
@@ -184,12 +186,11 @@ WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
     const auto f = __builtin_convertvector(reinterpret_cast<Ints8&>(half), Floats8);
     Ints8 exponent;
     __builtin_memcpy(&exponent, &f, sizeof exponent);
-    exponent = (exponent >> 23) - 126;
-    sum += half == 0 ? none : exponent;
-    sum -= m != 0;
+    exponent >>= 23;
+    sum += exponent > none ? exponent : none;
   }
   std::uint32_t bits = 0;
-  for (int l = 0; l < 8; ++l) bits += static_cast<std::uint32_t>(sum[l]);
+  for (int l = 0; l < 8; ++l) bits += static_cast<std::uint32_t>(sum[l] - 64 * kNone);
   return bits;
 }
 
