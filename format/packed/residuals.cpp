@@ -69,14 +69,16 @@ template <typename Lanes>
 }
 
 // What is left of codes, modulo 2^32.
-[[gnu::always_inline]] inline void take_away(const Ints8& predicted, Ints8& row) { row -= predicted; }
+[[gnu::always_inline]] inline void take_away(const Ints8& predicted, Words8& row) {
+  row -= reinterpret_cast<const Words8&>(predicted);
+}
 
-[[gnu::always_inline]] inline void take_away(const Doubles8& predicted, Ints8& row) {
+[[gnu::always_inline]] inline void take_away(const Doubles8& predicted, Words8& row) {
   constexpr double kWholes = 0x1.8p52;  // the sum's mantissa ends in the whole number
   const Doubles8 sum = predicted + kWholes;
   std::int64_t __attribute__((vector_size(64))) bits;
   __builtin_memcpy(&bits, &sum, sizeof bits);
-  row -= __builtin_convertvector(bits, Ints8);
+  row -= __builtin_convertvector(bits, Words8);
 }
 
 struct PredictMean {
@@ -146,10 +148,10 @@ template <typename Predictor, typename Lanes>
     Predictor::predict(beside, back, true, with_back);
     Predictor::predict(beside, back, false, without);
     const Lanes predicted = __builtin_shufflevector(without, with_back, 0, 9, 10, 11, 12, 13, 14, 15);
-    Ints8 left;
-    load_codes(codes + i, left);
-    take_away(predicted, left);
-    __builtin_memcpy(residuals + i, &left, sizeof left);
+    Words8 residual;
+    __builtin_memcpy(&residual, codes + i, sizeof residual);
+    take_away(predicted, residual);
+    __builtin_memcpy(residuals + i, &residual, sizeof residual);
   }
   residuals[0] = 0;
 }
