@@ -179,7 +179,7 @@ struct Attempts {
       throw Error(ErrorKind::internal, cat(request.path, ": float leaves miss what was asked; report this"));
     }
     if (request.budget.kind != Budget::Kind::psnr) {
-      if (kept && seen_error(encoded) <= encoded.file.float_error) return false;
+      if (kept && !loses_more_than_float(encoded)) return false;
       take_float(encoded);
       return true;
     }
@@ -203,6 +203,17 @@ struct Attempts {
   }
 
  private:
+  // Where only a bound of the float file's error is known, the file is planned if that does not decide.
+  bool loses_more_than_float(const EncodedFile& encoded) const {
+    const double error = seen_error(encoded);
+    if (error <= encoded.file.float_error) return false;
+    if (!encoded.file.float_error_is_bound) return true;
+    FileRequest whole = request;
+    whole.plans_float = true;
+    const FilePlan file = plan_file(whole, rows, work);
+    return file.encoding == Encoding::float32 || error > file.float_error;
+  }
+
   // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
   void raise_quality() {
     request = asked;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "compressor/select/float_bound.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -200,11 +201,26 @@ FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDir
   return plain.plan(size);
 }
 
+// Of a float file in place of `quantised`, where that may spare planning it.
+std::optional<FloatBound> float_bound(const FileRequest& request, const RowStore& rows, const FilePlan& quantised) {
+  const bool weighed = request.rule.visibility != nullptr;  // the bound is of what all voxels lose
+  if (request.plans_float || weighed || !countable(quantised) || !rows.team().alone()) return std::nullopt;
+  return FloatBound(*quantised.tree, rows);
+}
+
 FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate candidate(request, Encoding::fpn, rows, work);
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
   if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
+  if (const std::optional<FloatBound> bound = float_bound(request, rows, quantised)) {
+    const double least = bound->least_error(size.bytes);
+    if (least > 0 && quantised.plan.expected_error <= least) {  // with no error, bits decide
+      quantised.float_error = least;
+      quantised.float_error_is_bound = true;
+      return quantised;
+    }
+  }
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
   if (size.kind == "minimum") return quantised;
@@ -222,6 +238,10 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
 FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate quantised(request, Encoding::fpn, rows, work);
   FilePlan small = quantised.plan_for_error();
+  if (request.budget.kind == Budget::Kind::psnr && meets(request, quantised, small)) {
+    const std::optional<FloatBound> bound = float_bound(request, rows, small);
+    if (bound && small.size.bytes <= bound->least_bytes(request.squared_error)) return small;
+  }
   Candidate plain(request, Encoding::float32, rows, work);
   FilePlan file = plain.plan_for_error();
   const bool as_small = small.size.bytes <= file.size.bytes || !countable(file);

@@ -47,6 +47,7 @@ struct FilePlan {
   /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
   /// which is exact. Infinite where there is none.
   double float_error = std::numeric_limits<double>::infinity();
+  bool float_error_is_bound = false;  ///< the float file was not planned: it loses that or more
 };
 
 struct FileRequest {
@@ -61,12 +62,14 @@ struct FileRequest {
   PackedRequest packed;  ///< for Encoding::packed
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
+  bool plans_float = false;       ///< for Encoding::automatic: the float file, too, where a bound would do
   std::string path;               ///< of the output, for messages
 };
 
 /// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
 /// asked error. What a quantised file loses is estimated: Encoding::automatic means that where it turns out to lose
-/// more than `float_error`, the float file is to be taken. Throws Error(budget) where size, error or exactness cannot
+/// more than `float_error`, the float file is to be taken; if that is a bound, after a plan with `plans_float` says so.
+/// Throws Error(budget) where size, error or exactness cannot
 /// be met, naming what can, Error(usage) where the encoding cannot hold the volume. Where planned_error was lowered and
 /// this encoding is not expected to reach it, the plan is all that it has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
