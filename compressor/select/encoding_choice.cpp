@@ -60,8 +60,7 @@ class Candidate {
 
   // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
   FilePlan plan_exact() {
-    const double planned = request_.planned_error;
-    const double target = encoding_ == Encoding::float32 ? std::min(request_.squared_error, planned) : planned;
+    const double target = encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error;
     FilePlan file = plan_expected(target);
     for (double slack = 0x1p-48; file.plan.expected_error > target; slack *= 256) {
       tree_ = std::move(file.tree);
@@ -133,16 +132,16 @@ std::string lossy_leaves_text(const Candidate& quantised) {
 
 // Whether the file is expected to do what its plan was asked for.
 bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
-  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.planned_error
-                                                   : candidate.lossless();
+  if (request.budget.kind != Budget::Kind::psnr) return candidate.lossless();
+  return file.plan.expected_error <= (request.adjusted ? request.planned_error : request.squared_error);
 }
 
 // The file of one encoding, by the budget.
 FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
   if (request.budget.by_error()) {
     FilePlan file = candidate.plan_for_error();
-    const bool first = request.planned_error >= request.squared_error;  // before any file was made
-    if (first && !meets(request, candidate, file)) throw unmet_target(request, encoding, file.plan.expected_error);
+    if (!request.adjusted && !meets(request, candidate, file))
+      throw unmet_target(request, encoding, file.plan.expected_error);
     return file;
   }
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
