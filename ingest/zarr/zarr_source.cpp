@@ -11,7 +11,6 @@
 #include "ingest/chunks/chunk_boxes.h"
 #include "ingest/files/file_states.h"
 #include "ingest/files/input_directory.h"
-#include "ingest/source/extent.h"
 #include "ingest/zarr/array_choice.h"
 #include "ingest/zarr/storage/zarr_chunks.h"
 #include "ingest/zarr/store/open_store.h"
@@ -122,7 +121,6 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   info.dataset = chosen.node.key;
   describe_volume(chosen.array, chosen.meaning, index, info);
   options.complete(info.mapping);
-  checked_volume_bytes(info.extent, scalar_bytes(info.type), where);
   const ChunkGeometry geometry(chosen.array, index, where);
   return std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options);
 }

@@ -5,6 +5,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source/extent.h"
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "ingest/zarr/metadata/zarr_json.h"
 
@@ -37,7 +38,10 @@ std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) 
   if (std::count(array.shape.begin(), array.shape.end(), 0) > 0) return cat("empty: ", axes_text(array, meaning));
   const auto is_other = [](const ScaleAxis& axis) { return !axis.type.empty() && axis.type != "space"; };
   const auto others = std::count_if(meaning.axes.end() - kSpaceRank, meaning.axes.end(), is_other);
-  if (others == 0) return {};
+  if (others == 0) {
+    return extent_obstacle({array.shape[rank - 1], array.shape[rank - 2], array.shape[rank - 3]},
+                           scalar_bytes(array.type));
+  }
   return cat(static_cast<std::int64_t>(kSpaceRank) - others, " axes of space at its end (", axes_text(array, meaning),
              "); a volume has three");
 }

@@ -281,6 +281,23 @@ TEST(ZarrSource, ArraysThatCannotBeRead_AreListedWithTheReason) {
       "64 bits or floats of 16, 32 or 64; weir inspect lists them");
 }
 
+TEST(ZarrSource, ExtentsThatNoVolumeHas_AreListedAsTheReason) {
+  const ZarrFiles files;
+  files.write("zarr.json", kGroup);
+  files.write("long/zarr.json", zarr_json("[1,1,2147483648]", "[1,1,1024]"));
+  files.write("many/zarr.json", zarr_json("[2,1073741824,2147483647]", "[1,1024,1024]"));
+  const std::vector<DatasetInfo> list = list_zarr(files.path(), {});
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].obstacle, "extent 2147483648x1x1 has 2147483648 voxels along x; each axis must be 1 to 2147483647");
+  EXPECT_EQ(list[1].obstacle, "extent 2147483647x1073741824x2 at 4 bytes a voxel overflows 64 bits; check the extent");
+  SourceOptions options;
+  options.dataset = "long";
+  EXPECT_EQ(files.message(ErrorKind::input, options), "run.zarr/long: " + list[0].obstacle);
+  // One that can be converted needs no name beside them.
+  files.write("short/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
+  EXPECT_EQ(files.read(), (std::vector<float>{7}));
+}
+
 TEST(ZarrSource, PathsOfItsParts_OpenTheSame) {
   const ZarrFiles files;
   files.write("zarr.json", kGroup);
