@@ -82,6 +82,30 @@ TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
             "check); the file is damaged");
 }
 
+TEST(ZarrSource, WhatIsNoFileInTheirPlace_IsNotTakenForAChunkThatIsNotStored) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,4]", "[1,1,2]", "|u1", "7",
+                                R"("compressor":null,"filters":null,"dimension_separator":"/")"));
+  files.write_values("0/0/0", counted(2));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 7, 7}));
+  std::filesystem::create_directories(files.path("0/0/1"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/1: chunk at 0, 0, 2: is a directory and not a file; copy the array again, or remove the "
+            "directory");
+  std::filesystem::remove(files.path("0/0/1"));
+  std::filesystem::create_symlink("nowhere", files.path("0/0/1"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/1: chunk at 0, 0, 2: is a link to a file that is not there; fetch that file, or remove the "
+            "link");
+  std::filesystem::remove(files.path("0/0/1"));
+  std::filesystem::create_symlink("0", files.path("0/0/1"));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 0, 1}));
+  std::filesystem::remove_all(files.path("0/0"));
+  files.write("0/0", "ab");
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/0: chunk at 0, 0, 0: lies below a file that should be a directory; copy the array again");
+}
+
 TEST(ZarrSource, ChunksThatChangeAfterOpening_AreRefused) {
   const ZarrFiles files;
   files.write("zarr.json", zarr_json("[1,1,4]", "[1,1,2]"));
