@@ -241,7 +241,7 @@ TEST(AmrexSourceMemory, BoxesThatDoNotFit_NameAMemoryThatDoes) {
   options.memory = 1U << 20U;
   EXPECT_EQ(
       message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
-      path + "/Level_0/Cell_H: its 4096 boxes take 288.0 KiB, more than a quarter of --memory; give at least 2MiB");
+      path + "/Level_0/Cell_H: its 4096 boxes take 352.0 KiB, more than a quarter of --memory; give at least 2MiB");
   options.memory = 2U << 20U;
   EXPECT_EQ(open_source(path, options)->info().extent, (Index3{32, 32, 32}));
 }
