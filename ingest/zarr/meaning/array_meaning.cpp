@@ -88,6 +88,10 @@ ArrayMeaning array_meaning(const ZarrArray& array, const std::optional<FoundLeve
     if (level->image.axes.size() == rank) meaning.axes = level->image.axes;
     if (found.scale.size() == rank) meaning.scale = found.scale;
     if (found.translation.size() == rank) meaning.translation = found.translation;
+    if (!found.placed) {
+      meaning.place_note =
+          "its coordinateTransformations are others than scale and translation by numbers, taken as indices";
+    }
   }
   read_value_attributes(array, meaning);
   meaning.obstacle = shape_obstacle(array, meaning);
@@ -139,6 +143,7 @@ void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const 
     info.origin.at(i) = meaning.translation[axis];
     info.axis_labels.at(i) = meaning.axes[axis].name;
     info.details.axes.at(i).units = meaning.axes[axis].unit;
+    info.details.axes.at(i).note = meaning.place_note;
   }
   for (std::size_t axis = 0; axis < index.size(); ++axis) {
     if (meaning.axes[axis].type != "time") continue;
