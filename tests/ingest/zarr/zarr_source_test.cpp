@@ -332,20 +332,5 @@ TEST(ZarrSource, PathsOfItsParts_OpenTheSame) {
   }
 }
 
-TEST(ZarrSource, ScaleAndMissingValueOfXarray_AreApplied) {
-  const ZarrFiles files;
-  files.write(".zarray", zarray("[1,1,3]", "[1,1,3]", "|u1", "255"));
-  files.write(".zattrs", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"scale_factor":0.5,"add_offset":-1,"missing_value":255,)"
-                         R"("units":"K","long_name":"temperature","valid_max":NaN})");
-  files.write_values("0.0.0", std::vector<std::uint8_t>{0, 4, 255});
-  const auto source = open_source(files.path(), {});
-  const std::vector<float> values = ZarrFiles::read_all(*source);
-  EXPECT_EQ(values[0], -1.0F);
-  EXPECT_EQ(values[1], 1.0F);
-  EXPECT_TRUE(is_missing(values[2]));
-  EXPECT_EQ(source->info().units, "K");
-  EXPECT_EQ(source->info().details.long_name, "temperature");
-}
-
 }  // namespace
 }  // namespace weir::zarr_source_test
