@@ -61,4 +61,17 @@ ObjectScan scan_objects(const ChunkObjects& objects, const ChunkGeometry& geomet
   return scan;
 }
 
+std::string key_by_other_separator(const ChunkObjects& objects, const ChunkGeometry& geometry, const ObjectScan& scan) {
+  constexpr std::size_t kMostLooks = 4096;
+  if (std::find(scan.stored.begin(), scan.stored.end(), true) != scan.stored.end()) return {};
+  ChunkObjects others = objects;
+  others.keys.separator = objects.keys.separator == '.' ? '/' : '.';
+  for (std::size_t i = 0; i < std::min(scan.stored.size(), kMostLooks); ++i) {
+    std::string key =
+        others.key_of(geometry.object_position(index_at(static_cast<std::int64_t>(i), geometry.objects())));
+    if (objects.store.look(key)) return key;
+  }
+  return {};
+}
+
 }  // namespace weir

@@ -42,4 +42,8 @@ struct ObjectScan {
 ObjectScan scan_objects(const ChunkObjects& objects, const ChunkGeometry& geometry, std::uint64_t memory,
                         const std::atomic<bool>* cancel);
 
+/// Of objects none of which is stored, the key of one that is stored with the other separator between its positions;
+/// empty where the first few thousand have none, or some are stored.
+std::string key_by_other_separator(const ChunkObjects& objects, const ChunkGeometry& geometry, const ObjectScan& scan);
+
 }  // namespace weir

@@ -31,6 +31,24 @@ TEST(ZarrSource, ChunksThatAreNotStored_ReadAsTheFillValueAndAreCounted) {
   EXPECT_EQ(files.read(options), (std::vector<float>{0, 1, 100, 2, 3, 102, 4, 5, 104, 6, 7, 106}));
 }
 
+TEST(ZarrSource, ChunksNamedWithTheOtherSeparator_AreNotTakenForNone) {
+  // As zarr-python's NestedDirectoryStore wrote arrays before metadata named the separator.
+  const ZarrFiles nested;
+  nested.write(".zarray", zarray("[1,1,4]", "[1,1,2]"));
+  nested.write_values("0/0/1", counted(2));
+  EXPECT_EQ(nested.message(ErrorKind::input),
+            cat("run.zarr/0.0.0: chunk at 0, 0, 0: is not stored, nor is any other, but ", nested.path("0/0/1"),
+                " is; dimension_separator is \".\", and must be \"/\" of chunks named so; set it in ",
+                nested.path(".zarray")));
+  const ZarrFiles flat;
+  flat.write("zarr.json", zarr_json("[1,1,4]", "[1,1,2]"));
+  flat.write_values("c.0.0.0", counted(2));
+  EXPECT_EQ(flat.message(ErrorKind::input),
+            cat("run.zarr/c/0/0/0: chunk at 0, 0, 0: is not stored, nor is any other, but ", flat.path("c.0.0.0"),
+                " is; separator of chunk_key_encoding is \"/\", and must be \".\" of chunks named so; set it in ",
+                flat.path("zarr.json")));
+}
+
 TEST(ZarrSource, HierarchyNamedByItsHead_HasTheSameRecordAsByItsDirectory) {
   for (const char* head : {"zarr.json", ".zarray"}) {
     const ZarrFiles files;
