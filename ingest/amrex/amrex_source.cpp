@@ -224,6 +224,8 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
     info.type = real_layout_text(plotfile.layout);
     info.layout = levels_text(header);
     info.obstacle = component_obstacle(header.components, i);
+    if (info.obstacle.empty() && options.levels == Levels::composite)
+      info.obstacle = extent_obstacle(extent, scalar_bytes(plotfile.layout.type));
     if (const std::string range = component_range_text(plotfile, i); !range.empty())
       info.attributes.emplace_back("range", range);
     info.attributes.emplace_back("spacing", vector_text(header.levels[level].spacing));
