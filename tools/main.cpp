@@ -20,6 +20,7 @@
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
+#include "tools/options/command_message.h"
 #include "tools/options/empty_names.h"
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
@@ -106,7 +107,7 @@ int run(int argc, char** argv) {
     return status.code;
   } catch (const weir::Error& error) {
     const bool interrupted = error.kind() == weir::ErrorKind::interrupted;
-    return fail(error.what(), interrupted ? weir::interrupted_exit_code() : error.exit_code());
+    return fail(weir::command_message(app, error), interrupted ? weir::interrupted_exit_code() : error.exit_code());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
   } catch (const std::system_error& error) {

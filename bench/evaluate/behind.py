@@ -210,14 +210,16 @@ def _reading(measured):
             found.setdefault((row["encoding"], row["cache"]), []).append((row["seconds"] / row["read_twice_s"], where))
     for row in measured.results("two_passes"):
         if row["edge"] >= 512:
-            where = f"{row['kind']} {row['edge']}^3 to a twentieth, {row['threads']} threads"
-            found.setdefault((row["encoding"], "warm"), []).append((row["seconds"] / row["read_twice_s"], where))
+            where = f"{row['kind']} {row['edge']}^3 at rate {row['rate']}, {row['threads']} threads"
+            cache = {"disk": "warm", "memory": "in memory"}[row["place"]]
+            found.setdefault((row["encoding"], cache), []).append((row["seconds"] / row["read_twice_s"], where))
     return [line for (encoding, cache), ratios in found.items()
             for line in _times_line(encoding, f"reading the file twice, {cache}", ratios)]
 
 
 def _time(measured):
-    seconds = {(row["kind"], row["edge"], row["encoding"]): row["seconds"] for row in measured.results("two_passes")}
+    seconds = {(row["kind"], row["edge"], row["encoding"]): row["seconds"] for row in measured.results("two_passes")
+               if row["place"] == "disk"}
     found = [(packed / seconds[(kind, edge, "auto")],
               f"{kind} {edge}^3 to a twentieth, {packed:.2f} s against {seconds[(kind, edge, 'auto')]:.2f} s")
              for (kind, edge, encoding), packed in seconds.items() if encoding == "packed"]

@@ -140,7 +140,8 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
     request.conversion.output = outputs[i];
     request.source.spool_directory =
         request.conversion.work_dir.empty() ? directory_of(outputs[i]) : request.conversion.work_dir;
-    const auto open = [&](const Notice&) {
+    const auto open = [&](const Notice& notice) {
+      request.source.notice = notice;
       check_level_budgets(steps, outputs, i, request.conversion, open_step);
       std::unique_ptr<VolumeSource> opened = open_step(steps[i]);
       extents.check(steps[i], opened->info());

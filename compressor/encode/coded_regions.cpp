@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "format/packed/block_steps.h"
 #include "format/packed/stream_length.h"
 
 namespace weir {
@@ -14,7 +13,7 @@ constexpr std::size_t kRegionBlocks = 4096;
 
 // Of a stream that was planned; nullopt where the caller encodes it.
 std::optional<StreamAskKind> kind_of(const PackedTarget& packed, std::int16_t step, std::uint32_t bytes) {
-  if (step >= kLeastStep && step <= kMostStep) return StreamAskKind::transform;
+  if (PlannedStreams::transforms(step)) return StreamAskKind::transform;
   if (PlannedStreams::is_near(step)) return StreamAskKind::rounded;
   const bool exact = step == PlannedStreams::kExactStep && bytes < kRawStreamBytes && !packed.lattice;
   return exact ? std::optional(StreamAskKind::exact) : std::nullopt;

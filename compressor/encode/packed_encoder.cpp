@@ -113,11 +113,6 @@ class PackedEncoder final : public PackedLayerEncoder {
     if (packed_.rule.preview) write_corner(leaf);
   }
 
-  // Whether it is the step of a quantiser.
-  static bool transforms(std::int16_t step) {
-    return !PlannedStreams::is_near(step) && step != PlannedStreams::kExactStep && step != PlannedStreams::kBoundedStep;
-  }
-
   void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
     if (PlannedStreams::is_near(step)) {
@@ -125,7 +120,7 @@ class PackedEncoder final : public PackedLayerEncoder {
       if (!rounded_.encode(step - PlannedStreams::kNearStep, stream)) fail({}, "cannot be rounded");
       return;
     }
-    if (transforms(step)) {
+    if (PlannedStreams::transforms(step)) {
       if (!transform_.set(values_)) fail({}, "cannot be transformed");
       transform_.encode(packed_.constants, plan.region.means, step, stream);
       return;
@@ -163,12 +158,13 @@ class PackedEncoder final : public PackedLayerEncoder {
   // Whether write_stream() has left what the stream decodes to, which is then put there.
   bool know_values(const PlannedStreams& plan, std::size_t position) {
     const std::int16_t step = plan.steps[position];
-    shortened_ = PlannedStreams::is_near(step) ? rounded_.coarser() : transforms(step) && transform_.dropped();
+    shortened_ =
+        PlannedStreams::is_near(step) ? rounded_.coarser() : PlannedStreams::transforms(step) && transform_.dropped();
     if (PlannedStreams::is_near(step)) {
       rounded_.decoded(packed_.constants, decoded_);
       return true;
     }
-    return transforms(step) && transform_.decoded(packed_.constants, plan.region.means, step, decoded_);
+    return PlannedStreams::transforms(step) && transform_.decoded(packed_.constants, plan.region.means, step, decoded_);
   }
 
   void write_corner(const Index3& leaf) {

@@ -285,7 +285,7 @@ std::array<double, 3> estimated_errors(std::span<const float> values, const Valu
     int rounds;
     double gain;
   };
-  constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.93}, {1, 3, 0.89}, {1, 1, 0.93}}};
+  constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.97}, {1, 3, 0.92}, {1, 1, 0.955}}};
   std::array<double, 3> errors{1, 1, 1};
   if (below_bits <= 1 || !divisible(range, 1)) return errors;
   Fitter fitter(values, range, repeats);

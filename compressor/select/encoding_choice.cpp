@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "compressor/select/float_bound.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -59,8 +60,7 @@ class Candidate {
 
   // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
   FilePlan plan_exact() {
-    const double planned = request_.planned_error;
-    const double target = encoding_ == Encoding::float32 ? std::min(request_.squared_error, planned) : planned;
+    const double target = encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error;
     FilePlan file = plan_expected(target);
     for (double slack = 0x1p-48; file.plan.expected_error > target; slack *= 256) {
       tree_ = std::move(file.tree);
@@ -132,16 +132,16 @@ std::string lossy_leaves_text(const Candidate& quantised) {
 
 // Whether the file is expected to do what its plan was asked for.
 bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
-  return request.budget.kind == Budget::Kind::psnr ? file.plan.expected_error <= request.planned_error
-                                                   : candidate.lossless();
+  if (request.budget.kind != Budget::Kind::psnr) return candidate.lossless();
+  return file.plan.expected_error <= (request.adjusted ? request.planned_error : request.squared_error);
 }
 
 // The file of one encoding, by the budget.
 FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
   if (request.budget.by_error()) {
     FilePlan file = candidate.plan_for_error();
-    const bool first = request.planned_error >= request.squared_error;  // before any file was made
-    if (first && !meets(request, candidate, file)) throw unmet_target(request, encoding, file.plan.expected_error);
+    if (!request.adjusted && !meets(request, candidate, file))
+      throw unmet_target(request, encoding, file.plan.expected_error);
     return file;
   }
   if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
@@ -200,11 +200,26 @@ FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDir
   return plain.plan(size);
 }
 
+// Of a float file in place of `quantised`, where that may spare planning it.
+std::optional<FloatBound> float_bound(const FileRequest& request, const RowStore& rows, const FilePlan& quantised) {
+  const bool weighed = request.rule.visibility != nullptr;  // the bound is of what all voxels lose
+  if (request.plans_float || weighed || !countable(quantised) || !rows.team().alone()) return std::nullopt;
+  return FloatBound(*quantised.tree, rows);
+}
+
 FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate candidate(request, Encoding::fpn, rows, work);
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
   if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
+  if (const std::optional<FloatBound> bound = float_bound(request, rows, quantised)) {
+    const double least = bound->least_error(size.bytes);
+    if (least > 0 && quantised.plan.expected_error <= least) {  // with no error, bits decide
+      quantised.float_error = least;
+      quantised.float_error_is_bound = true;
+      return quantised;
+    }
+  }
   Candidate other(request, Encoding::float32, rows, work);
   if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
   if (size.kind == "minimum") return quantised;
@@ -222,6 +237,10 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
 FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate quantised(request, Encoding::fpn, rows, work);
   FilePlan small = quantised.plan_for_error();
+  if (request.budget.kind == Budget::Kind::psnr && meets(request, quantised, small)) {
+    const std::optional<FloatBound> bound = float_bound(request, rows, small);
+    if (bound && small.size.bytes <= bound->least_bytes(request.squared_error)) return small;
+  }
   Candidate plain(request, Encoding::float32, rows, work);
   FilePlan file = plain.plan_for_error();
   const bool as_small = small.size.bytes <= file.size.bytes || !countable(file);

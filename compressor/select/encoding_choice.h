@@ -47,6 +47,7 @@ struct FilePlan {
   /// Of a quantised file that was chosen by the error expected: the squared error of the float file it was chosen over,
   /// which is exact. Infinite where there is none.
   double float_error = std::numeric_limits<double>::infinity();
+  bool float_error_is_bound = false;  ///< the float file was not planned: it loses that or more
 };
 
 struct FileRequest {
@@ -54,21 +55,23 @@ struct FileRequest {
   GainRule rule;                          ///< but for its encoding
   Budget budget;
   double squared_error = 0;  ///< for a PSNR: what the sum over the finite voxels that can be seen may come to
-  /// For a PSNR: the error to plan quantised leaves and packed blocks for, since theirs is estimated. At first
-  /// squared_error, of packed blocks a little less, then adjusted by what their files lose. Float leaves are never
-  /// planned for more than squared_error.
+  /// For a PSNR: the error to plan quantised leaves and packed blocks for, since theirs is estimated. At first a little
+  /// less than squared_error, then adjusted by what their files lose. Float leaves are planned for squared_error.
   double planned_error = std::numeric_limits<double>::infinity();
-  PackedRequest packed;  ///< for Encoding::packed
+  bool adjusted = false;  ///< planned_error was, by what a file lost
+  PackedRequest packed;   ///< for Encoding::packed
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
+  bool plans_float = false;       ///< for Encoding::automatic: the float file, too, where a bound would do
   std::string path;               ///< of the output, for messages
 };
 
 /// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
 /// asked error. What a quantised file loses is estimated: Encoding::automatic means that where it turns out to lose
-/// more than `float_error`, the float file is to be taken. Throws Error(budget) where size, error or exactness cannot
-/// be met, naming what can, Error(usage) where the encoding cannot hold the volume. Where planned_error was lowered and
-/// this encoding is not expected to reach it, the plan is all that it has.
+/// more than `float_error`, the float file is to be taken; if that is a bound, after a plan with `plans_float` says so.
+/// Throws Error(budget) where size, error or exactness cannot
+/// be met, naming what can, Error(usage) where the encoding cannot hold the volume. Where planned_error was adjusted
+/// and this encoding is not expected to reach it, the plan is all that it has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
 
 /// Error(budget) for a target that `encoding` misses, where for a PSNR all it has loses `squared_error`.

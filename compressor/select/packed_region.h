@@ -68,6 +68,8 @@ struct PlannedStreams {
   static constexpr std::int16_t kNearStep = 0x4000;     ///< plus exponent: rounded to multiples of 2^exponent
 
   static bool is_near(std::int16_t step) { return step >= kNearStep - 128 && step <= kNearStep + 128; }
+  /// Whether it is the step of a quantiser.
+  static bool transforms(std::int16_t step) { return step >= kLeastStep && step <= kMostStep; }
 };
 static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
 

@@ -26,11 +26,12 @@ class AmrexSource final : public VolumeSource {
   AmrexSource(Plotfile plotfile, std::size_t component, SourceInfo info, const SourceOptions& options)
       : plotfile_(std::move(plotfile)),
         info_(std::move(info)),
-        composite_(info_.details.level
-                       ? Composite(plotfile_, component, info_.mapping,
-                                   static_cast<std::size_t>(info_.details.level->number), options.direct_io)
-                       : Composite(plotfile_, component, info_.mapping,
-                                   options.upsampling.value_or(Upsampling::constant), options.direct_io)) {}
+        composite_(
+            info_.details.level
+                ? Composite(plotfile_, component, info_.mapping, static_cast<std::size_t>(info_.details.level->number),
+                            options.direct_io, options.notice)
+                : Composite(plotfile_, component, info_.mapping, options.upsampling.value_or(Upsampling::constant),
+                            options.direct_io, options.notice)) {}
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {scalar_bytes(info_.type), {}, {}}; }
@@ -177,7 +178,8 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
   const bool separate = options.levels == Levels::separate;
   if (separate) refuse_upsampling(path, options);
   const std::size_t level = separate ? own_level(path, finest, options) : finest;
-  Plotfile plotfile = open_plotfile(path, {finest + 1, options.memory / kMemoryShare, false});
+  Plotfile plotfile =
+      open_plotfile(path, {finest + 1, options.memory / kMemoryShare, {.of_components = false, .of_boxes = component}});
   SourceInfo info;
   info.path = path;
   info.format = "amrex";
@@ -209,7 +211,8 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
 
 std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions& options) {
   refuse_index(path, options);
-  const Plotfile plotfile = open_plotfile(path, {SIZE_MAX, options.memory / kMemoryShare, true});
+  const Plotfile plotfile =
+      open_plotfile(path, {SIZE_MAX, options.memory / kMemoryShare, {.of_components = true, .of_boxes = {}}});
   const AmrexHeader& header = plotfile.header;
   const std::size_t level = chosen_level(path, header, options);
   const Index3& extent = plotfile.levels[level].extent;
@@ -221,6 +224,8 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
     info.type = real_layout_text(plotfile.layout);
     info.layout = levels_text(header);
     info.obstacle = component_obstacle(header.components, i);
+    if (info.obstacle.empty() && options.levels == Levels::composite)
+      info.obstacle = extent_obstacle(extent, scalar_bytes(plotfile.layout.type));
     if (const std::string range = component_range_text(plotfile, i); !range.empty())
       info.attributes.emplace_back("range", range);
     info.attributes.emplace_back("spacing", vector_text(header.levels[level].spacing));

@@ -84,7 +84,7 @@ void read_places(PlotfileText& text, CellHeader& header) {
   }
 }
 
-// "N,M", and then N times M numbers, each with a comma. `take` gets each with its component.
+// "N,M", and then N times M numbers, each with a comma. `take` gets each with its box and component.
 template <typename Take>
 void read_table(PlotfileText& text, const CellHeader& header, const Take& take) {
   constexpr std::string_view kWhat = "the table of the boxes' minima and maxima";
@@ -97,27 +97,32 @@ void read_table(PlotfileText& text, const CellHeader& header, const Take& take) 
   }
   for (std::int64_t row = 0; row < rows; ++row) {
     for (std::int64_t column = 0; column < columns; ++column) {
-      take(static_cast<std::size_t>(column), text.real("a minimum or maximum", ","));
+      take(static_cast<std::size_t>(row), static_cast<std::size_t>(column), text.real("a minimum or maximum", ","));
       text.expect(',', kWhat);
     }
   }
 }
 
-void read_range_tables(PlotfileText& text, CellHeader& header, bool with_ranges) {
+void read_range_tables(PlotfileText& text, CellHeader& header, const RangesKept& kept) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<ComponentRange> ranges;
-  if (with_ranges) ranges.resize(static_cast<std::size_t>(header.components), {kInfinity, -kInfinity});
+  std::vector<ComponentRange> of_boxes;
+  if (kept.of_components) ranges.resize(static_cast<std::size_t>(header.components), {kInfinity, -kInfinity});
+  if (kept.of_boxes) of_boxes.resize(header.boxes.size());
   // Of NaN neither is smaller.
-  read_table(text, header, [&](std::size_t c, double value) {
-    if (with_ranges) ranges[c].min = std::min(ranges[c].min, value);
+  read_table(text, header, [&](std::size_t box, std::size_t c, double value) {
+    if (kept.of_components) ranges[c].min = std::min(ranges[c].min, value);
+    if (kept.of_boxes == c) of_boxes[box].min = value;
   });
-  read_table(text, header, [&](std::size_t c, double value) {
-    if (with_ranges) ranges[c].max = std::max(ranges[c].max, value);
+  read_table(text, header, [&](std::size_t box, std::size_t c, double value) {
+    if (kept.of_components) ranges[c].max = std::max(ranges[c].max, value);
+    if (kept.of_boxes == c) of_boxes[box].max = value;
   });
   header.ranges = std::move(ranges);
+  header.box_ranges = std::move(of_boxes);
 }
 
-void read_range_rows(PlotfileText& text, CellHeader& header, bool with_ranges) {
+void read_range_rows(PlotfileText& text, CellHeader& header, const RangesKept& kept) {
   std::vector<ComponentRange> ranges(static_cast<std::size_t>(header.components));
   const auto read_row = [&](double ComponentRange::*end) {
     for (ComponentRange& range : ranges) {
@@ -127,12 +132,15 @@ void read_range_rows(PlotfileText& text, CellHeader& header, bool with_ranges) {
   };
   read_row(&ComponentRange::min);
   read_row(&ComponentRange::max);
-  if (with_ranges) header.ranges = std::move(ranges);
+  if (kept.of_boxes && *kept.of_boxes < ranges.size()) {
+    header.box_ranges.assign(header.boxes.size(), ranges[*kept.of_boxes]);
+  }
+  if (kept.of_components) header.ranges = std::move(ranges);
 }
 
 }  // namespace
 
-CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, bool with_ranges) {
+CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, const RangesKept& kept) {
   CellHeader header;
   const auto version = static_cast<Version>(text.integer_in("the version", 1, 4));
   text.integer_in("the way of writing", 0, 1);
@@ -140,8 +148,8 @@ CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint6
   refuse_ghost_cells(text);
   read_boxes(text, bytes, memory, header);
   read_places(text, header);
-  if (version == Version::plain || version == Version::bare_with_ranges) read_range_tables(text, header, with_ranges);
-  if (version == Version::bare_with_range) read_range_rows(text, header, with_ranges);
+  if (version == Version::plain || version == Version::bare_with_ranges) read_range_tables(text, header, kept);
+  if (version == Version::bare_with_range) read_range_rows(text, header, kept);
   if (version != Version::plain) header.layout = parse_real_layout(text);
   return header;
 }

@@ -36,21 +36,28 @@ struct ComponentRange {
   double max = 0;
 };
 
+/// Which of them a header keeps.
+struct RangesKept {
+  bool of_components = false;           ///< CellHeader::ranges
+  std::optional<std::size_t> of_boxes;  ///< CellHeader::box_ranges: those of this component
+};
+
 struct CellHeader {
   std::int64_t components = 0;
   std::vector<CellBox> boxes;
-  std::vector<FabPlace> places;        ///< of each box
-  std::vector<std::string> files;      ///< names, in the directory of Cell_H
-  std::vector<ComponentRange> ranges;  ///< of each component over all boxes; empty where the file does not say
-  std::optional<RealLayout> layout;    ///< where it is said here and the FABs have no headers of their own
+  std::vector<FabPlace> places;            ///< of each box
+  std::vector<std::string> files;          ///< names, in the directory of Cell_H
+  std::vector<ComponentRange> ranges;      ///< of each component over all boxes; empty where the file does not say
+  std::vector<ComponentRange> box_ranges;  ///< of one component in each box; empty where the file does not say
+  std::optional<RealLayout> layout;        ///< where it is said here and the FABs have no headers of their own
 };
 
-/// What a box costs in memory, the index over it (BoxIndex) included.
-inline constexpr std::uint64_t kBytesPerBox = 72;
+/// What a box costs in memory, the index over it (BoxIndex) and the range of one component included.
+inline constexpr std::uint64_t kBytesPerBox = 88;
 
 /// `bytes`: of the whole text, which bounds how many boxes there can be. Takes at most `memory` bytes, else throws
-/// Error(usage) that names a sufficient --memory. Ranges are kept where `with_ranges`. Throws Error(input) for ghost
-/// cells, boxes not of cells, files outside the directory, and whatever is damaged.
-CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, bool with_ranges);
+/// Error(usage) that names a sufficient --memory. Throws Error(input) for ghost cells, boxes not of cells, files
+/// outside the directory, and whatever is damaged.
+CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, const RangesKept& kept);
 
 }  // namespace weir

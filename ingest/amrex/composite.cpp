@@ -65,15 +65,15 @@ std::vector<Box> tiles_of(const Box& box) {
 }  // namespace
 
 Composite::Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping,
-                     Upsampling upsampling, DirectIo mode)
+                     Upsampling upsampling, DirectIo mode, const Notice& notice)
     : plotfile_(plotfile),
       wanted_(plotfile.levels.size() - 1),
       upsampling_(upsampling),
-      reader_(plotfile, component, mapping, mode) {}
+      reader_(plotfile, component, mapping, mode, notice) {}
 
 Composite::Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, std::size_t own,
-                     DirectIo mode)
-    : plotfile_(plotfile), wanted_(own), own_(true), reader_(plotfile, component, mapping, mode) {}
+                     DirectIo mode, const Notice& notice)
+    : plotfile_(plotfile), wanted_(own), own_(true), reader_(plotfile, component, mapping, mode, notice) {}
 
 ConversionLoss Composite::read(const Box& box, std::span<float> values) {
   return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);

@@ -20,12 +20,12 @@ namespace weir {
 class Composite {
  public:
   /// Of the component of this position, at the finest level that `plotfile` was opened with. `plotfile` outlives the
-  /// object.
+  /// object. `notice` is for RangeCheck.
   Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, Upsampling upsampling,
-            DirectIo mode);
+            DirectIo mode, const Notice& notice);
   /// Of the level `own` alone: what own_parts leaves out reads missing_value().
   Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, std::size_t own,
-            DirectIo mode);
+            DirectIo mode, const Notice& notice);
 
   /// Reads `box` of the wanted level's domain, which begins at 0; x fastest. Of linear values, loss is that of the
   /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.

@@ -125,8 +125,13 @@ struct Painter {
 
 }  // namespace
 
-FabReader::FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode)
-    : plotfile_(plotfile), component_(component), mapping_(std::move(mapping)), files_(plotfile, mode) {}
+FabReader::FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode,
+                     Notice notice)
+    : plotfile_(plotfile),
+      component_(component),
+      mapping_(std::move(mapping)),
+      files_(plotfile, mode),
+      check_(plotfile, component, std::move(notice)) {}
 
 ConversionLoss FabReader::read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box,
                                std::span<float> values) {
@@ -170,6 +175,10 @@ ConversionLoss FabReader::read(std::size_t wanted, std::span<const CoverPart> pa
       for (std::int64_t z = coarse.lo.z; z < coarse.hi.z; ++z) {
         for (std::int64_t y = coarse.lo.y; y < coarse.hi.y; ++y) {
           const std::uint64_t at = stored.at(Index3{here.lo.x, y, z} - cells.lo) - stored.at(piece.lo);
+          const std::span<const std::byte> row =
+              bytes.subspan(at + static_cast<std::uint64_t>(coarse.lo.x - here.lo.x) * stored.bytes,
+                            static_cast<std::uint64_t>(coarse.extent().x) * stored.bytes);
+          check_.look_at(number, fab, file->path(), row);
           loss.add(painter.paint_row(bytes.data() + at, here.lo.x, y, z, shown));
         }
       }

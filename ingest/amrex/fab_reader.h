@@ -8,6 +8,7 @@
 #include "ingest/amrex/fab_files.h"
 #include "ingest/amrex/level_cover.h"
 #include "ingest/amrex/plotfile.h"
+#include "ingest/amrex/range_check.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source/stored_value.h"
 #include "ingest/source/volume_source.h"
@@ -17,8 +18,8 @@ namespace weir {
 /// Thread-safe. Needs kStagingBytes besides the callers' buffers.
 class FabReader {
  public:
-  /// `plotfile` outlives the object.
-  FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode);
+  /// `plotfile` outlives the object. `notice` is for RangeCheck.
+  FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode, Notice notice);
 
   /// Writes the values of `parts`, which are of one FAB and lie in `box`, of cells of level `wanted`, to their places
   /// in `values`, that box x fastest. A cell of a coarser level gives all cells in it its value. Loss is counted of
@@ -32,6 +33,7 @@ class FabReader {
   std::size_t component_;
   ValueMapping mapping_;
   FabFiles files_;
+  RangeCheck check_;
   StagingPool staging_;
 };
 

@@ -126,9 +126,9 @@ void check_fab_files(Plotfile& plotfile, const PlotfileLevel& level, const std::
   }
 }
 
-PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t memory, bool ranges) {
+PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t memory, const RangesKept& ranges) {
   const AmrexLevelHeader& said = plotfile.header.levels[number];
-  const std::string path = cat(plotfile_directory(plotfile.path), '/', said.cells, "_H");
+  const std::string path = cell_header_path(plotfile, number);
   HeaderFile file(path);
   note(plotfile, file.file.state());
   CellHeader cells = parse_cell_header(file.text, file.file.size(), memory, ranges);
@@ -149,6 +149,7 @@ PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t m
   level.places = std::move(cells.places);
   level.files = std::move(cells.files);
   level.ranges = std::move(cells.ranges);
+  level.box_ranges = std::move(cells.box_ranges);
   level.bare = cells.layout.has_value();
   if (cells.layout && number > 0 && *cells.layout != plotfile.layout) {
     throw input_error(path, cat("its numbers are ", real_layout_text(*cells.layout), ", and those of level 0 ",
@@ -168,6 +169,16 @@ std::string plotfile_directory(const std::string& path) {
   const std::filesystem::path named(path);
   if (named.filename() != kDirectoryHead || is_input_directory(path)) return path;
   return named.has_parent_path() ? named.parent_path().string() : ".";
+}
+
+std::string box_in_file(const Plotfile& plotfile, std::size_t level, std::uint32_t box) {
+  const Index3 first = plotfile.header.levels[level].domain.lo;
+  const Box cells = plotfile.levels[level].boxes[box].box();
+  return shown({cells.lo + first, cells.hi + first});
+}
+
+std::string cell_header_path(const Plotfile& plotfile, std::size_t level) {
+  return cat(plotfile_directory(plotfile.path), '/', plotfile.header.levels[level].cells, "_H");
 }
 
 AmrexHeader read_amrex_header(const std::string& path) {

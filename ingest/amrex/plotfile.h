@@ -26,6 +26,7 @@ struct PlotfileLevel {
   std::vector<FabPlace> places;
   std::vector<std::string> files;
   std::vector<ComponentRange> ranges;
+  std::vector<ComponentRange> box_ranges;
   bool bare = false;  ///< FABs have no headers: values begin at their offsets
   BoxIndex index;
 
@@ -46,13 +47,19 @@ struct Plotfile {
 /// The directory of a plotfile, of which its Header may be named, too.
 std::string plotfile_directory(const std::string& path);
 
+/// A box of a level, as that level's Cell_H has it: "(0,0,0) to (7,7,3)".
+std::string box_in_file(const Plotfile& plotfile, std::size_t level, std::uint32_t box);
+
+/// "plt00042/Level_0/Cell_H".
+std::string cell_header_path(const Plotfile& plotfile, std::size_t level);
+
 /// Its header alone.
 AmrexHeader read_amrex_header(const std::string& path);
 
 struct PlotfileParts {
   std::size_t levels = SIZE_MAX;      ///< the coarsest ones, as many of them
   std::uint64_t memory = UINT64_MAX;  ///< bytes, for boxes and indices over them
-  bool ranges = false;                ///< of the components
+  RangesKept ranges;
 };
 
 /// Opens it. Throws Error(input) with path and place for what is damaged, missing or cut: a FAB file is there and long

@@ -15,12 +15,12 @@ std::string box_text(const Box& box) {
   return cat(box.lo.x, ':', box.hi.x, ',', box.lo.y, ':', box.hi.y, ',', box.lo.z, ':', box.hi.z);
 }
 
-std::uint64_t checked_volume_bytes(const Index3& extent, std::size_t bytes_per_voxel, const std::string& where) {
+std::string extent_obstacle(const Index3& extent, std::size_t bytes_per_voxel) {
   const std::array<std::pair<char, std::int64_t>, 3> axes{{{'x', extent.x}, {'y', extent.y}, {'z', extent.z}}};
   for (const auto& [axis, voxels] : axes) {
     if (voxels >= 1 && voxels <= kMaxAxis) continue;
-    throw Error(ErrorKind::input, cat(where, ": extent ", extent_text(extent), " has ", voxels, " voxels along ", axis,
-                                      "; each axis must be 1 to ", kMaxAxis));
+    return cat("extent ", extent_text(extent), " has ", voxels, " voxels along ", axis, "; each axis must be 1 to ",
+               kMaxAxis);
   }
   std::int64_t voxels = 0;
   std::int64_t bytes = 0;
@@ -28,10 +28,15 @@ std::uint64_t checked_volume_bytes(const Index3& extent, std::size_t bytes_per_v
   const auto widest = static_cast<std::int64_t>(std::max(bytes_per_voxel, sizeof(float)));
   if (__builtin_mul_overflow(extent.x * extent.y, extent.z, &voxels) ||
       __builtin_mul_overflow(voxels, widest, &bytes)) {
-    throw Error(ErrorKind::input, cat(where, ": extent ", extent_text(extent), " at ", widest,
-                                      " bytes a voxel overflows 64 bits; check the extent"));
+    return cat("extent ", extent_text(extent), " at ", widest, " bytes a voxel overflows 64 bits; check the extent");
   }
-  return static_cast<std::uint64_t>(voxels) * bytes_per_voxel;
+  return {};
+}
+
+std::uint64_t checked_volume_bytes(const Index3& extent, std::size_t bytes_per_voxel, const std::string& where) {
+  const std::string obstacle = extent_obstacle(extent, bytes_per_voxel);
+  if (!obstacle.empty()) throw input_error(where, obstacle);
+  return static_cast<std::uint64_t>(extent.x * extent.y * extent.z) * bytes_per_voxel;
 }
 
 }  // namespace weir

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "format/base/index.h"
+#include "format/base/message.h"
 #include "format/base/scalar_type.h"
 #include "ingest/files/input_file.h"
 #include "ingest/source/component_choice.h"
@@ -68,6 +69,7 @@ struct SourceOptions {
   std::uint64_t memory = std::uint64_t{512} << 20U;  ///< bytes, the whole process; a source that cannot do with less
                                                      ///< says so when it is opened
   const std::atomic<bool>* cancel = nullptr;         ///< ends unpacking with Error(interrupted)
+  Notice notice;                ///< gets what only reading shows, of any thread that reads; may be empty
   std::string spool_directory;  ///< on a disk: where compressed streams are unpacked; empty: the input's directory
 
   /// Adds to what the file says of its values what the user says.

@@ -110,6 +110,7 @@ DatasetInfo describe_array(const ZarrStore& store, const ZarrNode& node, LevelFi
     info.attributes.emplace_back("fill value", chosen.array.fill_text);
     if (!chosen.meaning.units.empty()) info.attributes.emplace_back("units", chosen.meaning.units);
     add_placement(chosen.meaning, info);
+    if (!chosen.meaning.place_note.empty()) info.attributes.emplace_back("note", chosen.meaning.place_note);
     info.obstacle = chosen.meaning.obstacle;
     info.index_axes = chosen.meaning.leading(chosen.array);
     const bool single = std::all_of(info.index_axes.begin(), info.index_axes.end(),

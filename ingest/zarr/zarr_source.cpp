@@ -11,7 +11,6 @@
 #include "ingest/chunks/chunk_boxes.h"
 #include "ingest/files/file_states.h"
 #include "ingest/files/input_directory.h"
-#include "ingest/source/extent.h"
 #include "ingest/zarr/array_choice.h"
 #include "ingest/zarr/storage/zarr_chunks.h"
 #include "ingest/zarr/store/open_store.h"
@@ -50,7 +49,7 @@ class ZarrSource final : public VolumeSource {
         scratch_(scratch_of(chosen.array, geometry), options.memory, where_),
         chunks_({*store_, chosen.node.key, chosen.array.keys}, chosen.array, geometry, options.memory, options.cancel),
         boxes_(volume_of(chosen.array, geometry, info_, where_), chunks_, scratch_) {
-    note_unstored(chosen.array, options);
+    note_unstored(chosen, options);
     note_files(chosen);
   }
 
@@ -61,9 +60,19 @@ class ZarrSource final : public VolumeSource {
   ConversionLoss read(const Box& box, std::span<float> values) override { return boxes_.read(box, values); }
 
  private:
-  void note_unstored(const ZarrArray& array, const SourceOptions& options) {
+  void note_unstored(const ChosenArray& chosen, const SourceOptions& options) {
+    const ZarrArray& array = chosen.array;
     const UnstoredChunks unstored = chunks_.count_unstored();
     if (unstored.count == 0) return;
+    if (const std::string other = chunks_.key_by_other_separator(); !other.empty()) {
+      const std::string separators =
+          array.keys.separator == '.' ? "\".\", and must be \"/\"" : "\"/\", and must be \".\"";
+      throw input_error(
+          unstored.first,
+          cat("is not stored, nor is any other, but ", store_->shown(other), " is; ",
+              chosen.node.version == 3 ? "separator of chunk_key_encoding" : "dimension_separator", " is ", separators,
+              " of chunks named so; set it in ", store_->shown(chosen.node.document)));
+    }
     const std::string count = cat(unstored.count, " of its ", unstored.all, unstored.all == 1 ? " chunk" : " chunks");
     const char* const is = unstored.count == 1 ? " is" : " are";
     if (options.missing_chunks == MissingChunks::error) {
@@ -122,7 +131,6 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   info.dataset = chosen.node.key;
   describe_volume(chosen.array, chosen.meaning, index, info);
   options.complete(info.mapping);
-  checked_volume_bytes(info.extent, scalar_bytes(info.type), where);
   const ChunkGeometry geometry(chosen.array, index, where);
   return std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options);
 }

@@ -154,7 +154,7 @@ class LevelWriter {
 
   std::string cell_header() const {
     std::ostringstream text;
-    text << std::scientific << std::setprecision(17);
+    text << std::scientific << std::setprecision(plan_.range_digits);
     const std::vector<Box>& boxes = plan_.boxes[level_];
     text << plan_.version << "\n1\n" << plan_.components.size() << "\n0\n(" << boxes.size() << " 0\n";
     for (const Box& box : boxes) text << text_of(box) << '\n';

@@ -26,7 +26,8 @@ struct PlotfilePlan {
   bool single = false;                                               ///< float32, not float64
   bool big_endian = false;
   std::size_t fabs_per_file = 2;
-  int version = 1;  ///< of Cell_H: 1 with FAB headers, 2 to 4 without
+  int version = 1;        ///< of Cell_H: 1 with FAB headers, 2 to 4 without
+  int range_digits = 17;  ///< of the minima and maxima in Cell_H, after the point
   double time = 0.25;
   std::array<double, 3> corner{0, 0, 0};
   std::array<double, 3> spacing{1, 1, 1};  ///< of level 0

@@ -251,6 +251,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   auto [source_options, options] = read_conversion_request(a.options);
   options.provenance = {WEIR_VERSION, build_commit(), given_options(command, a.options)};
   source_options.cancel = &interrupt_flag();
+  source_options.notice = say;
 
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options, say);
   const std::vector<std::string> outputs =

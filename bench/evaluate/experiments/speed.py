@@ -44,25 +44,31 @@ def read_twice(path, cold):
 
 def timed_conversion(bench, volume, rate, encoding, cold, threads):
     """The fastest of some conversions, with the time to read the file twice right before each."""
-    output = bench.scratch("timed.nvdb")
-    rounds = []
+    rounds = 1 if volume.extent[0] >= SINGLE_ROUND_EDGE else ROUNDS
     with bench.files.file(volume) as path:
-        for _ in range(1 if volume.extent[0] >= SINGLE_ROUND_EDGE else ROUNDS):
-            if not cold:
-                read_twice(path, False)  # now it is there, where memory allows
-            twice_s = read_twice(path, cold)
-            if cold:
-                forget(path)
-            remove_volume(output)
-            run = bench.weir.run("convert", path, "-o", output, "--rate", rate, "--encoding", encoding,
-                                 "--threads", threads, "--json")
-            timing = json.loads(run.out)["timing"]
-            rounds.append({"seconds": run.seconds, "cpu_s": run.cpu_s, "read_twice_s": twice_s,
-                           "peak_rss_bytes": run.peak_rss_bytes, "bytes_read": timing["bytes_read"],
-                           "survey_s": timing["survey_s"], "encode_s": timing["encode_s"]})
+        timed = timed_file(bench, path, bench.scratch("timed.nvdb"), rate, encoding, cold, threads, rounds)
+    return {**timed, "dense_bytes": volume.dense_bytes}
+
+
+def timed_file(bench, path, output, rate, encoding, cold, threads, count):
+    """The same of a file and where its output goes."""
+    rounds = []
+    for _ in range(count):
+        if not cold:
+            read_twice(path, False)  # now it is there, where memory allows
+        twice_s = read_twice(path, cold)
+        if cold:
+            forget(path)
+        remove_volume(output)
+        run = bench.weir.run("convert", path, "-o", output, "--rate", rate, "--encoding", encoding,
+                             "--threads", threads, "--json")
+        timing = json.loads(run.out)["timing"]
+        rounds.append({"seconds": run.seconds, "cpu_s": run.cpu_s, "read_twice_s": twice_s,
+                       "peak_rss_bytes": run.peak_rss_bytes, "bytes_read": timing["bytes_read"],
+                       "survey_s": timing["survey_s"], "encode_s": timing["encode_s"]})
     best = min(rounds, key=lambda r: r["seconds"])
     remove_volume(output)
-    return {"encoding": encoding, "threads": threads, "rate": rate, "dense_bytes": volume.dense_bytes,
+    return {"encoding": encoding, "threads": threads, "rate": rate,
             "seconds": best["seconds"], "cpu_s": best["cpu_s"], "survey_s": best["survey_s"],
             "encode_s": best["encode_s"], "bytes_read": best["bytes_read"],
             "slowest_s": max(r["seconds"] for r in rounds), "read_twice_s": min(r["read_twice_s"] for r in rounds),

@@ -9,6 +9,7 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/source/unsigned_meaning.h"
 #include "ingest/values/decode_values.h"
 
 namespace weir {
@@ -65,14 +66,6 @@ double packing(hid_t object, const char* name, double fallback, std::string& obs
   return fallback;
 }
 
-// Attributes are of the type that the file has: -1 stands for the 255 of what is meant as uint8.
-StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
-  const auto* const negative = std::get_if<std::int64_t>(&value);
-  if (negative == nullptr || *negative >= 0) return value;
-  const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
-  return static_cast<std::uint64_t>(*negative) & (~std::uint64_t{0} >> (64U - bits));
-}
-
 std::string unused_attribute(hid_t object) {
   for (const char* name : {"valid_range", "valid_min", "valid_max"}) {
     if (has_attribute(object, name)) {
@@ -85,23 +78,7 @@ std::string unused_attribute(hid_t object) {
 }  // namespace
 
 StoredType type_as_meant(hid_t object, StoredType type) {
-  if (!says_unsigned(object)) return type;
-  switch (type.scalar) {
-    case ScalarType::int8:
-      type.scalar = ScalarType::uint8;
-      break;
-    case ScalarType::int16:
-      type.scalar = ScalarType::uint16;
-      break;
-    case ScalarType::int32:
-      type.scalar = ScalarType::uint32;
-      break;
-    case ScalarType::int64:
-      type.scalar = ScalarType::uint64;
-      break;
-    default:
-      break;
-  }
+  if (says_unsigned(object)) type.scalar = unsigned_type(type.scalar);
   return type;
 }
 

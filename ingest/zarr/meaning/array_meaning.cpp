@@ -1,28 +1,71 @@
 #include "ingest/zarr/meaning/array_meaning.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source/extent.h"
+#include "ingest/source/unsigned_meaning.h"
 #include "ingest/zarr/codecs/library_codecs.h"
+#include "ingest/zarr/metadata/fill_value.h"
 #include "ingest/zarr/metadata/zarr_json.h"
 
 namespace weir {
 namespace {
 
 constexpr std::size_t kSpaceRank = 3;
+constexpr std::size_t kMostMissing = 64;  // values that stand for no data, in one attribute
+
+std::optional<StoredValue> number_of_attribute(const nlohmann::json& value) {
+  if (const auto number = json_number(value)) return number;
+  if (const auto packed = double_in_base64(value)) return StoredValue{*packed};
+  return value.is_string() ? parse_stored_value(value.get<std::string>()) : std::nullopt;
+}
+
+// A number, or a list of them as NetCDF's attributes are; what is none is left out.
+std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, const char* name) {
+  const nlohmann::json& value = json_member(attributes, name);
+  std::vector<StoredValue> numbers;
+  const auto add = [&](const nlohmann::json& one) {
+    if (const auto number = number_of_attribute(one)) numbers.push_back(*number);
+  };
+  if (!value.is_array()) add(value);
+  for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) add(value[i]);
+  return numbers;
+}
+
+// The attribute as one finite number; `fallback` where it is absent.
+double packing(const nlohmann::json& attributes, const char* name, double fallback, std::string& obstacle) {
+  const nlohmann::json& found = json_member(attributes, name);
+  if (found.is_null()) return fallback;
+  const std::vector<StoredValue> values = numbers_of_attribute(attributes, name);
+  const bool one = values.size() == 1 && (!found.is_array() || found.size() == 1);
+  const double value = one ? as_double(values[0]) : std::nan("");
+  if (std::isfinite(value) && (value != 0.0 || fallback == 0.0)) return value;
+  obstacle = cat("its attribute ", name, " is ", json_text(found), " and not one finite number",
+                 fallback == 0.0 ? "" : " other than 0", ", so what its values mean is unknown; correct or remove it");
+  return fallback;
+}
 
 // By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
 void read_value_attributes(const ZarrArray& array, ArrayMeaning& meaning) {
   const nlohmann::json& attributes = array.attributes;
-  const nlohmann::json& scale = json_member(attributes, "scale_factor");
-  const nlohmann::json& offset = json_member(attributes, "add_offset");
-  if (scale.is_number()) meaning.mapping.scale = scale.get<double>();
-  if (offset.is_number()) meaning.mapping.offset = offset.get<double>();
-  for (const char* const key : {"missing_value", "_FillValue"}) {
-    const auto value = json_number(json_member(attributes, key));
-    if (value && holds(array.type, *value)) meaning.mapping.missing.push_back(*value);
+  const bool meant_unsigned = says_unsigned(attributes);
+  meaning.mapping.scale = packing(attributes, "scale_factor", 1.0, meaning.obstacle);
+  meaning.mapping.offset = packing(attributes, "add_offset", 0.0, meaning.obstacle);
+  for (const char* const name : {"missing_value", "_FillValue"}) {
+    const std::vector<StoredValue> values = numbers_of_attribute(attributes, name);
+    if (values.size() > kMostMissing) {
+      meaning.obstacle = cat("its attribute ", name, " has ", values.size(), " values, and at most ", kMostMissing,
+                             " are read, so which voxels hold no data is unknown; shorten it");
+      continue;
+    }
+    for (const StoredValue& stored : values) {
+      const StoredValue value = meant_unsigned ? as_unsigned(stored, array.type) : stored;
+      if (holds(array.type, value)) meaning.mapping.missing.push_back(value);
+    }
   }
   meaning.units = json_string(attributes, "units");
   meaning.long_name = json_string(attributes, "long_name");
@@ -37,7 +80,10 @@ std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) 
   if (std::count(array.shape.begin(), array.shape.end(), 0) > 0) return cat("empty: ", axes_text(array, meaning));
   const auto is_other = [](const ScaleAxis& axis) { return !axis.type.empty() && axis.type != "space"; };
   const auto others = std::count_if(meaning.axes.end() - kSpaceRank, meaning.axes.end(), is_other);
-  if (others == 0) return {};
+  if (others == 0) {
+    return extent_obstacle({array.shape[rank - 1], array.shape[rank - 2], array.shape[rank - 3]},
+                           scalar_bytes(array.type));
+  }
   return cat(static_cast<std::int64_t>(kSpaceRank) - others, " axes of space at its end (", axes_text(array, meaning),
              "); a volume has three");
 }
@@ -84,10 +130,15 @@ ArrayMeaning array_meaning(const ZarrArray& array, const std::optional<FoundLeve
     if (level->image.axes.size() == rank) meaning.axes = level->image.axes;
     if (found.scale.size() == rank) meaning.scale = found.scale;
     if (found.translation.size() == rank) meaning.translation = found.translation;
+    if (!found.placed) {
+      meaning.place_note =
+          "its coordinateTransformations are others than scale and translation by numbers, taken as indices";
+    }
   }
   read_value_attributes(array, meaning);
-  meaning.obstacle = shape_obstacle(array, meaning);
-  if (meaning.obstacle.empty()) meaning.obstacle = codec_obstacle(array);
+  for (const std::string& obstacle : {codec_obstacle(array), shape_obstacle(array, meaning)}) {
+    if (!obstacle.empty()) meaning.obstacle = obstacle;
+  }
   return meaning;
 }
 
@@ -135,6 +186,7 @@ void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const 
     info.origin.at(i) = meaning.translation[axis];
     info.axis_labels.at(i) = meaning.axes[axis].name;
     info.details.axes.at(i).units = meaning.axes[axis].unit;
+    info.details.axes.at(i).note = meaning.place_note;
   }
   for (std::size_t axis = 0; axis < index.size(); ++axis) {
     if (meaning.axes[axis].type != "time") continue;

@@ -76,10 +76,10 @@ std::vector<Multiscale> multiscales_in(const nlohmann::json& attributes) {
       ScaleLevel level;
       level.path = json_string(datasets[i], "path");
       if (level.path.empty()) continue;
-      if (transform(json_member(datasets[i], "coordinateTransformations"), level) &&
-          transform(json_member(entry, "coordinateTransformations"), level)) {
-        image.levels.push_back(std::move(level));
-      }
+      level.placed = transform(json_member(datasets[i], "coordinateTransformations"), level) &&
+                     transform(json_member(entry, "coordinateTransformations"), level);
+      if (!level.placed) level = {level.path, {}, {}, false};
+      image.levels.push_back(std::move(level));
     }
     if (!image.levels.empty()) images.push_back(std::move(image));
   }

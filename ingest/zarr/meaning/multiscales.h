@@ -24,6 +24,8 @@ struct ScaleLevel {
   std::string path;                 ///< of its array, from the image's group
   std::vector<double> scale;        ///< from an index to a position, along each axis; empty: 1
   std::vector<double> translation;  ///< of the centre of element 0; empty: 0
+  bool placed =
+      true;  ///< false where a transformation is none of scale and translation by numbers; both are empty then
 };
 
 struct Multiscale {
@@ -31,8 +33,8 @@ struct Multiscale {
   std::vector<ScaleLevel> levels;  ///< the finest first
 };
 
-/// The images that the attributes of a group describe, transformations of all levels applied. What is no such list, and
-/// levels whose transformations are others than scale and translation by numbers, are left out.
+/// The images that the attributes of a group describe, transformations of all levels applied. What is no such list is
+/// left out.
 std::vector<Multiscale> multiscales_in(const nlohmann::json& attributes);
 
 /// A level, and the image it is one of.

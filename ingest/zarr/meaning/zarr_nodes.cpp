@@ -2,8 +2,10 @@
 
 #include <utility>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source/unsigned_meaning.h"
 #include "ingest/zarr/metadata/array_v2.h"
 #include "ingest/zarr/metadata/array_v3.h"
 #include "ingest/zarr/metadata/zarr_json.h"
@@ -68,9 +70,20 @@ std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key) {
   return node;
 }
 
+bool says_unsigned(const nlohmann::json& attributes) {
+  const nlohmann::json& value = json_member(attributes, "_Unsigned");
+  return value == true || (value.is_string() && lower_case(value.get<std::string>()) == "true");
+}
+
 ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node) {
   const std::string where = store.shown(node.document);
-  return node.version == 3 ? parse_zarr_v3(node.metadata, where) : parse_zarr_v2(node.metadata, node.attributes, where);
+  ZarrArray array =
+      node.version == 3 ? parse_zarr_v3(node.metadata, where) : parse_zarr_v2(node.metadata, node.attributes, where);
+  if (!says_unsigned(array.attributes)) return array;
+  array.type = unsigned_type(array.type);
+  const auto fill = parse_stored_value(array.fill_text);
+  if (fill) array.fill_text = stored_value_text(as_unsigned(*fill, array.type));
+  return array;
 }
 
 std::vector<ZarrNode> zarr_arrays(ZarrStore& store) {

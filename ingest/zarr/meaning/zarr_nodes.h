@@ -26,7 +26,11 @@ struct ZarrNode {
 /// The node at `key`; nullopt where there is no metadata. Throws Error(input) where they are damaged.
 std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key);
 
-/// The array that `node`, which is one, describes. Throws what parse_zarr_v2 and parse_zarr_v3 throw.
+/// Whether attributes say, as NetCDF's do, that signed integers are meant as unsigned ones.
+bool says_unsigned(const nlohmann::json& attributes);
+
+/// The array that `node`, which is one, describes, of the type that is meant. Throws what parse_zarr_v2 and
+/// parse_zarr_v3 throw.
 ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node);
 
 /// All arrays in the order of their keys; the root alone where that is one. Groups are looked into, arrays are not.

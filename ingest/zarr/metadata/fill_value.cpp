@@ -144,6 +144,18 @@ std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, b
       where, cat("fill_value is ", json_text(fill), ", which is no ", scalar_name(type), "; the file is damaged"));
 }
 
+std::optional<double> double_in_base64(const nlohmann::json& value) {
+  constexpr std::size_t kDigits = 11;  // and one '='
+  const std::string text = value.is_string() ? value.get<std::string>() : std::string();
+  if (text.find('=') != kDigits || text.size() != kDigits + 1) return std::nullopt;
+  auto bytes = base64(text, sizeof(double));
+  if (!bytes) return std::nullopt;
+  if (kNativeIsBig) std::reverse(bytes->begin(), bytes->end());
+  double number = 0;
+  std::memcpy(&number, bytes->data(), sizeof number);
+  return number;
+}
+
 nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool) {
   return of_bool && fill.is_boolean() ? nlohmann::json(fill.get<bool>() ? 1 : 0) : fill;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace weir {
 /// none of these or `type` does not hold it.
 std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
                                   const std::string& where);
+
+/// The number that `value`, an attribute, has in base64, as the eight bytes of a double, the lowest first: as xarray
+/// writes _FillValue of floats in version 3 (FillValueCoder in xarray/backends/zarr.py). nullopt where it has none.
+std::optional<double> double_in_base64(const nlohmann::json& value);
 
 /// `fill`, with 1 for true and 0 for false where the array is one of bool.
 nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool);

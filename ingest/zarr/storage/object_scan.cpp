@@ -40,8 +40,15 @@ ObjectScan scan_objects(const ChunkObjects& objects, const ChunkGeometry& geomet
     if (cancel != nullptr && i % kObjectsBetweenLooks == 0 && *cancel) {
       throw Error(ErrorKind::interrupted, "interrupted");
     }
-    const auto position = geometry.object_position(index_at(i, geometry.objects()));
-    const auto state = objects.store.look(objects.key_of(position));
+    const Index3 object = index_at(i, geometry.objects());
+    const std::string key = objects.key_of(geometry.object_position(object));
+    const ZarrFound found = objects.store.find(key);
+    if (!found.in_its_place.empty()) {
+      const ChunkPlace first = geometry.place_of(geometry.chunks_of(object).lo);
+      throw input_error(objects.store.shown(key),
+                        cat("chunk at ", position_text(first.corner), ": ", found.in_its_place));
+    }
+    const auto& state = found.object;
     if (!state) continue;
     scan.stored[static_cast<std::size_t>(i)] = true;
     scan.bytes += state->bytes;
@@ -52,6 +59,19 @@ ObjectScan scan_objects(const ChunkObjects& objects, const ChunkGeometry& geomet
   }
   scan.digest = states.digest().hex();
   return scan;
+}
+
+std::string key_by_other_separator(const ChunkObjects& objects, const ChunkGeometry& geometry, const ObjectScan& scan) {
+  constexpr std::size_t kMostLooks = 4096;
+  if (std::find(scan.stored.begin(), scan.stored.end(), true) != scan.stored.end()) return {};
+  ChunkObjects others = objects;
+  others.keys.separator = objects.keys.separator == '.' ? '/' : '.';
+  for (std::size_t i = 0; i < std::min(scan.stored.size(), kMostLooks); ++i) {
+    std::string key =
+        others.key_of(geometry.object_position(index_at(static_cast<std::int64_t>(i), geometry.objects())));
+    if (objects.store.look(key)) return key;
+  }
+  return {};
 }
 
 }  // namespace weir

@@ -37,8 +37,13 @@ struct ObjectScan {
 };
 
 /// Looks at all objects that `geometry` touches. Throws Error(usage) where they are more than a sixteenth of `memory`
-/// has bits for, Error(io) where one cannot be looked at, Error(interrupted) where `cancel` is set.
+/// has bits for, Error(input) where something else lies in the place of one, Error(io) where one cannot be looked at,
+/// Error(interrupted) where `cancel` is set.
 ObjectScan scan_objects(const ChunkObjects& objects, const ChunkGeometry& geometry, std::uint64_t memory,
                         const std::atomic<bool>* cancel);
+
+/// Of objects none of which is stored, the key of one that is stored with the other separator between its positions;
+/// empty where the first few thousand have none, or some are stored.
+std::string key_by_other_separator(const ChunkObjects& objects, const ChunkGeometry& geometry, const ObjectScan& scan);
 
 }  // namespace weir

@@ -36,6 +36,7 @@ class ZarrChunks final : public StoredChunks {
              const std::atomic<bool>* cancel);
 
   const ObjectScan& scan() const { return scan_; }
+  std::string key_by_other_separator() const { return weir::key_by_other_separator(objects_, geometry_, scan_); }
   /// Counts them: reads the index of every shard. Throws what decode throws of an index.
   UnstoredChunks count_unstored();
   std::uint64_t working_bytes() const;

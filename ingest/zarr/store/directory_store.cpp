@@ -38,17 +38,25 @@ class DirectoryStore final : public ZarrStore {
   std::string file_of(const std::string& key) const override { return shown(key); }
   bool is_one_file() const override { return false; }
 
-  std::optional<ZarrObjectState> look(const std::string& key) override {
+  // Of an array with many chunks that are not stored, most calls find nothing: that takes one question.
+  ZarrFound find(const std::string& key) override {
     const std::string path = shown(key);
     struct stat status {};
-    if (leads_out(key)) return std::nullopt;
-    if (::stat(path.c_str(), &status) != 0) {
-      if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
+    if (leads_out(key)) return {};
+    if (::lstat(path.c_str(), &status) != 0) {
+      if (errno == ENOENT) return {};
+      if (errno == ENOTDIR) return {{}, "lies below a file that should be a directory; copy the array again"};
       throw io_error(path, "look at it", errno);
     }
-    if (S_ISDIR(status.st_mode)) return std::nullopt;  // a chunk's key may be a group's of others
+    if (S_ISLNK(status.st_mode) && ::stat(path.c_str(), &status) != 0) {
+      if (errno != ENOENT && errno != ENOTDIR) throw io_error(path, "look at it", errno);
+      return {{}, "is a link to a file that is not there; fetch that file, or remove the link"};
+    }
+    if (S_ISDIR(status.st_mode)) {
+      return {{}, "is a directory and not a file; copy the array again, or remove the directory"};
+    }
     const FileState state = state_of(path, status);
-    return ZarrObjectState{state.bytes, state.mtime_ns, state.ctime_ns};
+    return {ZarrObjectState{state.bytes, state.mtime_ns, state.ctime_ns}, {}};
   }
 
   std::unique_ptr<ZarrObject> open(const std::string& key) override {

@@ -33,6 +33,12 @@ struct ZarrObjectState {
   std::int64_t ctime_ns = 0;  ///< since 1970; 0 inside a zip file
 };
 
+/// What lies at a key.
+struct ZarrFound {
+  std::optional<ZarrObjectState> object;
+  std::string in_its_place;  ///< where there is no object: what lies there instead, and the remedy; empty: nothing
+};
+
 /// Thread-safe.
 class ZarrStore {
  public:
@@ -40,8 +46,8 @@ class ZarrStore {
 
   /// As messages name it: "run.zarr/rho/c/0/0/1", "run.zip: rho/c/0/0/1".
   virtual std::string shown(std::string_view key) const = 0;
-  /// nullopt where there is none. Throws Error(io) where that cannot be told.
-  virtual std::optional<ZarrObjectState> look(const std::string& key) = 0;
+  /// Throws Error(io) where it cannot be told.
+  virtual ZarrFound find(const std::string& key) = 0;
   /// nullptr where there is none. Throws Error(input) where it is empty or cannot be read.
   virtual std::unique_ptr<ZarrObject> open(const std::string& key) = 0;
   /// Names of what lies directly below `key` and has something below it, sorted. Throws Error(io).
@@ -52,6 +58,9 @@ class ZarrStore {
   virtual bool is_one_file() const = 0;
   /// Memory that it holds, in bytes.
   virtual std::uint64_t held_bytes() const { return 0; }
+
+  /// nullopt where there is no object. Throws as find.
+  std::optional<ZarrObjectState> look(const std::string& key) { return find(key).object; }
 
   /// The text of a metadata document; nullopt where there is none. Throws Error(input) where it is larger than
   /// kMostMetadataBytes.

@@ -112,10 +112,12 @@ class ZipStore final : public ZarrStore {
   bool is_one_file() const override { return true; }
   std::uint64_t held_bytes() const override { return held_; }
 
-  std::optional<ZarrObjectState> look(const std::string& key) override {
+  ZarrFound find(const std::string& key) override {
     const auto found = entries_.find(key);
-    if (found == entries_.end()) return std::nullopt;
-    return ZarrObjectState{found->second.bytes, 0, 0};
+    if (found != entries_.end()) return {ZarrObjectState{found->second.bytes, 0, 0}, {}};
+    const auto below = entries_.lower_bound(key + '/');
+    if (below == entries_.end() || !below->first.starts_with(key + '/')) return {};
+    return {{}, "is a directory in the zip file and not a file; write the zip file again"};
   }
 
   std::unique_ptr<ZarrObject> open(const std::string& key) override {

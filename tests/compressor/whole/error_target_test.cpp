@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compressor/conversion.h"
@@ -13,6 +14,7 @@
 #include "format/leaf/leaf_decode.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/stock/stock_tree.h"
 
 namespace weir::error_target_test {
@@ -167,6 +169,29 @@ TEST(ErrorTargets, UnreachableTargetIsRefusedWithAReason) {
   EXPECT_EQ(at_most.substr(0, at_most.find("about")), "out.nvdb: --psnr 90 cannot be met: --encoding fp8 reaches ");
   EXPECT_EQ(refusal(Budget::Kind::psnr, 300, Encoding::automatic), "no error");  // float32 keeps every bit
   EXPECT_EQ(refusal(Budget::Kind::max_error, 0, Encoding::automatic), "no error");
+}
+
+// Estimates of what quantised leaves lose are good enough over many of them.
+TEST(ErrorTargets, TakeOneFileOfAVolumeOfManyLeaves) {
+  for (const auto& [kind, width] : {std::pair{"turbulence", 128}, {"cloud", 320}}) {
+    const auto source = open_synthetic(kind, {{width, width, width}, 4});
+    MemoryVolume volume(*source);
+    for (const double target : {40.0, 50.0, 60.0, 70.0, 80.0, 90.0}) {
+      ConversionOptions options;
+      options.output = "out.nvdb";
+      options.budget.kind = Budget::Kind::psnr;
+      options.budget.target = target;
+      options.encoding = Encoding::automatic;
+      std::vector<std::string> passes;
+      ConversionControl control;
+      control.pass_started = [&](const std::string& pass, std::uint64_t) { passes.push_back(pass); };
+      test::CrashFileSystem files;
+      const Sidecar sidecar = convert_volume(volume, options, control, files);
+      EXPECT_EQ(passes, (std::vector<std::string>{"survey", "encode"})) << kind << ' ' << target;
+      EXPECT_GE(sidecar.error.psnr_db, target) << kind;
+      EXPECT_LE(sidecar.error.psnr_db, target + 0.14) << kind;
+    }
+  }
 }
 
 TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {

@@ -105,6 +105,21 @@ TEST_F(AmrexSource, ListHasComponentsLevelsAndRanges) {
           {"range", "0 .. 1055909"}, {"spacing", "0.25,0.125,1"}, {"origin", "-0.875,0.0625,10.5"}, {"time", "1.5"}}));
 }
 
+TEST_F(AmrexSource, ExtentThatNoVolumeHas_IsListedAsTheReason) {
+  PlotfilePlan plan;
+  plan.domain = {{0, 0, 0}, {2048, 1, 1}};
+  plan.ratios = {{1024, 1, 1}, {1024, 1, 1}};
+  plan.boxes = {{plan.domain}, {{{0, 0, 0}, {8, 1, 1}}}, {{{0, 0, 0}, {8, 1, 1}}}};
+  path_ = scratch_.path("long");
+  test::write_plotfile(path_, plan);
+  const std::string obstacle = "extent 2147483648x1x1 has 2147483648 voxels along x; each axis must be 1 to 2147483647";
+  EXPECT_EQ(format_of(path_).list(path_, {})[0].obstacle, obstacle);
+  EXPECT_EQ(refusal(ErrorKind::input, {}), " " + obstacle);
+  SourceOptions options;
+  options.level = 1;
+  EXPECT_EQ(format_of(path_).list(path_, options)[0].obstacle, "");
+}
+
 TEST_F(AmrexSource, ASlashAtTheEnd_AndItsHeader_NameIt) {
   for (const std::string& name : {path_ + "/", path_ + "//", path_ + "/Header"}) {
     const auto source = open_source(name, named("density"));
@@ -241,7 +256,7 @@ TEST(AmrexSourceMemory, BoxesThatDoNotFit_NameAMemoryThatDoes) {
   options.memory = 1U << 20U;
   EXPECT_EQ(
       message_of_error(ErrorKind::usage, [&] { open_source(path, options); }),
-      path + "/Level_0/Cell_H: its 4096 boxes take 288.0 KiB, more than a quarter of --memory; give at least 2MiB");
+      path + "/Level_0/Cell_H: its 4096 boxes take 352.0 KiB, more than a quarter of --memory; give at least 2MiB");
   options.memory = 2U << 20U;
   EXPECT_EQ(open_source(path, options)->info().extent, (Index3{32, 32, 32}));
 }

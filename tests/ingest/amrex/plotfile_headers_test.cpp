@@ -1,6 +1,7 @@
 // The headers of plotfiles as text: what is read of them, and the message for each damage.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,7 +32,9 @@ auto parsed(std::string_view content, const Parse& parse, std::size_t piece = 7)
 
 AmrexHeader header_of(std::string_view content) { return parsed(content, parse_amrex_header); }
 CellHeader cells_of(std::string_view content) {
-  return parsed(content, [&](PlotfileText& text) { return parse_cell_header(text, content.size(), 1U << 30U, true); });
+  return parsed(content, [&](PlotfileText& text) {
+    return parse_cell_header(text, content.size(), 1U << 30U, {true, 1});
+  });
 }
 
 std::string with(std::string_view content, const std::string& what, const std::string& by) {
@@ -127,6 +130,10 @@ TEST(CellHeader, HasBoxesPlacesAndRanges) {
   EXPECT_EQ(header.ranges[0].max, 3);
   EXPECT_EQ(header.ranges[1].min, 4);
   EXPECT_EQ(header.ranges[1].max, 8);
+  ASSERT_EQ(header.box_ranges.size(), 2U);
+  EXPECT_TRUE(std::isnan(header.box_ranges[0].min));
+  EXPECT_EQ(header.box_ranges[1].min, 4);
+  EXPECT_EQ(header.box_ranges[1].max, 8);
   EXPECT_FALSE(header.layout);
 }
 

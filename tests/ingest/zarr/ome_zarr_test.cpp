@@ -125,6 +125,27 @@ TEST(OmeZarr, PlanesOverTime_AreNoVolume) {
             "run.zarr/0: 2 axes of space at its end (c 3, y 4, x 5); a volume has three");
 }
 
+TEST(OmeZarr, FinestLevelPlacedInAnotherWay_IsReadAndNotTheNextOne) {
+  const std::string note =
+      "its coordinateTransformations are others than scale and translation by numbers, taken as indices";
+  for (const char* transformation : {R"({"type":"affine","affine":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]})",
+                                     R"({"type":"scale","path":"scales"})", R"({"type":"scale","scale":["2",1,1]})"}) {
+    const ZarrFiles files;
+    files.write(".zgroup", R"({"zarr_format":2})");
+    files.write(".zattrs",
+                cat(R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0","coordinateTransformations":[)",
+                    R"({"type":"scale","scale":[2,2,2]},)", transformation, R"(]},{"path":"1",)",
+                    R"("coordinateTransformations":[{"type":"scale","scale":[4,4,4]}]}]}]})"));
+    files.write("0/.zarray", zarray("[2,2,2]", "[2,2,2]", "|u1", "1"));
+    files.write("1/.zarray", zarray("[1,1,1]", "[1,1,1]", "|u1", "2"));
+    const auto source = open_source(files.path(), {});
+    EXPECT_EQ(source->info().dataset, "0") << transformation;
+    EXPECT_EQ(source->info().spacing, (std::array{1.0, 1.0, 1.0}));
+    for (const AxisDetails& axis : source->info().details.axes) EXPECT_EQ(axis.note, note);
+    EXPECT_EQ(list_zarr(files.path(), {})[0].attributes.back(), (std::pair<std::string, std::string>{"note", note}));
+  }
+}
+
 TEST(OmeZarr, ScaleThatIsNoSpacing_IsRefused) {
   const ZarrFiles files;
   files.write(".zgroup", R"({"zarr_format":2})");

@@ -31,6 +31,24 @@ TEST(ZarrSource, ChunksThatAreNotStored_ReadAsTheFillValueAndAreCounted) {
   EXPECT_EQ(files.read(options), (std::vector<float>{0, 1, 100, 2, 3, 102, 4, 5, 104, 6, 7, 106}));
 }
 
+TEST(ZarrSource, ChunksNamedWithTheOtherSeparator_AreNotTakenForNone) {
+  // As zarr-python's NestedDirectoryStore wrote arrays before metadata named the separator.
+  const ZarrFiles nested;
+  nested.write(".zarray", zarray("[1,1,4]", "[1,1,2]"));
+  nested.write_values("0/0/1", counted(2));
+  EXPECT_EQ(nested.message(ErrorKind::input),
+            cat("run.zarr/0.0.0: chunk at 0, 0, 0: is not stored, nor is any other, but ", nested.path("0/0/1"),
+                " is; dimension_separator is \".\", and must be \"/\" of chunks named so; set it in ",
+                nested.path(".zarray")));
+  const ZarrFiles flat;
+  flat.write("zarr.json", zarr_json("[1,1,4]", "[1,1,2]"));
+  flat.write_values("c.0.0.0", counted(2));
+  EXPECT_EQ(flat.message(ErrorKind::input),
+            cat("run.zarr/c/0/0/0: chunk at 0, 0, 0: is not stored, nor is any other, but ", flat.path("c.0.0.0"),
+                " is; separator of chunk_key_encoding is \"/\", and must be \".\" of chunks named so; set it in ",
+                flat.path("zarr.json")));
+}
+
 TEST(ZarrSource, HierarchyNamedByItsHead_HasTheSameRecordAsByItsDirectory) {
   for (const char* head : {"zarr.json", ".zarray"}) {
     const ZarrFiles files;
@@ -80,6 +98,30 @@ TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
   EXPECT_EQ(files.message(ErrorKind::input),
             "run.zarr/c/0/0/0: chunk at 0, 0, 0: its deflate stream is damaged after 0 of 8 bytes (incorrect header "
             "check); the file is damaged");
+}
+
+TEST(ZarrSource, WhatIsNoFileInTheirPlace_IsNotTakenForAChunkThatIsNotStored) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,4]", "[1,1,2]", "|u1", "7",
+                                R"("compressor":null,"filters":null,"dimension_separator":"/")"));
+  files.write_values("0/0/0", counted(2));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 7, 7}));
+  std::filesystem::create_directories(files.path("0/0/1"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/1: chunk at 0, 0, 2: is a directory and not a file; copy the array again, or remove the "
+            "directory");
+  std::filesystem::remove(files.path("0/0/1"));
+  std::filesystem::create_symlink("nowhere", files.path("0/0/1"));
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/1: chunk at 0, 0, 2: is a link to a file that is not there; fetch that file, or remove the "
+            "link");
+  std::filesystem::remove(files.path("0/0/1"));
+  std::filesystem::create_symlink("0", files.path("0/0/1"));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 0, 1}));
+  std::filesystem::remove_all(files.path("0/0"));
+  files.write("0/0", "ab");
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0/0/0: chunk at 0, 0, 0: lies below a file that should be a directory; copy the array again");
 }
 
 TEST(ZarrSource, ChunksThatChangeAfterOpening_AreRefused) {
@@ -281,6 +323,23 @@ TEST(ZarrSource, ArraysThatCannotBeRead_AreListedWithTheReason) {
       "64 bits or floats of 16, 32 or 64; weir inspect lists them");
 }
 
+TEST(ZarrSource, ExtentsThatNoVolumeHas_AreListedAsTheReason) {
+  const ZarrFiles files;
+  files.write("zarr.json", kGroup);
+  files.write("long/zarr.json", zarr_json("[1,1,2147483648]", "[1,1,1024]"));
+  files.write("many/zarr.json", zarr_json("[2,1073741824,2147483647]", "[1,1024,1024]"));
+  const std::vector<DatasetInfo> list = list_zarr(files.path(), {});
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].obstacle, "extent 2147483648x1x1 has 2147483648 voxels along x; each axis must be 1 to 2147483647");
+  EXPECT_EQ(list[1].obstacle, "extent 2147483647x1073741824x2 at 4 bytes a voxel overflows 64 bits; check the extent");
+  SourceOptions options;
+  options.dataset = "long";
+  EXPECT_EQ(files.message(ErrorKind::input, options), "run.zarr/long: " + list[0].obstacle);
+  // One that can be converted needs no name beside them.
+  files.write("short/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
+  EXPECT_EQ(files.read(), (std::vector<float>{7}));
+}
+
 TEST(ZarrSource, PathsOfItsParts_OpenTheSame) {
   const ZarrFiles files;
   files.write("zarr.json", kGroup);
@@ -289,21 +348,6 @@ TEST(ZarrSource, PathsOfItsParts_OpenTheSame) {
        {files.path(), files.path() + "/", files.path("zarr.json"), files.path("a"), files.path("a/zarr.json")}) {
     EXPECT_EQ(ZarrFiles::read_all(*open_source(path, {})), (std::vector<float>{7, 7})) << path;
   }
-}
-
-TEST(ZarrSource, ScaleAndMissingValueOfXarray_AreApplied) {
-  const ZarrFiles files;
-  files.write(".zarray", zarray("[1,1,3]", "[1,1,3]", "|u1", "255"));
-  files.write(".zattrs", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"scale_factor":0.5,"add_offset":-1,"missing_value":255,)"
-                         R"("units":"K","long_name":"temperature","valid_max":NaN})");
-  files.write_values("0.0.0", std::vector<std::uint8_t>{0, 4, 255});
-  const auto source = open_source(files.path(), {});
-  const std::vector<float> values = ZarrFiles::read_all(*source);
-  EXPECT_EQ(values[0], -1.0F);
-  EXPECT_EQ(values[1], 1.0F);
-  EXPECT_TRUE(is_missing(values[2]));
-  EXPECT_EQ(source->info().units, "K");
-  EXPECT_EQ(source->info().details.long_name, "temperature");
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "tests/stock/vdb_oracle.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/scoped_mount.h"
 #include "tools/export/vdb_node_values.h"
 
 namespace weir::export_test {
@@ -250,6 +251,19 @@ TEST_F(ExportCommand, Refusals) {
   exported();
   expect_refused({"export", nvdb_, "-o", vdb_}, 2, vdb_ + ": exists; choose another output or pass --overwrite");
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"v.nvdb", "v.nvdb.json", "v.raw", "v.vdb"}));
+}
+
+TEST_F(ExportCommand, FullDisk_OffersAnotherOutputAlone) {
+  sample("turbulence", "64,64,64", {"--lossless", "--encoding", "float"});
+  const std::filesystem::path full = directory_.path() / "full";
+  std::filesystem::create_directory(full);
+  const ScopedMount mount(full, 1 << 16);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  const CommandResult result = run_weir({"export", nvdb_, "-o", full / "v.vdb", "--compression", "none"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_TRUE(
+      result.err.ends_with(": No space left on device; free space on that file system or choose another with -o\n"))
+      << result.err;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/scoped_mount.h"
 
 namespace weir::sample_test {
 namespace {
@@ -219,6 +220,17 @@ TEST(Sample, InterruptKeepsWhatWasThereBefore) {
   EXPECT_EQ(child.wait().exit_code, 130);
   EXPECT_EQ(list_directory(directory.path()), std::vector<std::string>{"a.raw"});
   EXPECT_EQ(read_file(path), "mine");
+}
+
+TEST(Sample, FullDisk_OffersAnotherOutputAlone) {
+  const TemporaryDirectory directory;
+  const ScopedMount mount(directory.path(), 1 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  const std::string path = directory / "a.raw";
+  expect_refusal(run_weir({"sample", "cloud", "--dims", "128,128,128", "-o", path}), 5,
+                 path +
+                     ".partial: cannot reserve 8388608 bytes: No space left on device; free space on that file "
+                     "system or choose another with -o");
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ class CountedStore final : public ZarrStore {
   std::string file_of(const std::string& key) const override { return shown(key); }
   bool is_one_file() const override { return false; }
   std::vector<std::string> groups_in(const std::string& /*key*/) override { return {}; }
-  std::optional<ZarrObjectState> look(const std::string& key) override {
-    if (!objects.contains(key)) return std::nullopt;
-    return ZarrObjectState{objects.at(key).size()};
+  ZarrFound find(const std::string& key) override {
+    if (!objects.contains(key)) return {};
+    return {ZarrObjectState{objects.at(key).size()}, {}};
   }
   std::unique_ptr<ZarrObject> open(const std::string& key) override {
     return std::make_unique<CountedObject>(objects.at(key), counts);

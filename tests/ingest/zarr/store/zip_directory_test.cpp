@@ -101,5 +101,19 @@ TEST(ZipStore, DamagedEntries_FailTheirChecksum) {
   }
 }
 
+TEST(ZipStore, EntriesBelowAChunk_AreNotTakenForOneThatIsNotStored) {
+  if (!python_has("zipfile")) GTEST_SKIP() << "python3 is not installed";
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[1,1,4]", "[1,1,2]"));
+  const std::string zip = files.path() + ".zip";
+  ASSERT_TRUE(
+      run_python("import zipfile, sys\nz = zipfile.ZipFile(sys.argv[1] + \".zip\", \"w\")\n"
+                 "z.write(sys.argv[1] + \"/zarr.json\", \"zarr.json\")\nz.writestr(\"c/0/0/1/a\", \"ab\")",
+                 files.path()));
+  EXPECT_EQ(
+      message_of_error(ErrorKind::input, [&] { open_source(zip, {}); }),
+      zip + ": c/0/0/1: chunk at 0, 0, 2: is a directory in the zip file and not a file; write the zip file again");
+}
+
 }  // namespace
 }  // namespace weir::zip_directory_test

@@ -1,0 +1,89 @@
+// What the attributes of a Zarr array say of its values, by the conventions of CF.
+#include "ingest/zarr/meaning/array_meaning.h"
+#include "ingest/zarr/zarr_source.h"
+#include "tests/ingest/zarr/support/zarr_files.h"
+
+namespace weir::zarr_values_test {
+namespace {
+
+TEST(ZarrValues, ScaleAndMissingValueOfXarray_AreApplied) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,3]", "[1,1,3]", "|u1", "255"));
+  files.write(".zattrs", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"scale_factor":0.5,"add_offset":-1,"missing_value":255,)"
+                         R"("units":"K","long_name":"temperature","valid_max":NaN})");
+  files.write_values("0.0.0", std::vector<std::uint8_t>{0, 4, 255});
+  const auto source = open_source(files.path(), {});
+  const std::vector<float> values = ZarrFiles::read_all(*source);
+  EXPECT_EQ(values[0], -1.0F);
+  EXPECT_EQ(values[1], 1.0F);
+  EXPECT_TRUE(is_missing(values[2]));
+  EXPECT_EQ(source->info().units, "K");
+  EXPECT_EQ(source->info().details.long_name, "temperature");
+}
+
+/// An array of two values, -999 and 1.5, with these attributes.
+void write_floats(const ZarrFiles& files, std::string_view attributes) {
+  files.write("zarr.json", zarr_json("[1,1,2]", "[1,1,2]", R"([{"name":"bytes","configuration":{"endian":"little"}}])",
+                                     "float32", "0", cat(R"(,"attributes":)", attributes)));
+  files.write_values("c/0/0/0", std::vector<float>{-999, 1.5F});
+}
+
+std::vector<float> read_floats(const ZarrFiles& files, std::string_view attributes) {
+  write_floats(files, attributes);
+  return files.read();
+}
+
+TEST(ZarrValues, ValuesThatHoldNoData_AreKnownAsNumbersListsTextsAndInBase64) {
+  const ZarrFiles files;
+  // xarray writes _FillValue of floats in version 3 as the base64 of a double.
+  for (const char* attributes :
+       {R"({"_FillValue":-999})", R"({"_FillValue":"AAAAAAA4j8A="})", R"({"missing_value":[5,-999.0]})",
+        R"({"missing_value":"-999"})", R"({"_FillValue":["-999",5]})"}) {
+    const std::vector<float> values = read_floats(files, attributes);
+    EXPECT_TRUE(is_missing(values[0])) << attributes;
+    EXPECT_EQ(values[1], 1.5F) << attributes;
+  }
+  for (const char* attributes : {R"({"_FillValue":"AAAAAAA4j8A"})", R"({"_FillValue":"AAAAAAA4j8?="})",
+                                 R"({"_FillValue":"none"})", R"({"_FillValue":{"a":-999}})"}) {
+    EXPECT_EQ(read_floats(files, attributes), (std::vector<float>{-999, 1.5F})) << attributes;
+  }
+}
+
+TEST(ZarrValues, SignedIntegersMeantAsUnsigned_AreReadSo) {
+  const ZarrFiles files;
+  files.write("zarr.json", zarr_json("[1,1,4]", "[1,1,3]", R"([{"name":"bytes"}])", "int8", "-56",
+                                     R"(,"attributes":{"_Unsigned":"true","_FillValue":-1,"scale_factor":2})"));
+  files.write_values("c/0/0/0", std::vector<std::uint8_t>{1, 255, 129});
+  const auto source = open_source(files.path(), {});
+  const std::vector<float> values = ZarrFiles::read_all(*source);
+  EXPECT_EQ(source->info().type, ScalarType::uint8);
+  EXPECT_EQ(values[0], 2.0F);
+  EXPECT_TRUE(is_missing(values[1]));
+  EXPECT_EQ(values[2], 258.0F);
+  EXPECT_EQ(values[3], 400.0F);
+  EXPECT_EQ(source->info().details.chunks_note, "1 of its 2 chunks is not stored and reads as its fill value, 200");
+  EXPECT_EQ(list_zarr(files.path(), {})[0].type, "uint8");
+}
+
+TEST(ZarrValues, ScalesThatAreNotOneNumber_AreRefused) {
+  const ZarrFiles files;
+  EXPECT_EQ(read_floats(files, R"({"scale_factor":"0.5","add_offset":[1]})"), (std::vector<float>{-498.5F, 1.75F}));
+  const auto refusal = [&](std::string_view attributes) {
+    write_floats(files, attributes);
+    return files.message(ErrorKind::input);
+  };
+  const std::string end = ", so what its values mean is unknown; correct or remove it";
+  EXPECT_EQ(refusal(R"({"scale_factor":"half"})"),
+            "run.zarr: its attribute scale_factor is \"half\" and not one finite number other than 0" + end);
+  EXPECT_EQ(refusal(R"({"scale_factor":0})"),
+            "run.zarr: its attribute scale_factor is 0 and not one finite number other than 0" + end);
+  EXPECT_EQ(refusal(R"({"add_offset":NaN})"),
+            "run.zarr: its attribute add_offset is \"NaN\" and not one finite number" + end);
+  EXPECT_EQ(refusal(R"({"add_offset":[1,"x"]})"),
+            "run.zarr: its attribute add_offset is a list of 2 and not one finite number" + end);
+  EXPECT_EQ(list_zarr(files.path(), {})[0].obstacle,
+            "its attribute add_offset is a list of 2 and not one finite number" + end);
+}
+
+}  // namespace
+}  // namespace weir::zarr_values_test
