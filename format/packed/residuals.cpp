@@ -11,23 +11,32 @@ namespace {
 
 // The 3-D Lorenzo predictor's: what is left of the codes after differences along each axis in turn.
 WEIR_SIMD void difference_all(const std::uint32_t* codes, std::uint32_t* residuals) {
-  std::uint32_t along_x[512];
-  for (unsigned i = 0; i < 64; ++i) along_x[i] = codes[i];
-  for (unsigned i = 64; i < 512; ++i) along_x[i] = codes[i] - codes[i - 64];
-  std::uint32_t along_y[512];
   for (unsigned x = 0; x < 512; x += 64) {
-    for (unsigned i = x; i < x + 8; ++i) along_y[i] = along_x[i];
-    for (unsigned i = x + 8; i < x + 64; ++i) along_y[i] = along_x[i] - along_x[i - 8];
+    Words8 beside{};
+    for (unsigned i = x; i < x + 64; i += 8) {
+      Words8 along_x;
+      __builtin_memcpy(&along_x, codes + i, sizeof along_x);
+      if (x > 0) {
+        Words8 left;
+        __builtin_memcpy(&left, codes + i - 64, sizeof left);
+        along_x -= left;
+      }
+      const Words8 along_y = along_x - beside;
+      beside = along_x;
+      const Words8 row = along_y - __builtin_shufflevector(along_y, Words8{}, 8, 0, 1, 2, 3, 4, 5, 6);
+      __builtin_memcpy(residuals + i, &row, sizeof row);
+    }
   }
   residuals[0] = 0;
-  for (unsigned i = 1; i < 512; ++i) residuals[i] = along_y[i] - (i % 8 == 0 ? 0 : along_y[i - 1]);
 }
 
-// A row of codes, and those beside it.
+// A row of codes, and those beside it. Of codes below 2^24 sums fit 32 bits; those of codes in order are exact as
+// doubles.
+template <typename Lanes>
 struct CodeRow {
-  Ints8 left;     // of x - 1
-  Ints8 up;       // of y - 1
-  Ints8 left_up;  // of both
+  Lanes left{};     // of x - 1
+  Lanes up{};       // of y - 1
+  Lanes left_up{};  // of both
   bool has_left;
   bool has_up;
 };
@@ -36,98 +45,138 @@ struct CodeRow {
   __builtin_memcpy(&row, at, sizeof row);
 }
 
+[[gnu::always_inline]] inline void load_codes(const std::uint32_t* at, Doubles8& row) {
+  Ints8 codes;
+  load_codes(at, codes);
+  row = __builtin_convertvector(codes, Doubles8);
+}
+
 // Lane z has what lane z - 1 had, lane 0 keeps its own.
-[[gnu::always_inline]] inline void shift_up(const Ints8& row, Ints8& shifted) {
+template <typename Lanes>
+[[gnu::always_inline]] inline void shift_up(const Lanes& row, Lanes& shifted) {
   shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2, 3, 4, 5, 6);
 }
 
-// floor(sum / (1 + has_left + has_up)) of neighbours where there is one at z - 1, else without it.
-[[gnu::always_inline]] inline void predict_mean(const CodeRow& beside, const Ints8& back, bool has_back, Ints8& mean) {
-  Ints8 sum{};
-  if (beside.has_left) sum += beside.left;
-  if (beside.has_up) sum += beside.up;
-  if (has_back) sum += back;
-  const int count = (beside.has_left ? 1 : 0) + (beside.has_up ? 1 : 0) + (has_back ? 1 : 0);
-  mean = count == 3 ? sum / 3 : count == 2 ? sum >> 1 : sum;
+// floor(sum / count) of 2 or 3 codes.
+[[gnu::always_inline]] inline void floor_mean(const Ints8& sum, int count, Ints8& mean) {
+  mean = count == 3 ? sum / 3 : sum >> 1;
 }
 
-[[gnu::always_inline]] inline void predict_least(const CodeRow& beside, const Ints8& back, bool has_back,
-                                                 Ints8& least) {
-  least = has_back ? back : beside.has_left ? beside.left : beside.up;
-  if (beside.has_left) least = beside.left < least ? beside.left : least;
-  if (beside.has_up) least = beside.up < least ? beside.up : least;
+[[gnu::always_inline]] inline void floor_mean(const Doubles8& sum, int count, Doubles8& mean) {
+  const Doubles8 within = (sum + 0.5) * (1.0 / count);  // a sixth at least from whole numbers
+  mean = __builtin_convertvector(__builtin_convertvector(within, Ints8), Doubles8);
+  mean = mean > within ? mean - 1 : mean;
 }
 
-[[gnu::always_inline]] inline void predict_planes(const CodeRow& beside, const Ints8& back, bool has_back,
-                                                  Ints8& median) {
-  Ints8 left_back;
-  Ints8 up_back;
-  shift_up(beside.left, left_back);
-  shift_up(beside.up, up_back);
-  const Ints8 a = beside.left + beside.up - beside.left_up;
-  const Ints8 b = beside.left + back - left_back;
-  const Ints8 c = beside.up + back - up_back;
-  if (!has_back) {
-    median = beside.has_left && beside.has_up ? a : beside.has_left ? beside.left : beside.up;
-  } else if (beside.has_left && beside.has_up) {
-    const Ints8 low = a < b ? a : b;
-    const Ints8 high = a < b ? b : a;
-    median = c < low ? low : c;
-    median = median > high ? high : median;
-  } else {
-    median = beside.has_left ? b : beside.has_up ? c : back;
+// What is left of codes, modulo 2^32.
+[[gnu::always_inline]] inline void take_away(const Ints8& predicted, Words8& row) {
+  row -= reinterpret_cast<const Words8&>(predicted);
+}
+
+[[gnu::always_inline]] inline void take_away(const Doubles8& predicted, Words8& row) {
+  constexpr double kWholes = 0x1.8p52;  // the sum's mantissa ends in the whole number
+  const Doubles8 sum = predicted + kWholes;
+  std::int64_t __attribute__((vector_size(64))) bits;
+  __builtin_memcpy(&bits, &sum, sizeof bits);
+  row -= __builtin_convertvector(bits, Words8);
+}
+
+struct PredictMean {
+  // Of neighbours where there is one at z - 1, else without it.
+  template <typename Lanes>
+  [[gnu::always_inline]] static void predict(const CodeRow<Lanes>& beside, const Lanes& back, bool has_back,
+                                             Lanes& mean) {
+    Lanes sum{};
+    if (beside.has_left) sum += beside.left;
+    if (beside.has_up) sum += beside.up;
+    if (has_back) sum += back;
+    const int count = (beside.has_left ? 1 : 0) + (beside.has_up ? 1 : 0) + (has_back ? 1 : 0);
+    mean = sum;
+    if (count > 1) floor_mean(sum, count, mean);
   }
-}
+};
 
-using PredictRow = void (*)(const CodeRow&, const Ints8&, bool, Ints8&);
+struct PredictLeast {
+  template <typename Lanes>
+  [[gnu::always_inline]] static void predict(const CodeRow<Lanes>& beside, const Lanes& back, bool has_back,
+                                             Lanes& least) {
+    least = has_back ? back : beside.has_left ? beside.left : beside.up;
+    if (beside.has_left) least = beside.left < least ? beside.left : least;
+    if (beside.has_up) least = beside.up < least ? beside.up : least;
+  }
+};
 
-// Of codes below 2^24, a row of them at once: sums fit 32 bits.
-template <PredictRow predict_row>
+// The median of three planes.
+struct PredictMedian {
+  template <typename Lanes>
+  [[gnu::always_inline]] static void predict(const CodeRow<Lanes>& beside, const Lanes& back, bool has_back,
+                                             Lanes& median) {
+    Lanes left_back;
+    Lanes up_back;
+    shift_up(beside.left, left_back);
+    shift_up(beside.up, up_back);
+    const Lanes a = beside.left + beside.up - beside.left_up;
+    const Lanes b = beside.left + back - left_back;
+    const Lanes c = beside.up + back - up_back;
+    if (!has_back) {
+      median = beside.has_left && beside.has_up ? a : beside.has_left ? beside.left : beside.up;
+    } else if (beside.has_left && beside.has_up) {
+      const Lanes low = a < b ? a : b;
+      const Lanes high = a < b ? b : a;
+      median = c < low ? low : c;
+      median = median > high ? high : median;
+    } else {
+      median = beside.has_left ? b : beside.has_up ? c : back;
+    }
+  }
+};
+
+// A row of codes at once.
+template <typename Predictor, typename Lanes>
 [[gnu::always_inline]] inline void predict_rows(const std::uint32_t* codes, std::uint32_t* residuals) {
-  const Ints8 none{};
-  const Ints8 first = {-1, 0, 0, 0, 0, 0, 0, 0};
   for (unsigned i = 0; i < 512; i += 8) {
-    CodeRow beside{none, none, none, i >= 64, i % 64 != 0};
-    Ints8 row;
+    CodeRow<Lanes> beside{.has_left = i >= 64, .has_up = i % 64 != 0};
+    Lanes row;
     load_codes(codes + i, row);
     if (beside.has_left) load_codes(codes + i - 64, beside.left);
     if (beside.has_up) load_codes(codes + i - 8, beside.up);
     if (beside.has_left && beside.has_up) load_codes(codes + i - 72, beside.left_up);
-    Ints8 back;
+    Lanes back;
     shift_up(row, back);
-    Ints8 with_back;
-    Ints8 without;
-    predict_row(beside, back, true, with_back);
-    predict_row(beside, back, false, without);
-    row -= (with_back & ~first) | (without & first);
-    __builtin_memcpy(residuals + i, &row, sizeof row);
+    Lanes with_back;
+    Lanes without;
+    Predictor::predict(beside, back, true, with_back);
+    Predictor::predict(beside, back, false, without);
+    const Lanes predicted = __builtin_shufflevector(without, with_back, 0, 9, 10, 11, 12, 13, 14, 15);
+    Words8 residual;
+    __builtin_memcpy(&residual, codes + i, sizeof residual);
+    take_away(predicted, residual);
+    __builtin_memcpy(residuals + i, &residual, sizeof residual);
   }
   residuals[0] = 0;
 }
 
 WEIR_SIMD void predict_means(const std::uint32_t* codes, std::uint32_t* residuals) {
-  predict_rows<predict_mean>(codes, residuals);
+  predict_rows<PredictMean, Ints8>(codes, residuals);
 }
 WEIR_SIMD void predict_leasts(const std::uint32_t* codes, std::uint32_t* residuals) {
-  predict_rows<predict_least>(codes, residuals);
+  predict_rows<PredictLeast, Ints8>(codes, residuals);
 }
 WEIR_SIMD void predict_medians(const std::uint32_t* codes, std::uint32_t* residuals) {
-  predict_rows<predict_planes>(codes, residuals);
+  predict_rows<PredictMedian, Ints8>(codes, residuals);
+}
+WEIR_SIMD void predict_ordered_means(const std::uint32_t* codes, std::uint32_t* residuals) {
+  predict_rows<PredictMean, Doubles8>(codes, residuals);
+}
+WEIR_SIMD void predict_ordered_medians(const std::uint32_t* codes, std::uint32_t* residuals) {
+  predict_rows<PredictMedian, Doubles8>(codes, residuals);
 }
 
-// Of any codes.
-template <unsigned Predictor>
-void predict_ordered(const BlockCodes& codes, BlockCodes& residuals) {
-  residuals[0] = 0;
-  for (unsigned i = 1; i < 512; ++i) {
-    const std::int64_t predicted = predict(Predictor, true, codes.data(), i >> 6U, i >> 3U & 7U, i & 7U);
-    residuals[i] = codes[i] - static_cast<std::uint32_t>(predicted);
-  }
-}
-
-// What residuals take about: the bits of three times each magnitude.
+// What residuals take about: the bits of three times each magnitude. That is 0, of no bits, or 2 or more, with two bits
+// more than its half's exponent.
 WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
-  const Ints8 none{};
+  constexpr std::int32_t kNone = 127 - 2;  // the biased exponent less the bits
+  const Ints8 none = Ints8{} + kNone;
   Ints8 sum{};
   for (unsigned i = 0; i < 512; i += 8) {
     Words8 r;
@@ -139,12 +188,11 @@ WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
     const auto f = __builtin_convertvector(reinterpret_cast<Ints8&>(half), Floats8);
     Ints8 exponent;
     __builtin_memcpy(&exponent, &f, sizeof exponent);
-    exponent = (exponent >> 23) - 126;
-    sum += half == 0 ? none : exponent;
-    sum -= m != 0;
+    exponent >>= 23;
+    sum += exponent > none ? exponent : none;
   }
   std::uint32_t bits = 0;
-  for (int l = 0; l < 8; ++l) bits += static_cast<std::uint32_t>(sum[l]);
+  for (int l = 0; l < 8; ++l) bits += static_cast<std::uint32_t>(sum[l] - 64 * kNone);
   return bits;
 }
 
@@ -178,11 +226,11 @@ void residuals_of(const BlockCodes& codes, unsigned predictor, bool ordered, Blo
     case 0:
       return difference_all(codes.data(), residuals.data());
     case 1:
-      return ordered ? predict_ordered<1>(codes, residuals) : predict_means(codes.data(), residuals.data());
+      return (ordered ? predict_ordered_means : predict_means)(codes.data(), residuals.data());
     case 2:
-      return ordered ? predict_ordered<2>(codes, residuals) : predict_leasts(codes.data(), residuals.data());
+      return predict_leasts(codes.data(), residuals.data());
     default:
-      return ordered ? predict_ordered<3>(codes, residuals) : predict_medians(codes.data(), residuals.data());
+      return (ordered ? predict_ordered_medians : predict_medians)(codes.data(), residuals.data());
   }
 }
 

@@ -22,19 +22,38 @@ struct Rounded {
   double squared_error;  // in squared quanta
 };
 
-// Whole multiples of the quantum nearest to the values.
-WEIR_SIMD Rounded round_all(const float* values, double scale, std::int32_t* multiples) {
+WEIR_SIMD float largest_of(const float* values) {
+  Floats8 largest{};
+  for (unsigned i = 0; i < 512; i += 8) {
+    Floats8 v;
+    std::memcpy(&v, values + i, sizeof v);
+    const Floats8 size = v < 0 ? -v : v;
+    largest = size > largest ? size : largest;
+  }
+  float found = 0;
+  for (int l = 0; l < 8; ++l) found = std::max(found, largest[l]);
+  return found;
+}
+
+// Values lie above that many quanta: codes that count from there have the residuals that codes from the lowest on have.
+constexpr std::int32_t kLeastMultiple = -(1 << kMostRoundedBits);
+
+// Whole multiples of the quantum nearest to the values, halves away from zero. `scale` is the quantum's inverse: the
+// products are exact, besides those too small for a float, whose errors are too small to count.
+WEIR_SIMD Rounded round_all(const float* values, float scale, std::uint32_t* codes) {
+  constexpr float kBelowHalf = 0x1.FFFFFEp-2F;  // the float below 0.5, which would round itself up to 1
   Doubles8 errors{};
   Ints8 low{};
   Ints8 high{};
   for (unsigned row = 0; row < 64; ++row) {
     Floats8 v;
     std::memcpy(&v, values + 8 * row, sizeof v);
-    const Doubles8 scaled = __builtin_convertvector(v, Doubles8) * scale;
-    const Doubles8 half = scaled < 0 ? Doubles8{} - 0.5 : Doubles8{} + 0.5;
+    const Floats8 scaled = v * scale;
+    const Floats8 half = scaled < 0 ? Floats8{} - kBelowHalf : Floats8{} + kBelowHalf;
     const Ints8 m = __builtin_convertvector(scaled + half, Ints8);
-    std::memcpy(multiples + 8 * row, &m, sizeof m);
-    const Doubles8 error = scaled - __builtin_convertvector(m, Doubles8);
+    const Ints8 code = m - kLeastMultiple;
+    std::memcpy(codes + 8 * row, &code, sizeof code);
+    const Doubles8 error = __builtin_convertvector(scaled - __builtin_convertvector(m, Floats8), Doubles8);
     errors += error * error;
     if (row == 0) low = high = m;
     low = m < low ? m : low;
@@ -73,9 +92,7 @@ RoundedBlock::RoundedBlock(const std::uint16_t* tables)
 
 void RoundedBlock::set(std::span<const float, 512> values) {
   std::copy(values.begin(), values.end(), values_.begin());
-  float largest = 0;
-  for (const float v : values) largest = std::max(largest, std::fabs(v));
-  exponent_ = rounded_exponent(largest);
+  exponent_ = rounded_exponent(largest_of(values_.data()));
   predictor_ = 0;
   if (find_codes(exponent_ - kUsualRoundedBits)) predictor_ = best_predictor(codes_, false, residuals_);
 }
@@ -83,12 +100,9 @@ void RoundedBlock::set(std::span<const float, 512> values) {
 bool RoundedBlock::find_codes(int quantum_exponent) {
   if (!is_quantum_exponent(quantum_exponent, exponent_)) return false;
   const double quantum = std::ldexp(1.0, quantum_exponent);
-  std::array<std::int32_t, 512> multiples;
-  const Rounded rounded = round_all(values_.data(), 1 / quantum, multiples.data());
+  const Rounded rounded = round_all(values_.data(), static_cast<float>(1 / quantum), codes_.data());
   lowest_ = rounded.low;
   if (rounded.high == rounded.low || rounded.high - rounded.low >= 1 << kRoundedNumberBits) return false;
-  std::transform(multiples.begin(), multiples.end(), codes_.begin(),
-                 [&](std::int32_t m) { return static_cast<std::uint32_t>(m - lowest_); });
   squared_error_ = rounded.squared_error * quantum * quantum;
   return true;
 }
@@ -119,6 +133,8 @@ bool RoundedBlock::encode(int quantum_exponent, std::span<std::byte> out) {
 
 bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
   if (out.size() <= kRoundedFrontBytes) return false;
+  const auto lowest = static_cast<std::uint32_t>(lowest_ - kLeastMultiple);
+  for (std::uint32_t& code : codes_) code -= lowest;
   StreamFront front;
   front.end = end_at(fill_magnitudes(residuals_, magnitudes_).last_place);
   front.end_bits = kLatticeEndBits;

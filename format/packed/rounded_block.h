@@ -47,9 +47,9 @@ class RoundedBlock {
   RowCosts rows_;
   std::array<float, 512> values_{};
   int exponent_ = 0;
-  unsigned predictor_ = 0;  // the best one at a quantum in the middle, the same for cost() and encode()
-  BlockCodes codes_{};
-  std::int32_t lowest_ = 0;  // of the values in quanta: that of code 0
+  unsigned predictor_ = 0;   // the best one at a quantum in the middle, the same for cost() and encode()
+  BlockCodes codes_{};       // above the least that there may be; once written, above the lowest
+  std::int32_t lowest_ = 0;  // of the values in quanta
   double squared_error_ = 0;
   BlockCodes residuals_{};
   MagnitudeRows magnitudes_;

@@ -101,6 +101,23 @@ TEST(RoundedBlock, KnownValuesLieInTheRangeOfTheFile) {
   EXPECT_FALSE(same_bits(known, decoded_from(stream))) << "some lie outside";
 }
 
+TEST(RoundedBlock, HalvesAreRoundedAwayFromZero) {
+  BlockValues values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float half = static_cast<float>(i / 6) + 0.5F;
+    const float beside = i % 3 == 0 ? half : std::nextafter(half, i % 3 == 1 ? 0.0F : 1000.0F);
+    values[i] = i % 2 == 0 ? beside : -beside;
+  }
+  RoundedBlock block;
+  block.set(values);
+  Stream stream(block.cost(0).value().bytes);
+  ASSERT_TRUE(block.encode(0, stream));
+  const BlockValues decoded = decoded_from(stream);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(static_cast<double>(decoded[i]), std::round(static_cast<double>(values[i]))) << values[i];
+  }
+}
+
 TEST(RoundedBlock, WhereTheStreamIsTooShortTheQuantumIsLarger) {
   Numbers numbers(5);
   const BlockValues values = sample(Shape::noisy, numbers, 1, 0);
