@@ -92,7 +92,7 @@ TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
   ConversionOptions options = base();
   options.encoding = Encoding::fpn;
   options.budget.kind = Budget::Kind::psnr;
-  options.budget.target = 43;
+  options.budget.target = 38;
   EXPECT_GE(undisturbed(options).encode_passes, 2);
   expect_same_bytes(options, 40);
   options.budget.kind = Budget::Kind::max_error;
