@@ -40,7 +40,8 @@ void check_header(std::string_view input, std::size_t piece) {
 void check_cells(std::string_view input, std::size_t piece) {
   const std::size_t size = input.size();
   weir::PlotfileText text = text_of(input, piece);
-  const weir::CellHeader header = weir::parse_cell_header(text, size, UINT64_MAX, {.of_components = true, .of_boxes = 0});
+  const weir::CellHeader header =
+      weir::parse_cell_header(text, size, UINT64_MAX, {.of_components = true, .of_boxes = 0});
   if (header.boxes.empty() || header.places.size() != header.boxes.size()) std::abort();
   if (!header.ranges.empty() && header.ranges.size() != static_cast<std::size_t>(header.components)) std::abort();
   for (const weir::FabPlace& place : header.places) {
