@@ -10,7 +10,7 @@ import sys
 
 import volumes
 from experiment import Experiment, describe, method_options, remove_volume, size_text
-from experiments.speed import threads_here
+from experiments.speed import read_twice, threads_here
 from markdown import command
 from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_table,
                          versions_text)
@@ -51,6 +51,8 @@ class Peers(Experiment):
     def _measure(self, bench, volume, method, subject):
         def measured():
             with bench.files.file(volume) as path, bench.files.float32_file(volume) as wide:
+                for file in (path, wide):
+                    read_twice(file, False)  # into the page cache, for all methods alike
                 return {**describe(volume), "dense_bytes": volume.dense_bytes, "method": method,
                         **subject.measure(path, wide, 1 if bench.quick else ROUNDS)}
         bench.store.measure(self.name, f"{volume.file_name}_{method}", measured)
