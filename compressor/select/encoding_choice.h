@@ -69,9 +69,9 @@ struct FileRequest {
 /// Plans the file for a surveyed volume: of the asked size with the least error, or of the least size with the
 /// asked error. What a quantised file loses is estimated: Encoding::automatic means that where it turns out to lose
 /// more than `float_error`, the float file is to be taken; if that is a bound, after a plan with `plans_float` says so.
-/// Throws Error(budget) where size, error or exactness cannot
-/// be met, naming what can, Error(usage) where the encoding cannot hold the volume. Where planned_error was adjusted
-/// and this encoding is not expected to reach it, the plan is all that it has.
+/// Throws Error(budget) where size, error or exactness cannot be met, naming what can, Error(usage) where the encoding
+/// cannot hold the volume. Where planned_error was adjusted and this encoding is not expected to reach it, the plan is
+/// all that it has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
 
 /// Error(budget) for a target that `encoding` misses, where for a PSNR all it has loses `squared_error`.
