@@ -231,7 +231,7 @@ class SurveyedConversion {
   // The cut of the file that was planned lies outside the window of the request: another one is taken, at last none.
   void move_window(FileRequest& request, double cut) {
     LadderState& state = ladders();
-    const auto window = state.moves++ == 0 ? KeyWindow::about(cut) : std::nullopt;
+    const auto window = state.moves++ == 0 ? KeyWindow::about(cut, state.width) : std::nullopt;
     state.centre = window ? std::optional(window->centre()) : std::nullopt;
     request.packed.window = window;
     if (!state.built) return;  // all rungs are there

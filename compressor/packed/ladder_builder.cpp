@@ -12,7 +12,6 @@
 namespace weir {
 namespace {
 
-constexpr std::uint32_t kMeanBits = 8;         // of a mean alone but for its code
 constexpr double kMeanError = 0.5 + 1.0 / 16;  // quanta that a decoded mean of kMostBoundedMeanBits is off by
 constexpr std::uint32_t kUniformBytes = 5;     // kind and value
 
@@ -101,16 +100,14 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
   bool more = true;
   if (transform_.set(block)) {
     const double energy = filled == Filled::no ? transform_.energy() : row.sse;
-    add_rungs(
-        row, energy, transform_.largest(), [&](std::size_t rung) { return transform_.cost(ladder.step(rung)); },
-        ladder);
-    if (near == NearRungs::yes && energy > 0) {
-      rounded_.set(block);
-      const std::int32_t coarsest = coarsest_near_exponent(rounded_.exponent());
-      more = add_near_rungs(
-          row, energy, rounded_.exponent(),
-          [&](std::size_t rung) { return rounded_.cost(coarsest - static_cast<std::int32_t>(rung)); }, ladder);
-    }
+    const bool nearly = near == NearRungs::yes && energy > 0;
+    if (nearly) rounded_.set(block);
+    const auto cost_of = [&](std::size_t rung) { return transform_.cost(ladder.step(rung)); };
+    const auto near_cost_of = [&](std::size_t rung) {
+      return rounded_.cost(ladder.near_exponent - static_cast<std::int32_t>(rung));
+    };
+    more = add_rungs(row, TransformRungs(row, energy, transform_.largest(), cost_of, ladder),
+                     NearRungBuilder(nearly ? energy : 0, rounded_.exponent(), near_cost_of, ladder), ladder);
   }
   const bool on_no_lattice = ladder.exact_bytes == kRawStreamBytes;
   if (near == NearRungs::yes && !may_be_exact && on_no_lattice && (more || is_sparse(row))) {
@@ -156,79 +153,32 @@ std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found
   if (may_be_exact) set_ordered();
   bool more = true;
   if (figures.transformed != 0) {
-    add_rungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder);
     const std::int32_t exponent = rounded_exponent(std::max(std::fabs(row.min), std::fabs(row.max)));
-    if (nearly && figures.energy > 0) more = add_near_rungs(row, figures.energy, exponent, near_cost_of, ladder);
+    more = add_rungs(row, TransformRungs(row, figures.energy, static_cast<double>(figures.largest), cost_of, ladder),
+                     NearRungBuilder(nearly ? figures.energy : 0, exponent, near_cost_of, ladder), ladder);
   }
   if (nearly && !may_be_exact && (more || is_sparse(row))) set_ordered();
   return enough ? std::optional(ladder) : std::nullopt;
 }
 
-template <class CostOf>
-void LadderBuilder::add_rungs(const LeafRow& row, double energy, double largest, const CostOf& cost_of,
+template <class CostOf, class NearCostOf>
+bool LadderBuilder::add_rungs(const LeafRow& row, TransformRungs<CostOf> rungs, NearRungBuilder<NearCostOf> near,
                               PackedLadder& ladder) const {
-  if (!(energy > 0 && largest > 0)) return;
-  ladder.first_step = static_cast<std::int16_t>(first_rung_step(largest));
-  // Finer than float32 resolves the values themselves: nothing is gained.
-  const double finest = static_cast<double>(std::max(std::fabs(row.min), std::fabs(row.max))) * 0x1p-24;
-  std::size_t end = 0;
-  while (end < PackedLadder::kMostRungs) {
-    const std::int32_t step = ladder.step(end);
-    if (step < kLeastStep || step > kMostStep || static_cast<double>(step_size(step)) < finest) break;
-    ++end;
-  }
-  // Sets a rung unless exact is shorter; returns its bits.
-  const auto build_rung = [&](std::size_t rung) {
-    const bool mean = rung < PackedLadder::kMeanRungs;
-    const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanBits, energy} : cost_of(rung);
-    if (cost.bits + 8 >= 8U * ladder.exact_bytes) return cost.bits;
-    ladder.rungs[rung] = {static_cast<std::uint16_t>(cost.bits),
-                          ErrorShare(std::min(1.0, cost.squared_error / energy))};
-    ladder.count = std::max(ladder.count, static_cast<std::uint8_t>(rung + 1));
-    return cost.bits;
-  };
   if (aim_.window) {
-    for (std::size_t rung = 0; rung < std::min(end, PackedLadder::kMeanRungs); ++rung) build_rung(rung);
-    rungs_within(*aim_.window, row.sse, start_rung(*aim_.window, ladder), PackedLadder::kMeanRungs, end,
-                 [&](std::size_t rung) {
-                   if (ladder.rungs[rung].bits == 0) build_rung(rung);
-                   return ladder.point(rung);
-                 });
-    return;
+    for (std::size_t rung = 0; rung < std::min(rungs.end(), PackedLadder::kMeanRungs); ++rung) rungs.build(rung);
+    const auto at = [&](std::size_t rung) { return rungs.point(rung); };
+    const auto near_at = [&](std::size_t rung) { return near.point(rung); };
+    return ranges_within(*aim_.window, row.sse,
+                         RungSearch{start_rung(*aim_.window, ladder), PackedLadder::kMeanRungs, rungs.end(), at},
+                         RungSearch{start_near_rung(*aim_.window, ladder), 0, near.end(), near_at})
+        .more;
   }
   // Bits hardly ever fall from a rung to the next, and never by so many.
   constexpr std::uint32_t kNoMore = 2048;
-  for (std::size_t rung = 0; rung < end; ++rung) {
-    if (build_rung(rung) > 8U * ladder.exact_bytes + kNoMore) break;
+  for (std::size_t rung = 0; rung < rungs.end(); ++rung) {
+    if (rungs.build(rung) > 8U * ladder.exact_bytes + kNoMore) break;
   }
-}
-
-template <class CostOf>
-bool LadderBuilder::add_near_rungs(const LeafRow& row, double energy, std::int32_t exponent, const CostOf& cost_of,
-                                   PackedLadder& ladder) const {
-  const std::int32_t coarsest = coarsest_near_exponent(exponent);
-  const std::int32_t finest = coarsest - (kNearRungs - 1);
-  if (coarsest > std::numeric_limits<std::int8_t>::max() || finest < std::numeric_limits<std::int8_t>::min())
-    return true;
-  ladder.near_exponent = static_cast<std::int8_t>(coarsest);
-  // Sets a rung unless exact is shorter, or the block is of one value so rounded.
-  const auto build_rung = [&](std::size_t rung) {
-    const std::optional<RoundedBlock::Cost> cost = cost_of(rung);
-    if (!cost || cost->bytes >= ladder.exact_bytes) return;
-    ladder.near[rung] = {static_cast<std::uint16_t>(cost->bytes),
-                         ErrorShare(std::min(1.0, cost->squared_error / energy))};
-    ladder.near_count = std::max(ladder.near_count, static_cast<std::uint8_t>(rung + 1));
-  };
-  if (aim_.window) {
-    std::array<bool, PackedLadder::kMostNear> tried{};
-    const auto point = [&](std::size_t rung) {
-      if (!std::exchange(tried[rung], true)) build_rung(rung);
-      return ladder.near_point(rung);
-    };
-    return rungs_within(*aim_.window, row.sse, start_near_rung(*aim_.window, ladder), 0, PackedLadder::kMostNear, point)
-        .more;
-  }
-  for (std::size_t rung = 0; rung < PackedLadder::kMostNear; ++rung) build_rung(rung);
+  for (std::size_t rung = 0; rung < near.end(); ++rung) near.point(rung);
   return true;
 }
 

@@ -12,6 +12,7 @@
 #include "compressor/packed/ladder_state.h"
 #include "compressor/packed/ladder_window.h"
 #include "compressor/packed/packed_ladder.h"
+#include "compressor/packed/rung_builders.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/packed/block_coder.h"
 #include "format/packed/block_encode.h"
@@ -82,15 +83,12 @@ class LadderBuilder {
   // Whether the background is a part of the block. Its error does not count then: that of the whole is a bound.
   enum class Filled { no, yes };
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled);
-  // The errors of the rungs are shares of `energy`; cost(rung) is TransformBlock::cost() at its step.
-  template <class CostOf>
-  void add_rungs(const LeafRow& row, double energy, double largest, const CostOf& cost_of, PackedLadder& ladder) const;
+  // Adds rungs of both kinds: all, or those that the window may choose. Returns whether a cut may choose what is finer
+  // than those it adds.
+  template <class CostOf, class NearCostOf>
+  bool add_rungs(const LeafRow& row, TransformRungs<CostOf> rungs, NearRungBuilder<NearCostOf> near,
+                 PackedLadder& ladder) const;
   void set_exact(const LeafValues& block, FloatOrder order, PackedLadder& ladder);
-  // Of a block whose largest |value| has that exponent; cost(rung) is RoundedBlock::cost() at its quantum. Returns
-  // whether a cut may choose what is finer than those it adds.
-  template <class CostOf>
-  bool add_near_rungs(const LeafRow& row, double energy, std::int32_t exponent, const CostOf& cost_of,
-                      PackedLadder& ladder) const;
   void build_bounded(const LeafValues& block, double max_error, PackedLadder& ladder);
   std::optional<std::int32_t> bounded_step(const LeafValues& block, double max_error);
 

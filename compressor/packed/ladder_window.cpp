@@ -11,13 +11,11 @@ std::size_t start_near_rung(const KeyWindow& window, const PackedLadder& ladder)
 }
 
 LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row) {
-  LadderRange range;
-  range.rungs = rungs_within(window, row.sse, start_rung(window, ladder), PackedLadder::kMeanRungs, ladder.count,
-                             [&](std::size_t rung) { return ladder.point(rung); });
-  if (ladder.near_count == 0) return range;
-  range.near = rungs_within(window, row.sse, start_near_rung(window, ladder), 0, ladder.near_count,
-                            [&](std::size_t rung) { return ladder.near_point(rung); });
-  return range;
+  const auto at = [&](std::size_t rung) { return ladder.point(rung); };
+  const auto near_at = [&](std::size_t rung) { return ladder.near_point(rung); };
+  return ranges_within(window, row.sse,
+                       RungSearch{start_rung(window, ladder), PackedLadder::kMeanRungs, std::size_t{ladder.count}, at},
+                       RungSearch{start_near_rung(window, ladder), 0, std::size_t{ladder.near_count}, near_at});
 }
 
 }  // namespace weir

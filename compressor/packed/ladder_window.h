@@ -19,17 +19,18 @@ namespace weir {
 /// Keys between which the cut of a selection lies: squared error saved per byte.
 class KeyWindow {
  public:
-  /// About `centre`, a normal number, > 0.
-  explicit KeyWindow(double centre) : centre_(centre), step_(coarsest_step_within(quantum())) {}
+  /// About `centre`, a normal number, > 0. Values of the volume lie in a range of about `width`.
+  KeyWindow(double centre, float width) : centre_(centre), width_(width), step_(coarsest_step_within(quantum())) {}
   /// About a key; none about one so small that nothing is left to save.
-  static std::optional<KeyWindow> about(double key) {
-    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key)) : std::nullopt;
+  static std::optional<KeyWindow> about(double key, float width) {
+    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key, width)) : std::nullopt;
   }
 
   /// A sample of the blocks tells the cut within that factor.
   static constexpr double kWidth = 2.5;
 
   double centre() const { return centre_; }
+  float width() const { return width_; }
   double low() const { return centre_ / kWidth; }
   double high() const { return centre_ * kWidth; }
   bool holds(double key) const { return key >= low() && key <= high(); }
@@ -40,9 +41,16 @@ class KeyWindow {
   std::int32_t step() const { return step_; }
   /// The exponent of the quantum.
   int exponent() const { return exponent_; }
+  /// Whether means have codes at the steps that the cut may choose, in each region: a ladder's rungs without one are of
+  /// no use.
+  bool means_have_codes() const {
+    constexpr std::int32_t kOctave = 2;
+    return step_ + kOctave <= kMostStep && mean_bits({0, width_}, step_ + kOctave) != kNoMeanBits;
+  }
 
  private:
   double centre_;
+  float width_;
   std::int32_t step_;
   int exponent_ = std::ilogb(quantum());
 };
@@ -106,8 +114,55 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
 struct LadderRange {
   RungRange rungs;
   RungRange near;
+  bool more = true;  ///< a finer way to keep the block than any of these may be chosen, too
 };
 LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row);
+
+/// Rungs to search with rungs_within().
+template <typename At>
+struct RungSearch {
+  std::size_t start;
+  std::size_t first;
+  std::size_t end;
+  const At& at;
+
+  /// The point that the search begins at; nullopt where there is none.
+  std::optional<RungPoint> point() const {
+    if (first >= end) return std::nullopt;
+    return at(std::min(std::max(start, first), end - 1));
+  }
+  RungRange none() const { return {first, first, true}; }
+};
+
+/// Whether, at every key of the window, `ahead` is so much the better buy than `behind` that the rungs next to `behind`
+/// are not chosen, either: they are at most about a bit a value better than the one that a search begins at.
+inline bool is_far_ahead(const KeyWindow& window, double energy, const RungPoint& ahead, const RungPoint& behind) {
+  constexpr double kBitAValue = 512 / 8.0;  // bytes of a block
+  const auto leads = [&](double key) {
+    return energy * (behind.share - ahead.share) > key * (kBitAValue - (behind.bytes - ahead.bytes));
+  };
+  return leads(window.low()) && leads(window.high());
+}
+
+/// Rungs of the transform and near ones that the window may choose. Where the point at which the search of one kind
+/// begins is far ahead of the other's, the other kind has none.
+template <typename At, typename NearAt>
+LadderRange ranges_within(const KeyWindow& window, double energy, const RungSearch<At>& rungs,
+                          const RungSearch<NearAt>& near) {
+  const auto range_of = [&](const auto& search) {
+    return rungs_within(window, energy, search.start, search.first, search.end, search.at);
+  };
+  const std::optional<RungPoint> point = rungs.point();
+  const std::optional<RungPoint> near_point = near.point();
+  const bool compares = point && near_point && window.means_have_codes();
+  if (compares && is_far_ahead(window, energy, *point, *near_point)) {
+    const RungRange range = range_of(rungs);
+    return {range, near.none(), range.more};
+  }
+  const bool near_alone = compares && is_far_ahead(window, energy, *near_point, *point);
+  const RungRange range = range_of(near);
+  return {near_alone ? rungs.none() : range_of(rungs), range, range.more};
+}
 
 /// Where the search of rungs_within() begins.
 std::size_t start_rung(const KeyWindow& window, const PackedLadder& ladder);

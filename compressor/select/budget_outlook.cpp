@@ -35,9 +35,10 @@ struct BoughtBytes {
   }
 };
 
-/// The steps of sampled blocks, counted by their keys.
+/// The steps of sampled blocks, counted by their keys. The blocks' values lie in a range of that width.
 class SampledSteps {
  public:
+  explicit SampledSteps(float width) : width_(width) {}
   void add(const LeafRow& row, const PackedLadder& ladder, const LeafStep& step) {
     Bucket& bucket = buckets_[key_bits(step.key) >> kDropped];
     const auto bytes = static_cast<double>(step.bytes);
@@ -77,10 +78,11 @@ class SampledSteps {
   };
   static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
 
-  static std::optional<KeyWindow> window_at(std::size_t bucket) {
-    return KeyWindow::about(std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped));
+  std::optional<KeyWindow> window_at(std::size_t bucket) const {
+    return KeyWindow::about(std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped), width_);
   }
 
+  float width_;
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
 };
 
@@ -124,7 +126,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   GainRule rule = request.rule;
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
   const StreamLengths lengths(range, *rule.packed);
-  SampledSteps steps;
+  SampledSteps steps(range.high - range.low);
   RegionGains gains;
   for (const Sample::Leaf& sampled : sample.leaves) {
     PackedLadder ladder;

@@ -20,7 +20,12 @@ struct BudgetOutlook {
 
 /// What that decides.
 inline LadderState decided_by(const BudgetOutlook& outlook) {
-  return {true, outlook.near, outlook.window ? std::optional(outlook.window->centre()) : std::nullopt};
+  LadderState state{true, outlook.near};
+  if (outlook.window) {
+    state.centre = outlook.window->centre();
+    state.width = outlook.window->width();
+  }
+  return state;
 }
 
 /// Volumes of fewer blocks have all rungs built: looking ahead would take as long.

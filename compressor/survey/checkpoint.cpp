@@ -103,7 +103,10 @@ Checkpoint checkpoint_of(const Json& json) {
   const Json& ladders = json.at("ladders");
   ladders.at("decided").get_to(c.ladders.decided);
   c.ladders.near = static_cast<NearBlocks>(ladders.at("near").get<int>());
-  if (ladders.contains("centre")) c.ladders.centre = double_of(ladders["centre"]);
+  if (ladders.contains("centre")) {
+    c.ladders.centre = double_of(ladders["centre"]);
+    c.ladders.width = float_of(ladders.at("width"));
+  }
   ladders.at("built").get_to(c.ladders.built);
   ladders.at("rebuilt").get_to(c.ladders.rebuilt);
   ladders.at("moves").get_to(c.ladders.moves);
@@ -139,7 +142,10 @@ std::string to_text(const Checkpoint& c) {
     json["background"] = {
         {"value", bits(c.background->value)}, {"method", c.background->method}, {"share", bits(c.background->share)}};
   }
-  if (c.ladders.centre) json["ladders"]["centre"] = bits(*c.ladders.centre);
+  if (c.ladders.centre) {
+    json["ladders"]["centre"] = bits(*c.ladders.centre);
+    json["ladders"]["width"] = bits(c.ladders.width);
+  }
   if (c.attempt) {
     json["attempt"] = {{"number", c.attempt->number},
                        {"planned_error", bits(c.attempt->planned_error)},

@@ -79,12 +79,14 @@ TEST_F(FoundLadders, WithNearRungsAreThoseOfTheHost_WhereverTheWindowLies) {
   for (const NearBlocks near : {NearBlocks::sparse, NearBlocks::all}) {
     aim.near = near;
     for (const double centre : {1e-24, 1e-14, 1e-9, 1e-5, 1e-2, 10.0, 1e6}) {
-      SCOPED_TRACE(centre);
-      aim.window = KeyWindow(centre);
-      built += compare(aim, NearRungs::yes);
+      for (const float width : {0.0F, 1e30F}) {  // of means with codes at all steps, and at none
+        SCOPED_TRACE(testing::Message() << centre << ' ' << width);
+        aim.window = KeyWindow(centre, width);
+        built += compare(aim, NearRungs::yes);
+      }
     }
   }
-  EXPECT_GT(built, 2400U);
+  EXPECT_GT(built, 4800U);
 }
 
 TEST_F(FoundLadders, WithAllNearRungsAreThoseOfTheHost) {
@@ -101,7 +103,7 @@ TEST_F(FoundLadders, WithoutNearRungsAreThoseOfTheHost_WhetherTheyWereAskedForOr
     aim.near = NearBlocks::all;
     aim.window.reset();
     EXPECT_GT(compare(aim, NearRungs::no), 300U);
-    aim.window = KeyWindow(1e-5);
+    aim.window = KeyWindow(1e-5, 1);
     EXPECT_GT(compare(aim, NearRungs::no), 300U);
   }
 }

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -37,6 +39,9 @@ bool same_rung(const PackedRung& a, const PackedRung& b) {
   return a.bits == b.bits && a.error.value() == b.error.value();
 }
 
+// About a key, where the block's region has no other means.
+KeyWindow window_of(const LeafRow& row, double key) { return {key, row.max - row.min}; }
+
 struct Ladders {
   LeafRow row;
   PackedLadder all;
@@ -49,7 +54,7 @@ Ladders ladders_of(const LeafValues& block, double key, NearRungs near) {
   Ladders ladders;
   ladders.row = summarize_leaf(block, 0);
   ladders.all = LadderBuilder(aim).build(block, ladders.row, near);
-  aim.window = KeyWindow(key);
+  aim.window = window_of(ladders.row, key);
   ladders.within = LadderBuilder(aim).build(block, ladders.row, near);
   return ladders;
 }
@@ -67,7 +72,7 @@ TEST(LadderWindow, WhatTheSurveyBuildsIsWhatIsLeftOfAllRungs) {
     for (const double key : keys_of(summarize_leaf(block, 0))) {
       const Ladders ladders = ladders_of(block, key, NearRungs::no);
       if (!(ladders.row.sse > 0)) continue;
-      const KeyWindow window(key);
+      const KeyWindow window = window_of(ladders.row, key);
       const LadderRange of_all = range_within(window, ladders.all, ladders.row);
       const LadderRange of_within = range_within(window, ladders.within, ladders.row);
       ASSERT_EQ(of_within.rungs.first, of_all.rungs.first) << seed << ' ' << key;
@@ -83,14 +88,18 @@ TEST(LadderWindow, WhatTheSurveyBuildsIsWhatIsLeftOfAllRungs) {
 }
 
 // Squared error plus key times bytes of the best of those rungs, or of the mean alone.
-template <typename Has>
-double least_cost(const PackedLadder& ladder, const LeafRow& row, double key, const Has& has) {
+double least_cost(const PackedLadder& ladder, const LadderRange& range, const LeafRow& row, double key) {
   double least = row.sse + key;
-  for (std::size_t rung = PackedLadder::kMeanRungs; rung < ladder.count; ++rung) {
-    const auto point = ladder.point(rung);
-    if (point && has(rung)) least = std::min(least, point->share * row.sse + key * point->bytes);
-  }
+  const auto add = [&](const std::optional<RungPoint>& point) {
+    if (point) least = std::min(least, point->share * row.sse + key * point->bytes);
+  };
+  for (std::size_t rung = range.rungs.first; rung < range.rungs.end; ++rung) add(ladder.point(rung));
+  for (std::size_t rung = range.near.first; rung < range.near.end; ++rung) add(ladder.near_point(rung));
   return least;
+}
+
+LadderRange all_of(const PackedLadder& ladder) {
+  return {{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};
 }
 
 TEST(LadderWindow, HoldsTheBestRungOfEachCutInIt) {
@@ -102,11 +111,11 @@ TEST(LadderWindow, HoldsTheBestRungOfEachCutInIt) {
     for (const double key : keys_of(summarize_leaf(block, 0))) {
       const Ladders ladders = ladders_of(block, key, NearRungs::yes);
       if (!(ladders.row.sse > 0)) continue;
-      const KeyWindow window(key);
+      const KeyWindow window = window_of(ladders.row, key);
       const LadderRange range = range_within(window, ladders.all, ladders.row);
       for (const double at : {window.low(), key, window.high()}) {
-        const double best = least_cost(ladders.all, ladders.row, at, [](std::size_t) { return true; });
-        const double held = least_cost(ladders.all, ladders.row, at, [&](std::size_t r) { return range.rungs.has(r); });
+        const double best = least_cost(ladders.all, all_of(ladders.all), ladders.row, at);
+        const double held = least_cost(ladders.all, range, ladders.row, at);
         ++cuts;
         worse += held > best * 1.0000001 ? 1 : 0;
         excess += held / best - 1;
@@ -116,6 +125,44 @@ TEST(LadderWindow, HoldsTheBestRungOfEachCutInIt) {
   EXPECT_GT(cuts, 5000);
   EXPECT_LE(worse, cuts / 100);  // some blocks on a lattice save more by the next rung but one than by the next
   EXPECT_LT(excess / cuts, 0.001);
+}
+
+TEST(LadderWindow, LeavesOutTheKindOfRungsThatIsFarBehind) {
+  int near_alone = 0;
+  int transform_alone = 0;
+  for (unsigned seed = 1; seed < 200; ++seed) {
+    const LeafRow row = summarize_leaf(block_of(seed), 0);
+    for (const double key : keys_of(row)) {
+      const Ladders ladders = ladders_of(block_of(seed), key, NearRungs::yes);
+      if (!(row.sse > 0)) continue;
+      const LadderRange range = range_within(window_of(row, key), ladders.within, row);
+      const bool has_rungs = range.rungs.first < range.rungs.end;
+      const bool has_near = range.near.first < range.near.end;
+      near_alone += has_near && !has_rungs && ladders.all.count > PackedLadder::kMeanRungs ? 1 : 0;
+      transform_alone += has_rungs && !has_near && ladders.all.near_count > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(near_alone, 50);
+  EXPECT_GT(transform_alone, 500);
+}
+
+// Where a region's means are so far from each other that they have no codes, rungs of the transform are of no use,
+// which the survey of a block does not know.
+TEST(LadderWindow, LeavesOutNeitherKindWhereMeansMayHaveNoCodes) {
+  for (unsigned seed = 1; seed < 200; ++seed) {
+    const LeafRow row = summarize_leaf(block_of(seed), 0);
+    for (const double key : keys_of(row)) {
+      if (!(row.sse > 0)) continue;
+      const KeyWindow window(key, std::numeric_limits<float>::max());
+      EXPECT_FALSE(window.means_have_codes());
+      LadderAim aim;
+      aim.near_rungs = true;
+      const PackedLadder all = LadderBuilder(aim).build(block_of(seed), row, NearRungs::yes);
+      const LadderRange range = range_within(window, all, row);
+      EXPECT_EQ(range.near.first<range.near.end, all.near_count> 0) << seed << ' ' << key;
+      EXPECT_EQ(range.rungs.first<range.rungs.end, all.count> PackedLadder::kMeanRungs) << seed << ' ' << key;
+    }
+  }
 }
 
 TEST(LadderWindow, NearRungsEndWhereTheyAreTooFine) {
