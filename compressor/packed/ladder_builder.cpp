@@ -1,11 +1,9 @@
 #include "compressor/packed/ladder_builder.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "format/packed/block_decode.h"
 

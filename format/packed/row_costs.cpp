@@ -9,13 +9,11 @@ namespace weir {
 namespace {
 
 using packed_detail::Before;
-using packed_detail::extra_of;
 using packed_detail::kFirstEscape;
-using packed_detail::level_of;
 using packed_detail::load_lanes;
 using packed_detail::load_neighbours;
 using packed_detail::OneRow;
-using packed_detail::split;
+using packed_detail::set_lanes;
 using packed_detail::TwoRows;
 
 constexpr std::int32_t kNoCost = kPackedBands * kPackedLevels * kPackedSymbols;
@@ -41,16 +39,24 @@ template <typename Lanes>
   constexpr unsigned kRows = kLanes / 8;
   const RowPlaces& places = *tables.places;
   const Before<Lanes> before;
-  const Ints none{};
+  const packed_detail::Contexts<Lanes> contexts;
+  Ints first_escape, last_plain, one, five, no_cost, limits;
+  set_lanes(kFirstEscape, first_escape);
+  set_lanes(kFirstEscape - 1, last_plain);
+  set_lanes(1, one);
+  set_lanes(5, five);
+  set_lanes(kNoCost, no_cost);
+  set_lanes(limit, limits);
   Ints symbols{};
   Ints raw{};
   Ints nonzero{};
-  std::int32_t looked_up = 0;
+  std::int32_t even = 0;
+  std::int32_t odd = 0;
   for (unsigned row = 0; row < 64; row += kRows) {
     if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
     Ints place;
     load_lanes(places.place + 8 * row, place);
-    const Ints coded = (place - limit) >> 31;  // all bits where it is
+    const Ints coded = (place - limits) >> 31;  // all bits where it is
     if ((busy >> row & ((1U << kRows) - 1U)) == 0) {
       Ints cost;
       load_lanes(tables.zero_cost + 8 * row, cost);
@@ -65,21 +71,23 @@ template <typename Lanes>
     load_lanes(places.first_symbol + 8 * row, first_symbol);
     const Ints t = (up + left + back) * weight;
     Ints extra;
-    extra_of<Lanes>(t, extra);
+    contexts.extra_of(t, extra);
     const Ints high = m >> extra;
-    const Ints escaped = (kFirstEscape - 1 - high) >> 31;
-    const Ints symbol = high < kFirstEscape ? high : none + kFirstEscape;
+    const Ints symbol = high < first_escape ? high : first_escape;
     Ints level;
-    level_of<Lanes>(t, level);
-    const Ints entry = ((first_symbol + 16 * level + symbol) & coded) | (kNoCost & ~coded);
-    alignas(64) std::int32_t entries[kLanes];
+    contexts.level_of(t, level);
+    const Ints entry = ((first_symbol + 16 * level + symbol) & coded) | (no_cost & ~coded);
+    alignas(64) std::uint64_t entries[kLanes / 2];
     __builtin_memcpy(entries, &entry, sizeof entries);
     asm volatile("" : "+m"(entries));  // else each lane is taken out of its register, which takes longer
-    for (const std::int32_t e : entries) looked_up += tables.cost[e];
+    for (const std::uint64_t two : entries) {
+      even += tables.cost[two & 0xFFFFFFFFU];
+      odd += tables.cost[two >> 32U];
+    }
+    const Ints escaped = (last_plain - high) >> 31;
     Ints escape;
-    Ints unused;
-    split<Lanes>(1 + ((high - kFirstEscape) & escaped), escape, unused);
-    raw += (extra + ((escape + 5) & escaped)) & coded;
+    contexts.log2_of(one + ((high - first_escape) & escaped), escape);
+    raw += (extra + ((escape + five) & escaped)) & coded;
     nonzero -= (-m >> 31) & coded;
   }
   for (unsigned l = 0; l < kLanes; ++l) {
@@ -87,7 +95,7 @@ template <typename Lanes>
     sums.raw += raw[l];
     sums.nonzero += nonzero[l];
   }
-  sums.symbols += looked_up;
+  sums.symbols += even + odd;
 }
 
 #ifdef WEIR_SIMD_PATHS

@@ -17,7 +17,7 @@ struct MagnitudeRows {
 
   std::int32_t* row(unsigned i) { return padded + std::size_t{8} * (i + 8); }
   const std::int32_t* row(unsigned i) const { return padded + std::size_t{8} * (i + 8); }
-  std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(row(index / 8)[index % 8]); }
+  std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(padded[64 + index]); }
 };
 
 /// What contexts are made from, by index. The first four places are not in it: place 0 is not coded, and the others
@@ -81,45 +81,79 @@ struct TwoRows {
 
 // A difference shifted by 31 has all bits where it is negative; comparisons of that many lanes are slow.
 
-// Those of a float: 2^exponent * (1 + mantissa / 2^23).
-template <typename Lanes>
-[[gnu::always_inline]] inline void split(const typename Lanes::Ints& v, typename Lanes::Ints& exponent,
-                                         typename Lanes::Ints& mantissa) {
-  const auto f = __builtin_convertvector(v, typename Lanes::Floats);
-  typename Lanes::Ints bits;
-  __builtin_memcpy(&bits, &f, sizeof bits);
-  exponent = (bits >> 23) - 127;
-  mantissa = bits & 0x7FFFFF;
+// The same number in all lanes, as a compiler cannot tell: made once before a loop, not in each turn of it.
+template <typename Ints>
+[[gnu::always_inline]] inline void set_lanes(std::int32_t value, Ints& lanes) {
+  lanes = Ints{} + value;
+#ifdef WEIR_SIMD_PATHS
+  if constexpr (sizeof lanes == 64) {
+    asm("" : "+v"(lanes));  // stays in its register
+    return;
+  }
+#endif
+  asm("" : "+m"(lanes));
 }
 
-// BlockScan::level of sums of neighbours: floor(3 log2(1 + 2 t / 3)), at most the last; of v = 3 + 2 t its thresholds
-// are 3 * 2^(n / 3).
+// Of sums of a value's neighbours.
 template <typename Lanes>
-[[gnu::always_inline]] inline void level_of(const typename Lanes::Ints& t, typename Lanes::Ints& level) {
-  typename Lanes::Ints exponent;
-  typename Lanes::Ints mantissa;
-  split<Lanes>(3 + 2 * t, exponent, mantissa);
-  constexpr std::int32_t kTwoThirds = 0x1863F8;  // of 1.5 * 2^(2/3) / 2
-  constexpr std::int32_t kWhole = 0x400000;      // of 1.5
-  constexpr std::int32_t kThird = 0x71E7A4;      // of 1.5 * 2^(1/3)
-  level =
-      3 * exponent - 2 + ((mantissa - kTwoThirds) >> 31) + ((mantissa - kWhole) >> 31) + ((mantissa - kThird) >> 31);
-  constexpr auto kLast = static_cast<std::int32_t>(kPackedLevels - 1);
-  const typename Lanes::Ints none{};
-  level = level < kLast ? level : none + kLast;
-}
+class Contexts {
+ public:
+  using Ints = typename Lanes::Ints;
+  [[gnu::always_inline]] inline Contexts() {
+    constexpr std::int32_t kTwoThirds = 0x1863F8;  // of 1.5 * 2^(2/3) / 2
+    constexpr std::int32_t kWhole = 0x400000;      // of 1.5
+    constexpr std::int32_t kThird = 0x71E7A4;      // of 1.5 * 2^(1/3)
+    set_lanes(0x7FFFFF, mantissa_);
+    set_lanes(kTwoThirds, two_thirds_);
+    set_lanes(kWhole, whole_);
+    set_lanes(kThird, third_);
+    set_lanes(3, three_);
+    set_lanes(-3 * 127 - 2, level_bias_);
+    set_lanes(kPackedLevels - 1, last_level_);
+    set_lanes(0x100000, eighth_);
+    set_lanes(-127 - 4, extra_bias_);
+    set_lanes(16, most_extra_);
+    set_lanes(36, no_extra_);
+    set_lanes(127, exponent_bias_);
+  }
+  // Rounded down, of at least 1.
+  [[gnu::always_inline]] inline void log2_of(const Ints& v, Ints& log2) const {
+    Ints mantissa;
+    split(v, log2, mantissa);
+    log2 -= exponent_bias_;
+  }
+  // BlockScan::level: floor(3 log2(1 + 2 t / 3)), at most the last; of v = 3 + 2 t its thresholds are 3 * 2^(n / 3).
+  [[gnu::always_inline]] inline void level_of(const Ints& t, Ints& level) const {
+    Ints exponent;
+    Ints mantissa;
+    split(three_ + 2 * t, exponent, mantissa);
+    level = 3 * exponent + level_bias_ + ((mantissa - two_thirds_) >> 31) + ((mantissa - whole_) >> 31) +
+            ((mantissa - third_) >> 31);
+    level = level < last_level_ ? level : last_level_;
+  }
+  // extra_bits(): floor(log2(t / 18)) of more than 36, at most 16; 18 is 1.125 * 2^4.
+  [[gnu::always_inline]] inline void extra_of(const Ints& t, Ints& extra) const {
+    Ints exponent;
+    Ints mantissa;
+    split(t, exponent, mantissa);
+    extra = exponent + extra_bias_ + ((mantissa - eighth_) >> 31);
+    extra = extra < most_extra_ ? extra : most_extra_;
+    extra &= (no_extra_ - t) >> 31;
+  }
 
-// extra_bits() of sums of neighbours: floor(log2(t / 18)) of more than 36, at most 16.
-template <typename Lanes>
-[[gnu::always_inline]] inline void extra_of(const typename Lanes::Ints& t, typename Lanes::Ints& extra) {
-  typename Lanes::Ints exponent;
-  typename Lanes::Ints mantissa;
-  split<Lanes>(t, exponent, mantissa);
-  extra = exponent - 4 + ((mantissa - 0x100000) >> 31);  // 18 is 1.125 * 2^4
-  const typename Lanes::Ints none{};
-  extra = extra < 16 ? extra : none + 16;
-  extra &= (36 - t) >> 31;
-}
+ private:
+  // Those of a float: 2^(exponent - 127) * (1 + mantissa / 2^23).
+  [[gnu::always_inline]] inline void split(const Ints& v, Ints& exponent, Ints& mantissa) const {
+    const auto f = __builtin_convertvector(v, typename Lanes::Floats);
+    Ints bits;
+    __builtin_memcpy(&bits, &f, sizeof bits);
+    exponent = bits >> 23;
+    mantissa = bits & mantissa_;
+  }
+
+  Ints mantissa_, two_thirds_, whole_, third_, three_, level_bias_, last_level_, eighth_, extra_bias_, most_extra_,
+      no_extra_, exponent_bias_;
+};
 
 template <typename Ints>
 [[gnu::always_inline]] inline void load_lanes(const std::int32_t* at, Ints& lanes) {

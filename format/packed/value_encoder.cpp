@@ -10,9 +10,8 @@ namespace weir {
 namespace {
 
 using packed_detail::Before;
-using packed_detail::extra_of;
+using packed_detail::Contexts;
 using packed_detail::kFirstEscape;
-using packed_detail::level_of;
 using packed_detail::load_lanes;
 using packed_detail::load_neighbours;
 using packed_detail::OneRow;
@@ -50,6 +49,7 @@ template <typename Lanes>
   using Ints = typename Lanes::Ints;
   constexpr unsigned kRows = sizeof(Ints) / (8 * sizeof(std::int32_t));
   const Before<Lanes> before;
+  const Contexts<Lanes> contexts;
   const Ints none{};
   for (unsigned row = 0; row < 64; row += kRows) {
     if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
@@ -64,9 +64,9 @@ template <typename Lanes>
     load_lanes(places.first_symbol + 8 * row, symbol);
     const Ints t = (up + left + back) * weight;
     Ints extra;
-    extra_of<Lanes>(t, extra);
+    contexts.extra_of(t, extra);
     Ints level;
-    level_of<Lanes>(t, level);
+    contexts.level_of(t, level);
     const Ints high = m >> extra;
     const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits where there is no escape
     symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
@@ -101,22 +101,24 @@ class SignBits {
  public:
   SignBits(const SignedRows& values, unsigned places) {
     std::uint64_t held = 0;
-    std::uint32_t bits = 0;
+    std::uint32_t bits = 0;  // of `held`
     std::uint32_t* out = words_.data();
-    for (unsigned place = 1; place < places; ++place) {
+    const auto add = [&](unsigned place) {
       const unsigned index = kBlockScan.index[place];
       const std::uint32_t coded = values.magnitudes.at(index) != 0 ? 1 : 0;
-      const std::uint32_t negative = values.signs[index] >> 31U & coded;
-      held |= std::uint64_t{negative} << bits;
+      held |= std::uint64_t{values.signs[index] >> 31U & coded} << bits;
       bits += coded;
-      if (bits < 32) continue;
-      *out++ = static_cast<std::uint32_t>(held);
-      held >>= 32U;
-      bits -= 32;
-      count_ += 32;
+    };
+    for (unsigned first = 0; first < places; first += kEndUnit) {
+      for (unsigned place = std::max(first, 1U); place < first + kEndUnit; ++place) add(place);
+      *out = static_cast<std::uint32_t>(held);
+      const unsigned full = bits >= 32 ? 1 : 0;  // as good as random
+      out += full;
+      held >>= 32U * full;
+      bits -= 32U * full;
     }
     *out = static_cast<std::uint32_t>(held);
-    count_ += bits;
+    count_ = static_cast<std::uint32_t>(32 * (out - words_.data())) + bits;
   }
   std::uint32_t count() const { return count_; }
   /// At most 32 of them, from `first` on, the first one the lowest bit.
@@ -126,20 +128,30 @@ class SignBits {
   }
 
  private:
+  static_assert(kEndUnit <= 32, "what is held has room for as many");
   std::array<std::uint32_t, 512 / 32 + 2> words_{};
   std::uint32_t count_ = 0;
 };
 
 class BitWriter {
  public:
+  /// To bytes that are zero.
   explicit BitWriter(std::span<std::byte> out) : out_(out) {}
   /// The low `bits` of `value`. What `out` has no room for is only counted.
   void write(std::uint32_t value, unsigned bits) {
     std::uint64_t shifted = (value & ((std::uint64_t{1} << bits) - 1)) << (at_ % 8);
-    for (std::size_t byte = at_ / 8; shifted != 0 && byte < out_.size(); ++byte, shifted >>= 8U) {
+    std::size_t byte = at_ / 8;
+    at_ += bits;
+    if (byte + sizeof shifted <= out_.size()) {
+      std::uint64_t before;
+      std::memcpy(&before, out_.data() + byte, sizeof before);
+      shifted |= before;
+      std::memcpy(out_.data() + byte, &shifted, sizeof shifted);
+      return;
+    }
+    for (; shifted != 0 && byte < out_.size(); ++byte, shifted >>= 8U) {
       out_[byte] |= static_cast<std::byte>(shifted & 0xFFU);
     }
-    at_ += bits;
   }
   std::uint32_t bytes() const { return static_cast<std::uint32_t>((at_ + 7) / 8); }
 
@@ -154,17 +166,13 @@ class BitWriter {
 class ValueEncoder::Words {
  public:
   void put_symbol(std::uint32_t& x, const Symbol& symbol) {
-    // Whether a word has to go is as good as random: it is written in any case, and counted where it has.
-    words_[count_] = static_cast<std::uint16_t>(x & 0xFFFFU);
-    const unsigned full = x >= symbol.limit ? 1 : 0;
-    count_ += full;
-    x >>= 16U * full;
+    put_word(x, x >= symbol.limit ? 1 : 0);
     x += static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits) * symbol.complement + symbol.low;
   }
   /// Up to 16 bits as they are. Decoding shifts right and then reads a word where the state is below the least.
   void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
-    if (bits == 0) return;
-    if (x >> (32U - bits) != 0) emit(x);
+    const unsigned full = (std::uint64_t{x} << bits) >> 32U != 0 ? 1 : 0;
+    put_word(x, full);
     x = x << bits | value;
   }
   /// What put after it reads before: the parts of an escape in turn, the length first.
@@ -179,9 +187,11 @@ class ValueEncoder::Words {
   std::span<const std::uint16_t> all() const { return {words_.data(), count_}; }
 
  private:
-  void emit(std::uint32_t& x) {
-    words_[count_++] = static_cast<std::uint16_t>(x & 0xFFFFU);
-    x >>= 16U;
+  // Whether a word has to go is as good as random: it is written in any case, and counted where it has.
+  void put_word(std::uint32_t& x, unsigned full) {
+    words_[count_] = static_cast<std::uint16_t>(x & 0xFFFFU);
+    count_ += full;
+    x >>= 16U * full;
   }
 
   std::array<std::uint16_t, kMostWords> words_;
@@ -299,10 +309,8 @@ bool ValueEncoder::encode(const StreamFront& front, const SignedRows& values, st
   if (size != nullptr) *size = {bits.bytes(), static_cast<std::uint32_t>(back)};
   if (bits.bytes() + back > out.size()) return false;
   std::size_t at = out.size() - back;
-  for (const std::uint16_t word : words.all()) {
-    out[at++] = static_cast<std::byte>(word & 0xFFU);
-    out[at++] = static_cast<std::byte>(word >> 8U);
-  }
+  std::memcpy(out.data() + at, words.all().data(), words.all().size_bytes());
+  at += words.all().size_bytes();
   for (unsigned s = states; s > 0; --s) {
     for (unsigned b = 0; b < state_bytes[s - 1]; ++b)
       out[at++] = static_cast<std::byte>(state[s - 1] >> (8 * b) & 0xFFU);
