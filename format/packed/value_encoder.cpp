@@ -31,6 +31,7 @@ constexpr std::size_t kMostWords = 512 * 6;
 struct CodedRows {
   alignas(64) std::int32_t symbol[512];  // of its context, counted from the first table's
   alignas(64) std::int32_t extra[512];   // low bits that are raw
+  std::int32_t with_extra = 0;           // how many have some, but for the first four
 };
 
 template <typename Ints>
@@ -51,6 +52,7 @@ template <typename Lanes>
   const Before<Lanes> before;
   const Contexts<Lanes> contexts;
   const Ints none{};
+  Ints with{};
   for (unsigned row = 0; row < 64; row += kRows) {
     if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
     const std::int32_t* at = padded + 8 * (row + 8);
@@ -72,7 +74,9 @@ template <typename Lanes>
     symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
     __builtin_memcpy(coded.symbol + 8 * row, &symbol, sizeof symbol);
     __builtin_memcpy(coded.extra + 8 * row, &extra, sizeof extra);
+    with += -extra >> 31;
   }
+  for (unsigned l = 0; l < sizeof(Ints) / sizeof(std::int32_t); ++l) coded.with_extra -= with[l];
 }
 
 #ifdef WEIR_SIMD_PATHS
@@ -166,13 +170,12 @@ class BitWriter {
 class ValueEncoder::Words {
  public:
   void put_symbol(std::uint32_t& x, const Symbol& symbol) {
-    put_word(x, x >= symbol.limit ? 1 : 0);
+    put_word(x, symbol.most - x);
     x += static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits) * symbol.complement + symbol.low;
   }
   /// Up to 16 bits as they are. Decoding shifts right and then reads a word where the state is below the least.
   void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
-    const unsigned full = (std::uint64_t{x} << bits) >> 32U != 0 ? 1 : 0;
-    put_word(x, full);
+    put_word(x, 0xFFFFFFFFU - (std::uint64_t{x} << bits));
     x = x << bits | value;
   }
   /// What put after it reads before: the parts of an escape in turn, the length first.
@@ -187,11 +190,11 @@ class ValueEncoder::Words {
   std::span<const std::uint16_t> all() const { return {words_.data(), count_}; }
 
  private:
-  // Whether a word has to go is as good as random: it is written in any case, and counted where it has.
-  void put_word(std::uint32_t& x, unsigned full) {
+  // Whether a word has to go is as good as random: it is written in any case, and counted where `left` is negative.
+  void put_word(std::uint32_t& x, std::uint64_t left) {
     words_[count_] = static_cast<std::uint16_t>(x & 0xFFFFU);
-    count_ += full;
-    x >>= 16U * full;
+    count_ += left >> 63U;
+    x >>= (left >> 59U) & 16U;
   }
 
   std::array<std::uint16_t, kMostWords> words_;
@@ -216,7 +219,7 @@ ValueEncoder::ValueEncoder(const std::uint16_t* tables, Kind kind) : bands_(kind
       symbol.low = table[s];
       symbol.complement = kTotal - frequency;
       if (frequency == 0) continue;
-      symbol.limit = std::uint64_t{frequency} << (32U - kFrequencyBits);
+      symbol.most = (std::uint64_t{frequency} << (32U - kFrequencyBits)) - 1;
       symbol.inverse = ((std::uint64_t{1} << kInverseBits) + frequency - 1) / frequency;
     }
   }
@@ -241,12 +244,14 @@ void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& mag
         places.first_symbol[index] + static_cast<std::int32_t>(kPackedSymbols * level + std::min(m >> extra, kEscape));
     before += std::min(m, kMostOfNeighbour);
   }
+  // Where many have raw bits, a branch on it costs more than to write none.
+  const bool many_raw = coded.with_extra > 64;
   const auto put = [&](std::uint32_t& state, unsigned place) {
     const unsigned index = kBlockScan.index[place];
     const std::int32_t symbol = coded.symbol[index];
     const auto extra = static_cast<unsigned>(coded.extra[index]);
     const bool escapes = (static_cast<unsigned>(symbol) & (kPackedSymbols - 1)) == kEscape;
-    if (extra != 0 || escapes) {
+    if (many_raw || extra != 0 || escapes) {
       const std::uint32_t m = magnitudes.at(index);
       words.put_raw(state, m & ((1U << extra) - 1U), extra);
       if (escapes) words.put_escape(state, m >> extra);

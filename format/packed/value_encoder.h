@@ -50,11 +50,11 @@ class ValueEncoder {
               StreamSize* size = nullptr) const;
 
  private:
-  // What a symbol of frequency f from `low` on makes of a state x, once that is below `limit`: f goes into it
+  // What a symbol of frequency f from `low` on makes of a state x, once that is at most `most`: f goes into it
   // x * inverse >> 44 times, and what that leaves is x + that * (total - f) + low.
   struct Symbol {
     std::uint64_t inverse = 0;
-    std::uint64_t limit = 0;
+    std::uint64_t most = 0;
     std::uint32_t complement = 0;  // total - f
     std::uint32_t low = 0;
   };
