@@ -58,6 +58,9 @@ class MemoryFileSystem::Pages {
       if (moved == MAP_FAILED) throw io_error(path, cat("get ", capacity, " bytes of memory for it"), errno);
       begin_ = static_cast<std::byte*>(moved);
       capacity_ = capacity;
+      // Fewer faults, where a page more does not count.
+      constexpr std::uint64_t kLarge = std::uint64_t{16} << 20U;
+      if (capacity >= kLarge) ::madvise(begin_, capacity, MADV_HUGEPAGE);
     }
     size_ = std::max(size_, bytes);
   }
