@@ -156,8 +156,7 @@ LadderRange ranges_within(const KeyWindow& window, double energy, const RungSear
   const std::optional<RungPoint> near_point = near.point();
   const bool compares = point && near_point && window.means_have_codes();
   if (compares && is_far_ahead(window, energy, *point, *near_point)) {
-    const RungRange range = range_of(rungs);
-    return {range, near.none(), range.more};
+    return {range_of(rungs), near.none(), false};  // what is finer than near rungs is behind, too
   }
   const bool near_alone = compares && is_far_ahead(window, energy, *near_point, *point);
   const RungRange range = range_of(near);
