@@ -24,7 +24,7 @@ constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t) + sizeof(float);
 constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
 constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
 constexpr std::uint32_t kLeastBlocks = 1U << 10U;
-constexpr std::uint32_t kMostRequests = 1U << 18U;
+constexpr std::uint32_t kMostRequests = 1U << 20U;
 constexpr std::uint32_t kLeastSlots = 1U << 12U;  // some tens for each ray of a tile
 
 template <class Texel>
@@ -81,7 +81,9 @@ BrickCache::Needs BrickCache::needs() const {
   const std::uint64_t scratch =
       std::clamp<std::uint64_t>(left_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
   needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
-  needs.plan.most_requests = std::max(kRegionBlocks, std::min(kMostRequests, needs.plan.blocks * 2));
+  // All that there may be slots for: what a full list has no room for is drawn for once more.
+  needs.plan.most_requests = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(left_ / brick_bytes(TexelType::share16), kRegionBlocks, kMostRequests));
   needs.fixed = needs.table + scratch + needs.plan.most_requests * sizeof(BlockId);
   return needs;
 }
