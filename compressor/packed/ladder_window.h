@@ -133,6 +133,8 @@ struct RungSearch {
   }
   RungRange none() const { return {first, first, true}; }
 };
+template <typename At>
+RungSearch(std::size_t, std::size_t, std::size_t, const At&) -> RungSearch<At>;
 
 /// Whether, at every key of the window, `ahead` is so much the better buy than `behind` that the rungs next to `behind`
 /// are not chosen, either: they are at most about a bit a value better than the one that a search begins at.
