@@ -159,8 +159,10 @@ TEST(LadderWindow, LeavesOutNeitherKindWhereMeansMayHaveNoCodes) {
       aim.near_rungs = true;
       const PackedLadder all = LadderBuilder(aim).build(block_of(seed), row, NearRungs::yes);
       const LadderRange range = range_within(window, all, row);
-      EXPECT_EQ(range.near.first<range.near.end, all.near_count> 0) << seed << ' ' << key;
-      EXPECT_EQ(range.rungs.first<range.rungs.end, all.count> PackedLadder::kMeanRungs) << seed << ' ' << key;
+      const bool has_near = range.near.first < range.near.end;
+      const bool has_rungs = range.rungs.first < range.rungs.end;
+      EXPECT_EQ(has_near, all.near_count > 0) << seed << ' ' << key;
+      EXPECT_EQ(has_rungs, all.count > PackedLadder::kMeanRungs) << seed << ' ' << key;
     }
   }
 }
