@@ -11,8 +11,8 @@ std::uint64_t resident_bytes();
 /// process that started it.
 std::uint64_t peak_resident_bytes();
 
-/// Bytes that this process can still take: the system's MemAvailable, or what is left of a container's limit (cgroup v2
-/// memory.max) where that is less.
+/// Bytes that this process can still take: the system's MemAvailable, or what the limits of its control groups leave
+/// (group_memory.h) where that is less.
 std::uint64_t available_bytes();
 
 }  // namespace weir

@@ -1,0 +1,67 @@
+#include "format/base/group_memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+#include "format/base/kernel_table.h"
+
+namespace weir {
+namespace {
+
+// The names of one version's files.
+struct GroupFiles {
+  const char* limit;
+  const char* used;
+  const char* cache;  // a key of memory.stat
+};
+constexpr GroupFiles kVersion2{"memory.max", "memory.current", "file"};
+constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_cache"};
+
+// A group that lies at `group` below `root`, and those around it. In a container that sees its own group as the root,
+// what the kernel says of the path may lie outside, and only the root is there.
+void look_upwards(const std::string& root, std::string group, const GroupFiles& files, std::uint64_t& room) {
+  while (true) {
+    const std::string directory = root + group + "/";
+    const auto limit = number_in_file(directory + files.limit);
+    const auto used = number_in_file(directory + files.used);
+    if (limit && used) {
+      const std::uint64_t cache = std::min(*used, number_in_table(directory + "memory.stat", files.cache));
+      room = std::min(room, *limit - std::min(*limit, *used - cache));
+    }
+    if (group.empty()) return;
+    group.erase(group.rfind('/'));
+  }
+}
+
+bool has_word(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find(','), list.size());
+    if (list.substr(0, end) == word) return true;
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return false;
+}
+
+}  // namespace
+
+std::uint64_t group_room(const std::string& groups, const std::string& mounts) {
+  std::uint64_t room = std::numeric_limits<std::uint64_t>::max();
+  std::ifstream lines(groups);
+  for (std::string line; std::getline(lines, line);) {  // hierarchy:controllers:path
+    const std::size_t first = line.find(':');
+    const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
+    if (second == std::string::npos || second + 1 >= line.size() || line[second + 1] != '/') continue;
+    const std::string_view controllers = std::string_view(line).substr(first + 1, second - first - 1);
+    const std::string path = line.size() == second + 2 ? "" : line.substr(second + 1);
+    if (controllers.empty()) {
+      look_upwards(mounts, path, kVersion2, room);
+    } else if (has_word(controllers, "memory")) {
+      look_upwards(mounts + "/memory", path, kVersion1, room);
+    }
+  }
+  return room;
+}
+
+}  // namespace weir
