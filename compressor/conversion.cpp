@@ -113,10 +113,12 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
 
   MemoryPlan memory;
   ReadingPlan reading;
+  std::uint64_t kept_bytes = 0;
   team.run([&] {
     MemoryShares shares = share_memory(source, options, resident, threads, journal == nullptr && team.alone());
     memory = shares.memory;
     reading = std::move(shares.reading);
+    kept_bytes = shares.kept_bytes;
   });
   work.hold_records(memory.record_bytes > 0);
   if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
@@ -163,6 +165,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     }
     ladders->coder = coder;
   }
+  if (kept_bytes > 0) stores.rows.keep_leaves(std::make_unique<KeptLeaves>(leaves, kept_bytes));
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
     return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),

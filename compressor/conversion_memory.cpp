@@ -1,14 +1,33 @@
 #include "compressor/conversion_memory.h"
 
+#include <algorithm>
+
 #include "compressor/encode/leaf_record.h"
 #include "compressor/packed/packed_ladder.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/packed_region.h"
 #include "compressor/select/region_rows.h"
+#include "compressor/survey/kept_leaves.h"
 #include "compressor/survey/leaf_faces.h"
+#include "format/base/error.h"
 
 namespace weir {
+namespace {
+
+// For values that are kept: three quarters of what is left by a conversion that has all it needs to be quick.
+std::uint64_t bytes_to_keep(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
+  constexpr std::uint64_t kLeastEnough = std::uint64_t{64} << 20U;
+  constexpr std::uint64_t kEnough = std::uint64_t{512} << 20U;
+  const std::uint64_t dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
+  const std::uint64_t needed = resident + std::clamp(dense / 2, kLeastEnough, kEnough);
+  const NodeLattice leaves = make_lattice(domain, kLeafDim);
+  const std::uint64_t bytes =
+      std::min(KeptLeaves::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
+  return bytes > 2 * KeptLeaves::index_bytes(leaves) ? bytes : 0;
+}
+
+}  // namespace
 
 std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain) {
   std::uint64_t of_leaf = sizeof(LeafRow) + sizeof(LeafRecord);
@@ -29,15 +48,32 @@ std::uint64_t region_bytes(const ConversionOptions& options) {
   return kRegionRowsBytes + kRegionLaddersBytes + 2 * RegionGains::kMostBytes;
 }
 
-MemoryShares share_memory(const VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
+MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
                           std::size_t threads, bool may_hold) {
   const Box domain = source.info().domain();
-  const auto shares_with = [&](std::uint64_t records) {
-    const MemoryPlan memory = plan_memory(options.memory, resident, threads, domain, region_bytes(options), records);
-    return MemoryShares{memory, plan_reading(source, memory)};
+  const auto shares_with = [&](std::uint64_t kept, bool hold) {
+    const std::uint64_t records = hold ? record_bytes(options, domain) : 0;
+    const MemoryPlan memory =
+        plan_memory(options.memory - kept, resident, threads, domain, region_bytes(options), records);
+    return MemoryShares{memory, plan_reading(source, memory), kept};
   };
-  MemoryShares shares = shares_with(may_hold ? record_bytes(options, domain) : 0);
-  if (shares.memory.record_bytes > 0 && shares.reading.encode.amplification > 1) shares = shares_with(0);
+  const auto plan = [&](std::uint64_t kept) {
+    MemoryShares shares = shares_with(kept, may_hold);
+    if (shares.memory.record_bytes > 0 && shares.reading.encode.amplification > 1) shares = shares_with(kept, false);
+    return shares;
+  };
+  MemoryShares shares = plan(0);
+  const std::uint64_t kept = bytes_to_keep(options.memory, resident, domain);
+  if (kept == 0 || shares.reading.reading != Reading::ahead || source.resident() != nullptr ||
+      source.places() != nullptr) {
+    return shares;
+  }
+  try {
+    MemoryShares keeping = plan(kept);
+    if (keeping.reading.encode.amplification <= shares.reading.encode.amplification) return keeping;
+  } catch (const Error&) {
+    // Many threads: all of the memory is theirs.
+  }
   return shares;
 }
 

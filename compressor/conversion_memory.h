@@ -23,12 +23,14 @@ std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain);
 struct MemoryShares {
   MemoryPlan memory;
   ReadingPlan reading;
+  std::uint64_t kept_bytes = 0;  ///< for values that the survey keeps for the encode pass (kept_leaves.h)
 };
 
 /// Of options.memory, of which `resident` bytes are in use. `may_hold`: records of leaves may stay in memory, since
 /// nobody continues the conversion or takes part in it. They do where there is room, and where chunks are decoded once
-/// all the same. Throws as plan_memory() does.
-MemoryShares share_memory(const VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
+/// all the same. What is more than a volume needs to be converted well keeps its values, unless it lies in memory
+/// already. Throws as plan_memory() does.
+MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
                           std::size_t threads, bool may_hold);
 
 }  // namespace weir

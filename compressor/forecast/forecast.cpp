@@ -93,7 +93,9 @@ class Forecaster {
     copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
     forecast_.threads = threads;
     const std::uint64_t held = memory.record_bytes;
-    forecast_.memory_bytes = std::min(options_.memory, memory.fixed_bytes + held + std::max(blocks, walk));
+    kept_bytes_ = shares.kept_bytes;
+    forecast_.memory_bytes =
+        std::min(options_.memory, memory.fixed_bytes + held + std::max(blocks, walk) + kept_bytes_);
     forecast_.scratch_bytes = held > 0 ? 0 : record_bytes(options_, domain_);
   }
 
@@ -221,7 +223,8 @@ class Forecaster {
     const auto voxels = static_cast<double>(domain_.voxels());
     // Places side by side are read again where one of them is; in the volume, fewer lie beside each other.
     const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
-    f.passes = 1 + std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
+    const double from_memory = std::min(1.0, static_cast<double>(kept_bytes_) / (sizeof(float) * varied * voxels));
+    f.passes = 1 + (1 - from_memory) * std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
     f.read_bytes = static_cast<std::uint64_t>(f.passes * cost.bytes * voxels);
     std::vector<double> survey_s;
     std::vector<double> encode_s;
@@ -297,6 +300,7 @@ class Forecaster {
   std::optional<Visibility> seen_;
   ReadingPlan reading_;
   std::uint64_t copy_block_bytes_ = 0;
+  std::uint64_t kept_bytes_ = 0;  // what the conversion keeps of the volume in memory
   Forecast forecast_;
 };
 

@@ -55,6 +55,7 @@ class BlockSurvey::Leaves {
         sample_(survey.sample_),
         counting_(survey.counting_),
         has_missing_(survey.has_missing_),
+        kept_(block.parts == nullptr ? survey.rows_.kept() : nullptr),
         block_(block),
         leaf_box_(leaf_box),
         rows_(rows),
@@ -146,6 +147,7 @@ class BlockSurvey::Leaves {
     const LeafRepeats repeats = seen.size() == kLeafVoxels ? LeafRepeats::of(by.y, by.z) : LeafRepeats{};
     const std::size_t count = seen.size();
     LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform, distinct, repeats);
+    if (kept_ != nullptr) kept_->add(leaves_.linear(leaf), seen, row.uniform() && holds_one_value(seen));
     if (faces != nullptr) *faces = faces_of(seen, extent);
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
@@ -223,6 +225,7 @@ class BlockSurvey::Leaves {
   const BlockSample& sample_;
   Counting counting_;
   bool has_missing_;
+  KeptLeaves* kept_;  // null where none are
   const Block& block_;
   const Box& leaf_box_;
   std::span<LeafRow> rows_;

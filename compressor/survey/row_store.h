@@ -1,5 +1,6 @@
 // The survey's rows, 64 bytes a leaf, and, where a scene decides what matters,
-// which values can be seen around each, and of packed files the blocks' ladders.
+// which values can be seen around each, of packed files the blocks' ladders, and
+// the values of as many leaves as there is memory for.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 
 #include "compressor/leaf/leaf_row.h"
 #include "compressor/packed/packed_ladder.h"
+#include "compressor/survey/kept_leaves.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/team/team.h"
 #include "format/nanovdb/nvdb_grid.h"
@@ -20,7 +22,7 @@ struct SelectionRoom {
   std::uint64_t step_bytes = 0;      ///< of steps that are held instead of being found again (held_steps.h)
 };
 
-/// Thread-safe but for set_reaches and set_ladders.
+/// Thread-safe but for its setters.
 class RowStore : public LeafStore<LeafRow> {
  public:
   /// `team` are the processes that fill the store together, each the rows of its own leaves (region_share.h), and
@@ -39,11 +41,16 @@ class RowStore : public LeafStore<LeafRow> {
   LeafStore<PackedLadder>* ladders() const { return ladders_.get(); }
   void set_ladders(std::unique_ptr<LeafStore<PackedLadder>> ladders) { ladders_ = std::move(ladders); }
 
+  /// The values of leaves; null where none are kept.
+  KeptLeaves* kept() const { return kept_.get(); }
+  void keep_leaves(std::unique_ptr<KeptLeaves> kept) { kept_ = std::move(kept); }
+
  private:
   SelectionRoom room_;
   Team& team_;
   std::unique_ptr<LeafStore<MinMax>> reaches_;
   std::unique_ptr<LeafStore<PackedLadder>> ladders_;
+  std::unique_ptr<KeptLeaves> kept_;
 };
 
 }  // namespace weir

@@ -12,6 +12,7 @@
 
 #include "compressor/conversion.h"
 #include "format/base/error.h"
+#include "format/base/process_memory.h"
 #include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
 #include "tests/compressor/support/crash_file_system.h"
@@ -96,7 +97,7 @@ class ChangedSourceTest : public testing::Test {
     options.output = "out.nvdb";
     options.budget.kind = Budget::Kind::lossless;
     options.threads = 2;
-    options.memory = std::uint64_t{4} << 30U;
+    options.memory = resident_bytes() + (std::uint64_t{60} << 20U);  // no values stay between the passes
     ConversionControl control;
     control.pass_started = [&](const std::string& name, std::uint64_t) {
       if (pass != nullptr) *pass = name;
@@ -222,7 +223,7 @@ TEST_F(ChangedSourceTest, ResumeOfAnotherFileOfTheSameSizeAndTime_BeginsAnew) {
     options.resume = Resume::on;
     options.save_interval_s = 0;
     options.threads = 1;
-    options.memory = std::uint64_t{4} << 30U;
+    options.memory = resident_bytes() + (std::uint64_t{60} << 20U);  // no values stay between the passes
     ConversionControl control;
     control.cancel = &cancel;
     control.pass_started = [&](const std::string& pass, std::uint64_t) { cancel = interrupt && pass == "encode"; };

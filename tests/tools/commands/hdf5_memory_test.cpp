@@ -1,6 +1,6 @@
 // The memory ceiling of the whole process over gzip-chunked HDF5 several times as
 // large, chunks being cubes, planes, and planes of which a layer of leaves does
-// not fit the ceiling.
+// not fit the ceiling; and over one whose values stay in memory.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <zlib.h>
@@ -120,6 +120,24 @@ INSTANTIATE_TEST_SUITE_P(
                     ChunkedVolume{"Planes", {576, 520, 520}, {1, 520, 520}, "128MiB", 128 * kMiB},
                     ChunkedVolume{"LargePlanes", {80, 1500, 1500}, {1, 1500, 1500}, "160MiB", 160 * kMiB, true}),
     [](const auto& parameter) { return parameter.param.name; });
+
+TEST(Hdf5KeptValues, AreDecodedOnceUnderTheCeiling) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const TemporaryDirectory directory;
+  const std::string input = directory / "run.h5";
+  const std::uint64_t stored = write_volume(input, {"", {256, 384, 384}, {64, 64, 64}, "", 0});
+  const CommandResult once =
+      run_weir({"convert", input, "--rate", "2", "-o", directory / "a.nvdb", "--memory", "400MiB", "--json"});
+  ASSERT_EQ(once.exit_code, 0) << once.err;
+  EXPECT_EQ(nlohmann::json::parse(once.out)["timing"]["bytes_read"].get<std::uint64_t>(), stored);
+  EXPECT_LT(once.peak_rss_bytes, 400 * kMiB);
+  EXPECT_GT(once.peak_rss_bytes, 144 * kMiB);  // of its values
+  const CommandResult twice =
+      run_weir({"convert", input, "--rate", "2", "-o", directory / "b.nvdb", "--memory", "128MiB", "--json"});
+  ASSERT_EQ(twice.exit_code, 0) << twice.err;
+  EXPECT_EQ(nlohmann::json::parse(twice.out)["timing"]["bytes_read"].get<std::uint64_t>(), 2 * stored);
+  EXPECT_TRUE(read_file(directory / "a.nvdb") == read_file(directory / "b.nvdb"));
+}
 
 }  // namespace
 }  // namespace weir::hdf5_memory_test

@@ -71,6 +71,8 @@ std::set<std::string> headers() {
                            "layout/nvdb_type",
                            "nanovdb/range_max",
                            "base/text",
+                           "base/group_memory",
+                           "base/kernel_table",
                            "base/process_memory",
                            "base/simd",
                            "base/transpose_lanes",

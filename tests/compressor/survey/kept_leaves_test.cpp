@@ -1,0 +1,77 @@
+#include "compressor/survey/kept_leaves.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "tests/compressor/support/converted.h"
+#include "tests/compressor/support/memory_volume.h"
+
+namespace weir::kept_leaves_test {
+namespace {
+
+using test::bits_of;
+using test::MemoryVolume;
+
+constexpr std::uint64_t kLeafBytes = std::uint64_t{kLeafVoxels} * sizeof(float);
+
+/// Cuts leaves at all sides of its domain; one leaf has NaN alone.
+MemoryVolume volume_with_edges() {
+  return {Box{{-3, 5, 2}, {21, 30, 19}}, [](const Index3& i) {
+            if (floor_div(i, kLeafDim) == Index3{1, 2, 1}) return std::numeric_limits<float>::quiet_NaN();
+            return static_cast<float>(i.x + 100 * i.y + 10000 * i.z);
+          }};
+}
+
+void add_all(KeptLeaves& kept, const MemoryVolume& volume, const NodeLattice& leaves) {
+  for (std::int64_t i = 0; i < leaves.size(); ++i) {
+    const std::vector<float> values = volume.in(leaves.voxels(leaves.position(i)));
+    kept.add(i, values, bits_of(values.front()) == bits_of(values.back()));
+  }
+}
+
+TEST(KeptLeaves, GivesAnyBoxBack) {
+  const MemoryVolume volume = volume_with_edges();
+  const Box domain = volume.info().domain();
+  const NodeLattice leaves = make_lattice(domain, kLeafDim);
+  KeptLeaves kept(leaves, KeptLeaves::whole_bytes(leaves));
+  EXPECT_FALSE(kept.has(domain));
+  add_all(kept, volume, leaves);
+  ASSERT_TRUE(kept.has(domain));
+  for (const Box& box :
+       {domain, Box{{-3, 5, 2}, {-2, 6, 3}}, Box{{7, 9, 8}, {17, 25, 11}}, Box{{8, 16, 8}, {16, 24, 16}}}) {
+    for (const std::size_t threads : {1U, 3U}) {
+      const std::vector<float> expected = volume.in(box);
+      std::vector<float> values(expected.size(), -1);
+      kept.copy(box, values, threads);
+      for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(bits_of(values[i]), bits_of(expected[i])) << i;
+    }
+  }
+}
+
+TEST(KeptLeaves, KeepsTheFirstOnesUntilItsMemoryIsFull) {
+  const MemoryVolume volume = volume_with_edges();
+  const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
+  KeptLeaves kept(leaves, KeptLeaves::index_bytes(leaves) + 5 * kLeafBytes + 17);
+  add_all(kept, volume, leaves);
+  std::int64_t has = 0;
+  for (std::int64_t i = 0; i < leaves.size(); ++i) {
+    if (!kept.has(leaves.voxels(leaves.position(i)))) continue;
+    ++has;
+    EXPECT_TRUE(i < 5 || leaves.first + leaves.position(i) == (Index3{1, 2, 1})) << i;
+  }
+  EXPECT_EQ(has, 6);  // the one of one value takes no room
+  EXPECT_FALSE(kept.has(volume.info().domain()));
+}
+
+TEST(KeptLeaves, KeepsNothingWhereTheIndexAloneFills) {
+  const MemoryVolume volume = volume_with_edges();
+  const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
+  KeptLeaves kept(leaves, KeptLeaves::index_bytes(leaves) + kLeafBytes - 1);
+  add_all(kept, volume, leaves);
+  EXPECT_FALSE(kept.has(leaves.voxels(Index3{0, 0, 0})));
+}
+
+}  // namespace
+}  // namespace weir::kept_leaves_test

@@ -1,0 +1,91 @@
+// Volumes whose values stay in memory between the two passes, all or some of them: the file is that of a conversion
+// that reads both times, to the byte.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "format/base/process_memory.h"
+#include "tests/compressor/support/converted.h"
+
+namespace weir::kept_values_test {
+namespace {
+
+using test::Converted;
+using test::MemoryVolume;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kDense = std::uint64_t{150} * 131 * 203 * sizeof(float);
+
+/// A ball with waves in it, and nothing around.
+MemoryVolume ball() {
+  return {Box{{-5, 3, 40}, {145, 134, 243}}, [](const Index3& i) {
+            const double x = static_cast<double>(i.x) - 70;
+            const double y = static_cast<double>(i.y) - 60;
+            const double z = static_cast<double>(i.z) - 140;
+            const double radius = std::sqrt(x * x + y * y + z * z) / 100;
+            return radius > 1 ? 0.0F
+                              : static_cast<float>((1 - radius) * (1 + 0.3 * std::sin(0.2 * x) * std::cos(0.13 * z)));
+          }};
+}
+
+/// The same where reading waits for nothing: nothing is kept of it.
+class InMemory final : public VolumeSource {
+ public:
+  explicit InMemory(VolumeSource& source) : source_(source) {}
+  const SourceInfo& info() const override { return source_.info(); }
+  AccessShape access() const override { return source_.access(); }
+  ConversionLoss read(const Box& box, std::span<float> values) override { return source_.read(box, values); }
+  bool in_memory() const override { return true; }
+  std::uint64_t bytes_read() const override { return source_.bytes_read(); }
+
+ private:
+  VolumeSource& source_;
+};
+
+class KeptValues : public testing::TestWithParam<std::tuple<Encoding, Budget>> {
+ protected:
+  ConversionOptions options() const {
+    ConversionOptions options;
+    std::tie(options.encoding, options.budget) = GetParam();
+    options.threads = 2;
+    return options;
+  }
+};
+
+TEST_P(KeptValues, MakeTheSameFileAndAreReadOnce) {
+  MemoryVolume volume = ball();
+  InMemory in_memory(volume);
+  const Converted expected = test::convert(in_memory, options());
+  EXPECT_GT(volume.bytes_read(), kDense * 5 / 4);
+
+  MemoryVolume again = ball();
+  const Converted all = test::convert(again, options());
+  EXPECT_EQ(again.bytes_read(), kDense);
+  EXPECT_TRUE(all.file == expected.file);
+
+  MemoryVolume third = ball();
+  ConversionOptions some = options();
+  some.memory = resident_bytes() + 72 * kMiB;
+  const Converted part = test::convert(third, some);
+  EXPECT_GT(third.bytes_read(), kDense);
+  EXPECT_TRUE(part.file == expected.file);
+}
+
+Budget budget_of(Budget::Kind kind, double value) {
+  Budget budget;
+  budget.kind = kind;
+  if (kind == Budget::Kind::rate) budget.rate = value;
+  if (kind != Budget::Kind::rate) budget.target = value;
+  return budget;
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, KeptValues,
+                         testing::Values(std::tuple(Encoding::packed, budget_of(Budget::Kind::rate, 16)),
+                                         std::tuple(Encoding::packed, budget_of(Budget::Kind::max_error, 0.001)),
+                                         std::tuple(Encoding::float32, budget_of(Budget::Kind::lossless, 0)),
+                                         std::tuple(Encoding::fpn, budget_of(Budget::Kind::psnr, 50))));
+
+}  // namespace
+}  // namespace weir::kept_values_test
