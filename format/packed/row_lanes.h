@@ -105,7 +105,7 @@ class Contexts {
     set_lanes(2.0F / 3, two_thirds_);
     set_lanes(1.0F, one_);
     set_lanes(1.0F / 18, eighteenth_);
-    set_lanes(kPackedLevels - 1, last_level_);
+    set_lanes(static_cast<std::int32_t>(kPackedLevels) - 1, last_level_);
     set_lanes(16, most_extra_);
     set_lanes(36, no_extra_);
     set_lanes(127, exponent_bias_);
