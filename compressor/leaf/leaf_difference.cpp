@@ -63,16 +63,61 @@ WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceL
   }
 }
 
-}  // namespace
+// The same of finite values alone; else a squared error that is not finite.
+WEIR_SIMD void accumulate_finite(const float* source, const float* decoded, DifferenceLanes* halves) {
+  const Floats8 none{};
+  for (std::size_t half = 0; half < kHalves; ++half) {
+    DifferenceLanes lanes = halves[half];
+    for (std::size_t i = half * kLanes; i < kLeafVoxels; i += kHalves * kLanes) {
+      Floats8 s;
+      Floats8 d;
+      Ints8 s_bits;
+      Ints8 d_bits;
+      std::memcpy(&s, source + i, sizeof s);
+      std::memcpy(&d, decoded + i, sizeof d);
+      std::memcpy(&s_bits, source + i, sizeof s_bits);
+      std::memcpy(&d_bits, decoded + i, sizeof d_bits);
+      const Doubles8 difference = __builtin_convertvector(s, Doubles8) - __builtin_convertvector(d, Doubles8);
+      const Doubles8 magnitude = difference < 0 ? -difference : difference;
+      lanes.squared_error += difference * difference;
+      lanes.max_abs = magnitude > lanes.max_abs ? magnitude : lanes.max_abs;
+      lanes.min = s < lanes.min ? s : lanes.min;
+      lanes.max = s > lanes.max ? s : lanes.max;
+      lanes.different -= s_bits != d_bits;
+      lanes.zeros_lost -= (s == none) & (d != none);
+    }
+    halves[half] = lanes;
+  }
+}
 
-LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded) {
+using Halves = std::array<DifferenceLanes, kHalves>;
+
+Halves no_differences() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  std::array<DifferenceLanes, kHalves> halves;
+  Halves halves;
   for (DifferenceLanes& lanes : halves) {
     lanes.min = lanes.min + kInfinity;
     lanes.max = lanes.max - kInfinity;
   }
-  accumulate(source.data(), decoded.data(), halves.data());
+  return halves;
+}
+
+bool all_finite(const Halves& halves) {
+  const Doubles8 sum = halves[0].squared_error + halves[1].squared_error;
+  double total = 0;
+  for (unsigned l = 0; l < kLanes; ++l) total += sum[l];
+  return std::isfinite(total);
+}
+
+}  // namespace
+
+LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded) {
+  Halves halves = no_differences();
+  accumulate_finite(source.data(), decoded.data(), halves.data());
+  if (!all_finite(halves)) {
+    halves = no_differences();
+    accumulate(source.data(), decoded.data(), halves.data());
+  }
 
   Doubles8 squared_error = halves[0].squared_error + halves[1].squared_error;
   for (unsigned half = kLanes / 2; half > 0; half /= 2) {

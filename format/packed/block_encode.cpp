@@ -15,27 +15,6 @@
 namespace weir {
 namespace {
 
-// Of the differences from the mean; coefficient 0, that of the mean, becomes 0.
-WEIR_SIMD void forward_transform(const float* values, float mean, float* coefficients) {
-  for (unsigned x = 0; x < 8; ++x) {
-    Floats8 rows[8];
-    std::memcpy(rows, values + 64 * x, sizeof rows);
-    for (Floats8& row : rows) row -= mean;
-    forward_transform_8(rows);  // along y
-    transpose_8(rows);
-    forward_transform_8(rows);  // along z
-    transpose_8(rows);
-    std::memcpy(coefficients + 64 * x, rows, sizeof rows);
-  }
-  for (unsigned y = 0; y < 8; ++y) {
-    Floats8 rows[8];
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], coefficients + 64 * x + 8 * y, sizeof rows[x]);
-    forward_transform_8(rows);  // along x
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(coefficients + 64 * x + 8 * y, &rows[x], sizeof rows[x]);
-  }
-  coefficients[0] = 0;
-}
-
 struct BlockRange {
   float low;
   float high;
@@ -63,13 +42,69 @@ WEIR_SIMD BlockRange range_of(const float* values) {
   return range;
 }
 
-// The largest magnitude and the sum of squares of each row; returns the largest of all.
-WEIR_SIMD float measure_rows(const float* coefficients, float* largest, double* energy) {
-  Floats8 largest_of_all{};
-  for (unsigned first = 0; first < 64; first += 8) {
+// Lanes of a vector: those of one slab of a block, or of two that follow each other.
+struct OneSlab {
+  using Lanes = Floats8;
+};
+struct TwoSlabs {
+  using Lanes = Floats16;
+};
+
+// Slabs from `at` on, as eight vectors of their rows, and back.
+[[gnu::always_inline]] inline void load_slabs(const float* at, Floats8 (&rows)[8]) {
+  std::memcpy(rows, at, sizeof rows);
+}
+[[gnu::always_inline]] inline void store_slabs(const Floats8 (&rows)[8], float* at) {
+  std::memcpy(at, rows, sizeof rows);
+}
+#ifdef WEIR_SIMD_PATHS
+[[gnu::always_inline]] inline void load_slabs(const float* at, Floats16 (&rows)[8]) {
+  for (unsigned i = 0; i < 8; ++i) {
+    Floats8 first;
+    Floats8 second;
+    std::memcpy(&first, at + 8 * i, sizeof first);
+    std::memcpy(&second, at + 64 + 8 * i, sizeof second);
+    rows[i] = __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+}
+[[gnu::always_inline]] inline void store_slabs(const Floats16 (&rows)[8], float* at) {
+  for (unsigned i = 0; i < 8; ++i) {
+    const Floats8 first = __builtin_shufflevector(rows[i], rows[i], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Floats8 second = __builtin_shufflevector(rows[i], rows[i], 8, 9, 10, 11, 12, 13, 14, 15);
+    std::memcpy(at + 8 * i, &first, sizeof first);
+    std::memcpy(at + 64 + 8 * i, &second, sizeof second);
+  }
+}
+#endif
+
+// The coefficients of the differences from the mean; that of the mean, coefficient 0, becomes 0. Also the largest
+// magnitude and the sum of squares of each row; returns the largest of all.
+template <typename Slabs>
+[[gnu::always_inline]] inline float transform_slabs(const float* values, float mean, float* coefficients,
+                                                    float* row_largest, double* row_energy) {
+  using Lanes = typename Slabs::Lanes;
+  constexpr unsigned kLanes = sizeof(Lanes) / sizeof(float);
+  alignas(64) float turned[512];  // index x << 6 | z << 3 | y, slabs side by side as in a vector
+  for (unsigned x = 0; x < 64; x += kLanes) {
+    Lanes rows[8];
+    load_slabs(values + 8 * x, rows);
+    for (Lanes& row : rows) row -= mean;
+    forward_transform_8(rows);  // along y
+    transpose_8(rows);
+    forward_transform_8(rows);  // along z
+    store_slabs(rows, turned + 8 * x);
+  }
+  for (unsigned zy = 0; zy < 64; zy += kLanes) {
+    Lanes rows[8];
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], turned + 64 * x + zy, sizeof rows[x]);
+    forward_transform_8(rows);  // along x
+    for (unsigned x = 0; x < 8; ++x) std::memcpy(turned + 64 * x + zy, &rows[x], sizeof rows[x]);
+  }
+  turned[0] = 0;
+  Floats8 largest{};
+  for (unsigned x = 0; x < 8; ++x) {
     Floats8 rows[8];
-    std::memcpy(rows, coefficients + 8 * first, sizeof rows);
-    transpose_8(rows);  // a lane for each row
+    std::memcpy(rows, turned + 64 * x, sizeof rows);  // a lane for each row
     Floats8 most{};
     Doubles8 sum{};
     for (const Floats8& c : rows) {
@@ -78,14 +113,36 @@ WEIR_SIMD float measure_rows(const float* coefficients, float* largest, double* 
       const Doubles8 wide = __builtin_convertvector(c, Doubles8);
       sum += wide * wide;
     }
-    std::memcpy(largest + first, &most, sizeof most);
-    std::memcpy(energy + first, &sum, sizeof sum);
-    largest_of_all = most > largest_of_all ? most : largest_of_all;
+    std::memcpy(row_largest + 8 * x, &most, sizeof most);
+    std::memcpy(row_energy + 8 * x, &sum, sizeof sum);
+    largest = most > largest ? most : largest;
+    transpose_8(rows);
+    std::memcpy(coefficients + 64 * x, rows, sizeof rows);
   }
   float found = 0;
-  for (int l = 0; l < 8; ++l) found = largest_of_all[l] > found ? largest_of_all[l] : found;
+  for (int l = 0; l < 8; ++l) found = largest[l] > found ? largest[l] : found;
   return found;
 }
+
+#ifdef WEIR_SIMD_PATHS
+__attribute__((target("avx512f"))) float transform_512(const float* values, float mean, float* coefficients,
+                                                       float* row_largest, double* row_energy) {
+  return transform_slabs<TwoSlabs>(values, mean, coefficients, row_largest, row_energy);
+}
+__attribute__((target_clones("avx2", "default"))) float transform_256(const float* values, float mean,
+                                                                      float* coefficients, float* row_largest,
+                                                                      double* row_energy) {
+  return transform_slabs<OneSlab>(values, mean, coefficients, row_largest, row_energy);
+}
+float transform(const float* values, float mean, float* coefficients, float* row_largest, double* row_energy) {
+  static const bool wide = packed_detail::has_avx512();
+  return (wide ? transform_512 : transform_256)(values, mean, coefficients, row_largest, row_energy);
+}
+#else
+float transform(const float* values, float mean, float* coefficients, float* row_largest, double* row_energy) {
+  return transform_slabs<OneSlab>(values, mean, coefficients, row_largest, row_energy);
+}
+#endif
 
 // What quantise_rows has found.
 struct Quantised {
@@ -183,8 +240,7 @@ bool TransformBlock::set(std::span<const float, 512> values) {
   const float range = high - low;
   if (!(std::fabs(low) < kLargestTransformed && std::fabs(high) < kLargestTransformed)) return false;
   if (range < kLeastTransformed) return false;
-  forward_transform(values.data(), mean_, coefficients_.data());
-  const float largest = measure_rows(coefficients_.data(), row_largest_.data(), row_energy_.data());
+  const float largest = transform(values.data(), mean_, coefficients_.data(), row_largest_.data(), row_energy_.data());
   energy_ = std::accumulate(row_energy_.begin(), row_energy_.end(), 0.0);
   largest_ = static_cast<double>(largest);
   return true;

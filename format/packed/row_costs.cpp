@@ -1,9 +1,18 @@
 #include "format/packed/row_costs.h"
 
 #include <algorithm>
+#include <array>
 
 #include "format/base/simd.h"
 #include "format/packed/stream_length.h"
+
+#ifdef WEIR_SIMD_PATHS
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // GCC 12 warns of the header's own undefined lanes
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#include <immintrin.h>
+#pragma GCC diagnostic pop
+#endif
 
 namespace weir {
 namespace {
@@ -70,12 +79,11 @@ template <typename Lanes>
     load_lanes(places.weight + 8 * row, weight);
     load_lanes(places.first_symbol + 8 * row, first_symbol);
     const Ints t = (up + left + back) * weight;
+    Ints level;
     Ints extra;
-    contexts.extra_of(t, extra);
+    contexts.find(t, level, extra);
     const Ints high = m >> extra;
     const Ints symbol = high < first_escape ? high : first_escape;
-    Ints level;
-    contexts.level_of(t, level);
     const Ints entry = ((first_symbol + 16 * level + symbol) & coded) | (no_cost & ~coded);
     alignas(64) std::uint64_t entries[kLanes / 2];
     __builtin_memcpy(entries, &entry, sizeof entries);
@@ -99,9 +107,97 @@ template <typename Lanes>
 }
 
 #ifdef WEIR_SIMD_PATHS
-__attribute__((target("avx512f"))) void add_rows_512(const RowCosts::Tables& tables, const std::int32_t* padded,
-                                                     std::uint64_t busy, std::int32_t limit, Sums& sums) {
-  add_lanes<TwoRows>(tables, padded, busy, limit, sums);
+// The same number in all lanes of a register, in which it stays.
+[[gnu::target("avx512f")]] __m512i in_lanes(int value) {
+  __m512i lanes = _mm512_set1_epi32(value);
+  asm("" : "+v"(lanes));
+  return lanes;
+}
+[[gnu::target("avx512f")]] __m512 in_lanes(float value) {
+  __m512 lanes = _mm512_set1_ps(value);
+  asm("" : "+v"(lanes));
+  return lanes;
+}
+
+// add_lanes() of two rows at a time, by masks, and with what it looks up at the end: no lookup waits for its lane.
+[[gnu::target("avx512f")]] void add_rows_512(const RowCosts::Tables& tables, const std::int32_t* padded,
+                                             std::uint64_t busy, std::int32_t limit, Sums& sums) {
+  constexpr int kBias = 127;                 // of a float's exponent
+  constexpr int kSymbolMask = kFirstEscape;  // the low bits of an entry
+  static_assert(kPackedSymbols == 16 && (kSymbolMask & (kSymbolMask + 1)) == 0);
+  constexpr int kToLevel = 23 - 4;  // puts an exponent above the symbol
+  constexpr int kLevelBias = kBias * static_cast<int>(kPackedSymbols);
+  const __m512i limits = in_lanes(limit);
+  const __m512i level_bias = in_lanes(kLevelBias);
+  const __m512i no_cost = in_lanes(kNoCost);
+  const __m512i one = in_lanes(1);
+  const __m512i first_escape = in_lanes(kFirstEscape);
+  const __m512i last_plain = in_lanes(kFirstEscape - 1);
+  const __m512i last_level =
+      in_lanes((static_cast<int>(kPackedLevels) - 1) * static_cast<int>(kPackedSymbols) + kLevelBias + kSymbolMask);
+  const __m512i level_mask = in_lanes(~kSymbolMask);
+  const __m512i most_extra = in_lanes(16 + kBias);
+  const __m512i no_extra = in_lanes(36);
+  const __m512i bias = in_lanes(kBias);
+  const __m512i escape_bias = in_lanes(kBias - 5);
+  const __m512 two_thirds = in_lanes(2.0F / 3);
+  const __m512 whole = in_lanes(1.0F);
+  const __m512 eighteenth = in_lanes(1.0F / 18);
+  const RowPlaces& places = *tables.places;
+  alignas(64) std::array<std::uint64_t, 512 / 2> entries;
+  unsigned count = 0;
+  __m512i symbols = _mm512_setzero_si512();
+  __m512i raw = _mm512_setzero_si512();
+  __m512i nonzero = _mm512_setzero_si512();
+  for (unsigned row = 0; row < 64; row += 2) {
+    if (places.first_place[row] >= limit && places.first_place[row + 1] >= limit) continue;
+    const __mmask16 coded = _mm512_cmplt_epi32_mask(_mm512_load_si512(places.place + 8 * row), limits);
+    if ((busy >> row & 3U) == 0) {
+      symbols = _mm512_mask_add_epi32(symbols, coded, symbols, _mm512_load_si512(tables.zero_cost + 8 * row));
+      continue;
+    }
+    const std::int32_t* at = padded + 8 * (row + 8);
+    const __m512i m = _mm512_load_si512(at);
+    const __m512i up = _mm512_load_si512(at - 64);
+    // Of j = 0 the row before is of another i.
+    const __m512i left = _mm512_maskz_loadu_epi32(static_cast<__mmask16>(row % 8 == 0 ? 0xFF00 : 0xFFFF), at - 8);
+    const __m512i back = _mm512_maskz_loadu_epi32(0xFEFE, at - 1);
+    const __m512i sum = _mm512_add_epi32(_mm512_add_epi32(up, left), back);
+    const __m512i t = _mm512_mullo_epi32(sum, _mm512_load_si512(places.weight + 8 * row));
+    // As Contexts::find() does.
+    const __m512 real = _mm512_cvtepi32_ps(t);
+    const __m512 base = _mm512_add_ps(_mm512_mul_ps(real, two_thirds), whole);
+    const __m512i cube = _mm512_castps_si512(_mm512_mul_ps(_mm512_mul_ps(base, base), base));
+    const __m512i level = _mm512_min_epi32(_mm512_srli_epi32(cube, kToLevel), last_level);
+    const __m512i log2 = _mm512_srli_epi32(_mm512_castps_si512(_mm512_mul_ps(real, eighteenth)), 23);
+    const __m512i extra =
+        _mm512_maskz_sub_epi32(_mm512_cmpgt_epi32_mask(t, no_extra), _mm512_min_epi32(log2, most_extra), bias);
+    const __m512i high = _mm512_srlv_epi32(m, extra);
+    constexpr int kFirstAndSecondOrThird = 0xEA;
+    const __m512i symbol =
+        _mm512_ternarylogic_epi32(level, level_mask, _mm512_min_epi32(high, first_escape), kFirstAndSecondOrThird);
+    const __m512i first_symbol = _mm512_sub_epi32(_mm512_load_si512(places.first_symbol + 8 * row), level_bias);
+    _mm512_store_si512(entries.data() + count, _mm512_mask_add_epi32(no_cost, coded, first_symbol, symbol));
+    count += 8;
+    const __mmask16 escaped = _mm512_mask_cmpgt_epi32_mask(coded, high, last_plain);
+    const __m512 over = _mm512_cvtepi32_ps(_mm512_sub_epi32(high, last_plain));
+    const __m512i escape = _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(over), 23), escape_bias);
+    raw = _mm512_mask_add_epi32(raw, coded, raw, extra);
+    raw = _mm512_mask_add_epi32(raw, escaped, raw, escape);
+    nonzero = _mm512_mask_add_epi32(nonzero, _mm512_mask_test_epi32_mask(coded, m, m), nonzero, one);
+  }
+  asm volatile("" : "+m"(entries));  // else each lane is taken out of its register, which takes longer
+  std::int32_t even = 0;
+  std::int32_t odd = 0;
+  for (unsigned first = 0; first < count; first += 8) {
+    for (unsigned i = first; i < first + 8; ++i) {
+      even += tables.cost[entries[i] & 0xFFFFFFFFU];
+      odd += tables.cost[entries[i] >> 32U];
+    }
+  }
+  sums.symbols += even + odd + _mm512_reduce_add_epi32(symbols);
+  sums.raw += _mm512_reduce_add_epi32(raw);
+  sums.nonzero += _mm512_reduce_add_epi32(nonzero);
 }
 
 __attribute__((target_clones("avx2", "default"))) void add_rows_256(const RowCosts::Tables& tables,

@@ -82,9 +82,9 @@ struct TwoRows {
 // A difference shifted by 31 has all bits where it is negative; comparisons of that many lanes are slow.
 
 // The same number in all lanes, as a compiler cannot tell: made once before a loop, not in each turn of it.
-template <typename Ints>
-[[gnu::always_inline]] inline void set_lanes(std::int32_t value, Ints& lanes) {
-  lanes = Ints{} + value;
+template <typename Lanes, typename T>
+[[gnu::always_inline]] inline void set_lanes(T value, Lanes& lanes) {
+  lanes = Lanes{} + value;
 #ifdef WEIR_SIMD_PATHS
   if constexpr (sizeof lanes == 64) {
     asm("" : "+v"(lanes));  // stays in its register
@@ -94,65 +94,46 @@ template <typename Ints>
   asm("" : "+m"(lanes));
 }
 
-// Of sums of a value's neighbours.
+// Of sums of a value's neighbours, by floats, whose exponents are whole parts of logarithms. Rounding does not change
+// them: what is below a threshold is a part in 2^10, or in 18 * 2^16, below it.
 template <typename Lanes>
 class Contexts {
  public:
   using Ints = typename Lanes::Ints;
+  using Floats = typename Lanes::Floats;
   [[gnu::always_inline]] inline Contexts() {
-    constexpr std::int32_t kTwoThirds = 0x1863F8;  // of 1.5 * 2^(2/3) / 2
-    constexpr std::int32_t kWhole = 0x400000;      // of 1.5
-    constexpr std::int32_t kThird = 0x71E7A4;      // of 1.5 * 2^(1/3)
-    set_lanes(0x7FFFFF, mantissa_);
-    set_lanes(kTwoThirds, two_thirds_);
-    set_lanes(kWhole, whole_);
-    set_lanes(kThird, third_);
-    set_lanes(3, three_);
-    set_lanes(-3 * 127 - 2, level_bias_);
-    set_lanes(kPackedLevels - 1, last_level_);
-    set_lanes(0x100000, eighth_);
-    set_lanes(-127 - 4, extra_bias_);
+    set_lanes(2.0F / 3, two_thirds_);
+    set_lanes(1.0F, one_);
+    set_lanes(1.0F / 18, eighteenth_);
+    set_lanes(static_cast<std::int32_t>(kPackedLevels) - 1, last_level_);
     set_lanes(16, most_extra_);
     set_lanes(36, no_extra_);
     set_lanes(127, exponent_bias_);
   }
   // Rounded down, of at least 1.
   [[gnu::always_inline]] inline void log2_of(const Ints& v, Ints& log2) const {
-    Ints mantissa;
-    split(v, log2, mantissa);
-    log2 -= exponent_bias_;
+    exponent_of(__builtin_convertvector(v, Floats), log2);
   }
-  // BlockScan::level: floor(3 log2(1 + 2 t / 3)), at most the last; of v = 3 + 2 t its thresholds are 3 * 2^(n / 3).
-  [[gnu::always_inline]] inline void level_of(const Ints& t, Ints& level) const {
-    Ints exponent;
-    Ints mantissa;
-    split(three_ + 2 * t, exponent, mantissa);
-    level = 3 * exponent + level_bias_ + ((mantissa - two_thirds_) >> 31) + ((mantissa - whole_) >> 31) +
-            ((mantissa - third_) >> 31);
+  // BlockScan::level: floor(log2((1 + 2 t / 3)^3)), at most the last; extra_bits(): floor(log2(t / 18)) of more than
+  // 36, at most 16.
+  [[gnu::always_inline]] inline void find(const Ints& t, Ints& level, Ints& extra) const {
+    const auto sum = __builtin_convertvector(t, Floats);
+    const Floats base = sum * two_thirds_ + one_;
+    exponent_of(base * base * base, level);
     level = level < last_level_ ? level : last_level_;
-  }
-  // extra_bits(): floor(log2(t / 18)) of more than 36, at most 16; 18 is 1.125 * 2^4.
-  [[gnu::always_inline]] inline void extra_of(const Ints& t, Ints& extra) const {
-    Ints exponent;
-    Ints mantissa;
-    split(t, exponent, mantissa);
-    extra = exponent + extra_bias_ + ((mantissa - eighth_) >> 31);
+    exponent_of(sum * eighteenth_, extra);
     extra = extra < most_extra_ ? extra : most_extra_;
     extra &= (no_extra_ - t) >> 31;
   }
 
  private:
-  // Those of a float: 2^(exponent - 127) * (1 + mantissa / 2^23).
-  [[gnu::always_inline]] inline void split(const Ints& v, Ints& exponent, Ints& mantissa) const {
-    const auto f = __builtin_convertvector(v, typename Lanes::Floats);
-    Ints bits;
-    __builtin_memcpy(&bits, &f, sizeof bits);
-    exponent = bits >> 23;
-    mantissa = bits & mantissa_;
+  [[gnu::always_inline]] inline void exponent_of(const Floats& v, Ints& exponent) const {
+    __builtin_memcpy(&exponent, &v, sizeof exponent);
+    exponent = (exponent >> 23) - exponent_bias_;
   }
 
-  Ints mantissa_, two_thirds_, whole_, third_, three_, level_bias_, last_level_, eighth_, extra_bias_, most_extra_,
-      no_extra_, exponent_bias_;
+  Floats two_thirds_, one_, eighteenth_;
+  Ints last_level_, most_extra_, no_extra_, exponent_bias_;
 };
 
 template <typename Ints>

@@ -65,10 +65,9 @@ template <typename Lanes>
     load_lanes(places.weight + 8 * row, weight);
     load_lanes(places.first_symbol + 8 * row, symbol);
     const Ints t = (up + left + back) * weight;
-    Ints extra;
-    contexts.extra_of(t, extra);
     Ints level;
-    contexts.level_of(t, level);
+    Ints extra;
+    contexts.find(t, level, extra);
     const Ints high = m >> extra;
     const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits where there is no escape
     symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
