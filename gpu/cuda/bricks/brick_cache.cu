@@ -24,6 +24,7 @@ constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t) + sizeof(float);
 constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
 constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
 constexpr std::uint32_t kLeastBlocks = 1U << 10U;
+constexpr std::uint64_t kSmallCache = std::uint64_t{128} << 20U;  // below it, room for bricks counts for more than time
 constexpr std::uint32_t kMostRequests = 1U << 20U;
 constexpr std::uint32_t kLeastSlots = 1U << 12U;  // some tens for each ray of a tile
 
@@ -75,11 +76,14 @@ PageTable BrickCache::pages() {
   return pager().with([](auto& pager) { return pager.table(); });
 }
 
-BrickCache::Needs BrickCache::needs() const {
+// Of a cache that may lack bricks. A turn takes nearly as long for few blocks as for many.
+BrickCache::Needs BrickCache::needs() const { return needs(left_ < kSmallCache ? left_ / 8 : left_ / 4); }
+
+BrickCache::Needs BrickCache::needs(std::uint64_t decoding) const {
   Needs needs;
   needs.table = regions_.size() * (sizeof(RegionEntry) + sizeof(std::uint32_t));
   const std::uint64_t scratch =
-      std::clamp<std::uint64_t>(left_ / 8, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
+      std::clamp<std::uint64_t>(decoding, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
   needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
   // All that there may be slots for: what a full list has no room for is drawn for once more.
   needs.plan.most_requests = static_cast<std::uint32_t>(
@@ -157,7 +161,7 @@ void BrickCache::make_pager(BrickPlan plan, const TextureShape& shape) {
 
 // All bricks; false where they do not fit.
 bool BrickCache::make_whole() {
-  Needs needs = this->needs();
+  Needs needs = this->needs(left_ / 8);
   const BlockLattice lattice = source_->lattice();
   const auto most = static_cast<std::int32_t>(kFixedPointEnd - 8);
   if (greater(lattice.extent.x, greater(lattice.extent.y, lattice.extent.z)) > most) return false;
@@ -187,9 +191,10 @@ bool BrickCache::make_whole() {
 }
 
 void BrickCache::fail_too_small(const Needs& needs) const {
-  // Enough for floats, too, and for the eighth that decodes.
+  // Enough for floats, too, and for the eighth or quarter that decodes.
   const std::uint64_t most = needs.least(TexelType::float32);
-  std::uint64_t enough = std::max(20 * needs.table, most + most / 5) + budget_.taken;
+  const std::uint64_t decoding = most < kSmallCache / 2 ? most / 5 : most / 2;
+  std::uint64_t enough = std::max(20 * needs.table, most + decoding) + budget_.taken;
   if (budget_.levels > 0) enough += bytes_for_levels(2 * enough);
   const auto megabytes = [](std::uint64_t bytes) { return cat((bytes >> 20U) + 1, "MiB"); };
   if (!budget_.limited) {

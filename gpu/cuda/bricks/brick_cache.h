@@ -114,6 +114,8 @@ class BrickCache {
   Pager& pager() const;
   PageTable pages();
   Needs needs() const;
+  /// With `decoding` bytes, about, for blocks that are decoded together.
+  Needs needs(std::uint64_t decoding) const;
   void clear();
   void make(TexelType type);
   void make_within(TexelType type);
