@@ -16,7 +16,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
-#include "format/io/parallel_writes.h"
 
 namespace weir {
 namespace {
@@ -32,7 +31,13 @@ class PosixFile final : public File {
   const std::string& path() const override { return path_; }
 
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    parallel_.write(offset, bytes, [&] { write_all(offset, bytes); });
+    while (!bytes.empty()) {
+      const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw io_error(path_, cat("write ", bytes.size(), " bytes at offset ", offset), errno);
+      offset += static_cast<std::uint64_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    }
   }
 
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) override {
@@ -53,10 +58,7 @@ class PosixFile final : public File {
     do {
       status = bytes == 0 ? 0 : ::fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes));
     } while (status != 0 && errno == EINTR);
-    if (status == 0) {
-      parallel_.begin(descriptor_, bytes);
-      return true;
-    }
+    if (status == 0) return true;
     if (errno != EOPNOTSUPP && errno != ENOSYS) throw io_error(path_, cat("reserve ", bytes, " bytes"), errno);
     if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0)
       throw io_error(path_, cat("set the size to ", bytes), errno);
@@ -64,7 +66,6 @@ class PosixFile final : public File {
   }
 
   void clear() override {
-    parallel_.end();
     if (::ftruncate(descriptor_, 0) != 0) throw io_error(path_, "set the size to 0", errno);
   }
 
@@ -85,20 +86,9 @@ class PosixFile final : public File {
   void set_exclusive() { exclusive_ = true; }
 
  private:
-  void write_all(std::uint64_t offset, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) throw io_error(path_, cat("write ", bytes.size(), " bytes at offset ", offset), errno);
-      offset += static_cast<std::uint64_t>(done);
-      bytes = bytes.subspan(static_cast<std::size_t>(done));
-    }
-  }
-
   int descriptor_;
   std::string path_;
   bool exclusive_;
-  ParallelWrites parallel_;
 };
 
 [[noreturn]] void refuse_foreign(const std::string& path, const char* what) {
