@@ -6,19 +6,13 @@
 #include <limits>
 
 #include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/quantiser_fit.h"
 #include "compressor/leaf/taken_codes.h"
 #include "compressor/leaf/twin_sums.h"
 #include "format/base/index.h"
 
 namespace weir {
 namespace {
-
-/// Quanta below this have no reciprocal.
-constexpr float kLeastQuantum = 0x1p-120F;
-/// Squared errors below this part of the squared deviations are measured, for any number of bits.
-constexpr double kCancelled = 1e-4;
-/// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
-constexpr double kWidest = 0x1.fffffp+127;
 
 using Deviations = std::array<float, kLeafVoxels>;
 
@@ -279,22 +273,15 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
                                        double squares, const LeafRepeats& repeats) {
-  // The rounds, and what those left out gain on average: 0.1 dB at 1 bit, 0.4 dB at 2, 0.2 dB at 4, so that the
-  // estimates of a volume's leaves are neither too low nor too high.
-  struct Start {
-    double share;
-    int rounds;
-    double gain;
-  };
-  constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.97}, {1, 3, 0.92}, {1, 1, 0.955}}};
   std::array<double, 3> errors{1, 1, 1};
   if (below_bits <= 1 || !divisible(range, 1)) return errors;
   Fitter fitter(values, range, repeats);
   for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
     if (!divisible(range, 1U << log2)) continue;
     fitter.set_bits(1U << log2);
-    fitter.start(kStarts[log2].share, kStarts[log2].rounds);
-    if (fitter.found()) errors[log2] = std::min(1.0, kStarts[log2].gain * fitter.squared_error() / squares);
+    const EstimateStart& start = kEstimateStarts[log2];
+    fitter.start(start.share, start.rounds);
+    if (fitter.found()) errors[log2] = std::min(1.0, start.gain * fitter.squared_error() / squares);
   }
   return errors;
 }
