@@ -33,14 +33,14 @@ KeyRange CutSearch::likely_keys(const GainRule& rule) {
 KeyRange CutSearch::every_key() { return {kAllKeys.first, kAllKeys.end + 1}; }
 
 template <typename Begin>
-void CutSearch::for_each_key(const Begin& begin) const {
+void CutSearch::for_each_key(const Begin& begin, double least_key) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     const auto visit = begin();
     visit(index, region.key, rule_.region_bytes(), region.opening_gain);
-    if (region.key == 0) return;  // no leaf in it has a higher one
+    if (region.key == 0 || region.key < least_key) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
-    rule_.gains(tree_, rows, gains);
+    rule_.gains(tree_, rows, gains, least_key);
     for_each_step(gains, region.key,
                   [&](double key, const LeafStep& step) { visit(index, key, step.bytes, step.gain); });
   });
@@ -89,11 +89,12 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
   const std::uint64_t room = rows_.room().step_bytes / 2;  // the counts of the pass before are still there
   if (HeldSteps::bytes_for(items) > room) return;
   narrowed_ = std::make_unique<HeldSteps>(range, room);
-  for_each_key([&] {
+  const auto begin = [&] {
     return [&part = narrowed_->part()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
       part.add(region, key, bytes, gain);
     };
-  });
+  };
+  for_each_key(begin, std::bit_cast<double>(range.first));  // the cut is in the range: nothing below it is asked for
   if (narrowed_->complete()) held_ = narrowed_.get();
 }
 
@@ -145,7 +146,7 @@ Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::We
       if (range.holds(key)) found.push_back({key, region, goal.weight(bytes, gain)});
     };
   };
-  holds(range) ? for_each_held(begin) : for_each_key(begin);
+  holds(range) ? for_each_held(begin) : for_each_key(begin, std::bit_cast<double>(range.first));
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);

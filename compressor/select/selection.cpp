@@ -212,7 +212,7 @@ LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, Regio
   LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
   if (!region.open) return choices;
-  rule_.gains(tree_, rows, gains);
+  rule_.gains(tree_, rows, gains, cut_.threshold);
   for (const LeafGain& leaf : gains) {
     // Keys fall from step to step: the last one above the cut is the width.
     for (std::uint32_t i = 0; i < leaf.step_count && step_key(leaf, i, region.key) > cut_.threshold; ++i) {
