@@ -230,12 +230,17 @@ class Fitter {
 // Whether levels of half the bits may do better than these, for `values` that are quantised to `bits`. Such values lie
 // so near to those levels that hardly any of them has more than three codes of this width on it, but for a few values
 // that lie beside. At 16 bits a leaf has no codes enough to tell.
-bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
+bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits,
+                  const LeafRepeats& repeats) {
   if (bits == 16) return true;
+  std::array<float, kLeafVoxels> distinct;
+  std::span<const float> seen = values;
+  if (repeats.twins) seen = std::span(distinct).first(take_distinct(values.data(), repeats, distinct.data()));
   std::array<std::uint16_t, kLeafVoxels> all;
-  const std::span<std::uint16_t> codes = std::span(all).first(values.size());
-  quantise(values, quantiser, codes);
-  const auto few = static_cast<unsigned>(codes.size() >> (bits + 3));  // an eighth of what codes taken alike would have
+  const std::span<std::uint16_t> codes = std::span(all).first(seen.size());
+  quantise(seen, quantiser, codes);
+  // An eighth of what codes taken alike would have.
+  const auto few = static_cast<unsigned>((values.size() >> (bits + 3)) / repeats.times());
   return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
 
@@ -261,7 +266,7 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
   };
   std::array<Quantiser, 5> tried{fit(bits)};  // each at half the bits of the one before
   std::size_t count = 1;
-  for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width); width /= 2) {
+  for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width, repeats); width /= 2) {
     tried[count++] = fit(width / 2);
   }
   if (count == 1) return tried[0];
