@@ -42,9 +42,7 @@ class HeldSteps {
       if (!(key > 0)) return;
       if (!all_->range_.holds(key)) {
         outside_.add(all_->range_, key, {bytes, 1});
-      } else if (counts_) {
-        counts_->add(key, bytes);
-      } else if (room_ > 0 || grow()) {
+      } else if (!counts_ && (room_ > 0 || grow())) {
         *next_++ = {key, gain, static_cast<std::int32_t>(region), static_cast<std::uint32_t>(bytes)};
         --room_;
       } else if (counts_) {

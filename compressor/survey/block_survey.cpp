@@ -283,7 +283,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
     };
     if (sharing == Sharing::alone) return survey(0, volume(extent));
     // Rows of a sample are short; of leaves that repeat their values several are looked at at once.
-    const std::int64_t least_run = block.parts == nullptr ? 4 : 4 * static_cast<std::int64_t>(kLeafLanes);
+    const std::size_t least_run = block.parts == nullptr ? 4 : 4 * kLeafLanes;
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), least_run),
                       [&](const auto& range) { survey(range.begin(), range.end()); });
   };

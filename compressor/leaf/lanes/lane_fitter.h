@@ -107,7 +107,7 @@ class LaneFitter {
       assign(q, active, sums);
       Longs8 counted;
       beside_doubles(active, counted);
-      best_ = counted & (sums.squares < best_) ? sums.squares : best_;
+      best_ = (counted & (sums.squares < best_)) ? sums.squares : best_;
       if (round + 1 == rounds) return;
       Ints8 goes_on;
       beside_floats(sums.squares < last, goes_on);
