@@ -46,19 +46,28 @@ std::size_t take_distinct(const Value* values, const LeafRepeats& repeats, Value
 
 /// Writes each of them to all values of its group.
 template <typename Value>
-void repeat_distinct(const Value* distinct, const LeafRepeats& repeats, Value* values) {
+[[gnu::always_inline]] inline void repeat_groups(const Value* distinct, const LeafRepeats& repeats, Value* values) {
   for (std::size_t x = 0; x < 8; x += repeats.planes) {
-    for (std::size_t y = 0; y < 8; y += repeats.rows) {
+    for (std::size_t y = 0; y < 8; y += repeats.rows, distinct += 8 / repeats.row) {
       std::array<Value, 8> row;
-      for (std::size_t z = 0; z < 8; z += repeats.row, ++distinct) {
-        for (std::size_t i = z; i < z + repeats.row; ++i) row[i] = *distinct;
-      }
+      for (std::size_t z = 0; z < 8; ++z) row[z] = distinct[z / repeats.row];
       for (std::size_t plane = x; plane < x + repeats.planes; ++plane) {
         for (std::size_t i = y; i < y + repeats.rows; ++i)
           std::memcpy(values + 64 * plane + 8 * i, row.data(), sizeof row);
       }
     }
   }
+}
+
+template <typename Value>
+void repeat_distinct(const Value* distinct, const LeafRepeats& repeats, Value* values) {
+  const auto is_cube = [&](std::size_t side) {
+    return repeats.planes == side && repeats.rows == side && repeats.row == side;
+  };
+  // Lengths that the compiler knows.
+  if (is_cube(2)) return repeat_groups(distinct, {true, 2, 2, 2}, values);
+  if (is_cube(4)) return repeat_groups(distinct, {true, 4, 4, 4}, values);
+  repeat_groups(distinct, repeats, values);
 }
 
 }  // namespace weir
