@@ -12,7 +12,7 @@
 namespace weir {
 namespace {
 
-constexpr std::uint32_t kLargestCode = 65535;
+constexpr std::int32_t kLargestCode = 65535;
 /// Below this the unit of a value's last bit has no reciprocal in float.
 constexpr float kSmallest = 0x1p-100F;
 
@@ -45,20 +45,21 @@ std::optional<LeafLattice> find_lattice(std::span<const float> values, float min
   // The unit of the largest magnitude's last bit: the largest value is below 2^24 of them.
   const int exponent = std::ilogb(magnitude) - 23;
   std::array<std::int32_t, 512> integers;
-  if (!to_integers(values.data(), values.size(), std::ldexp(1.0F, -exponent), integers.data())) return std::nullopt;
+  const float scale = std::ldexp(1.0F, -exponent);
+  if (!to_integers(values.data(), values.size(), scale, integers.data())) return std::nullopt;
 
   const auto used = std::span(integers).first(values.size());
-  const auto lowest = static_cast<std::int32_t>(std::ldexp(min, -exponent));
-  const auto highest = static_cast<std::int32_t>(std::ldexp(max, -exponent));
+  const auto lowest = static_cast<std::int32_t>(min * scale);
+  const auto highest = static_cast<std::int32_t>(max * scale);
   const std::int32_t range = highest - lowest;
   std::int32_t step = range;
   for (const std::int32_t value : used) {
     const std::int32_t above = value - lowest;
     if (above % step == 0) continue;
     step = std::gcd(step, above);
+    if (range / step > kLargestCode) return std::nullopt;
     if (step == 1) break;
   }
-  if (range / step > static_cast<std::int32_t>(kLargestCode)) return std::nullopt;
   // code * step is a multiple of the power of two in step: beyond 2^24 of those it would round.
   if (range / (step & -step) >= 1 << 24) return std::nullopt;
   return LeafLattice{std::ldexp(static_cast<float>(step), exponent), static_cast<std::uint32_t>(range / step)};

@@ -6,19 +6,13 @@
 #include <limits>
 
 #include "compressor/leaf/code_sums.h"
+#include "compressor/leaf/quantiser_fit.h"
 #include "compressor/leaf/taken_codes.h"
 #include "compressor/leaf/twin_sums.h"
 #include "format/base/index.h"
 
 namespace weir {
 namespace {
-
-/// Quanta below this have no reciprocal.
-constexpr float kLeastQuantum = 0x1p-120F;
-/// Squared errors below this part of the squared deviations are measured, for any number of bits.
-constexpr double kCancelled = 1e-4;
-/// Levels are at most this far apart, so that code * quantum stays a number: values may be twice as far.
-constexpr double kWidest = 0x1.fffffp+127;
 
 using Deviations = std::array<float, kLeafVoxels>;
 
@@ -236,12 +230,17 @@ class Fitter {
 // Whether levels of half the bits may do better than these, for `values` that are quantised to `bits`. Such values lie
 // so near to those levels that hardly any of them has more than three codes of this width on it, but for a few values
 // that lie beside. At 16 bits a leaf has no codes enough to tell.
-bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits) {
+bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits,
+                  const LeafRepeats& repeats) {
   if (bits == 16) return true;
+  std::array<float, kLeafVoxels> distinct;
+  std::span<const float> seen = values;
+  if (repeats.twins) seen = std::span(distinct).first(take_distinct(values.data(), repeats, distinct.data()));
   std::array<std::uint16_t, kLeafVoxels> all;
-  const std::span<std::uint16_t> codes = std::span(all).first(values.size());
-  quantise(values, quantiser, codes);
-  const auto few = static_cast<unsigned>(codes.size() >> (bits + 3));  // an eighth of what codes taken alike would have
+  const std::span<std::uint16_t> codes = std::span(all).first(seen.size());
+  quantise(seen, quantiser, codes);
+  // An eighth of what codes taken alike would have.
+  const auto few = static_cast<unsigned>((values.size() >> (bits + 3)) / repeats.times());
   return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
 
@@ -267,7 +266,7 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
   };
   std::array<Quantiser, 5> tried{fit(bits)};  // each at half the bits of the one before
   std::size_t count = 1;
-  for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width); width /= 2) {
+  for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width, repeats); width /= 2) {
     tried[count++] = fit(width / 2);
   }
   if (count == 1) return tried[0];
@@ -279,22 +278,15 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
 
 std::array<double, 3> estimated_errors(std::span<const float> values, const ValueRange& range, unsigned below_bits,
                                        double squares, const LeafRepeats& repeats) {
-  // The rounds, and what those left out gain on average: 0.1 dB at 1 bit, 0.4 dB at 2, 0.2 dB at 4, so that the
-  // estimates of a volume's leaves are neither too low nor too high.
-  struct Start {
-    double share;
-    int rounds;
-    double gain;
-  };
-  constexpr std::array<Start, 3> kStarts{{{0.7, 2, 0.97}, {1, 3, 0.92}, {1, 1, 0.955}}};
   std::array<double, 3> errors{1, 1, 1};
   if (below_bits <= 1 || !divisible(range, 1)) return errors;
   Fitter fitter(values, range, repeats);
   for (unsigned log2 = 0; log2 < errors.size() && 1U << log2 < below_bits; ++log2) {
     if (!divisible(range, 1U << log2)) continue;
     fitter.set_bits(1U << log2);
-    fitter.start(kStarts[log2].share, kStarts[log2].rounds);
-    if (fitter.found()) errors[log2] = std::min(1.0, kStarts[log2].gain * fitter.squared_error() / squares);
+    const EstimateStart& start = kEstimateStarts[log2];
+    fitter.start(start.share, start.rounds);
+    if (fitter.found()) errors[log2] = std::min(1.0, start.gain * fitter.squared_error() / squares);
   }
   return errors;
 }

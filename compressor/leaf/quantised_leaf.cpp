@@ -26,37 +26,61 @@ void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t
   });
 }
 
-Quantiser choose_quantiser(std::span<const float> values, unsigned bits, Fit fit, const LeafRepeats& repeats) {
+// `distinct`: the values without those that repeat others.
+Quantiser choose_quantiser(std::span<const float> values, std::span<const float> distinct, unsigned bits, Fit fit,
+                           const LeafRepeats& repeats) {
   const ValueRange range = leaf_range(values, repeats);
   // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
   if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front()), 0};
-  if (const auto lattice = find_lattice(values, range.min, range.max); lattice && bits_for(lattice->largest) <= bits) {
+  if (const auto lattice = find_lattice(distinct, range.min, range.max);
+      lattice && bits_for(lattice->largest) <= bits) {
     return {range.min, lattice->step, lattice->largest};
   }
   return fit == Fit::largest ? range_quantiser(range, bits) : fit_quantiser(values, range, bits, repeats);
 }
 
-WEIR_SIMD void decode(const std::uint16_t* codes, const Quantiser& quantiser, float* decoded) {
+WEIR_SIMD void decode(const std::uint16_t* codes, std::size_t count, const Quantiser& quantiser, float* decoded) {
   const Quantiser q = quantiser;
-  for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const float product = static_cast<float>(codes[i]) * q.quantum;  // as dequantize(), which no clone could inline
     decoded[i] = product + q.minimum;
   }
 }
 
-// Quantises the in-domain values of a leaf that reaches outside.
+// Quantises and decodes a leaf that lies in the domain.
+void quantise_whole(const LeafValues& values, Fit fit, const LeafRepeats& repeats, QuantisedLeaf& leaf) {
+  const unsigned bits = 1U << leaf.bits_log2;
+  if (!repeats.twins) {
+    leaf.quantiser = choose_quantiser(values, values, bits, fit, repeats);
+    quantise(values, leaf.quantiser, leaf.codes);
+    decode(leaf.codes.data(), kLeafVoxels, leaf.quantiser, leaf.decoded.data());
+    return;
+  }
+  LeafValues room;
+  std::array<std::uint16_t, kLeafVoxels> codes;
+  const std::size_t count = take_distinct(values.data(), repeats, room.data());
+  const auto distinct = std::span<const float>(room).first(count);
+  leaf.quantiser = choose_quantiser(values, distinct, bits, fit, repeats);
+  quantise(distinct, leaf.quantiser, std::span(codes).first(count));
+  decode(codes.data(), count, leaf.quantiser, room.data());
+  repeat_distinct(codes.data(), repeats, leaf.codes.data());
+  repeat_distinct(room.data(), repeats, leaf.decoded.data());
+}
+
+// Quantises and decodes the in-domain values of a leaf that reaches outside.
 void quantise_part(const LeafValues& values, const Box& node, const Box& inside, Fit fit, QuantisedLeaf& leaf) {
   LeafValues compact;
   std::size_t count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { compact[count++] = values[i]; });
   const auto seen = std::span<const float>(compact).first(count);
   const unsigned bits = 1U << leaf.bits_log2;
-  leaf.quantiser = choose_quantiser(seen, bits, fit, {});
+  leaf.quantiser = choose_quantiser(seen, seen, bits, fit, {});
   std::array<std::uint16_t, kLeafVoxels> codes;
   quantise(seen, leaf.quantiser, std::span(codes).first(count));
   count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
   extend_outside(node, inside, leaf.codes);
+  decode(leaf.codes.data(), kLeafVoxels, leaf.quantiser, leaf.decoded.data());
 }
 
 // `values` inside the domain, and outside it what is decoded there, which is no error.
@@ -127,12 +151,10 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   leaf.bits_log2 = bits_log2;
   const bool whole = inside == node;
   if (whole) {
-    leaf.quantiser = choose_quantiser(values, 1U << bits_log2, fit, repeats);
-    quantise(values, leaf.quantiser, leaf.codes);
+    quantise_whole(values, fit, repeats, leaf);
   } else {
     quantise_part(values, node, inside, fit, leaf);
   }
-  decode(leaf.codes.data(), leaf.quantiser, leaf.decoded.data());
 
   LeafValues part;
   if (!whole) part = inside_only(source, leaf.decoded, node, inside);

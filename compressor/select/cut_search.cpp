@@ -25,41 +25,6 @@ PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) cons
   return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
 }
 
-// The weights of a range of keys, in buckets of 1 << shift of their bits; and of what lies outside it.
-struct CutSearch::Counted {
-  // As many as a core's cache holds.
-  static constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 14U;
-
-  explicit Counted(const KeyRange& keys) : range(keys) {
-    while ((range.end - range.first - 1) >> shift >= kMostBuckets) ++shift;
-    buckets.resize(((range.end - range.first - 1) >> shift) + 1);
-  }
-  void add(double key, PurchaseGoal::Weight weight) {
-    if (!(key > 0)) return;
-    const PurchaseSum one{weight, 1};
-    if (range.holds(key)) {
-      buckets[(key_bits(key) - range.first) >> shift] += one;
-    } else {
-      outside.add(range, key, one);
-    }
-  }
-  PurchaseGoal::Weight all() const {
-    PurchaseGoal::Weight sum = 0;
-    for (const PurchaseSum& bucket : buckets) sum += bucket.weight;
-    for (const PurchaseSum& part : outside.parts) sum += part.weight;
-    return sum;
-  }
-  KeyRange keys_of(std::size_t bucket) const {
-    const std::uint64_t first = range.first + (std::uint64_t{bucket} << shift);
-    return {first, std::min(range.end, first + (std::uint64_t{1} << shift))};
-  }
-
-  KeyRange range;
-  unsigned shift = 0;
-  std::vector<PurchaseSum> buckets;
-  OutsideSums outside;
-};
-
 KeyRange CutSearch::likely_keys(const GainRule& rule) {
   if (!rule.packed || !rule.packed->window) return kAllKeys;
   return {key_bits(rule.packed->window->low()), key_bits(rule.packed->window->high()) + 1};
@@ -68,14 +33,14 @@ KeyRange CutSearch::likely_keys(const GainRule& rule) {
 KeyRange CutSearch::every_key() { return {kAllKeys.first, kAllKeys.end + 1}; }
 
 template <typename Begin>
-void CutSearch::for_each_key(const Begin& begin) const {
+void CutSearch::for_each_key(const Begin& begin, double least_key) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     const auto visit = begin();
     visit(index, region.key, rule_.region_bytes(), region.opening_gain);
-    if (region.key == 0) return;  // no leaf in it has a higher one
+    if (region.key == 0 || region.key < least_key) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
-    rule_.gains(tree_, rows, gains);
+    rule_.gains(tree_, rows, gains, least_key);
     for_each_step(gains, region.key,
                   [&](double key, const LeafStep& step) { visit(index, key, step.bytes, step.gain); });
   });
@@ -90,35 +55,54 @@ void CutSearch::for_each_held(const Begin& begin) const {
   });
 }
 
-CutSearch::Counted CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) const {
-  tbb::enumerable_thread_specific<Counted> local{Counted(range)};
+KeyCounts CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) const {
+  KeyCounts total(range);
+  if (counts_ != nullptr && goal.unit == 0 && counts_->range == range) {
+    total = *counts_;
+  } else {
+    count_steps(goal, total);
+  }
+  for (const Upper& upper : tree_.uppers) total.add(upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
+  return total;
+}
+
+void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
+  tbb::enumerable_thread_specific<KeyCounts> local{KeyCounts(total.range)};
   const auto begin = [&] {
     return [&goal, &counted = local.local()](std::int64_t, double key, std::uint64_t bytes, double gain) {
       counted.add(key, goal.weight(bytes, gain));
     };
   };
-  Counted total(range);
-  if (holds(goal.unit == 0 ? range : every_key())) {
+  if (holds(goal.unit == 0 ? total.range : every_key())) {
     for_each_held(begin);
     total.outside = held_->outside();
   } else {
     for_each_key(begin);
   }
-  for (const Counted& counted : local) {
-    for (std::size_t i = 0; i < total.buckets.size(); ++i) total.buckets[i] += counted.buckets[i];
-    total.outside += counted.outside;
-  }
+  for (const KeyCounts& counted : local) total += counted;
   rows_.team().sum<PurchaseSum>(total.buckets);
   rows_.team().sum<PurchaseSum>(total.outside.parts);
-  for (const Upper& upper : tree_.uppers) total.add(upper.key, goal.weight(rule_.upper_bytes(), upper.opening_gain));
-  return total;
 }
 
-Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
+void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseGoal& goal) {
+  if (holds(range) || goal.unit != 0 || !rows_.team().alone()) return;
+  const std::uint64_t room = rows_.room().step_bytes / 2;  // the counts of the pass before are still there
+  if (HeldSteps::bytes_for(items) > room) return;
+  narrowed_ = std::make_unique<HeldSteps>(range, room);
+  const auto begin = [&] {
+    return [&part = narrowed_->part()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
+      part.add(region, key, bytes, gain);
+    };
+  };
+  for_each_key(begin, std::bit_cast<double>(range.first));  // the cut is in the range: nothing below it is asked for
+  if (narrowed_->complete()) held_ = narrowed_.get();
+}
+
+Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
   KeyRange range = likely_keys(rule_);
   for (bool first = true;; first = false) {
-    const Counted counted = count(range, goal);
+    const KeyCounts counted = count(range, goal);
     if (first && goal.left) {
       const PurchaseGoal::Weight all = counted.all();
       goal.limit = all > *goal.left ? all - *goal.left : 0;
@@ -141,10 +125,11 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) const {
       range = {kAllKeys.first, range.first};
       continue;
     }
-    const bool few = counted.buckets[bucket - 1].items <= kSortedItems;
+    const std::uint64_t items = counted.buckets[bucket - 1].items;
     range = counted.keys_of(bucket - 1);
     if (range.end - range.first == 1) return {std::bit_cast<double>(range.first), above};
-    if (few) return sorted_threshold(goal, above, range);
+    if (items > kSortedItems) hold(range, items, goal);
+    if (items <= kSortedItems) return sorted_threshold(goal, above, range);
   }
 }
 
@@ -161,7 +146,7 @@ Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::We
       if (range.holds(key)) found.push_back({key, region, goal.weight(bytes, gain)});
     };
   };
-  holds(range) ? for_each_held(begin) : for_each_key(begin);
+  holds(range) ? for_each_held(begin) : for_each_key(begin, std::bit_cast<double>(range.first));
   std::vector<Purchase> items;
   for (const std::vector<Purchase>& some : local) items.insert(items.end(), some.begin(), some.end());
   rows_.team().concatenate(items);

@@ -6,11 +6,12 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "compressor/select/held_steps.h"
-#include "compressor/select/key_sums.h"
+#include "compressor/select/key_counts.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/select/step_keys.h"
@@ -48,9 +49,11 @@ struct Threshold {
 class CutSearch {
  public:
   /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object. `held`: the steps
-  /// of likely_keys(), or of every_key() where an error is the goal, or null.
-  CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held)
-      : rule_(rule), rows_(rows), tree_(tree), held_(held) {}
+  /// of likely_keys(), or of every_key() where an error is the goal, or null. `counts`: what those of likely_keys()
+  /// take, or null.
+  CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held,
+            const KeyCounts* counts)
+      : rule_(rule), rows_(rows), tree_(tree), held_(held), counts_(counts) {}
 
   /// Where the cut is looked for first.
   static KeyRange likely_keys(const GainRule& rule);
@@ -59,18 +62,19 @@ class CutSearch {
   static KeyRange every_key();
 
   /// The smallest key for which everything above it can be bought for `goal`.
-  Threshold find_threshold(PurchaseGoal& goal) const;
+  Threshold find_threshold(PurchaseGoal& goal);
 
  private:
-  struct Counted;
-
-  // Of all that can be bought, by the range.
-  Counted count(const KeyRange& range, const PurchaseGoal& goal) const;
+  // Of all that can be bought, by the range; and without the upper nodes.
+  KeyCounts count(const KeyRange& range, const PurchaseGoal& goal) const;
+  void count_steps(const PurchaseGoal& goal, KeyCounts& total) const;
+  // Holds the `items` steps of the range where there is room.
+  void hold(const KeyRange& range, std::uint64_t items, const PurchaseGoal& goal);
   Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above, const KeyRange& range) const;
   // Calls begin() for each region, and what that returned with (region, key, bytes, gain) for everything below the
-  // upper nodes that can be bought there.
+  // upper nodes that can be bought there; what has a key below `least_key` may be left out.
   template <typename Begin>
-  void for_each_key(const Begin& begin) const;
+  void for_each_key(const Begin& begin, double least_key = 0) const;
   // The same with the parts of the held steps, of their range.
   template <typename Begin>
   void for_each_held(const Begin& begin) const;
@@ -80,6 +84,8 @@ class CutSearch {
   const RowStore& rows_;
   const TreeRegions& tree_;
   const HeldSteps* held_;
+  const KeyCounts* counts_;
+  std::unique_ptr<HeldSteps> narrowed_;                         // of the range that the cut was found in
   mutable tbb::enumerable_thread_specific<RegionGains> gains_;  // of the region that a thread looks at
 };
 

@@ -1,10 +1,17 @@
 #include "compressor/select/held_steps.h"
 
+#include <tbb/task_arena.h>
+
 namespace weir {
 
 bool HeldSteps::Part::grow() {
   if (all_->overflown_ || all_->chunk_count_++ >= all_->most_chunks_) {
     all_->overflown_ = true;
+    if (all_->counting_) {
+      auto counts = std::make_unique<KeyCounts>(all_->range_);
+      count_into(*counts);
+      counts_ = std::move(counts);
+    }
     chunks_.clear();  // of use to nobody
     return false;
   }
@@ -14,19 +21,47 @@ bool HeldSteps::Part::grow() {
   return true;
 }
 
+std::vector<std::span<const HeldSteps::Step>> HeldSteps::Part::chunks() const {
+  std::vector<std::span<const Step>> all;
+  for (const PageBuffer& chunk : chunks_) {
+    const std::size_t left = &chunk == &chunks_.back() ? room_ : 0;
+    all.emplace_back(reinterpret_cast<const Step*>(chunk.bytes().data()), kChunkBytes / sizeof(Step) - left);
+  }
+  return all;
+}
+
+void HeldSteps::Part::count_into(KeyCounts& counts) const {
+  for (const std::span<const Step>& chunk : chunks()) {
+    for (const Step& step : chunk) counts.add(step.key, step.bytes);
+  }
+}
+
+std::uint64_t HeldSteps::bytes_for(std::uint64_t steps) {
+  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  return steps * sizeof(Step) + threads * kChunkBytes;
+}
+
 OutsideSums HeldSteps::outside() const {
   OutsideSums sums;
   for (const Part& part : parts_) sums += part.outside_;
   return sums;
 }
 
+KeyCounts HeldSteps::counts() const {
+  KeyCounts total(range_);
+  for (const Part& part : parts_) {
+    part.count_into(total);
+    if (part.counts_) total += *part.counts_;
+  }
+  total.outside = outside();
+  return total;
+}
+
 std::vector<std::span<const HeldSteps::Step>> HeldSteps::chunks() const {
   std::vector<std::span<const Step>> all;
   for (const Part& part : parts_) {
-    for (const PageBuffer& chunk : part.chunks_) {
-      const std::size_t left = &chunk == &part.chunks_.back() ? part.room_ : 0;
-      all.emplace_back(reinterpret_cast<const Step*>(chunk.bytes().data()), kChunkBytes / sizeof(Step) - left);
-    }
+    const std::vector<std::span<const Step>> of_part = part.chunks();
+    all.insert(all.end(), of_part.begin(), of_part.end());
   }
   return all;
 }

@@ -172,6 +172,15 @@ void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float t
   out.add(leaf, step_to(width, LeafWidth::tile, row.sse_about(tile)));
 }
 
+bool GainRule::keys_below(double least_key, const LeafRow& row, float tile, const Weights& weights) const {
+  if (!(least_key > std::numeric_limits<double>::denorm_min()) || metric != Metric::sse || max_error) return false;
+  // The first step saves no more than all of the error, and takes no less than the least width; others have lower keys,
+  // but for roundings.
+  constexpr double kRoundings = 1 + 1e-9;
+  const auto least_bytes = static_cast<double>(leaf_bytes(LeafWidth::bits1));
+  return weights.tile * row.sse_about(tile) / least_bytes * kRoundings < least_key;
+}
+
 void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
                          RegionGains& out) const {
   if (max_error) return add_bounded_step(row, voxels, tile, weights, leaf, out);
@@ -219,11 +228,6 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
   if (leaf.step_count > 0) {
     leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, last_width(leaf));
   }
-}
-
-std::uint64_t GainRule::region_bytes() const {
-  if (!packed) return nvdb::kLowerBytes;
-  return kChunkCost + (packed->preview ? nvdb::kLowerBytes : 0);
 }
 
 namespace {
@@ -332,7 +336,7 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
     out.add(leaf, packed_step(hull.last(), exact));
 }
 
-void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const {
+void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key) const {
   const NodeLattice& leaves = tree.leaves;
   const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
   const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
@@ -366,8 +370,9 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     out.begin(gain);
     if (packed) {
       add_packed_steps(rows.ladder(leaf), region, *lengths, row, voxels, reach, gain, out);
-    } else {
-      add_steps(row, voxels, tile, weights_of(reach, tile), gain, out);
+    } else if (const Weights weights = weights_of(reach, tile);
+               gain.required || !keys_below(least_key, row, tile, weights)) {
+      add_steps(row, voxels, tile, weights, gain, out);
     }
     out.end(gain);
   });

@@ -96,7 +96,10 @@ struct GainRule {
   std::optional<PackedRule> packed = std::nullopt;
 
   /// What opening a region takes in the file, and opening an upper node.
-  std::uint64_t region_bytes() const;
+  std::uint64_t region_bytes() const {
+    if (!packed) return nvdb::kLowerBytes;
+    return kChunkCost + (packed->preview ? nvdb::kLowerBytes : 0);
+  }
   std::uint64_t upper_bytes() const { return packed ? 0 : nvdb::kUpperBytes; }
 
   /// Weight of the error where a block of that reach reads `tile`.
@@ -104,8 +107,9 @@ struct GainRule {
 
   /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, those that hold
   /// non-finite values to keep, and packed blocks without a finite value that would not read the background are
-  /// required.
-  void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out) const;
+  /// required. Leaves that are not, and whose steps all have keys below `least_key`, may have none: to find their steps
+  /// is most of the work.
+  void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key = 0) const;
 
   /// Adds a packed block's steps to `out`: `leaf` says whether a block without a stream reads the same bits, and
   /// whether it is required. `reach` is null where everything counts alike.
@@ -124,6 +128,8 @@ struct GainRule {
   void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
                  RegionGains& out) const;
   Weights weights_of(const MinMax* reach, float tile) const;
+  // Whether no step of a leaf that may be a tile has a key of `least_key`, as far as is known without its steps.
+  bool keys_below(double least_key, const LeafRow& row, float tile, const Weights& weights) const;
   // The paper's metrics: gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, RegionGains& leaves) const;
 };

@@ -28,14 +28,14 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   RegionKeys keys(rule_, tree_);
   if (search != Search::no && rows_.team().alone()) {
     const KeyRange range = search == Search::of_bytes ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
-    held_ = std::make_unique<HeldSteps>(range, rows_.room().step_bytes);
+    held_ = std::make_unique<HeldSteps>(range, rows_.room().step_bytes, search == Search::of_bytes);
   }
   tbb::enumerable_thread_specific<RegionGains> local_gains;
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
     RegionGains& gains = local_gains.local();
     rule_.gains(tree_, region_rows, gains);
     keys.summarize_region(region, region_rows, gains);
-    if (held_ && held_->complete()) hold(region, gains);
+    if (held_ && held_->takes_more()) hold(region, gains);
     Totals& total = totals.local();
     for (const LeafGain& leaf : gains) {
       total.lossy += leaf.lossless ? 0 : 1;
@@ -47,7 +47,10 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
       total.minimum.leaf_bytes += leaf.steps[0].bytes;
     }
   });
-  if (held_ && !held_->complete()) held_.reset();
+  if (held_ && !held_->complete()) {
+    if (held_->takes_more()) counts_ = std::make_unique<KeyCounts>(held_->counts());
+    held_.reset();
+  }
   rows_.team().gather(tree_.regions);
   keys.summarize_uppers();
 
@@ -193,7 +196,7 @@ void Selection::choose_error(double squared_error) {
 }
 
 void Selection::buy_for(PurchaseGoal goal) {
-  const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get()).find_threshold(goal);
+  const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get(), counts_.get()).find_threshold(goal);
   held_.reset();
   cut_.threshold = threshold.key;
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
@@ -209,7 +212,7 @@ LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, Regio
   LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
   if (!region.open) return choices;
-  rule_.gains(tree_, rows, gains);
+  rule_.gains(tree_, rows, gains, cut_.threshold);
   for (const LeafGain& leaf : gains) {
     // Keys fall from step to step: the last one above the cut is the width.
     for (std::uint32_t i = 0; i < leaf.step_count && step_key(leaf, i, region.key) > cut_.threshold; ++i) {

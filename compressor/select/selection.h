@@ -91,8 +91,9 @@ class Selection {
   const RowStore& rows_;
   TreeRegions& tree_;
   SelectionBytes bytes_;
-  std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
-  std::unique_ptr<HeldSteps> held_;   // until the cut is found
+  std::uint64_t required_bytes_ = 0;   // of what is bought whatever the goal
+  std::unique_ptr<HeldSteps> held_;    // until the cut is found
+  std::unique_ptr<KeyCounts> counts_;  // of steps that are too many to be held
   Cut cut_;
 };
 

@@ -25,6 +25,7 @@ struct KeyRange {
   std::uint64_t end;
   bool holds(double key) const { return key_bits(key) - first < end - first; }
   bool holds(const KeyRange& range) const { return first <= range.first && range.end <= end; }
+  bool operator==(const KeyRange&) const = default;
 };
 
 /// Key of step `i` of a leaf in a region of `region_key`: never above it, and falling from step to step.

@@ -5,26 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <span>
 #include <vector>
 
+#include "compressor/leaf/finite_values.h"
 #include "compressor/leaf/leaf_in_block.h"
 #include "compressor/packed/block_values.h"
+#include "compressor/survey/side_by_side.h"
 
 namespace weir {
-
-namespace {
-
-// Empty space is not worth a way to a device.
-bool holds_one_value(std::span<const float> values) {
-  const auto first = std::bit_cast<std::uint32_t>(values.front());
-  return std::all_of(values.begin(), values.end(), [&](float v) { return std::bit_cast<std::uint32_t>(v) == first; });
-}
-
-}  // namespace
 
 BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
   if (!info.values_as_stored()) return {};
@@ -62,16 +53,25 @@ class BlockSurvey::Leaves {
         faces_(faces),
         ladders_(ladders) {}
 
+  // Takes the row of a leaf that was held back.
+  auto keep_row(Tally& tally) const {
+    return [this, &tally](const SideBySide::Leaf& leaf, std::span<const float> distinct, const LeafRow& row) {
+      rows_[leaf.at] = row;
+      tally.finite += row.finite;
+      count_values(distinct, kLeafVoxels / distinct.size(), row, tally);
+      add_sums(leaf.linear, leaf.at, tally);
+    };
+  }
+
   // Leaves [first, end) of the block, x fastest.
   void run(std::int64_t first, std::int64_t end, Tally& tally) const {
+    SideBySide held(widths_);
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
-      rows_[at] =
-          survey_leaf(leaf, faces_.empty() ? nullptr : &faces_[at], ladders_.empty() ? nullptr : &ladders_[at], tally);
-      const std::int64_t linear = leaves_.linear(leaf);
-      tally.sums.add(linear, rows_[at]);
-      if (!faces_.empty()) tally.sums.add(linear, faces_[at]);
+      if (!survey_leaf(leaf, at, held, tally)) return;
+      add_sums(leaves_.linear(leaf), at, tally);
       if (!ladders_.empty()) add_sum(leaf, rows_[at], ladders_[at], tally);
     });
+    held.finish(keep_row(tally));
   }
 
   // Their ladders, once their rows are there, by what a coder has found of them where it has.
@@ -96,6 +96,10 @@ class BlockSurvey::Leaves {
   }
 
  private:
+  void add_sums(std::int64_t linear, std::size_t at, Tally& tally) const {
+    tally.sums.add(linear, rows_[at]);
+    if (!faces_.empty()) tally.sums.add(linear, faces_[at]);
+  }
   void add_sum(const Index3& leaf, const LeafRow& row, const PackedLadder& ladder, Tally& tally) const {
     tally.sums.add(leaves_.linear(leaf), ladder, ladder_part(row, leaves_.voxels(leaf).voxels()));
   }
@@ -136,9 +140,12 @@ class BlockSurvey::Leaves {
     return {values.data(), static_cast<std::size_t>(volume(extent))};
   }
 
-  LeafRow survey_leaf(const Index3& leaf, LeafFaces* faces, PackedLadder* ladder, Tally& tally) const {
+  // Surveys the leaf at `at` of the block, or holds it back, and returns false.
+  bool survey_leaf(const Index3& leaf, std::size_t at, SideBySide& held, Tally& tally) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
+    LeafRow& row = rows_[at];
+    PackedLadder* const ladder = ladders_.empty() ? nullptr : &ladders_[at];
     LeafRoom room;
     const LeafInBlock in_part = block_.parts == nullptr ? LeafInBlock{} : leaf_in_block(block_, inside, room);
     const std::span<const float> seen = block_.parts == nullptr ? gather(leaf, room.values) : in_part.values;
@@ -146,9 +153,15 @@ class BlockSurvey::Leaves {
     const Index3& by = in_part.by;
     const LeafRepeats repeats = seen.size() == kLeafVoxels ? LeafRepeats::of(by.y, by.z) : LeafRepeats{};
     const std::size_t count = seen.size();
-    LeafRow row = summarize_leaf(seen, sample_position(leaves_.linear(leaf), count), tally.uniform, distinct, repeats);
-    if (kept_ != nullptr) kept_->add(leaves_.linear(leaf), seen, row.uniform() && holds_one_value(seen));
-    if (faces != nullptr) *faces = faces_of(seen, extent);
+    const std::int64_t linear = leaves_.linear(leaf);
+    const std::size_t sample = sample_position(linear, count);
+    if (!faces_.empty()) faces_[at] = faces_of(seen, extent);
+    if (ladder == nullptr && count == kLeafVoxels && LaneShape::suits(by) && LeafLanes::takes(distinct)) {
+      held.add({at, linear, seen[sample], leaf_digest(seen)}, distinct, by, keep_row(tally));
+      return false;
+    }
+    row = summarize_leaf(seen, sample, tally.uniform, distinct, repeats);
+    if (kept_ != nullptr) kept_->add(linear, seen, row.uniform() && holds_one_value(seen));
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
     if (row.finite == count) {
@@ -157,7 +170,7 @@ class BlockSurvey::Leaves {
     } else {
       count_non_finite(seen, inside, row, tally);
     }
-    return row;
+    return true;
   }
 
   PackedLadder ladder_of(const Index3& leaf, std::span<const float> values, const LeafRow& row, Tally& tally) const {
@@ -259,7 +272,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   // A coder looks at the blocks while their rows are made here.
   std::unique_ptr<LoadedBlocks> loaded;
   BlockCoder* const coder = ladders_ ? ladders_->surveying_coder() : nullptr;
-  if (coder != nullptr && !holds_one_value(block.values)) {
+  if (coder != nullptr && !holds_one_value(block.values)) {  // empty space is not worth the way
     const NodeLattice& lattice = rows_.leaves();
     loaded = coder->load(block.values, block.voxels, lattice.nodes_box(leaf_box));
     if (loaded) loaded->begin_survey(ladders_->rung_ask());
@@ -272,8 +285,9 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
       part(first, end, tallies_.local());
     };
     if (sharing == Sharing::alone) return survey(0, volume(extent));
-    constexpr std::int64_t kLeastRun = 4;  // rows of a sample are short
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), kLeastRun),
+    // Rows of a sample are short; of leaves that repeat their values several are looked at at once.
+    const std::size_t least_run = block.parts == nullptr ? 4 : 4 * kLeafLanes;
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), least_run),
                       [&](const auto& range) { survey(range.begin(), range.end()); });
   };
   run([&](std::int64_t first, std::int64_t end, Tally& tally) { leaves.run(first, end, tally); });

@@ -1,6 +1,8 @@
 #include "ingest/plan/block_parts.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -46,7 +48,11 @@ BlockParts::BlockParts(std::vector<RepeatedPart> parts, const Box& voxels)
     : parts_(std::move(parts)), leaves_(leaves_of(voxels)), part_of_(static_cast<std::size_t>(leaves_.voxels())) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    first_.push_back(first);
+    const auto shift = [](std::int64_t by) {
+      return static_cast<std::int64_t>(std::countr_zero(static_cast<std::uint64_t>(by)));
+    };
+    const Index3& by = parts_[i].by;
+    places_.push_back({first, parts_[i].groups(), {shift(by.x), shift(by.y), shift(by.z)}});
     first += static_cast<std::size_t>(parts_[i].values());
     for_each_index(leaves_of(parts_[i].box), [&](const Index3& leaf) {
       part_of_[static_cast<std::size_t>(linear_index(leaf - leaves_.lo, leaves_.extent()))] =
@@ -59,7 +65,7 @@ ConversionLoss BlockParts::read(VolumeSource& source, std::span<float> values) c
   ConversionLoss loss;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const RepeatedPart& part = parts_[i];
-    loss.add(source.read_repeated(part, values.subspan(first_[i], static_cast<std::size_t>(part.values()))));
+    loss.add(source.read_repeated(part, values.subspan(places_[i].first, static_cast<std::size_t>(part.values()))));
   }
   return loss;
 }
@@ -68,10 +74,10 @@ Index3 BlockParts::gather(std::span<const float> values, const Box& leaf, std::s
   const Index3 at = floor_div(leaf.lo, kLeafDim) - leaves_.lo;
   const std::size_t i = part_of_[static_cast<std::size_t>(linear_index(at, leaves_.extent()))];
   const RepeatedPart& part = parts_[i];
-  const Index3 of_part = part.groups();
-  const Index3 groups = RepeatedPart{leaf, part.by}.groups();
-  const Index3 lo = RepeatedPart{{part.box.lo, leaf.lo}, part.by}.groups();
-  const float* const corner = values.data() + first_[i] + linear_index(lo, of_part);
+  const auto& [first, of_part, shift] = places_[i];
+  const auto groups_of = [&shift](const Index3& e) { return Index3{e.x >> shift.x, e.y >> shift.y, e.z >> shift.z}; };
+  const Index3 groups = groups_of(leaf.extent());
+  const float* const corner = values.data() + first + linear_index(groups_of(leaf.lo - part.box.lo), of_part);
   float* out = distinct.data();
   for (std::int64_t z = 0; z < groups.z; ++z) {
     for (std::int64_t y = 0; y < groups.y; ++y, out += groups.x)
@@ -80,7 +86,31 @@ Index3 BlockParts::gather(std::span<const float> values, const Box& leaf, std::s
   return part.by;
 }
 
+namespace {
+
+// Of a whole leaf that has one value for each By^3 voxels.
+template <std::size_t By>
+void repeat_leaf(const float* distinct, float* values) {
+  constexpr std::size_t kGroups = kLeafDim / By;
+  for (std::size_t z = 0; z < kGroups; ++z) {
+    for (std::size_t y = 0; y < kGroups; ++y, distinct += kGroups) {
+      std::array<float, kLeafDim> row;
+      repeat_eight<By>(distinct, row.data());
+      float* const first = values + kLeafDim * By * (kLeafDim * z + y);
+      for (std::size_t plane = 0; plane < By; ++plane) {
+        for (std::size_t i = 0; i < By; ++i)
+          std::memcpy(first + kLeafDim * (kLeafDim * plane + i), row.data(), sizeof row);
+      }
+    }
+  }
+}
+
+}  // namespace
+
 void repeat_values(const float* distinct, const Index3& by, const Index3& extent, float* values) {
+  constexpr Index3 kLeaf{kLeafDim, kLeafDim, kLeafDim};
+  if (extent == kLeaf && by == Index3{2, 2, 2}) return repeat_leaf<2>(distinct, values);
+  if (extent == kLeaf && by == Index3{4, 4, 4}) return repeat_leaf<4>(distinct, values);
   const std::int64_t plane = extent.x * extent.y;
   for (std::int64_t z = 0; z < extent.z; z += by.z) {
     float* const first = values + plane * z;

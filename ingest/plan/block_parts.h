@@ -26,8 +26,14 @@ class BlockParts {
   Index3 gather(std::span<const float> values, const Box& leaf, std::span<float> distinct) const;
 
  private:
+  /// Where the values of a part lie.
+  struct Place {
+    std::size_t first;  ///< of its values
+    Index3 groups;
+    Index3 shift;  ///< a group is 1 << shift voxels along an axis
+  };
   std::vector<RepeatedPart> parts_;
-  std::vector<std::size_t> first_;  ///< value of each part
+  std::vector<Place> places_;
   Box leaves_;
   std::vector<std::uint32_t> part_of_;  ///< of each leaf, x fastest
 };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -12,6 +13,7 @@
 
 #include "compressor/leaf/leaf_quantiser.h"
 #include "compressor/leaf/leaf_summary.h"
+#include "compressor/leaf/quantised_leaf.h"
 #include "ingest/plan/block_parts.h"
 
 namespace weir::leaf_repeats_test {
@@ -94,6 +96,29 @@ TEST(LeafRepeats, Quantisers_AreThoseOfAllValues) {
       const Quantiser expected = fit_quantiser(repeated.values, range, bits);
       const Quantiser found = fit_quantiser(repeated.values, range, bits, repeats);
       ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << bits << " bits";
+    }
+  });
+}
+
+TEST(LeafRepeats, QuantisedLeaves_AreThoseOfAllValues) {
+  const Box node{{8, 0, 16}, {16, 8, 24}};
+  for_each_case([&](const RepeatedValues& repeated) {
+    SCOPED_TRACE(testing::Message() << repeated.by.x << ' ' << repeated.by.y << ' ' << repeated.by.z);
+    const LeafRepeats repeats = LeafRepeats::of(repeated.by.y, repeated.by.z, repeated.by.x);
+    LeafValues values;
+    std::copy(repeated.values.begin(), repeated.values.end(), values.begin());
+    for (const Fit fit : {Fit::squares, Fit::largest}) {
+      for (unsigned log2 = 0; log2 <= 4; ++log2) {
+        const QuantisedLeaf expected = quantise_leaf(values, values, node, node, log2, fit);
+        const QuantisedLeaf found = quantise_leaf(values, values, node, node, log2, fit, repeats);
+        ASSERT_EQ(std::memcmp(&found.quantiser, &expected.quantiser, sizeof found.quantiser), 0);
+        ASSERT_EQ(found.codes, expected.codes);
+        ASSERT_EQ(std::memcmp(found.decoded.data(), expected.decoded.data(), sizeof found.decoded), 0);
+        ASSERT_EQ(found.squared_error, expected.squared_error);
+        ASSERT_EQ(found.max_abs, expected.max_abs);
+        ASSERT_EQ(found.exact, expected.exact);
+        ASSERT_EQ(found.zeros_lost, expected.zeros_lost);
+      }
     }
   });
 }

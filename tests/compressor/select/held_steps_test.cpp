@@ -68,6 +68,34 @@ TEST(HeldSteps, TakesNoMoreThanItMay) {
   EXPECT_TRUE(held.chunks().empty());
 }
 
+TEST(HeldSteps, CountsWhatItCannotHold) {
+  const KeyRange range = keys_between(1, 2);
+  HeldSteps few(range, kMiB, true);
+  HeldSteps many(range, kMiB / 2, true);
+  KeyCounts expected(range);
+  constexpr std::int64_t kSteps = 200'000;
+  for (std::int64_t i = 0; i < kSteps; ++i) {
+    const double key = 0.75 + static_cast<double>(i * 7919 % kSteps) / kSteps * 1.5;
+    const auto bytes = static_cast<std::uint64_t>(100 + i % 7);
+    expected.add(key, bytes);
+    many.part().add(i, key, bytes, 1);
+    if (i < 100) few.part().add(i, key, bytes, 1);
+  }
+  EXPECT_TRUE(few.complete());
+  EXPECT_EQ(few.counts().buckets.size(), expected.buckets.size());
+  ASSERT_FALSE(many.complete());
+  EXPECT_TRUE(many.takes_more());
+  const KeyCounts counts = many.counts();
+  for (std::size_t i = 0; i < expected.buckets.size(); ++i) {
+    ASSERT_EQ(counts.buckets[i].items, expected.buckets[i].items) << i;
+    ASSERT_TRUE(counts.buckets[i].weight == expected.buckets[i].weight) << i;
+  }
+  for (std::size_t i = 0; i < counts.outside.parts.size(); ++i) {
+    EXPECT_EQ(counts.outside.parts[i].items, expected.outside.parts[i].items);
+  }
+  EXPECT_TRUE(counts.all() == expected.all());
+}
+
 // What is chosen does not depend on whether steps are held, all of them, or too few.
 TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
   for (const std::string kind : {"cloud", "turbulence"}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include "compressor/leaf/leaf_quantiser.h"
@@ -142,6 +143,50 @@ TEST(LeafGain, PositionsAndBricksFollowTheLowerNode) {
                   EXPECT_EQ(gain.position, x * 256 + y * 16 + z);
                   EXPECT_EQ(gain.brick, x / 4 + 4 * (y / 4) + 16 * (z / 4));
                 });
+}
+
+// The steps of a region's leaves whose keys are at least `least`, as (leaf, level, key).
+std::vector<std::tuple<std::uint16_t, KeptLevel, double>> steps_from(const RegionGains& gains, double least) {
+  std::vector<std::tuple<std::uint16_t, KeptLevel, double>> steps;
+  for (const LeafGain& leaf : gains) {
+    for (const LeafStep& step : leaf.all_steps()) {
+      if (step.key >= least || leaf.required) steps.emplace_back(leaf.position, step.level, step.key);
+    }
+  }
+  return steps;
+}
+
+TEST(LeafGain, StepsFromALeastKeyOn_AreThoseOfAllKeys) {
+  MemoryVolume volume({{0, 0, 0}, {120, 60, 70}}, value_at);
+  const Surveyed surveyed(volume);
+  const TreeRegions tree(volume.info().domain());
+  const Box box = tree.leaf_box(0);
+  std::vector<LeafRow> rows;
+  surveyed.rows.read_box(box, rows);
+  const RegionRows region(rows.data(), box.extent(), box);
+  for (const Encoding encoding : {Encoding::float32, Encoding::fpn, Encoding::fp8}) {
+    GainRule rule;
+    rule.encoding = encoding;
+    RegionGains all;
+    rule.gains(tree, region, all);
+    std::vector<double> keys;
+    for (const LeafGain& leaf : all) {
+      for (const LeafStep& step : leaf.all_steps()) keys.push_back(step.key);
+    }
+    std::sort(keys.begin(), keys.end());
+    std::size_t most = 0;
+    for (const double share : {0.0, 0.2, 0.5, 0.8, 0.99}) {
+      const double least = keys[static_cast<std::size_t>(share * static_cast<double>(keys.size()))];
+      RegionGains gains;
+      rule.gains(tree, region, gains, least);
+      EXPECT_EQ(gains.size(), all.size());
+      EXPECT_EQ(steps_from(gains, least), steps_from(all, least)) << share;
+      const std::size_t left_out = steps_from(all, 0).size() - steps_from(gains, 0).size();
+      EXPECT_GE(left_out, most);
+      most = left_out;
+    }
+    EXPECT_GT(most, 0U) << "nothing was left out";
+  }
 }
 
 TEST(LeafGain, SseGivesEachLeafItsOwnBrick) {
