@@ -165,7 +165,9 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     }
     ladders->coder = coder;
   }
-  if (kept_bytes > 0) stores.rows.keep_leaves(std::make_unique<KeptLeaves>(leaves, kept_bytes));
+  if (kept_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
+    stores.rows.keep_leaves(KeptLeaves::where_there_is_room(leaves, kept_bytes));
+  }
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
     return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),

@@ -1,6 +1,7 @@
 #include "compressor/conversion_memory.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "compressor/encode/leaf_record.h"
 #include "compressor/packed/packed_ladder.h"
@@ -15,16 +16,32 @@
 namespace weir {
 namespace {
 
-// For values that are kept: three quarters of what is left by a conversion that has all it needs to be quick.
+// Most for values that are kept: three quarters of what is left by a conversion that has all it needs to be quick.
 std::uint64_t bytes_to_keep(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
   constexpr std::uint64_t kLeastEnough = std::uint64_t{64} << 20U;
   constexpr std::uint64_t kEnough = std::uint64_t{512} << 20U;
   const std::uint64_t dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
   const std::uint64_t needed = resident + std::clamp(dense / 2, kLeastEnough, kEnough);
   const NodeLattice leaves = make_lattice(domain, kLeafDim);
-  const std::uint64_t bytes =
-      std::min(KeptLeaves::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
-  return bytes > 2 * KeptLeaves::index_bytes(leaves) ? bytes : 0;
+  return std::min(KeptLeaves::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
+}
+
+// Whether values of what is read may be kept: not of a sample, not of what lies in memory already, there or on a
+// device, and not of coarse cells, whose values come once for many voxels.
+bool may_keep(VolumeSource& source, const ReadingPlan& reading) {
+  if (reading.reading != Reading::ahead || source.resident() != nullptr || source.places() != nullptr) return false;
+  const BlockPlan& plan = reading.survey;
+  for (const std::int64_t block : {std::int64_t{0}, plan.size() / 2, plan.size() - 1}) {
+    const std::vector<RepeatedPart> parts = source.repeated_parts(plan.voxel_box(plan.leaf_box(block)));
+    if (std::any_of(parts.begin(), parts.end(), [](const RepeatedPart& part) { return part.repeats(); })) return false;
+  }
+  return true;
+}
+
+// Whether a plan that keeps values decodes chunks as seldom as one that does not, and holds as many records.
+bool takes_nothing_away(const MemoryShares& keeping, const MemoryShares& shares) {
+  return keeping.reading.encode.amplification <= shares.reading.encode.amplification &&
+         keeping.memory.record_bytes >= shares.memory.record_bytes;
 }
 
 }  // namespace
@@ -63,16 +80,16 @@ MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options
     return shares;
   };
   MemoryShares shares = plan(0);
-  const std::uint64_t kept = bytes_to_keep(options.memory, resident, domain);
-  if (kept == 0 || shares.reading.reading != Reading::ahead || source.resident() != nullptr ||
-      source.places() != nullptr) {
-    return shares;
-  }
-  try {
-    MemoryShares keeping = plan(kept);
-    if (keeping.reading.encode.amplification <= shares.reading.encode.amplification) return keeping;
-  } catch (const Error&) {
-    // Many threads: all of the memory is theirs.
+  if (!may_keep(source, shares.reading)) return shares;
+  const std::uint64_t most = bytes_to_keep(options.memory, resident, domain);
+  const std::uint64_t least = 2 * KeptLeaves::index_bytes(make_lattice(domain, kLeafDim));
+  for (std::uint64_t kept = most; kept > least; kept /= 2) {
+    try {
+      MemoryShares keeping = plan(kept);
+      if (takes_nothing_away(keeping, shares)) return keeping;
+    } catch (const Error& too_little) {
+      if (too_little.kind() != ErrorKind::usage) throw;
+    }
   }
   return shares;
 }

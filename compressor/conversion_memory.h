@@ -28,7 +28,7 @@ struct MemoryShares {
 
 /// Of options.memory, of which `resident` bytes are in use. `may_hold`: records of leaves may stay in memory, since
 /// nobody continues the conversion or takes part in it. They do where there is room, and where chunks are decoded once
-/// all the same. What is more than a volume needs to be converted well keeps its values, unless it lies in memory
+/// all the same. Values are kept in what a conversion does not need to be quick, unless they are in memory
 /// already. Throws as plan_memory() does.
 MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
                           std::size_t threads, bool may_hold);

@@ -13,17 +13,16 @@ namespace weir {
 struct LeafRepeats {
   bool twins = false;      ///< the second of each two rows is the first
   std::size_t planes = 1;  ///< as many planes, from each multiple of this on, are the same: 1, 2, 4 or 8
-  std::size_t rows = 1;    ///< so many rows of a plane, and
-  std::size_t row = 1;     ///< values of a row, in the same way
+  std::size_t rows = 1;    ///< as many rows of a plane are the same
+  std::size_t row = 1;     ///< as many values of a row are the same, where that is known
 
-  /// Of groups of so many voxels along the axes that rows, what rows lie beside each other along, and planes have; and
-  /// along a row.
+  /// Of groups of `rows` rows in each of `planes` planes, and of `row` values in each of these rows.
   static LeafRepeats of(std::int64_t rows, std::int64_t planes, std::int64_t row = 1) {
     if (rows <= 1) return {};
     return {true, static_cast<std::size_t>(planes), static_cast<std::size_t>(rows), static_cast<std::size_t>(row)};
   }
 
-  /// Values that have one of the others each.
+  /// Values of a group.
   std::size_t times() const { return planes * rows * row; }
 };
 

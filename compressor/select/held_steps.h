@@ -26,7 +26,7 @@ class HeldSteps {
     std::uint32_t bytes;
   };
 
-  /// Takes up to `most_bytes` of memory, as it is needed. `counts`: whether the bytes of steps that are too many are
+  /// Takes up to `most_bytes` of memory, as it is needed. `counts`: whether the bytes of steps that find no room are
   /// counted.
   HeldSteps(const KeyRange& range, std::uint64_t most_bytes, bool counts = false)
       : range_(range), most_chunks_(most_bytes / kChunkBytes), counting_(counts) {}

@@ -161,7 +161,7 @@ class BlockSurvey::Leaves {
       return false;
     }
     row = summarize_leaf(seen, sample, tally.uniform, distinct, repeats);
-    if (kept_ != nullptr) kept_->add(linear, seen, row.uniform() && holds_one_value(seen));
+    if (kept_ != nullptr) kept_->add(linear, seen, (row.uniform() || row.finite == 0) && holds_one_value(seen));
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
     if (row.finite == count) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 
+#include "format/base/error.h"
 #include "ingest/plan/for_pieces.h"
 
 namespace weir {
@@ -22,6 +24,16 @@ KeptLeaves::KeptLeaves(const NodeLattice& leaves, std::uint64_t bytes)
       values_(places_in(std::min(bytes, whole_bytes(leaves)), index_bytes(leaves)) * kLeafBytes),
       entries_(static_cast<std::size_t>(values_.bytes().empty() ? 0 : leaves.size())),
       places_(values_.bytes().size() / kLeafBytes) {}
+
+std::unique_ptr<KeptLeaves> KeptLeaves::where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes) {
+  try {
+    return std::make_unique<KeptLeaves>(leaves, bytes);
+  } catch (const Error&) {
+    return nullptr;
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 
 std::uint64_t KeptLeaves::index_bytes(const NodeLattice& leaves) {
   return static_cast<std::uint64_t>(leaves.size()) * sizeof(Entry);
@@ -78,7 +90,8 @@ void KeptLeaves::copy_leaf(const Index3& leaf, const Box& voxels, std::span<floa
   const Box inside = leaves_.voxels(leaf);
   const Box part = intersect(inside, voxels);
   const Entry& entry = entries_[static_cast<std::size_t>(leaves_.linear(leaf))];
-  const float* const kept = values_.floats().data() + (std::size_t{entry.place} - kFirst) * kLeafVoxels;
+  const std::size_t place = entry.place == kUniform ? 0 : entry.place - kFirst;
+  const float* const kept = values_.floats().data() + place * kLeafVoxels;
   const auto length = static_cast<std::size_t>(part.extent().x);
   for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
     for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,13 +13,16 @@
 
 namespace weir {
 
-/// Leaves of a volume, as they come, until a given memory is full; of those that hold one value only that value. Leaves
-/// may be added by several threads at once, each once.
+/// Leaves of a volume, as they come, until a given memory is full; of those whose values have the same bits only one.
+/// Leaves may be added by several threads at once, each once.
 class KeptLeaves {
  public:
   /// For the leaves of `leaves` in `bytes` of memory, index included; pages of it are taken as they are needed. Throws
   /// Error(io) where the kernel refuses.
   KeptLeaves(const NodeLattice& leaves, std::uint64_t bytes);
+
+  /// The same; null where the kernel refuses: nothing is lost without them but time.
+  static std::unique_ptr<KeptLeaves> where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes);
 
   /// Bytes of the index alone: with less, nothing is kept.
   static std::uint64_t index_bytes(const NodeLattice& leaves);

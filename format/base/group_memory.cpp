@@ -14,10 +14,11 @@ namespace {
 struct GroupFiles {
   const char* limit;
   const char* used;
-  const char* cache;  // a key of memory.stat
+  const char* cache;   // keys of memory.stat
+  const char* shared;  // of the cache what cannot be dropped: files in memory
 };
-constexpr GroupFiles kVersion2{"memory.max", "memory.current", "file"};
-constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_cache"};
+constexpr GroupFiles kVersion2{"memory.max", "memory.current", "file", "shmem"};
+constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_cache", "total_shmem"};
 
 // A group that lies at `group` below `root`, and those around it. In a container that sees its own group as the root,
 // what the kernel says of the path may lie outside, and only the root is there.
@@ -27,7 +28,9 @@ void look_upwards(const std::string& root, std::string group, const GroupFiles& 
     const auto limit = number_in_file(directory + files.limit);
     const auto used = number_in_file(directory + files.used);
     if (limit && used) {
-      const std::uint64_t cache = std::min(*used, number_in_table(directory + "memory.stat", files.cache));
+      const std::uint64_t files_in_memory = number_in_table(directory + "memory.stat", files.shared);
+      const std::uint64_t all = std::min(*used, number_in_table(directory + "memory.stat", files.cache));
+      const std::uint64_t cache = all - std::min(all, files_in_memory);
       room = std::min(room, *limit - std::min(*limit, *used - cache));
     }
     if (group.empty()) return;

@@ -95,7 +95,7 @@ template <typename Lanes, typename T>
 }
 
 // Of sums of a value's neighbours, by floats, whose exponents are whole parts of logarithms. Rounding does not change
-// them: what is below a threshold is a part in 2^10, or in 18 * 2^16, below it.
+// them: what is below a threshold is below it by a part in 18 * 2^16 or more.
 template <typename Lanes>
 class Contexts {
  public:

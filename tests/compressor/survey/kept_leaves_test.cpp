@@ -73,5 +73,12 @@ TEST(KeptLeaves, KeepsNothingWhereTheIndexAloneFills) {
   EXPECT_FALSE(kept.has(leaves.voxels(Index3{0, 0, 0})));
 }
 
+TEST(KeptLeaves, AreLeftOutWhereTheKernelRefuses) {
+  const NodeLattice leaves = make_lattice(Box{{0, 0, 0}, {1 << 20, 1 << 20, 1 << 20}}, kLeafDim);
+  EXPECT_EQ(KeptLeaves::where_there_is_room(leaves, std::uint64_t{1} << 60U), nullptr);
+  const NodeLattice few = make_lattice(Box{{0, 0, 0}, {8, 8, 8}}, kLeafDim);
+  EXPECT_NE(KeptLeaves::where_there_is_room(few, 10'000), nullptr);
+}
+
 }  // namespace
 }  // namespace weir::kept_leaves_test

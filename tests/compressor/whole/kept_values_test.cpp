@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,22 @@ TEST_P(KeptValues, MakeTheSameFileAndAreReadOnce) {
   const Converted part = test::convert(third, some);
   EXPECT_GT(third.bytes_read(), kDense);
   EXPECT_TRUE(part.file == expected.file);
+}
+
+TEST(KeptValuesOfMaskedData, BlocksOfOneNaNTakeNoRoom) {
+  MemoryVolume volume(Box{{0, 0, 0}, {200, 160, 200}}, [](const Index3& i) {
+    if (i.x > 80 || i.y > 80 || i.z > 80) return std::numeric_limits<float>::quiet_NaN();
+    return static_cast<float>(std::sin(0.1 * static_cast<double>(i.x + i.y * i.z)));
+  });
+  ConversionOptions options;
+  options.threads = 2;
+  options.budget = {};
+  options.budget.kind = Budget::Kind::rate;
+  options.budget.rate = 4;
+  options.non_finite = NonFinitePolicy::background;
+  options.memory = resident_bytes() + 72 * kMiB;  // for about 6 MiB of values
+  test::convert(volume, options);
+  EXPECT_EQ(volume.bytes_read(), std::uint64_t{200} * 160 * 200 * sizeof(float));
 }
 
 Budget budget_of(Budget::Kind kind, double value) {

@@ -17,10 +17,13 @@ class GroupMemory : public ::testing::Test {
  protected:
   void list(const std::string& groups) { std::ofstream(scratch_.path("groups")) << groups; }
   // The files of a group of version 2; `limit` may be "max".
-  void group2(const std::string& path, const std::string& limit, std::uint64_t used, std::uint64_t cache) {
+  void group2(const std::string& path, const std::string& limit, std::uint64_t used, std::uint64_t cache,
+              std::uint64_t shared = 0) {
     write(path, "memory.max", limit);
     write(path, "memory.current", std::to_string(used));
-    write(path, "memory.stat", "anon " + std::to_string(used - cache) + "\nfile " + std::to_string(cache) + "\n");
+    write(path, "memory.stat",
+          "anon " + std::to_string(used - cache) + "\nfile " + std::to_string(cache) + "\nshmem " +
+              std::to_string(shared) + "\n");
   }
   void group1(const std::string& path, std::uint64_t limit, std::uint64_t used, std::uint64_t cache) {
     write("memory" + path, "memory.limit_in_bytes", std::to_string(limit));
@@ -66,6 +69,12 @@ TEST_F(GroupMemory, OfVersionOneIsThatOfTheMemoryController) {
   group1("/batch/job", 9'000'000, 2'000'000, 1'000'000);
   group1("", std::numeric_limits<std::int64_t>::max(), 3'000'000, 0);
   EXPECT_EQ(room(), 8'000'000U);
+}
+
+TEST_F(GroupMemory, FilesInMemoryAreTaken) {
+  list("0::/job\n");
+  group2("/job", "5000", 3000, 2500, 700);
+  EXPECT_EQ(room(), 3800U);  // 5000 - (3000 - (2500 - 700))
 }
 
 TEST_F(GroupMemory, IsNothingBeyondTheLimit) {
