@@ -26,7 +26,10 @@ struct DifferenceLanes {
   Ints8 zeros_lost{};
 };
 
-WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes* halves) {
+// Of finite values alone, or of all.
+template <bool AllFinite>
+[[gnu::always_inline]] inline void accumulate_values(const float* source, const float* decoded,
+                                                     DifferenceLanes* halves) {
   const Floats8 none{};
   for (std::size_t half = 0; half < kHalves; ++half) {
     DifferenceLanes lanes = halves[half];
@@ -39,12 +42,21 @@ WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceL
       std::memcpy(&d, decoded + i, sizeof d);
       std::memcpy(&s_bits, source + i, sizeof s_bits);
       std::memcpy(&d_bits, decoded + i, sizeof d_bits);
-      // v - v is 0 for a finite v and NaN for every other. All bits of a lane are set where it holds.
-      const Ints8 s_finite = s - s == none;
-      const Ints8 d_finite = d - d == none;
-      const Ints8 both = s_finite & d_finite;
-      const Floats8 s_counted = both ? s : none;
-      const Floats8 d_counted = both ? d : none;
+      Floats8 s_counted = s;
+      Floats8 d_counted = d;
+      Ints8 s_finite = ~Ints8{};
+      const Ints8 differs = s_bits != d_bits;
+      if constexpr (!AllFinite) {
+        // v - v is 0 for a finite v and NaN for every other. All bits of a lane are set where it holds.
+        s_finite = s - s == none;
+        const Ints8 d_finite = d - d == none;
+        const Ints8 both = s_finite & d_finite;
+        s_counted = both ? s : none;
+        d_counted = both ? d : none;
+        lanes.nonfinite -= ~s_finite;
+        lanes.nonfinite_decoded -= s_finite & ~d_finite;
+        lanes.nonfinite_different -= differs & ~s_finite;
+      }
       const Doubles8 difference =
           __builtin_convertvector(s_counted, Doubles8) - __builtin_convertvector(d_counted, Doubles8);
       const Doubles8 magnitude = difference < 0 ? -difference : difference;
@@ -52,42 +64,19 @@ WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceL
       lanes.max_abs = magnitude > lanes.max_abs ? magnitude : lanes.max_abs;
       lanes.min = s < lanes.min && s_finite ? s : lanes.min;
       lanes.max = s > lanes.max && s_finite ? s : lanes.max;
-      const Ints8 differs = s_bits != d_bits;
-      lanes.nonfinite -= ~s_finite;
-      lanes.nonfinite_decoded -= s_finite & ~d_finite;
       lanes.different -= differs & s_finite;
-      lanes.nonfinite_different -= differs & ~s_finite;
       lanes.zeros_lost -= (s == none) & (d != none);
     }
     halves[half] = lanes;
   }
 }
 
-// The same of finite values alone; else a squared error that is not finite.
+WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes* halves) {
+  accumulate_values<false>(source, decoded, halves);
+}
+// The same where all are finite; else a squared error that is not.
 WEIR_SIMD void accumulate_finite(const float* source, const float* decoded, DifferenceLanes* halves) {
-  const Floats8 none{};
-  for (std::size_t half = 0; half < kHalves; ++half) {
-    DifferenceLanes lanes = halves[half];
-    for (std::size_t i = half * kLanes; i < kLeafVoxels; i += kHalves * kLanes) {
-      Floats8 s;
-      Floats8 d;
-      Ints8 s_bits;
-      Ints8 d_bits;
-      std::memcpy(&s, source + i, sizeof s);
-      std::memcpy(&d, decoded + i, sizeof d);
-      std::memcpy(&s_bits, source + i, sizeof s_bits);
-      std::memcpy(&d_bits, decoded + i, sizeof d_bits);
-      const Doubles8 difference = __builtin_convertvector(s, Doubles8) - __builtin_convertvector(d, Doubles8);
-      const Doubles8 magnitude = difference < 0 ? -difference : difference;
-      lanes.squared_error += difference * difference;
-      lanes.max_abs = magnitude > lanes.max_abs ? magnitude : lanes.max_abs;
-      lanes.min = s < lanes.min ? s : lanes.min;
-      lanes.max = s > lanes.max ? s : lanes.max;
-      lanes.different -= s_bits != d_bits;
-      lanes.zeros_lost -= (s == none) & (d != none);
-    }
-    halves[half] = lanes;
-  }
+  accumulate_values<true>(source, decoded, halves);
 }
 
 using Halves = std::array<DifferenceLanes, kHalves>;
