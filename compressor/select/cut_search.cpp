@@ -108,9 +108,9 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
       goal.limit = all > *goal.left ? all - *goal.left : 0;
     }
     // What is required is bought whatever the goal.
-    PurchaseGoal::Weight above = counted.outside[OutsideSums::kRequired].weight;
+    PurchaseGoal::Weight above = counted.outside[OutsideSums::required].weight;
     if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
-    const PurchaseSum& higher = counted.outside[OutsideSums::kAbove];
+    const PurchaseSum& higher = counted.outside[OutsideSums::above];
     if (higher.items > 0 && !goal.admits_all(above, higher.weight)) {
       range = {range.end, kAllKeys.end};
       continue;
@@ -121,7 +121,7 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
       above += counted.buckets[--bucket].weight;
     }
     if (bucket == 0) {
-      if (counted.outside[OutsideSums::kBelow].items == 0) return {0, above};  // everything may be bought
+      if (counted.outside[OutsideSums::below].items == 0) return {0, above};  // everything may be bought
       range = {kAllKeys.first, range.first};
       continue;
     }

@@ -23,11 +23,11 @@ struct PurchaseSum {
 
 /// Of purchases whose keys are not in a range.
 struct OutsideSums {
-  enum Part : std::size_t { kRequired, kAbove, kBelow };
+  enum Part : std::size_t { required, above, below };
   std::array<PurchaseSum, 3> parts{};
 
   void add(const KeyRange& range, double key, const PurchaseSum& sum) {
-    parts[key == kRequiredKey ? kRequired : key_bits(key) < range.first ? kBelow : kAbove] += sum;
+    parts[key == kRequiredKey ? required : key_bits(key) < range.first ? below : above] += sum;
   }
   void operator+=(const OutsideSums& other) {
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i] += other.parts[i];

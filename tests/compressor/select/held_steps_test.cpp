@@ -36,10 +36,10 @@ TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
   EXPECT_EQ(chunks[0][1].bytes, 20U);
   EXPECT_EQ(chunks[0][1].gain, 0.25);
   const OutsideSums outside = held.outside();
-  EXPECT_TRUE(outside[OutsideSums::kBelow].weight == 200U);
-  EXPECT_EQ(outside[OutsideSums::kBelow].items, 2U);
-  EXPECT_TRUE(outside[OutsideSums::kAbove].weight == 1000U);
-  EXPECT_TRUE(outside[OutsideSums::kRequired].weight == 10'000U);
+  EXPECT_TRUE(outside[OutsideSums::below].weight == 200U);
+  EXPECT_EQ(outside[OutsideSums::below].items, 2U);
+  EXPECT_TRUE(outside[OutsideSums::above].weight == 1000U);
+  EXPECT_TRUE(outside[OutsideSums::required].weight == 10'000U);
 }
 
 TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
