@@ -17,8 +17,9 @@ SMALL_RATE = 50  # of another conversion, for its time alone
 ENCODINGS = ("auto", "packed")
 MEMORY = "512MiB"
 CEILING_BYTES = 512 << 20
-LARGE_MEMORY = "8GiB"  # where values stay between the passes
-LARGE_CEILING_BYTES = 8 << 30
+# Conversions by SMALL_RATE, by what their results are called: their memory, and that in bytes. In the larger one values
+# stay between the passes.
+SMALL_RUNS = {"small": (MEMORY, CEILING_BYTES), "large_memory": ("8GiB", 8 << 30)}
 READ_BYTES = 8 << 20
 PICTURE = "headline.png"  # of the first encoding
 
@@ -67,7 +68,7 @@ class Headline(Experiment):
             for name, more in (("verify", [whole]), ("compare", [path, whole]),
                                ("render", [whole, "-o", picture, "--overwrite", "--spp", 8, "--size", "320x240"])):
                 result[f"{name}_s"] = bench.weir.run(name, *more).seconds
-            for key, memory in (("small", MEMORY), ("large_memory", LARGE_MEMORY)):
+            for key, (memory, _) in SMALL_RUNS.items():
                 forget(path)
                 run_small = bench.weir.run("convert", path, "--rate", SMALL_RATE, "--encoding", encoding, "--memory",
                                            memory, "--resume", "on", "--json", "-o", again)
@@ -132,8 +133,7 @@ class Headline(Experiment):
              f"{rate / r['seconds']:.2f} GB/s; {r['bytes_read'] / r['dense_bytes']:.2f} times read, in "
              f"{r['seconds'] / of_disk:.2f} of the time that reading as much takes plainly"],
             ["of it the survey", f"{r['survey_s']:.1f}", f"{rate / r['survey_s']:.2f} GB/s"],
-            *(Headline._small_line(r, key, memory)
-              for key, memory in (("small", MEMORY), ("large_memory", LARGE_MEMORY))),
+            *(Headline._small_line(r, key, memory) for key, (memory, _) in SMALL_RUNS.items()),
             ["`weir verify`", f"{r['verify_s']:.1f}", ""],
             ["`weir compare`", f"{r['compare_s']:.1f}", "the certificate's PSNR, measured again"],
             ["`weir render`, 320 x 240, 8 samples", f"{r['render_s']:.1f}", ""],
@@ -159,8 +159,9 @@ class Headline(Experiment):
             name = f"{row['extent']}, {row['encoding']}"
             if not row["same_bytes"]:
                 broken.append(f"{name}: continued to other bytes")
-            for key, ceiling in (("peak_rss_bytes", CEILING_BYTES), ("small_peak_bytes", CEILING_BYTES),
-                                 ("large_memory_peak_bytes", LARGE_CEILING_BYTES)):
+            ceilings = {"peak_rss_bytes": CEILING_BYTES}
+            ceilings.update((f"{key}_peak_bytes", ceiling) for key, (_, ceiling) in SMALL_RUNS.items())
+            for key, ceiling in ceilings.items():
                 if row[key] > ceiling:
                     broken.append(f"{name}: {row[key]} bytes resident, the ceiling is {ceiling}")
         return broken
