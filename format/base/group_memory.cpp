@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "format/base/kernel_table.h"
+#include "format/base/text.h"
 
 namespace weir {
 namespace {
@@ -38,15 +39,6 @@ void look_upwards(const std::string& root, std::string group, const GroupFiles& 
   }
 }
 
-bool has_word(std::string_view list, std::string_view word) {
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find(','), list.size());
-    if (list.substr(0, end) == word) return true;
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return false;
-}
-
 }  // namespace
 
 std::uint64_t group_room(const std::string& groups, const std::string& mounts) {
@@ -60,7 +52,8 @@ std::uint64_t group_room(const std::string& groups, const std::string& mounts) {
     const std::string path = line.size() == second + 2 ? "" : line.substr(second + 1);
     if (controllers.empty()) {
       look_upwards(mounts, path, kVersion2, room);
-    } else if (has_word(controllers, "memory")) {
+    } else if (const auto names = split(controllers, ',');
+               std::find(names.begin(), names.end(), "memory") != names.end()) {
       look_upwards(mounts + "/memory", path, kVersion1, room);
     }
   }
