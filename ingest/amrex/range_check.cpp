@@ -46,7 +46,8 @@ double first_outside(std::span<const std::byte> values, const ComponentRange& ra
   };
   const std::size_t count = values.size() / sizeof(Stored);
   Bits outside = 0;
-  for (std::size_t i = 0; i < count; ++i) outside |= static_cast<Bits>((value(i) < least) | (value(i) > most));
+  for (std::size_t i = 0; i < count; ++i)
+    outside |= static_cast<Bits>(value(i) < least) | static_cast<Bits>(value(i) > most);
   for (std::size_t i = 0; outside != 0 && i < count; ++i) {
     if (value(i) < least || value(i) > most) return static_cast<double>(value(i));
   }

@@ -74,7 +74,8 @@ Index3 BlockParts::gather(std::span<const float> values, const Box& leaf, std::s
   const Index3 at = floor_div(leaf.lo, kLeafDim) - leaves_.lo;
   const std::size_t i = part_of_[static_cast<std::size_t>(linear_index(at, leaves_.extent()))];
   const RepeatedPart& part = parts_[i];
-  const auto& [first, of_part, shift] = places_[i];
+  const auto& [first, of_part, shifts] = places_[i];
+  const Index3& shift = shifts;  // clang 14 captures no structured binding
   const auto groups_of = [&shift](const Index3& e) { return Index3{e.x >> shift.x, e.y >> shift.y, e.z >> shift.z}; };
   const Index3 groups = groups_of(leaf.extent());
   const float* const corner = values.data() + first + linear_index(groups_of(leaf.lo - part.box.lo), of_part);
