@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -99,6 +100,19 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
 }
 
 Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
+  Threshold found = search(goal);
+  if (goal.unit == 0 || !holds(every_key())) return found;
+  tbb::enumerable_thread_specific<std::uint64_t> bytes{0};
+  for_each_held([&] {
+    return [least = found.key, &sum = bytes.local()](std::int64_t, double key, std::uint64_t of_step, double) {
+      if (key >= least) sum += of_step;
+    };
+  });
+  found.bytes = std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0});
+  return found;
+}
+
+Threshold CutSearch::search(PurchaseGoal& goal) {
   constexpr std::uint64_t kSortedItems = std::uint64_t{1} << 15U;  // of 32 bytes
   KeyRange range = likely_keys(rule_);
   for (bool first = true;; first = false) {

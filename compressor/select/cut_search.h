@@ -44,6 +44,8 @@ struct Threshold {
   PurchaseGoal::Weight above = 0;  ///< the sum of that
   /// Regions, rising, that have something of that very key, or are it; none where the search did not look.
   std::optional<std::vector<std::int64_t>> tied{};
+  /// Bytes of all that has that key or a higher one, but for upper nodes; none where that takes a pass.
+  std::optional<std::uint64_t> bytes{};
 };
 
 class CutSearch {
@@ -65,6 +67,7 @@ class CutSearch {
   Threshold find_threshold(PurchaseGoal& goal);
 
  private:
+  Threshold search(PurchaseGoal& goal);
   // Of all that can be bought, by the range; and without the upper nodes.
   KeyCounts count(const KeyRange& range, const PurchaseGoal& goal) const;
   void count_steps(const PurchaseGoal& goal, KeyCounts& total) const;

@@ -11,6 +11,12 @@
 namespace weir {
 namespace {
 
+// Whether a packed file is too short for the preview that it has, where it need not have one.
+bool is_short(std::uint64_t file_bytes, std::uint64_t preview_bytes) {
+  return file_bytes < kLeastOfPreview * preview_bytes;
+}
+bool is_short(const FilePlan& file) { return is_short(file.size.bytes, file.plan.layout.node_bytes()); }
+
 // One encoding's selection, before and after the size is known.
 class Candidate {
  public:
@@ -36,44 +42,53 @@ class Candidate {
     return bytes_.minimum.file_bytes <= asked_bytes(budget, dense);
   }
 
+  /// The first choice for the budget: of a target, the smallest file whose error is expected to meet it.
+  void choose() {
+    if (!request_.budget.by_error()) {
+      size_ = size_for(request_.budget);
+      selection_.choose(size_.bytes);
+    } else if (request_.budget.kind == Budget::Kind::psnr) {
+      size_ = {0, "psnr", ""};
+      const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
+      lowered_to_nothing && !is_exact() ? choose_everything() : selection_.choose_error(target());
+    } else {
+      size_ = {0, "max_error", ""};
+      selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
+    }
+  }
+
+  /// Whether the chosen file is sure to be too short for its preview, before it is planned.
+  bool is_sure_to_be_short() const {
+    const std::optional<Selection::PreviewedBytes> bytes = selection_.previewed_bytes();
+    return bytes && is_short(bytes->most_of_file, bytes->preview);
+  }
+
+  /// The chosen file; one that is too short for its preview, which `drops_preview`, is not made to meet its target.
+  FilePlan plan_chosen(bool drops_preview = false) {
+    FilePlan file = planned(size_);
+    if (request_.budget.kind != Budget::Kind::psnr || !is_exact()) return file;
+    // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
+    for (double slack = 0x1p-48; file.plan.expected_error > target(); slack *= 256) {
+      if (drops_preview && is_short(file)) return file;
+      tree_ = std::move(file.tree);
+      slack < 1 ? selection_.choose_error(target() * (1 - slack)) : choose_everything();
+      file = planned(size_);
+      if (!(slack < 1)) return file;
+    }
+    return file;
+  }
+
   FilePlan plan(const FileSize& size) {
     selection_.choose(size.bytes);
     return planned(size);
   }
 
-  /// The smallest file whose error is expected to meet the budget's target.
-  FilePlan plan_for_error() {
-    if (request_.budget.kind == Budget::Kind::psnr) {
-      if (encoding_ == Encoding::float32 || encoding_ == Encoding::packed) return plan_exact();
-      const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
-      return lowered_to_nothing ? plan_everything() : plan_expected(request_.planned_error);
-    }
-    selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
-    return planned({0, "max_error", ""});
-  }
-
  private:
-  FilePlan plan_expected(double squared_error) {
-    selection_.choose_error(squared_error);
-    return planned({0, "psnr", ""});
-  }
-
-  // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
-  FilePlan plan_exact() {
-    const double target = encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error;
-    FilePlan file = plan_expected(target);
-    for (double slack = 0x1p-48; file.plan.expected_error > target; slack *= 256) {
-      tree_ = std::move(file.tree);
-      if (!(slack < 1)) return plan_everything();
-      file = plan_expected(target * (1 - slack));
-    }
-    return file;
-  }
-
-  FilePlan plan_everything() {
-    selection_.choose(bytes_.full.file_bytes);
-    return planned({0, "psnr", ""});
-  }
+  // Whether all errors that a plan for a PSNR expects are known to parts of 10,000.
+  bool is_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
+  // Of a plan for a PSNR.
+  double target() const { return encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error; }
+  void choose_everything() { selection_.choose(bytes_.full.file_bytes); }
 
   FilePlan planned(const FileSize& size) {
     FilePlan file;
@@ -116,6 +131,7 @@ class Candidate {
   std::unique_ptr<TreeRegions> tree_;
   Selection selection_;
   SelectionBytes bytes_ = selection_.bytes();
+  FileSize size_;  // of the choice; 0 bytes: what it takes
 };
 
 bool can_quantise(const FileRequest& request) {
@@ -136,43 +152,50 @@ bool meets(const FileRequest& request, const Candidate& candidate, const FilePla
   return file.plan.expected_error <= (request.adjusted ? request.planned_error : request.squared_error);
 }
 
-// The file of one encoding, by the budget.
-FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
-  if (request.budget.by_error()) {
-    FilePlan file = candidate.plan_for_error();
-    if (!request.adjusted && !meets(request, candidate, file))
-      throw unmet_target(request, encoding, file.plan.expected_error);
-    return file;
-  }
-  if (request.budget.kind == Budget::Kind::lossless && !candidate.lossless()) {
-    throw Error(ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
-                                           " cannot be lossless: ", lossy_leaves_text(candidate), "; use ",
-                                           option("encoding", "auto"), " or float"));
-  }
-  return candidate.plan(candidate.size_for(request.budget));
+// Throws Error(budget) where the budget is lossless and the encoding is not.
+void check_lossless(const FileRequest& request, Encoding encoding, const Candidate& candidate) {
+  if (request.budget.kind != Budget::Kind::lossless || candidate.lossless()) return;
+  throw Error(ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
+                                         " cannot be lossless: ", lossy_leaves_text(candidate), "; use ",
+                                         option("encoding", "auto"), " or float"));
 }
 
-// What the tree takes of a packed file.
-std::uint64_t preview_bytes(const TreeLayout& layout) { return layout.blind_meta - layout.uppers; }
+// Throws Error(budget) where the file of a target that was not adjusted is not expected to meet it.
+void check_target(const FileRequest& request, Encoding encoding, const Candidate& candidate, const FilePlan& file) {
+  if (!request.budget.by_error() || request.adjusted || meets(request, candidate, file)) return;
+  throw unmet_target(request, encoding, file.plan.expected_error);
+}
+
+// The file of one encoding, by the budget.
+FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
+  check_lossless(request, encoding, candidate);
+  candidate.choose();
+  FilePlan file = candidate.plan_chosen();
+  check_target(request, encoding, candidate, file);
+  return file;
+}
+
+// The packed file with a preview, where it is long enough for one.
+std::optional<FilePlan> plan_previewed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
+  Candidate candidate(request, Encoding::packed, rows, work, true);
+  const bool asks_size = request.budget.kind == Budget::Kind::size || request.budget.kind == Budget::Kind::rate ||
+                         request.budget.kind == Budget::Kind::automatic;
+  if (asks_size && !candidate.fits(request.budget)) return std::nullopt;
+  check_lossless(request, Encoding::packed, candidate);
+  candidate.choose();
+  if (candidate.is_sure_to_be_short()) return std::nullopt;
+  FilePlan file = candidate.plan_chosen(true);
+  if (is_short(file)) return std::nullopt;
+  check_target(request, Encoding::packed, candidate, file);
+  return file;
+}
 
 FilePlan plan_packed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
-  const auto plan_with = [&](bool preview) {
-    Candidate candidate(request, Encoding::packed, rows, work, preview);
-    return plan_by_budget(request, Encoding::packed, candidate);
-  };
   if (request.packed.preview == Preview::automatic) {
-    std::optional<Candidate> candidate(std::in_place, request, Encoding::packed, rows, work, true);
-    const bool asks_size = request.budget.kind == Budget::Kind::size || request.budget.kind == Budget::Kind::rate ||
-                           request.budget.kind == Budget::Kind::automatic;
-    const bool fits = !asks_size || candidate->fits(request.budget);
-    if (fits) {
-      FilePlan file = plan_by_budget(request, Encoding::packed, *candidate);
-      if (file.size.bytes >= kLeastOfPreview * preview_bytes(file.plan.layout)) return file;
-    }
-    candidate.reset();  // gives back what it holds
-    return plan_with(false);
+    if (std::optional<FilePlan> file = plan_previewed(request, rows, work)) return std::move(*file);
   }
-  return plan_with(request.packed.preview == Preview::on);
+  Candidate candidate(request, Encoding::packed, rows, work, request.packed.preview == Preview::on);
+  return plan_by_budget(request, Encoding::packed, candidate);
 }
 
 FilePlan plan_one(const FileRequest& request, Encoding encoding, const RowStore& rows, WorkDirectory& work) {
@@ -236,13 +259,15 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
 
 FilePlan plan_smallest(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate quantised(request, Encoding::fpn, rows, work);
-  FilePlan small = quantised.plan_for_error();
+  quantised.choose();
+  FilePlan small = quantised.plan_chosen();
   if (request.budget.kind == Budget::Kind::psnr && meets(request, quantised, small)) {
     const std::optional<FloatBound> bound = float_bound(request, rows, small);
     if (bound && small.size.bytes <= bound->least_bytes(request.squared_error)) return small;
   }
   Candidate plain(request, Encoding::float32, rows, work);
-  FilePlan file = plain.plan_for_error();
+  plain.choose();
+  FilePlan file = plain.plan_chosen();
   const bool as_small = small.size.bytes <= file.size.bytes || !countable(file);
   return std::move(meets(request, quantised, small) && countable(small) && as_small ? small : file);
 }

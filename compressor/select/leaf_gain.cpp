@@ -345,7 +345,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
   const bool whole =
       leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
       leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
-  SharedValues region;
+  SharedValues& region = out.shared;
   std::optional<StreamLengths> lengths;
   if (packed) {
     region = shared_values(rows, leaves, fill);

@@ -72,6 +72,9 @@ class RegionGains {
   std::size_t size() const { return leaf_count_; }
   const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
 
+  /// Of packed blocks, which steps are found by.
+  SharedValues shared;
+
  private:
   std::unique_ptr<LeafGain[]> leaves_;
   std::size_t leaf_count_ = 0;

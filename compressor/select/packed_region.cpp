@@ -105,10 +105,10 @@ double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& 
   return ladder.rungs[rung].error.value() * row.sse + of_mean;
 }
 
-PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const Fill& fill, const PackedRule& rule,
-                            const LeafChoices& choices) {
+PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,
+                            const PackedRule& rule, const LeafChoices& choices) {
   PlannedStreams plan;
-  plan.region = shared_values(rows, tree.leaves, fill);
+  plan.region = shared;
   const StreamLengths lengths(plan.region.means, rule);
   rows.for_each([&](const Index3& leaf, const LeafRow&) {
     const std::size_t position = tree.mask_position(leaf);

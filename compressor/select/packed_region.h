@@ -78,8 +78,9 @@ PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level);
 /// Squared error expected of the in-domain voxels of a block at a level but 0.
 double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels);
 
-PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const Fill& fill, const PackedRule& rule,
-                            const LeafChoices& choices);
+/// `shared` are the region's.
+PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,
+                            const PackedRule& rule, const LeafChoices& choices);
 
 /// Sets what a packed file of `regions` regions with streams holds of tree nodes, and of `packed_bytes` what is in
 /// every file: header, tables and region table.

@@ -57,8 +57,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   const LeafRow& first = rows.at(rows.leaf_box().lo);
   if (first.uniform() && builder.sums.min == builder.sums.max) builder.sums.mean = first.mean;
   // Packed blocks without a stream, and regions without any, read one value.
-  const std::optional<float> packed =
-      rule_.packed ? std::optional(shared_values(rows, tree_.leaves, rule_.fill).value) : std::nullopt;
+  const std::optional<float> packed = rule_.packed ? std::optional(gains.shared.value) : std::nullopt;
   const float tile = packed ? *packed : tile_value(rule_.fill, builder.sums);
   region.packed_value = tile;
   const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };

@@ -165,6 +165,7 @@ void Selection::choose(std::uint64_t file_bytes) {
     throw Error(ErrorKind::internal, cat("budget of ", file_bytes, " bytes is below the minimum tree"));
   }
   cut_ = Cut{};
+  most_bytes_ = file_bytes;
   if (file_bytes >= bytes_.full.file_bytes) {
     held_.reset();
     for (Region& region : tree_.regions) region.open = region.key > 0;
@@ -181,6 +182,7 @@ void Selection::choose_error(double squared_error) {
   for (const Upper& upper : tree_.uppers) all_tiles.add(upper.tile_error);
   const double error = all_tiles.value();
   cut_ = Cut{};
+  most_bytes_.reset();
   // Every gain is at most the error of nothing bought, which becomes 2^90: sums of 2^37 gains fit, and each is
   // counted to 2^-90 of it.
   PurchaseGoal goal;
@@ -199,6 +201,12 @@ void Selection::buy_for(PurchaseGoal goal) {
   const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get(), counts_.get()).find_threshold(goal);
   held_.reset();
   cut_.threshold = threshold.key;
+  if (rule_.packed && threshold.bytes) {
+    Purchases bought;
+    for (const Region& region : tree_.regions) bought.regions += region.key > 0 && region.key >= threshold.key ? 1 : 0;
+    bought.leaf_bytes = *threshold.bytes - bought.regions * rule_.region_bytes();
+    most_bytes_ = layout_of(bought).file_bytes;
+  }
   for (Region& region : tree_.regions) region.open = region.key > cut_.threshold;
   for (Upper& upper : tree_.uppers) upper.open = upper.key > cut_.threshold;
   Team& team = rows_.team();
@@ -206,6 +214,13 @@ void Selection::buy_for(PurchaseGoal goal) {
   team.follow(tree_.regions);
   team.follow(tree_.uppers);
   team.follow(cut_);
+}
+
+std::optional<Selection::PreviewedBytes> Selection::previewed_bytes() const {
+  if (!most_bytes_) return std::nullopt;
+  Purchases opened;
+  for (const Region& region : tree_.regions) opened.regions += region.open ? 1 : 0;
+  return PreviewedBytes{*most_bytes_, layout_of(opened).node_bytes()};
 }
 
 LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, RegionGains& gains) const {

@@ -75,6 +75,14 @@ class Selection {
   }
   const GainRule& rule() const { return rule_; }
 
+  /// Of a packed file with a preview, after choose() or choose_error(): most bytes it may have, and those of the
+  /// preview; nullopt where the former takes a pass over the rows.
+  struct PreviewedBytes {
+    std::uint64_t most_of_file = 0;
+    std::uint64_t preview = 0;
+  };
+  std::optional<PreviewedBytes> previewed_bytes() const;
+
  private:
   struct Purchases {
     std::uint64_t uppers = 0;
@@ -95,6 +103,7 @@ class Selection {
   std::unique_ptr<HeldSteps> held_;    // until the cut is found
   std::unique_ptr<KeyCounts> counts_;  // of steps that are too many to be held
   Cut cut_;
+  std::optional<std::uint64_t> most_bytes_;  // of the chosen file
 };
 
 }  // namespace weir

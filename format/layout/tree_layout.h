@@ -37,6 +37,8 @@ struct TreeLayout {
   /// Records of blind data: the macrocells', and that of packed data where there is any.
   std::uint32_t blind_records() const { return counts.packed_bytes > 0 ? 2 : 1; }
   std::uint64_t grid_bytes() const { return file_bytes - grid; }
+  /// Of all nodes, leaves included; of a packed file its preview.
+  std::uint64_t node_bytes() const { return blind_meta - uppers; }
   std::uint64_t upper_offset(std::uint64_t i) const { return uppers + i * nvdb::kUpperBytes; }
   std::uint64_t lower_offset(std::uint64_t i) const { return lowers + i * nvdb::kLowerBytes; }
 };
