@@ -122,7 +122,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   });
   work.hold_records(memory.record_bytes > 0);
   if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
-  const StreamOptions stream = stream_options(control);
+  StreamOptions stream = stream_options(control);
+  stream.buffer_bytes = 2 * memory.block_bytes;
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
   }

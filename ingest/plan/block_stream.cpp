@@ -4,12 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "format/base/error.h"
 #include "ingest/plan/block_parts.h"
@@ -22,30 +22,39 @@ bool is_cancelled(const StreamOptions& options) {
   return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
 }
 
-constexpr std::size_t kBuffers = 2;
-
-/// The hand-over between the reader and the caller: block i goes through buffer i % kBuffers, is read
-/// after block i - kBuffers has been worked on, and worked on after it has been read.
+/// The hand-over between the readers and the caller: of b buffers block i goes through buffer i % b, is read
+/// after block i - b has been worked on, and worked on after it has been read.
 class Handover {
  public:
-  /// BlockReader: waits until block `i` may be read; false where the caller has stopped.
-  bool wait_free(std::size_t i) {
+  Handover(std::size_t blocks, std::size_t buffers) : blocks_(blocks), buffers_(buffers), read_(buffers) {}
+
+  /// A reader: waits until the next block may be read; nullopt where there is none, or the caller has stopped.
+  std::optional<std::size_t> next_to_read() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return stopped_ || i < worked_ + kBuffers; });
-    return !stopped_;
+    const std::size_t i = next_++;
+    // What failed is rethrown when its turn comes: the blocks before it are still asked for.
+    const auto ends = [&] { return stopped_ || i >= blocks_ || (failure_ && failed_ < i); };
+    changed_.wait(lock, [&] { return ends() || i < worked_ + buffers_; });
+    const bool reads = !ends();
+    return reads ? std::optional(i) : std::nullopt;
   }
-  void publish_read() {
-    update([this] { ++read_; });
+  void publish_read(std::size_t i) {
+    update([&] { read_[i % buffers_] = i + 1; });
   }
-  void publish_failure(std::exception_ptr failure) {
-    update([&] { failure_ = std::move(failure); });
+  void publish_failure(std::size_t i, std::exception_ptr failure) {
+    update([&] {
+      if (failure_ && failed_ < i) return;
+      failure_ = std::move(failure);
+      failed_ = i;
+    });
   }
 
-  /// Caller: waits until block `i` has been read; rethrows what ended the reader before it.
+  /// Caller: waits until block `i` has been read; rethrows what ended its reader.
   void wait_read(std::size_t i) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return failure_ || i < read_; });
-    if (i >= read_) std::rethrow_exception(failure_);
+    const auto is_read = [&] { return read_[i % buffers_] == i + 1; };
+    changed_.wait(lock, [&] { return is_read() || (failure_ && failed_ <= i); });
+    if (!is_read()) std::rethrow_exception(failure_);
   }
   void publish_worked() {
     update([this] { ++worked_; });
@@ -64,27 +73,62 @@ class Handover {
     changed_.notify_all();
   }
 
+  const std::size_t blocks_;
+  const std::size_t buffers_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::size_t read_ = 0;    ///< blocks
-  std::size_t worked_ = 0;  ///< blocks
+  std::size_t next_ = 0;           // that no reader has
+  std::vector<std::size_t> read_;  // by buffer: the block that it has, counted from 1
+  std::size_t worked_ = 0;         // blocks
   bool stopped_ = false;
-  std::exception_ptr failure_;
+  std::exception_ptr failure_;  // of block failed_, the first one that failed
+  std::size_t failed_ = 0;
 };
 
-/// The reading thread; told to stop and joined on every way out of stream_blocks.
-class BlockReader {
+/// The reading threads; told to stop and joined on every way out of stream_blocks.
+class BlockReaders {
  public:
-  template <typename Run>
-  BlockReader(Handover& handover, Run run) : handover_(handover), thread_(std::move(run)) {}
-  ~BlockReader() { handover_.stop(); }  // thread_ joins after this
-  BlockReader(const BlockReader&) = delete;
-  BlockReader& operator=(const BlockReader&) = delete;
+  /// `read(i)` reads block i.
+  BlockReaders(std::size_t count, Handover& handover, const std::function<void(std::size_t)>& read)
+      : handover_(handover) {
+    try {
+      for (std::size_t t = 0; t < count; ++t) threads_.emplace_back([&handover, read] { run(handover, read); });
+    } catch (...) {  // the system has no thread more; those that there are must come to their end
+      handover_.stop();
+      throw;
+    }
+  }
+  ~BlockReaders() { handover_.stop(); }  // threads_ join after this
+  BlockReaders(const BlockReaders&) = delete;
+  BlockReaders& operator=(const BlockReaders&) = delete;
 
  private:
+  static void run(Handover& handover, const std::function<void(std::size_t)>& read) {
+    while (const std::optional<std::size_t> i = handover.next_to_read()) {
+      try {
+        read(*i);
+        handover.publish_read(*i);
+      } catch (...) {
+        handover.publish_failure(*i, std::current_exception());
+      }
+    }
+  }
+
   Handover& handover_;
-  std::jthread thread_;
+  std::vector<std::jthread> threads_;
 };
+
+// Buffers of `bytes` each for `blocks` of them: one for what is worked on, the others for what is read ahead.
+std::size_t buffer_count(std::size_t blocks, std::size_t bytes, const StreamOptions& options) {
+  constexpr std::size_t kMost = 8;
+  return std::min(blocks, std::clamp<std::size_t>(options.buffer_bytes / bytes, 2, kMost));
+}
+
+// Two, so that one begins a block while the other ends one; not where chunks that two blocks share are decoded once if
+// the blocks come one after the other, nor where each takes memory of its own to read.
+std::size_t reader_count(std::size_t buffers, const VolumeSource& source) {
+  return buffers > 2 && source.access().chunk == Index3{} && source.working_bytes() == 0 ? 2 : 1;
+}
 
 // Between two blocks. A `cancel` that is set meanwhile is found at the next rest: whoever is asked last before the end
 // knows that it is the end.
@@ -128,38 +172,39 @@ ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, c
     total += box.voxels();
     largest = std::max(largest, box.voxels());
   }
-  // A single box has nobody to read ahead for.
-  const std::size_t bytes = static_cast<std::size_t>(largest) * sizeof(float);
-  const std::array<PageBuffer, kBuffers> buffers{PageBuffer(bytes), PageBuffer(boxes.size() > 1 ? bytes : 0)};
-  const auto values = [&](std::size_t i) {
-    return buffers[i % kBuffers].floats().first(static_cast<std::size_t>(boxes[i].voxels()));
+  struct Buffer {
+    PageBuffer memory;
+    ConversionLoss loss;
+    std::optional<BlockParts> parts;
+    const HeldLeaves* held = nullptr;
   };
-
-  std::array<ConversionLoss, kBuffers> losses;
-  std::array<std::optional<BlockParts>, kBuffers> parts;
-  Handover handover;
-  const BlockReader reader(handover, [&] {
-    try {
-      for (std::size_t i = 0; i < boxes.size() && handover.wait_free(i); ++i) {
-        const TraceSpan span(options.trace, "read", values(i).size_bytes());
-        std::optional<BlockParts>& in_parts = parts[i % kBuffers];
-        in_parts = options.in_parts ? parts_of(source, boxes[i]) : std::nullopt;
-        losses[i % kBuffers] = in_parts ? in_parts->read(source, values(i)) : source.read(boxes[i], values(i));
-        handover.publish_read();
-      }
-    } catch (...) {
-      handover.publish_failure(std::current_exception());
-    }
+  const std::size_t bytes = static_cast<std::size_t>(largest) * sizeof(float);
+  std::vector<Buffer> buffers;
+  for (std::size_t i = buffer_count(boxes.size(), bytes, options); i > 0; --i)
+    buffers.push_back({PageBuffer(bytes), {}, {}, nullptr});
+  const auto buffer_of = [&](std::size_t i) -> Buffer& { return buffers[i % buffers.size()]; };
+  const auto values = [&](std::size_t i) {
+    return buffer_of(i).memory.floats().first(static_cast<std::size_t>(boxes[i].voxels()));
+  };
+  Handover handover(boxes.size(), buffers.size());
+  const BlockReaders readers(reader_count(buffers.size(), source), handover, [&](std::size_t i) {
+    Buffer& buffer = buffer_of(i);
+    buffer.held = options.in_parts ? source.held(boxes[i]) : nullptr;
+    buffer.parts.reset();
+    buffer.loss = {};
+    if (buffer.held != nullptr) return;
+    const TraceSpan span(options.trace, "read", values(i).size_bytes());
+    if (options.in_parts) buffer.parts = parts_of(source, boxes[i]);
+    buffer.loss = buffer.parts ? buffer.parts->read(source, values(i)) : source.read(boxes[i], values(i));
   });
 
   std::int64_t done = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     handover.wait_read(i);
     if (is_cancelled(options)) rest(options, i);
-    const ConversionLoss lost = losses[i % kBuffers];
-    loss.add(lost);
-    const std::optional<BlockParts>& in_parts = parts[i % kBuffers];
-    work({i, boxes[i], values(i), lost, in_parts ? &*in_parts : nullptr});
+    const Buffer& buffer = buffer_of(i);
+    loss.add(buffer.loss);
+    work({i, boxes[i], values(i), buffer.loss, buffer.parts ? &*buffer.parts : nullptr, buffer.held});
     handover.publish_worked();
     done += boxes[i].voxels();
     if (options.progress) options.progress(done, total);

@@ -15,6 +15,7 @@
 namespace weir {
 
 class BlockParts;
+class HeldLeaves;
 
 struct Block {
   std::size_t index = 0;              ///< position in the list given to stream_blocks
@@ -22,6 +23,7 @@ struct Block {
   std::span<const float> values;      ///< x fastest over `voxels`; valid during the call only
   ConversionLoss loss;                ///< of reading it
   const BlockParts* parts = nullptr;  ///< where the values are not those of all voxels but these parts'
+  const HeldLeaves* held = nullptr;   ///< where nothing was read: `values` are anything
 };
 
 /// stream_blocks or work_in_place.
@@ -36,14 +38,19 @@ struct StreamOptions {
   /// `cancel` waits for, so that it loses nothing.
   std::function<void(std::size_t boxes_done)> at_rest;
   Trace* trace = nullptr;  ///< gets a "read" of each box
-  bool in_parts = false;   ///< blocks whose voxels repeat each other come in parts, where they are read ahead
+  /// Blocks that are read ahead come in parts where their voxels repeat each other, and unread where their leaves lie
+  /// in memory.
+  bool in_parts = false;
+  /// Of blocks that are read ahead, with the one that is worked on: two of the largest in any case, and up to eight.
+  /// Blocks take longer and shorter: where more of them wait, neither reading nor work waits for the other as often.
+  std::uint64_t buffer_bytes = 0;
 };
 
 /// Throws Error(interrupted) where `cancel` is set.
 void throw_if_cancelled(const StreamOptions& options);
 
-/// Reads each box and calls `work` on the calling thread, in the order of `boxes`; two buffers of
-/// the largest box's size exist at a time. An exception of either side ends both and is rethrown;
+/// Reads each box and calls `work` on the calling thread, in the order of `boxes`; as many buffers of
+/// the largest box's size exist as `options.buffer_bytes` holds. An exception of either side ends both and is rethrown;
 /// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the read
 /// in progress has ended. Returns the loss summed over all boxes.
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,

@@ -20,6 +20,7 @@
 namespace weir {
 
 class CellPlaces;
+class HeldLeaves;
 class ResidentVolume;
 
 /// What a source knows about its volume without reading it.
@@ -116,6 +117,10 @@ class VolumeSource {
   virtual ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) {
     return read(part.box, values);
   }
+
+  /// Where the leaves of `box`, which are all of their voxels in the domain, lie in memory one by one; null where they
+  /// have to be read. Lives as long as the source.
+  virtual const HeldLeaves* held(const Box& /*box*/) const { return nullptr; }
 
   /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
   virtual std::uint64_t working_bytes() const { return 0; }

@@ -8,22 +8,39 @@
 #include <thread>
 #include <vector>
 
+#include "format/base/text.h"
+#include "ingest/source/held_leaves.h"
 #include "tests/ingest/support/scratch.h"
 
 namespace weir::block_stream_test {
 namespace {
 
-/// Values are their linear index; can fail at one read, and remembers who read and into where.
+class NoLeaves final : public HeldLeaves {
+ public:
+  std::span<const float> leaf(const Box& /*inside*/, std::array<float, kLeafVoxels>& /*room*/) const override {
+    return {};
+  }
+};
+const NoLeaves kNoLeaves;
+
+/// Values are their linear index; can fail at one read or from one layer on, and remembers who read and into where.
 class CountingSource final : public VolumeSource {
  public:
   explicit CountingSource(const Index3& extent) { info_.extent = extent; }
 
   const SourceInfo& info() const override { return info_; }
-  AccessShape access() const override { return {}; }
+  AccessShape access() const override {
+    AccessShape shape;
+    shape.chunk = chunk;
+    return shape;
+  }
+  const HeldLeaves* held(const Box& box) const override { return box.lo.z == held_z ? &kNoLeaves : nullptr; }
   std::uint64_t bytes_read() const override { return 0; }
+  std::uint64_t working_bytes() const override { return own_bytes; }
   ConversionLoss read(const Box& box, std::span<float> values) override {
     const std::size_t n = reads.fetch_add(1);
     if (n == fail_at) throw Error(ErrorKind::input, "cut short");
+    if (box.lo.z >= fail_z) throw Error(ErrorKind::input, cat("cut short at ", box.lo.z));
     EXPECT_EQ(std::ssize(values), box.voxels());
     {
       const std::lock_guard lock(mutex);
@@ -43,6 +60,10 @@ class CountingSource final : public VolumeSource {
 
   std::atomic<std::size_t> reads{0};
   std::size_t fail_at = SIZE_MAX;
+  std::int64_t fail_z = INT64_MAX;
+  std::int64_t held_z = -1;
+  Index3 chunk{};
+  std::uint64_t own_bytes = 0;  // that reading takes
   std::mutex mutex;
   std::set<std::thread::id> readers;
   std::set<const float*> buffers;
@@ -101,6 +122,80 @@ TEST(BlockStream, ReadsTheNextBlockDuringTheWork) {
     EXPECT_LE(source.reads, block.index + 2);
   });
   EXPECT_EQ(source.reads, 8U);
+}
+
+// Of the largest of slabs().
+constexpr std::uint64_t kSlabBytes = 5 * 3 * sizeof(float);
+
+TEST(BlockStream, ReadsAsManyBlocksAheadAsItsBuffersHold) {
+  for (const auto& [bytes, ahead] : {std::pair{std::uint64_t{0}, 2U}, {4 * kSlabBytes, 4U}, {100 * kSlabBytes, 8U}}) {
+    CountingSource source({5, 3, 40});
+    StreamOptions options;
+    options.buffer_bytes = bytes;
+    std::size_t next = 0;
+    stream_blocks(source, slabs(40), options, [&, most_ahead = ahead](const Block& block) {
+      ASSERT_EQ(block.index, next++);
+      ASSERT_EQ(block.values[7], static_cast<float>(15 * block.index + 7));
+      const auto most = std::min<std::size_t>(block.index + most_ahead, 40);
+      while (source.reads < most) std::this_thread::yield();
+      EXPECT_LE(source.reads, most);
+    });
+    EXPECT_EQ(next, 40U);
+    EXPECT_EQ(source.buffers.size(), ahead);
+    EXPECT_LE(source.readers.size(), ahead == 2 ? 1U : 2U);
+  }
+}
+
+TEST(BlockStream, ChunksAndWhatTakesMemoryOfItsOwnAreReadByOneThread) {
+  for (const bool chunks : {true, false}) {
+    CountingSource source({5, 3, 40});
+    if (chunks) source.chunk = {5, 3, 2};
+    if (!chunks) source.own_bytes = 1;
+    StreamOptions options;
+    options.buffer_bytes = 8 * kSlabBytes;
+    stream_blocks(source, slabs(40), options, [](const Block&) {});
+    EXPECT_EQ(source.readers.size(), 1U);
+  }
+}
+
+TEST(BlockStream, AnErrorThatTwoReadersMeetStopsAfterTheBlocksBefore) {
+  StreamOptions options;
+  options.buffer_bytes = 4 * kSlabBytes;
+  for (std::int64_t fail_z = 0; fail_z < 200; ++fail_z) {
+    CountingSource source({5, 3, 200});
+    source.fail_z = fail_z;
+    std::int64_t worked = 0;
+    const auto message = message_of_error(
+        ErrorKind::input, [&] { stream_blocks(source, slabs(200), options, [&](const Block&) { ++worked; }); });
+    EXPECT_EQ(message, cat("cut short at ", fail_z));
+    EXPECT_EQ(worked, fail_z);
+  }
+}
+
+TEST(BlockStream, WorkThatFailsEndsTwoReaders) {
+  StreamOptions options;
+  options.buffer_bytes = 4 * kSlabBytes;
+  CountingSource source({5, 3, 200});
+  EXPECT_THROW(stream_blocks(source, slabs(200), options,
+                             [](const Block& block) {
+                               if (block.index == 50) throw std::runtime_error("work");
+                             }),
+               std::runtime_error);
+  EXPECT_LE(source.reads, 54U);
+}
+
+TEST(BlockStream, LeavesThatLieInMemoryAreNotReadWhereBlocksComeInParts) {
+  CountingSource source({5, 3, 8});
+  source.held_z = 3;
+  StreamOptions options;
+  for (const bool in_parts : {false, true}) {
+    source.reads = 0;
+    options.in_parts = in_parts;
+    stream_blocks(source, slabs(8), options, [&](const Block& block) {
+      EXPECT_EQ(block.held, in_parts && block.index == 3 ? &kNoLeaves : nullptr);
+    });
+    EXPECT_EQ(source.reads, in_parts ? 7U : 8U);
+  }
 }
 
 TEST(BlockStream, NoBoxes_ReadsNothing) {
