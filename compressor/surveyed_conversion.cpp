@@ -171,6 +171,7 @@ class SurveyedConversion {
     const EncodedFile encoded = encode(std::move(request));
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
+    const std::jthread release([kept = stores_.rows.give_up_kept()]() mutable { kept.reset(); });  // a second for 5 GB
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_quality();

@@ -3,10 +3,12 @@
 #include <cstddef>
 
 #include "ingest/plan/block_parts.h"
+#include "ingest/source/held_leaves.h"
 
 namespace weir {
 
 LeafInBlock leaf_in_block(const Block& block, const Box& inside, LeafRoom& room) {
+  if (block.held != nullptr) return {block.held->leaf(inside, room.values), inside, {}};
   if (block.parts == nullptr) return {block.values, block.voxels, {}};
   const Index3 by = block.parts->gather(block.values, inside, room.distinct);
   const auto count = static_cast<std::size_t>(inside.voxels());

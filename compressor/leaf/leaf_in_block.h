@@ -1,4 +1,4 @@
-// The values of one leaf in a block, also where that comes in parts.
+// The values of one leaf in a block, also where that comes in parts, or unread.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ struct LeafInBlock {
   Index3 by{1, 1, 1};               ///< how many voxels have each along the axes
 };
 
-/// `inside`: the voxels of the leaf in the domain. Of a block in parts the values are those of the leaf alone, in
-/// `room`.
+/// `inside`: the voxels of the leaf in the domain. Of a block in parts, and of one whose leaves lie in memory, the
+/// values are those of the leaf alone, which may be in `room`.
 LeafInBlock leaf_in_block(const Block& block, const Box& inside, LeafRoom& room);
 
 }  // namespace weir

@@ -57,6 +57,17 @@ void KeptLeaves::add(std::int64_t leaf, std::span<const float> values, bool unif
   entry.place = static_cast<std::uint32_t>(place) + kFirst;
 }
 
+std::span<const float> KeptLeaves::leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const {
+  const auto count = static_cast<std::size_t>(inside.voxels());
+  const Index3 at = floor_div(inside.lo, kLeafDim) - leaves_.first;
+  const Entry& entry = entries_[static_cast<std::size_t>(leaves_.linear(at))];
+  if (entry.place == kUniform) {
+    std::fill_n(room.begin(), count, entry.value);
+    return std::span<const float>(room).first(count);
+  }
+  return values_.floats().subspan((entry.place - kFirst) * kLeafVoxels, count);
+}
+
 Box KeptLeaves::leaves_under(const Box& voxels) const {
   return {floor_div(voxels.lo, kLeafDim) - leaves_.first,
           floor_div(voxels.hi - Index3{1, 1, 1}, kLeafDim) - leaves_.first + Index3{1, 1, 1}};

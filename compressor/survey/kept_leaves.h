@@ -1,6 +1,7 @@
 // Values that the survey keeps in memory for the encode pass, so that it need not read them again.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -10,12 +11,13 @@
 
 #include "format/base/index.h"
 #include "ingest/plan/page_buffer.h"
+#include "ingest/source/held_leaves.h"
 
 namespace weir {
 
 /// Leaves of a volume, as they come, until a given memory is full; of those whose values have the same bits only one.
 /// Leaves may be added by several threads at once, each once.
-class KeptLeaves {
+class KeptLeaves final : public HeldLeaves {
  public:
   /// For the leaves of `leaves` in `bytes` of memory, index included; pages of it are taken as they are needed. Throws
   /// Error(io) where the kernel refuses.
@@ -31,6 +33,9 @@ class KeptLeaves {
 
   /// `values` are those of the leaf's voxels in the domain, x fastest; `uniform`: all have the same bits.
   void add(std::int64_t leaf, std::span<const float> values, bool uniform);
+
+  /// Only of a leaf that has() tells of.
+  std::span<const float> leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const override;
 
   /// Whether all leaves under `voxels`, which lies in the domain, are kept.
   bool has(const Box& voxels) const;

@@ -27,6 +27,7 @@ class KeptSource final : public VolumeSource {
   ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
     return source_.read_repeated(part, values);
   }
+  const HeldLeaves* held(const Box& box) const override { return has(box) ? kept_ : nullptr; }
   std::uint64_t working_bytes() const override { return source_.working_bytes(); }
   std::uint64_t bytes_read() const override { return source_.bytes_read(); }
 

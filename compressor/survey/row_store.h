@@ -44,6 +44,8 @@ class RowStore : public LeafStore<LeafRow> {
   /// The values of leaves; null where none are kept.
   KeptLeaves* kept() const { return kept_.get(); }
   void keep_leaves(std::unique_ptr<KeptLeaves> kept) { kept_ = std::move(kept); }
+  /// For whoever frees their memory.
+  std::unique_ptr<KeptLeaves> give_up_kept() { return std::move(kept_); }
 
  private:
   SelectionRoom room_;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "tests/compressor/support/converted.h"
@@ -47,6 +49,21 @@ TEST(KeptLeaves, GivesAnyBoxBack) {
       kept.copy(box, values, threads);
       for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(bits_of(values[i]), bits_of(expected[i])) << i;
     }
+  }
+}
+
+TEST(KeptLeaves, GivesEachLeafBack) {
+  const MemoryVolume volume = volume_with_edges();
+  const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
+  KeptLeaves kept(leaves, KeptLeaves::whole_bytes(leaves));
+  add_all(kept, volume, leaves);
+  std::array<float, kLeafVoxels> room{};
+  for (std::int64_t i = 0; i < leaves.size(); ++i) {
+    const Box inside = leaves.voxels(leaves.position(i));
+    const std::vector<float> expected = volume.in(inside);
+    const std::span<const float> values = kept.leaf(inside, room);
+    ASSERT_EQ(values.size(), expected.size());
+    for (std::size_t v = 0; v < values.size(); ++v) ASSERT_EQ(bits_of(values[v]), bits_of(expected[v])) << i;
   }
 }
 
