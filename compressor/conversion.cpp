@@ -108,7 +108,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   if (options.threads == 0 && threads < processors && control.notice) {
     control.notice(fewer_threads_notice(threads, processors, options.memory));
   }
-  team.run([&] { threads = startable_workers(threads, control.notice); });
+  const std::size_t workers = threads;
+  team.run([&] { threads = startable_workers(workers, control.notice); });
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
@@ -123,7 +124,8 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   work.hold_records(memory.record_bytes > 0);
   if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
   StreamOptions stream = stream_options(control);
-  stream.buffer_bytes = 2 * memory.block_bytes;
+  // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
+  if (threads == workers) stream.buffer_bytes = 2 * memory.block_bytes;
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -106,6 +107,16 @@ bool raises_default(const ConversionOptions& options, const Box& domain) {
          options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
+// Frees them meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
+std::jthread released(std::unique_ptr<KeptLeaves> kept) {
+  if (kept == nullptr) return {};
+  try {
+    return std::jthread([leaves = std::move(kept)]() mutable { leaves.reset(); });
+  } catch (const std::system_error&) {
+    return {};
+  }
+}
+
 // What the squares over `finite` voxels may sum up to for a PSNR.
 double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
   const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
@@ -171,7 +182,7 @@ class SurveyedConversion {
     const EncodedFile encoded = encode(std::move(request));
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
-    const std::jthread release([kept = stores_.rows.give_up_kept()]() mutable { kept.reset(); });  // a second for 5 GB
+    const std::jthread release = released(stores_.rows.give_up_kept());
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_quality();

@@ -1,4 +1,5 @@
-// The values of one leaf in a block, also where that comes in parts, or unread.
+// The values of one leaf in a block: among those that were read, in one of their parts, or in memory as the survey left
+// it.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@
 namespace weir {
 
 struct MemoryPlan {
-  std::uint64_t block_bytes = 0;   ///< float32 bytes of one block; two are held at a time
+  std::uint64_t block_bytes = 0;   ///< float32 bytes of one block; there is room for two, or several smaller ones
   std::uint64_t worker_bytes = 0;  ///< of one worker's block where each reads its own
   SelectionRoom selection;
   std::size_t digest_threads = 1;  ///< file pieces hashed at a time

@@ -10,8 +10,8 @@ namespace weir {
 ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
   const Box domain = source.info().domain();
   const AccessShape access = source.access();
-  // Read ahead: the survey writes nothing that asks for whole lower nodes, and blocks that stay in the
-  // cache between the read and the work are faster.
+  // Read ahead: the survey writes nothing that asks for whole lower nodes, and of small blocks more can wait for the
+  // work, each in the cache still where the disk is slower than that.
   constexpr std::uint64_t kSurveyBytes = std::uint64_t{8} << 20U;
   // In place: blocks for the second-level cache; deep ones for the encode pass, whose leaves then lie
   // together in the output. Larger volumes than this are not taken for cached.

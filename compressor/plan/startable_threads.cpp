@@ -7,6 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/plan/staging.h"
 
 namespace weir {
 
@@ -28,7 +29,7 @@ std::size_t startable_threads(std::size_t wanted) {
 }
 
 std::size_t startable_workers(std::size_t threads, const Notice& notice) {
-  constexpr std::size_t kOthers = 6;
+  constexpr std::size_t kOthers = 2 * kIoThreads + 2;  // two readers with their helpers, and two more
   const std::size_t wanted = threads - 1 + kOthers;
   const std::size_t startable = startable_threads(wanted);
   if (startable < 2) throw Error(ErrorKind::io, kNoMoreThreads);  // one reads, and oneTBB may start one for itself

@@ -101,7 +101,8 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
 
 Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   Threshold found = search(goal);
-  if (goal.unit == 0 || !holds(every_key())) return found;
+  const bool previewed = rule_.packed && rule_.packed->preview;
+  if (!previewed || goal.unit == 0 || !holds(every_key())) return found;
   tbb::enumerable_thread_specific<std::uint64_t> bytes{0};
   for_each_held([&] {
     return [least = found.key, &sum = bytes.local()](std::int64_t, double key, std::uint64_t of_step, double) {

@@ -50,7 +50,7 @@ class Candidate {
     } else if (request_.budget.kind == Budget::Kind::psnr) {
       size_ = {0, "psnr", ""};
       const bool lowered_to_nothing = request_.planned_error < request_.squared_error && request_.planned_error == 0;
-      lowered_to_nothing && !is_exact() ? choose_everything() : selection_.choose_error(target());
+      lowered_to_nothing && !ends_exact() ? choose_everything() : selection_.choose_error(target());
     } else {
       size_ = {0, "max_error", ""};
       selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
@@ -60,16 +60,15 @@ class Candidate {
   /// Whether the chosen file is sure to be too short for its preview, before it is planned.
   bool is_sure_to_be_short() const {
     const std::optional<Selection::PreviewedBytes> bytes = selection_.previewed_bytes();
-    return bytes && is_short(bytes->most_of_file, bytes->preview);
+    return bytes && is_short(bytes->most_of_file + bytes->most_of_file / 64, bytes->preview);
   }
 
-  /// The chosen file; one that is too short for its preview, which `drops_preview`, is not made to meet its target.
-  FilePlan plan_chosen(bool drops_preview = false) {
+  /// The chosen file; for a PSNR, where blocks are kept without loss, one that meets it.
+  FilePlan plan_chosen() {
     FilePlan file = planned(size_);
-    if (request_.budget.kind != Budget::Kind::psnr || !is_exact()) return file;
-    // Where blocks are kept without loss, the plan's error can come as near to nothing as is asked. Sums round.
+    if (request_.budget.kind != Budget::Kind::psnr || !ends_exact()) return file;
+    // The plan's error can come as near to nothing as is asked. Sums round.
     for (double slack = 0x1p-48; file.plan.expected_error > target(); slack *= 256) {
-      if (drops_preview && is_short(file)) return file;
       tree_ = std::move(file.tree);
       slack < 1 ? selection_.choose_error(target() * (1 - slack)) : choose_everything();
       file = planned(size_);
@@ -84,8 +83,8 @@ class Candidate {
   }
 
  private:
-  // Whether all errors that a plan for a PSNR expects are known to parts of 10,000.
-  bool is_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
+  // Whether every step that can be bought leads to no error.
+  bool ends_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
   // Of a plan for a PSNR.
   double target() const { return encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error; }
   void choose_everything() { selection_.choose(bytes_.full.file_bytes); }
@@ -184,7 +183,7 @@ std::optional<FilePlan> plan_previewed(const FileRequest& request, const RowStor
   check_lossless(request, Encoding::packed, candidate);
   candidate.choose();
   if (candidate.is_sure_to_be_short()) return std::nullopt;
-  FilePlan file = candidate.plan_chosen(true);
+  FilePlan file = candidate.plan_chosen();
   if (is_short(file)) return std::nullopt;
   check_target(request, Encoding::packed, candidate, file);
   return file;

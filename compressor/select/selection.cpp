@@ -195,13 +195,15 @@ void Selection::choose_error(double squared_error) {
     goal.limit = goal.weight(0, error - squared_error);
   }
   buy_for(goal);
+  // Of so small an error the sums round, and a plan that misses it is followed by others.
+  if (squared_error < std::ldexp(error, -40)) most_bytes_.reset();
 }
 
 void Selection::buy_for(PurchaseGoal goal) {
   const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get(), counts_.get()).find_threshold(goal);
   held_.reset();
   cut_.threshold = threshold.key;
-  if (rule_.packed && threshold.bytes) {
+  if (threshold.bytes) {
     Purchases bought;
     for (const Region& region : tree_.regions) bought.regions += region.key > 0 && region.key >= threshold.key ? 1 : 0;
     bought.leaf_bytes = *threshold.bytes - bought.regions * rule_.region_bytes();

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -91,11 +92,11 @@ class BlockReaders {
   /// `read(i)` reads block i.
   BlockReaders(std::size_t count, Handover& handover, const std::function<void(std::size_t)>& read)
       : handover_(handover) {
+    threads_.reserve(count);
     try {
-      for (std::size_t t = 0; t < count; ++t) threads_.emplace_back([&handover, read] { run(handover, read); });
-    } catch (...) {  // the system has no thread more; those that there are must come to their end
-      handover_.stop();
-      throw;
+      while (threads_.size() < count) threads_.emplace_back([&handover, read] { run(handover, read); });
+    } catch (const std::system_error&) {
+      if (threads_.empty()) throw;  // else the system has no thread more: one reader does
     }
   }
   ~BlockReaders() { handover_.stop(); }  // threads_ join after this
@@ -125,7 +126,7 @@ std::size_t buffer_count(std::size_t blocks, std::size_t bytes, const StreamOpti
 }
 
 // Two, so that one begins a block while the other ends one; not where chunks that two blocks share are decoded once if
-// the blocks come one after the other, nor where each takes memory of its own to read.
+// the blocks come one after the other, nor where a read takes memory of its own.
 std::size_t reader_count(std::size_t buffers, const VolumeSource& source) {
   return buffers > 2 && source.access().chunk == Index3{} && source.working_bytes() == 0 ? 2 : 1;
 }

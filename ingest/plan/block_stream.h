@@ -51,8 +51,8 @@ void throw_if_cancelled(const StreamOptions& options);
 
 /// Reads each box and calls `work` on the calling thread, in the order of `boxes`; as many buffers of
 /// the largest box's size exist as `options.buffer_bytes` holds. An exception of either side ends both and is rethrown;
-/// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the read
-/// in progress has ended. Returns the loss summed over all boxes.
+/// a set `cancel`, looked at before and after each block's work, throws Error(interrupted) once the reads
+/// in progress have ended. Returns the loss summed over all boxes.
 ConversionLoss stream_blocks(VolumeSource& source, std::span<const Box> boxes, const StreamOptions& options,
                              const std::function<void(const Block&)>& work);
 

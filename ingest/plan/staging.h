@@ -12,7 +12,7 @@
 
 namespace weir {
 
-inline constexpr std::size_t kIoThreads = 4;                       ///< reads in flight per source
+inline constexpr std::size_t kIoThreads = 4;                       ///< reads in flight of a box
 inline constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;  ///< bytes per read
 /// All staging memory of one source, counted against --memory.
 inline constexpr std::size_t kStagingBytes = kIoThreads * (kPieceBytes + 2 * kDirectAlignment);

@@ -118,8 +118,8 @@ class VolumeSource {
     return read(part.box, values);
   }
 
-  /// Where the leaves of `box`, which are all of their voxels in the domain, lie in memory one by one; null where they
-  /// have to be read. Lives as long as the source.
+  /// Where the values of `box`, which has whole leaves as far as the domain has them, lie in memory leaf by leaf; null
+  /// where they have to be read. Lives as long as the source.
   virtual const HeldLeaves* held(const Box& /*box*/) const { return nullptr; }
 
   /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.

@@ -50,7 +50,7 @@ class PreviewedBytes : public testing::Test {
 
 constexpr std::uint64_t kEnough = std::uint64_t{64} << 20U;
 
-TEST_F(PreviewedBytes, OfAnErrorAreAtMostTheLossOfAlignmentAboveThoseOfTheFile) {
+TEST_F(PreviewedBytes, OfAnErrorAreNeverLessThanThoseOfTheFile) {
   for (const double error : {1e5, 1e4, 1e3, 1e1, 1e-3}) {
     Selection selection = select(Selection::Search::of_error, kEnough);
     selection.choose_error(error);

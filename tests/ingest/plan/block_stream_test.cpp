@@ -133,7 +133,7 @@ TEST(BlockStream, ReadsAsManyBlocksAheadAsItsBuffersHold) {
     StreamOptions options;
     options.buffer_bytes = bytes;
     std::size_t next = 0;
-    stream_blocks(source, slabs(40), options, [&, most_ahead = ahead](const Block& block) {
+    const ConversionLoss loss = stream_blocks(source, slabs(40), options, [&, most_ahead = ahead](const Block& block) {
       ASSERT_EQ(block.index, next++);
       ASSERT_EQ(block.values[7], static_cast<float>(15 * block.index + 7));
       const auto most = std::min<std::size_t>(block.index + most_ahead, 40);
@@ -141,6 +141,7 @@ TEST(BlockStream, ReadsAsManyBlocksAheadAsItsBuffersHold) {
       EXPECT_LE(source.reads, most);
     });
     EXPECT_EQ(next, 40U);
+    EXPECT_EQ(loss.overflow, 39U * 40U / 2U);
     EXPECT_EQ(source.buffers.size(), ahead);
     EXPECT_LE(source.readers.size(), ahead == 2 ? 1U : 2U);
   }

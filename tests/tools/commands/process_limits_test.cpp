@@ -159,16 +159,29 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
   const CommandResult all = convert_with(1000);
   ASSERT_EQ(all.exit_code, 0) << all.err;
   const std::string bytes = read_file(output_);
-  for (const int threads : {9, 2}) {
+  for (const int threads : {13, 2}) {
     const CommandResult fewer = convert_with(threads);
     EXPECT_EQ(fewer.exit_code, 0) << fewer.err;
     EXPECT_NE(
         fewer.err.find("the system lets this process start " + std::to_string(threads) + " threads more; working on " +
-                       (threads == 9 ? "4" : "1") + "; raise the limit of processes (ulimit -u)\n"),
+                       (threads == 13 ? "4" : "1") + "; raise the limit of processes (ulimit -u)\n"),
         std::string::npos)
         << fewer.err;
     EXPECT_TRUE(read_file(output_) == bytes) << threads;
   }
+  // Read ahead, in several blocks.
+  const auto read_ahead = [&](int threads) {
+    return run_with(threads,
+                    {"convert", volume(200), "-o", output_, "--overwrite", "--threads", "8", "--direct-io", "on"});
+  };
+  ASSERT_EQ(read_ahead(1000).exit_code, 0);
+  const std::string ahead = read_file(output_);
+  for (const int threads : {17, 16, 13, 2}) {
+    const CommandResult fewer = read_ahead(threads);
+    EXPECT_EQ(fewer.exit_code, 0) << threads << fewer.err;
+    EXPECT_TRUE(read_file(output_) == ahead) << threads;
+  }
+  ASSERT_EQ(convert_with(1000).exit_code, 0);
   const std::string none_left =
       "weir: no more threads can be started; raise the limit of processes (ulimit -u) or end some\n";
   for (const std::string command : {"verify", "inspect"}) {
