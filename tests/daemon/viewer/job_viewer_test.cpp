@@ -318,7 +318,8 @@ TEST_F(JobViewerTest, ForecastsKeepToBandwidthAndWorkDirectory) {
   config.work_dir = "/scratch";
   viewer.configure(config);
   viewer.open("/out/s_1.nvdb", false);
-  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(directory_ / "calls"); }));
+  // The shell makes the file before it writes the line.
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(directory_ / "calls") && !calls().empty(); }));
   EXPECT_TRUE(calls().back().ends_with(" --threads=3 --forecast-bandwidth=1000 --work-dir=/scratch")) << calls().back();
 }
 
