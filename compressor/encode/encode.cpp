@@ -124,7 +124,7 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
     const RegionPlaces places = places_of(target, region);
     const Box box = intersect(tree.leaf_box(region), leaf_box);
-    const SurveyedLeaves surveyed(target.rows, box, info, &block);
+    const SurveyedLeaves surveyed(target.rows, box, info, block.held == nullptr);
     for_each(box.lo.x, box.hi.x, [&](std::int64_t x) { visit(region, places, surveyed, x, nullptr); });
   });
 }

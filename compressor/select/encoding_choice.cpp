@@ -60,7 +60,8 @@ class Candidate {
   /// Whether the chosen file is sure to be too short for its preview, before it is planned.
   bool is_sure_to_be_short() const {
     const std::optional<Selection::PreviewedBytes> bytes = selection_.previewed_bytes();
-    return bytes && is_short(bytes->most_of_file + bytes->most_of_file / 64, bytes->preview);
+    return bytes &&
+           is_short(bytes->most_of_file + bytes->most_of_file / 64, bytes->preview);  // more than roundings cost
   }
 
   /// The chosen file; for a PSNR, where blocks are kept without loss, one that meets it.

@@ -100,19 +100,14 @@ void KeptLeaves::copy(const Box& voxels, std::span<float> values, std::size_t th
 void KeptLeaves::copy_leaf(const Index3& leaf, const Box& voxels, std::span<float> values) const {
   const Box inside = leaves_.voxels(leaf);
   const Box part = intersect(inside, voxels);
-  const Entry& entry = entries_[static_cast<std::size_t>(leaves_.linear(leaf))];
-  const std::size_t place = entry.place == kUniform ? 0 : entry.place - kFirst;
-  const float* const kept = values_.floats().data() + place * kLeafVoxels;
+  std::array<float, kLeafVoxels> room;
+  const std::span<const float> kept = this->leaf(inside, room);
   const auto length = static_cast<std::size_t>(part.extent().x);
   for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
     for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {
       const Index3 first{part.lo.x, y, z};
-      float* const to = values.data() + linear_index(first - voxels.lo, voxels.extent());
-      if (entry.place == kUniform) {
-        std::fill_n(to, length, entry.value);
-      } else {
-        std::copy_n(kept + linear_index(first - inside.lo, inside.extent()), length, to);
-      }
+      std::copy_n(kept.data() + linear_index(first - inside.lo, inside.extent()), length,
+                  values.data() + linear_index(first - voxels.lo, voxels.extent()));
     }
   }
 }

@@ -8,7 +8,6 @@
 #include "compressor/survey/row_store.h"
 #include "format/base/index.h"
 #include "format/io/digest.h"
-#include "ingest/plan/block_stream.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -16,9 +15,9 @@ namespace weir {
 /// Of a box of leaves, 16 bytes each. Thread-safe.
 class SurveyedLeaves {
  public:
-  /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object. Where `block` was not read, its
-  /// values are those that the survey saw, and all checks hold.
-  SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info, const Block* block = nullptr);
+  /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object. `read`: whether the values are read
+  /// once more; else they are those that the survey saw, and all checks hold.
+  SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info, bool read = true);
 
   /// Throws Error(input) where the in-domain values of `leaf` (a lattice position in the box) are not those that were
   /// surveyed. `values`, x fastest, are those over `voxels`, which hold the leaf's. Costs about 0.2 us.
@@ -31,9 +30,8 @@ class SurveyedLeaves {
 
   const NodeLattice& leaves_;
   Box leaf_box_;
-  std::vector<Digest> digests_;
+  std::vector<Digest> digests_;  // none where there is nothing to check
   const SourceInfo& info_;
-  bool read_;
 };
 
 }  // namespace weir
