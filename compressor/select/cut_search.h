@@ -44,8 +44,8 @@ struct Threshold {
   PurchaseGoal::Weight above = 0;  ///< the sum of that
   /// Regions, rising, that have something of that very key, or are it; none where the search did not look.
   std::optional<std::vector<std::int64_t>> tied{};
-  /// Bytes of all that has that key or a higher one, but for upper nodes: of an error's, with a preview, where the steps
-  /// are held.
+  /// Bytes of all that has that key or a higher one, but for upper nodes: of an error's, with a preview, where the
+  /// steps are held.
   std::optional<std::uint64_t> bytes{};
 };
 

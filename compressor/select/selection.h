@@ -75,8 +75,8 @@ class Selection {
   }
   const GainRule& rule() const { return rule_; }
 
-  /// Of a packed file with a preview, after choose() or choose_error(): most bytes it may have, but for a few thousandths
-  /// that roundings of errors cost, and those of the preview; nullopt where the former is not known.
+  /// Of a packed file with a preview, after choose() or choose_error(): most bytes it may have, but for a few
+  /// thousandths that roundings of errors cost, and those of the preview; nullopt where the former is not known.
   struct PreviewedBytes {
     std::uint64_t most_of_file = 0;
     std::uint64_t preview = 0;

@@ -18,19 +18,30 @@ KEYS = {"TAB": "\ue004", "ENTER": "\ue007", "ESCAPE": "\ue00c", "SPACE": " ", "E
         "DELETE": "\ue017", "LEFT": "\ue012", "UP": "\ue013", "RIGHT": "\ue014", "DOWN": "\ue015"}
 
 
+def start_driver(attempts=5):
+    """A chromedriver that listens, and its port. It chooses a free port of IPv4 and ends where another process has that
+    port of IPv6, so it is started anew, at most `attempts` times; RuntimeError, with all it said, where none listens."""
+    said = []
+    for _ in range(attempts):
+        with tempfile.TemporaryFile("w+") as errors:
+            driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=errors, text=True)
+            for line in driver.stdout:
+                if found := re.search(r"started successfully on port (\d+)", line):
+                    return driver, found[1]
+                said.append(line)
+            driver.wait()
+            errors.seek(0)
+            said.append(errors.read())
+    raise RuntimeError("chromedriver did not start:\n" + "".join(said))
+
+
 class Browser:
     """Headless Chromium with a profile of its own; a context manager."""
 
     def __init__(self, width=1200, height=900):
         self.profile = tempfile.TemporaryDirectory()
-        self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                       text=True)
-        for line in self.driver.stdout:
-            if found := re.search(r"started successfully on port (\d+)", line):
-                break
-        else:
-            raise RuntimeError("chromedriver did not start")
-        self.base = f"http://127.0.0.1:{found[1]}"
+        self.driver, port = start_driver()
+        self.base = f"http://127.0.0.1:{port}"
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
                      "--hide-scrollbars", "--lang=en", f"--window-size={width},{height}",
                      f"--user-data-dir={self.profile.name}"]
