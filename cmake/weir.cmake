@@ -109,8 +109,8 @@ function(weir_test_libraries)
 endfunction()
 
 # weir_leave_out(VARIABLE): takes from the test sources in it those that include, themselves or through a header of
-# tests/, what this build was left without: HDF5, OpenVDB or the tests' own stock readers, which need OpenVDB, zfp. Of a
-# build without HDF5 also those in a folder hdf5/ and those in users/ whose inputs h5py or netCDF4 write.
+# tests/, what this build was left without: HDF5, OpenVDB or the tests' own stock readers, which need OpenVDB, zfp, charts
+# or the service. Of a build without HDF5 also those in a folder hdf5/ and those in users/ whose inputs h5py or netCDF4 write.
 function(weir_leave_out variable)
   set(missing)
   if(NOT WEIR_HDF5)
@@ -182,8 +182,7 @@ function(weir_tests name)
   set(library weir_${name})
   if(name STREQUAL "cuda")  # they try the renderer too
     set(library weir_cuda_backend weir_cuda_encode)
-  endif()
-  if(name STREQUAL "cuda")  # tests/cuda/support/refused_allocations.h
+    # tests/cuda/support/refused_allocations.h
     foreach(function cudaMallocAsync cudaMallocAsync_ptsz cudaHostAlloc cudaMalloc3DArray cudaCreateTextureObject
                      cudaCreateSurfaceObject cudaStreamCreateWithFlags cudaEventCreateWithFlags)
       target_link_options(weir_tests_cuda PRIVATE LINKER:--wrap=${function})

@@ -99,33 +99,29 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   const SourceInfo& info = source.info();
   say_axes(info, control.notice);
   const Box domain = info.domain();
-  const std::size_t processors = processors_or_all(options.processors);
   BlockCoder* const coder = source.resident() == nullptr ? control.coder : nullptr;
-  const std::uint64_t coding = coder == nullptr ? 0 : coder->host_bytes();
-  const std::uint64_t resident = held + source.working_bytes() + coding;
-  std::size_t threads =
-      choose_threads(options.threads, processors, options.memory, resident, domain, region_bytes(options));
-  if (options.threads == 0 && threads < processors && control.notice) {
-    control.notice(fewer_threads_notice(threads, processors, options.memory));
+  const Workers workers = choose_workers(source, options, coder, held);
+  if (options.threads == 0 && workers.threads < workers.processors && control.notice) {
+    control.notice(fewer_threads_notice(workers.threads, workers.processors, options.memory));
   }
-  const std::size_t workers = threads;
-  team.run([&] { threads = startable_workers(workers, control.notice); });
+  std::size_t threads = workers.threads;
+  team.run([&] { threads = startable_workers(workers.threads, control.notice); });
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;
   ReadingPlan reading;
-  std::uint64_t kept_bytes = 0;
+  std::uint64_t cache_bytes = 0;
   team.run([&] {
-    MemoryShares shares = share_memory(source, options, resident, threads, journal == nullptr && team.alone());
+    MemoryShares shares = share_memory(source, options, workers.resident, threads, journal == nullptr && team.alone());
     memory = shares.memory;
     reading = std::move(shares.reading);
-    kept_bytes = shares.kept_bytes;
+    cache_bytes = shares.cache_bytes;
   });
   work.hold_records(memory.record_bytes > 0);
   if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
   StreamOptions stream = stream_options(control);
   // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
-  if (threads == workers) stream.buffer_bytes = 2 * memory.block_bytes;
+  if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
   }
@@ -168,13 +164,14 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     }
     ladders->coder = coder;
   }
-  if (kept_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
-    stores.rows.keep_leaves(KeptLeaves::where_there_is_room(leaves, kept_bytes));
+  if (cache_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
+    stores.rows.set_cache(LeafCache::where_there_is_room(leaves, cache_bytes));
   }
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
-    return survey_volume(source, reading.survey, stores.rows, stream, reading.reading, surveys_widths(options),
-                         stores.faces ? &*stores.faces : nullptr, &surveyed, pauses, ladders);
+    return survey_volume(source, reading.survey, stores.rows, stream,
+                         {reading.reading, surveys_widths(options), stores.faces ? &*stores.faces : nullptr, &surveyed,
+                          pauses, ladders});
   }();
   check_source(source, team);  // before an encode pass is spent on it
   return convert_surveyed({source, options, control, output, work, journal, visibility}, reading, survey, stores,

@@ -9,26 +9,26 @@
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/packed_region.h"
 #include "compressor/select/region_rows.h"
-#include "compressor/survey/kept_leaves.h"
+#include "compressor/survey/leaf_cache.h"
 #include "compressor/survey/leaf_faces.h"
 #include "format/base/error.h"
 
 namespace weir {
 namespace {
 
-// Most for values that are kept: three quarters of what is left by a conversion that has all it needs to be quick.
-std::uint64_t bytes_to_keep(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
+// Most for values that are cached: three quarters of what is left by a conversion that has all it needs to be quick.
+std::uint64_t bytes_to_cache(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
   constexpr std::uint64_t kLeastEnough = std::uint64_t{64} << 20U;
   constexpr std::uint64_t kEnough = std::uint64_t{512} << 20U;
   const std::uint64_t dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
   const std::uint64_t needed = resident + std::clamp(dense / 2, kLeastEnough, kEnough);
   const NodeLattice leaves = make_lattice(domain, kLeafDim);
-  return std::min(KeptLeaves::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
+  return std::min(LeafCache::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
 }
 
 // Whether values of what is read may be kept: not of a sample, not of what lies in memory already, there or on a
 // device, and not of coarse cells, whose values come once for many voxels.
-bool may_keep(VolumeSource& source, const ReadingPlan& reading) {
+bool may_cache(VolumeSource& source, const ReadingPlan& reading) {
   if (reading.reading != Reading::ahead || source.resident() != nullptr || source.places() != nullptr) return false;
   const BlockPlan& plan = reading.survey;
   for (const std::int64_t block : {std::int64_t{0}, plan.size() / 2, plan.size() - 1}) {
@@ -38,7 +38,7 @@ bool may_keep(VolumeSource& source, const ReadingPlan& reading) {
   return true;
 }
 
-// Whether a plan that keeps values decodes chunks as seldom as one that does not, and holds as many records.
+// Whether a plan that caches values decodes chunks as seldom as one that does not, and holds as many records.
 bool takes_nothing_away(const MemoryShares& keeping, const MemoryShares& shares) {
   return keeping.reading.encode.amplification <= shares.reading.encode.amplification &&
          keeping.memory.record_bytes >= shares.memory.record_bytes;
@@ -65,6 +65,16 @@ std::uint64_t region_bytes(const ConversionOptions& options) {
   return kRegionRowsBytes + kRegionLaddersBytes + 2 * RegionGains::kMostBytes;
 }
 
+Workers choose_workers(VolumeSource& source, const ConversionOptions& options, const BlockCoder* coder,
+                       std::uint64_t held) {
+  const std::size_t processors = processors_or_all(options.processors);
+  const std::uint64_t resident = held + source.working_bytes() + (coder == nullptr ? 0 : coder->host_bytes());
+  return {processors,
+          choose_threads(options.threads, processors, options.memory, resident, source.info().domain(),
+                         region_bytes(options)),
+          resident};
+}
+
 MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
                           std::size_t threads, bool may_hold) {
   const Box domain = source.info().domain();
@@ -80,9 +90,9 @@ MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options
     return shares;
   };
   MemoryShares shares = plan(0);
-  if (!may_keep(source, shares.reading)) return shares;
-  const std::uint64_t most = bytes_to_keep(options.memory, resident, domain);
-  const std::uint64_t least = 2 * KeptLeaves::index_bytes(make_lattice(domain, kLeafDim));
+  if (!may_cache(source, shares.reading)) return shares;
+  const std::uint64_t most = bytes_to_cache(options.memory, resident, domain);
+  const std::uint64_t least = 2 * LeafCache::index_bytes(make_lattice(domain, kLeafDim));
   for (std::uint64_t kept = most; kept > least; kept /= 2) {
     try {
       MemoryShares keeping = plan(kept);

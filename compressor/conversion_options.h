@@ -14,7 +14,6 @@
 #include "format/packed/block_coder.h"
 #include "format/sidecar/scene.h"
 #include "format/sidecar/sidecar.h"
-#include "ingest/plan/block_plan.h"
 
 namespace weir {
 

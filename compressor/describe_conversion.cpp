@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compressor/conversion_identity.h"
+#include "compressor/leaf/certificate.h"
 #include "format/layout/nvdb_type.h"
 #include "format/nanovdb/macrocells.h"
 
@@ -23,10 +24,12 @@ Sidecar::Histogram histogram_of(const Survey& survey) {
   return {h.first_edge(), max, std::move(counts)};
 }
 
-Sidecar::CertifiedError describe_error(const TileErrors& tiles, const LeafErrors& leaves, std::uint64_t finite,
+Sidecar::CertifiedError describe_error(const DecodedErrors& tiles, const DecodedErrors& leaves, std::uint64_t finite,
                                        const Survey& survey) {
-  const Certificate c = make_certificate(tiles.squared + leaves.squared, std::max(tiles.max_abs, leaves.max_abs),
-                                         tiles.exact && leaves.exact, finite, survey.min, survey.max);
+  DecodedErrors all = tiles;
+  all.squared += leaves.squared;
+  all.add_but_squares(leaves);
+  const Certificate c = make_certificate(all.squared, all.max_abs, all.exact, finite, survey.min, survey.max);
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
 }
 

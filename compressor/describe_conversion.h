@@ -6,7 +6,6 @@
 
 #include "compressor/conversion_options.h"
 #include "compressor/encode/encode_attempts.h"
-#include "compressor/leaf/certificate.h"
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/survey_figures.h"

@@ -44,7 +44,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
       JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.trace, control.notice});
 }
 
-bool clear_leftovers(FileSystem& files, const std::string& output) {
+bool discard_all_beside(FileSystem& files, const std::string& output) {
   const std::string hidden = hidden_directory_of(output);
   const std::string previous = sidecar_path(output) + ".previous";
   const bool any = files.exists(hidden) || files.exists(output + ".partial") || files.exists(previous);
@@ -58,7 +58,7 @@ bool clear_leftovers(FileSystem& files, const std::string& output) {
 
 void clear_after_commit(FileSystem& files, const std::string& output) {
   if (is_committed(files, output)) {
-    clear_leftovers(files, output);
+    discard_all_beside(files, output);
   } else if (files.exists(output) && !files.exists(output + ".partial")) {
     // Without a journal a conversion holds nothing in it that has a name.
     remove_if_empty(files, hidden_directory_of(output));

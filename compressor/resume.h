@@ -23,12 +23,13 @@ bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files);
 
-/// Removes what a conversion of `output` that was killed after it was done has left beside it, under the lock on it.
-/// False where there is nothing. Throws Error(io) where another process has the lock.
-bool clear_leftovers(FileSystem& files, const std::string& output);
+/// Removes all that conversions of `output` keep beside it, under the lock on it: work that could be continued, too, so
+/// only for an output that is known to be done. False where there is nothing. Throws Error(io) where another process
+/// has the lock.
+bool discard_all_beside(FileSystem& files, const std::string& output);
 
-/// Removes what is left of a conversion that was killed after its output was in place. Takes the lock for it; throws
-/// Error(io) where another process holds it.
+/// The same where the last commit of `output` was completed, but was killed before it had tidied up. Elsewhere removes
+/// an empty work directory at most.
 void clear_after_commit(FileSystem& files, const std::string& output);
 
 /// "OUT.nvdb: continues a conversion that was interrupted, survey 100 %, encode 37 % done".

@@ -107,11 +107,11 @@ bool raises_default(const ConversionOptions& options, const Box& domain) {
          options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
-// Frees them meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
-std::jthread released(std::unique_ptr<KeptLeaves> kept) {
-  if (kept == nullptr) return {};
+// Frees its memory meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
+std::jthread released(std::unique_ptr<LeafCache> cache) {
+  if (cache == nullptr) return {};
   try {
-    return std::jthread([leaves = std::move(kept)]() mutable { leaves.reset(); });
+    return std::jthread([cache = std::move(cache)]() mutable { cache.reset(); });
   } catch (const std::system_error&) {
     return {};
   }
@@ -182,7 +182,7 @@ class SurveyedConversion {
     const EncodedFile encoded = encode(std::move(request));
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
-    const std::jthread release = released(stores_.rows.give_up_kept());
+    const std::jthread release = released(stores_.rows.give_up_cache());
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_quality();

@@ -17,8 +17,7 @@ std::string step_name(std::string_view name, const SeriesStep& step);
 /// What a volume is called where nobody says it.
 enum class DefaultNames {
   /// {stem}, and of dataset, component, level and position each that was chosen among several of the file: another
-  /// volume of
-  /// it has another name, whichever call converts it. {stem}.nvdb of a file that holds one volume.
+  /// volume of it has another name, whichever call converts it. {stem}.nvdb of a file that holds one volume.
   of_file,
   /// {stem}.nvdb; for several volumes of one file {stem}_{step}.nvdb, {stem}_{dataset}.nvdb or
   /// {stem}_{dataset}_{step}.nvdb, the first that tells those of this call apart.

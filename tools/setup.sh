@@ -19,7 +19,7 @@ test=(
   libgtest-dev libnanovdb-dev libnanovdb-tools libopenvdb-tools python3-jsonschema xz-utils
   libopenmpi-dev openmpi-bin
   python3-h5py python3-netcdf4 python3-nibabel python3-xarray python3-dask python3-zarr python3-urllib3 python3-fsspec hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
-  hdf5-filter-plugin-zfp-serial groff-base zsh fish gfortran pkg-config
+  hdf5-filter-plugin-zfp-serial groff-base zsh fish gfortran
 )
 check=(libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck)
 if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then
@@ -45,10 +45,10 @@ case $size in
 esac
 
 missing=()
-for package in "${packages[@]}"; do
+for name in "${packages[@]}"; do
   # shellcheck disable=SC2016  # dpkg-query expands it, not the shell
-  status=$(dpkg-query --show --showformat '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
-  [[ $status == ii* ]] || missing+=("$package")
+  status=$(dpkg-query --show --showformat '${db:Status-Abbrev}' "$name" 2>/dev/null || true)
+  [[ $status == ii* ]] || missing+=("$name")
 done
 [[ ${#missing[@]} -gt 0 ]] || exit 0
 

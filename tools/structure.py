@@ -4,6 +4,7 @@
 - Includes run down: a folder uses itself and those that BELOW lists for it, and every file that is included is there.
 - There are no circles: neither of files, a header and its source taken as one, nor of rooms, the folders within those,
   tests/ aside.
+- The map in CONTRIBUTING.md names the rooms of its folders, and those of gpu/cuda/.
 - No two types in namespaces have one qualified name (the one-definition rule), but those in unnamed ones.
 - A header begins with a comment that says what it is for, and has #pragma once; C headers have guards.
 - No file has more than MOST_LINES lines, no folder more than MOST_FILES files, and of all concepts, a header and
@@ -60,6 +61,28 @@ def faults(name, text, known):
             yield 1, "has no #pragma once"
     if len(lines) > MOST_LINES:
         yield MOST_LINES + 1, f"has {len(lines)} lines, more than {MOST_LINES}; split it"
+
+
+def unmapped(names, contributing):
+    """(line, what) for each room that the map, under "Where things are", does not name beside its folder."""
+    lines = contributing.splitlines()
+    if "## Where things are" not in lines:
+        return
+    first = lines.index("```", lines.index("## Where things are")) + 1
+    last = lines.index("```", first)
+    mapped = collections.defaultdict(set)  # names by folder
+    begins = {}
+    for number in range(first, last):
+        if begin := re.match(r"([a-z]+)/ ", lines[number]):
+            folder = begin.group(1)
+            begins[folder] = number + 1
+        mapped[folder].update(re.findall(r"([a-z0-9_]+)/(?!\w)", lines[number]))
+    rooms = {tuple(pathlib.PurePosixPath(name).parent.parts) for name in names}
+    for room in sorted(rooms):
+        if room[0] not in begins or room[0] in ("tests", "bindings") or room[-1] in mapped[room[0]]:
+            continue
+        if len(room) == 2 or room[:2] == ("gpu", "cuda"):
+            yield begins[room[0]], f"the map does not name {'/'.join(room)}/; add what it holds"
 
 
 def unit(name):
@@ -156,6 +179,9 @@ def main():
                             stdout=subprocess.PIPE).stdout
     texts = {name: (root / name).read_text(encoding="utf-8") for name in listed.split("\0") if name}
     found = [f"{name}:{line}: {what}" for name, text in texts.items() for line, what in faults(name, text, set(texts))]
+    contributing = root / "CONTRIBUTING.md"
+    if contributing.exists():
+        found += [f"CONTRIBUTING.md:{line}: {what}" for line, what in unmapped(texts, contributing.read_text(encoding="utf-8"))]
     uses = include_graph(texts)
     rooms = room_graph({one: others for one, others in uses.items() if not one.startswith("tests/")})
     of_files, of_rooms = circles(uses), circles(rooms)

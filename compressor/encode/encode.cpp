@@ -13,7 +13,7 @@
 #include "compressor/encode/leaf_encoder.h"
 #include "compressor/encode/packed_encoder.h"
 #include "compressor/encode/resident_encode.h"
-#include "compressor/survey/kept_source.h"
+#include "compressor/survey/cached_source.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
 
@@ -195,8 +195,8 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
     tbb::parallel_for(begin, end, action);
   };
-  KeptSource kept(source, target.rows.kept());
-  stream_blocks(kept, voxel_boxes, stream, [&](const Block& block) {
+  CachedSource cached(source, target.rows.cache());
+  stream_blocks(cached, voxel_boxes, stream, [&](const Block& block) {
     const Box& leaf_box = leaf_boxes[block.index];
     for_each_layer(target, source.info(), block, leaf_box, in_parallel,
                    [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x,

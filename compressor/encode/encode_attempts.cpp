@@ -137,15 +137,15 @@ double seen_error(const EncodedFile& encoded) {
 
 // Whether the file keeps what the budget promises of its values.
 bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
-  const TileErrors& tiles = encoded.file.plan.seen_tiles;
-  const LeafErrors& leaves = encoded.seen_errors;
+  const DecodedErrors& tiles = encoded.file.plan.seen_tiles;
+  const DecodedErrors& leaves = encoded.seen_errors;
   switch (request.budget.kind) {
     case Budget::Kind::psnr:
       return seen_error(encoded) <= request.squared_error;
     case Budget::Kind::max_error:
       return std::max(tiles.max_abs, leaves.max_abs) <= request.budget.target;
     case Budget::Kind::lossless:
-      return tiles.exact && leaves.exact;
+      return encoded.file.plan.exact_tiles && leaves.exact;
     case Budget::Kind::automatic:
       return request.budget.target == 0 || seen_error(encoded) <= request.squared_error;
     case Budget::Kind::size:

@@ -25,8 +25,8 @@ struct EncodedFile {
   FilePlan file;
   std::unique_ptr<RecordStore> records;
   std::unique_ptr<PackedTarget> packed;  ///< of a packed file
-  LeafErrors errors;
-  LeafErrors seen_errors;  ///< of those that can be seen
+  DecodedErrors errors;
+  DecodedErrors seen_errors;  ///< of those that can be seen
 };
 
 /// What the attempts work with; all of it outlives them.

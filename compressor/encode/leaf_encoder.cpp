@@ -103,7 +103,7 @@ class LeafEncoder final : public LayerEncoder {
     masks_[batch_] = gaps ? active_voxels(sources_[batch_], node, inside) : std::nullopt;
     nodes_[batch_] = node;
     insides_[batch_] = inside;
-    repeats_[batch_] = LeafRepeats::of(seen.by.y, seen.by.x, seen.by.z);
+    repeats_[batch_] = LeafRepeats::in_leaf_order(seen.by);
     leaves_.push_back(place);
     if (++batch_ == kLeafBatch) encode_batch();
     if (leaves_.size() >= kHeldLeaves) finish();

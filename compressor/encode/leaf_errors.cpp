@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "compressor/leaf/certificate.h"
@@ -22,13 +21,13 @@ std::vector<bool> seen_leaves(const LeafChoices& choices) {
 
 }  // namespace
 
-LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by,
-                           Team& team) {
-  std::vector<LeafErrors> by_region(tree.regions.size());
+DecodedErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by,
+                              Team& team) {
+  std::vector<DecodedErrors> by_region(tree.regions.size());
   const auto sum_region = [&](std::size_t i) {
     const Region& region = tree.regions[i];
     if (region.leaves == 0) return;
-    LeafErrors& errors = by_region[i];
+    DecodedErrors& errors = by_region[i];
     CompensatedSum squares;
     const std::vector<LeafRecord> kept = records.read(region.first_leaf, region.leaves);
     const std::vector<bool> seen = seen_by == nullptr ? std::vector<bool>(kept.size(), true)
@@ -37,9 +36,7 @@ LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, 
       if (!seen[leaf]) continue;
       const LeafRecord& record = kept[leaf];
       squares.add(record.squared_error);
-      errors.max_abs = std::max(errors.max_abs, record.max_abs);
-      errors.exact = errors.exact && record.exact != 0;
-      errors.zeros_lost += record.zeros_lost;
+      errors.add_but_squares({0, record.max_abs, record.exact != 0, record.zeros_lost});
     }
     errors.squared = squares.value();
   };
@@ -47,13 +44,11 @@ LeafErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, 
   team.run(
       [&] { tbb::parallel_for(static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end), sum_region); });
   team.gather(by_region);
-  LeafErrors total;
+  DecodedErrors total;
   CompensatedSum squares;
-  for (const LeafErrors& region : by_region) {
+  for (const DecodedErrors& region : by_region) {
     squares.add(region.squared);
-    total.max_abs = std::max(total.max_abs, region.max_abs);
-    total.exact = total.exact && region.exact;
-    total.zeros_lost += region.zeros_lost;
+    total.add_but_squares(region);
   }
   total.squared = squares.value();
   return total;

@@ -176,21 +176,21 @@ class PackedEncoder final : public PackedLayerEncoder {
     volume_sum_ += placed_checksum(offset, image);
   }
 
-  LeafLoss loss() const {
-    LeafLoss loss = loss_of(source_);
+  DecodedErrors loss() const {
+    DecodedErrors loss = loss_of(source_);
     if (replaced_) loss.exact = loss_of(values_).exact;
     return loss;
   }
 
   // Of the in-domain voxels.
-  LeafLoss loss_of(const LeafValues& before) const {
+  DecodedErrors loss_of(const LeafValues& before) const {
     if (inside_ == node_) return as_loss(difference_of(before, decoded_));
     LeafValues seen = decoded_;
     for_each_inside(node_, inside_, [&](std::size_t i) { seen[i] = before[i]; });
     return as_loss(difference_of(seen, decoded_));
   }
 
-  static LeafLoss as_loss(const LeafDifference& difference) {
+  static DecodedErrors as_loss(const LeafDifference& difference) {
     return {difference.squared_error, difference.max_abs,
             difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
   }

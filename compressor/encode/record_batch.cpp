@@ -5,7 +5,7 @@
 namespace weir {
 
 void RecordBatch::add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
-                      const LeafLoss& loss) {
+                      const DecodedErrors& loss) {
   if (ordinal != first_ + held_.size() + count_) flush();
   if (held_.empty() && count_ == 0) first_ = ordinal;
   values_[count_] = decoded;
@@ -39,10 +39,10 @@ void RecordBatch::compute() {
   for (std::size_t i = 0; i < count_; ++i) {
     if (insides_[i] != nodes_[i]) statistics[i] = leaf_statistics(values_[i], nodes_[i], insides_[i]);
     LeafRecord record = make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]);
-    record.squared_error = losses_[i].squared_error;
+    record.squared_error = losses_[i].squared;
     record.max_abs = losses_[i].max_abs;
     record.exact = losses_[i].exact ? 1 : 0;
-    record.zeros_lost = losses_[i].zeros_lost;
+    record.zeros_lost = static_cast<std::uint32_t>(losses_[i].zeros_lost);
     held_.push_back(record);
   }
   count_ = 0;

@@ -8,23 +8,17 @@
 #include <vector>
 
 #include "compressor/encode/leaf_record.h"
+#include "compressor/leaf/decoded_errors.h"
 
 namespace weir {
-
-/// What decoding a leaf has changed.
-struct LeafLoss {
-  double squared_error = 0;
-  double max_abs = 0;
-  bool exact = true;             ///< every voxel reads the bits it should
-  std::uint32_t zeros_lost = 0;  ///< zeros that read another value
-};
 
 /// One per thread.
 class RecordBatch {
  public:
   explicit RecordBatch(RecordStore& records) : records_(records) {}
 
-  void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside, const LeafLoss& loss);
+  void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
+           const DecodedErrors& loss);
   /// One that is known already.
   void add(std::uint64_t ordinal, const LeafRecord& record);
   /// Writes what is still held.
@@ -42,7 +36,7 @@ class RecordBatch {
   std::array<LeafValues, kLeafBatch> values_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};
-  std::array<LeafLoss, kLeafBatch> losses_{};
+  std::array<DecodedErrors, kLeafBatch> losses_{};
   std::uint64_t first_ = 0;  // ordinal of the first record held
   std::vector<LeafRecord> held_;
   std::uint64_t sum_ = 0;

@@ -65,16 +65,12 @@ class Forecaster {
   }
 
  private:
-  // As conversion.cpp divides the machine.
   void plan_machine() {
-    const std::size_t processors = processors_or_all(options_.processors);
-    const std::uint64_t coding = control_.coder == nullptr ? 0 : control_.coder->host_bytes();
-    const std::uint64_t resident = resident_bytes() + source_.working_bytes() + coding;
+    const Workers workers = choose_workers(source_, options_, control_.coder, resident_bytes());
+    const std::size_t threads = workers.threads;
     const std::uint64_t of_region = region_bytes(options_);
-    const std::size_t threads =
-        choose_threads(options_.threads, processors, options_.memory, resident, domain_, of_region);
     const bool keeps_work = is_resumable(source_.info(), options_, files_.is_memory(directory_of(options_.output)));
-    const MemoryShares shares = share_memory(source_, options_, resident, threads, !keeps_work);
+    const MemoryShares shares = share_memory(source_, options_, workers.resident, threads, !keeps_work);
     const MemoryPlan& memory = shares.memory;
     reading_ = shares.reading;
     if (reading_.encode.amplification > 1 && control_.notice) {
@@ -93,9 +89,9 @@ class Forecaster {
     copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
     forecast_.threads = threads;
     const std::uint64_t held = memory.record_bytes;
-    kept_bytes_ = shares.kept_bytes;
+    cache_bytes_ = shares.cache_bytes;
     forecast_.memory_bytes =
-        std::min(options_.memory, memory.fixed_bytes + held + std::max(blocks, walk) + kept_bytes_);
+        std::min(options_.memory, memory.fixed_bytes + held + std::max(blocks, walk) + cache_bytes_);
     forecast_.scratch_bytes = held > 0 ? 0 : record_bytes(options_, domain_);
   }
 
@@ -223,7 +219,7 @@ class Forecaster {
     const auto voxels = static_cast<double>(domain_.voxels());
     // Places side by side are read again where one of them is; in the volume, fewer lie beside each other.
     const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
-    const double from_memory = std::min(1.0, static_cast<double>(kept_bytes_) / (sizeof(float) * varied * voxels));
+    const double from_memory = std::min(1.0, static_cast<double>(cache_bytes_) / (sizeof(float) * varied * voxels));
     f.passes = 1 + (1 - from_memory) * std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
     f.read_bytes = static_cast<std::uint64_t>(f.passes * cost.bytes * voxels);
     std::vector<double> survey_s;
@@ -300,7 +296,7 @@ class Forecaster {
   std::optional<Visibility> seen_;
   ReadingPlan reading_;
   std::uint64_t copy_block_bytes_ = 0;
-  std::uint64_t kept_bytes_ = 0;  // what the conversion keeps of the volume in memory
+  std::uint64_t cache_bytes_ = 0;  // what the conversion keeps of the volume in memory
   Forecast forecast_;
 };
 

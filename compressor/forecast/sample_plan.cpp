@@ -2,19 +2,17 @@
 
 #include <algorithm>
 
+#include "format/base/mix_bits.h"
+
 namespace weir {
 namespace {
 
 // Leaves. A file is read by runs of eight rows: shorter ones would be a seek each of a disk that is cold.
 constexpr std::int64_t kLongestRow = 512;
 
-// A number from 0 to below 1 that looks like chance, the same in every run (splitmix64).
+// A number from 0 to below 1 that looks like chance, the same in every run.
 double fraction_at(std::uint64_t place) {
-  std::uint64_t z = place * 0x9E3779B97F4A7C15U + 0x9E3779B97F4A7C15U;
-  z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ z >> 27U) * 0x94D049BB133111EBU;
-  z ^= z >> 31U;
-  return static_cast<double>(z >> 11U) * 0x1p-53;
+  return static_cast<double>(mix_bits((place + 1) * kGoldenGamma) >> 11U) * 0x1p-53;
 }
 
 Index3 of_array(const std::array<std::int64_t, 3>& a) { return {a[0], a[1], a[2]}; }

@@ -28,13 +28,16 @@ struct Fill {
   float leaf_value(const LeafRow& row) const {
     return mode == FillMode::background || row.finite == 0 ? background : row.mean;
   }
-  /// True where a tile of `value` reads bit for bit what a kept leaf of `voxels` in-domain voxels would.
+  static bool same_bits(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
+  /// True where a tile of `value` reads every finite value bit for bit.
+  static bool keeps_values(const LeafRow& row, float value) {
+    return row.finite == 0 || (row.uniform() && same_bits(row.mean, value));
+  }
+  /// True where a tile of `value` reads bit for bit what a kept leaf of `voxels` in-domain voxels would, those without
+  /// a value included.
   bool exact(const LeafRow& row, std::int64_t voxels, float value) const {
-    const auto same = [](float a, float b) {
-      return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-    };
-    if (row.finite > 0 && !(row.uniform() && same(row.mean, value))) return false;
-    return row.finite == voxels || (non_finite != NonFinitePolicy::keep && same(background, value));
+    return keeps_values(row, value) &&
+           (row.finite == voxels || (non_finite != NonFinitePolicy::keep && same_bits(background, value)));
   }
   /// Whether a leaf has to be kept for its active voxels that are not finite.
   bool keeps_active(const LeafRow& row) const { return gaps && row.non_finite != 0; }

@@ -80,8 +80,9 @@ class Fitter {
     scale_ = std::ldexp(1.0F, exponent);
     unscale_ = std::ldexp(1.0, -exponent);
     deviation_ = range.deviation * static_cast<double>(scale_);
-    squares_ = repeats.twins ? twin_deviate(values.data(), repeats.planes, range.mean, scale_, deviations_.data())
-                             : deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
+    squares_ = repeats.pairs_of_rows()
+                   ? twin_deviate(values.data(), repeats.groups.slow, range.mean, scale_, deviations_.data())
+                   : deviate(values.data(), values.size(), range.mean, scale_, deviations_.data());
   }
 
   void set_bits(unsigned bits) {
@@ -128,8 +129,9 @@ class Fitter {
  private:
   CodeSums assigned(const Quantiser& q) const {
     const CodeLevels levels = levels_of(q);
-    CodeSums sums =
-        repeats_.twins ? twin_assign(values_.data(), deviations_.data(), repeats_.planes, levels) : assign_all(levels);
+    CodeSums sums = repeats_.pairs_of_rows()
+                        ? twin_assign(values_.data(), deviations_.data(), repeats_.groups.slow, levels)
+                        : assign_all(levels);
     if (bits_ >= 8) {
       sums.squares = measured(levels);
       return sums;
@@ -146,8 +148,8 @@ class Fitter {
   }
 
   double measured(const CodeLevels& levels) const {
-    return repeats_.twins ? twin_measure(values_.data(), repeats_.planes, levels, scale_)
-                          : measure_squares(values_.data(), values_.size(), levels, scale_);
+    return repeats_.pairs_of_rows() ? twin_measure(values_.data(), repeats_.groups.slow, levels, scale_)
+                                    : measure_squares(values_.data(), values_.size(), levels, scale_);
   }
 
   // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
@@ -235,7 +237,8 @@ bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, uns
   if (bits == 16) return true;
   std::array<float, kLeafVoxels> distinct;
   std::span<const float> seen = values;
-  if (repeats.twins) seen = std::span(distinct).first(take_distinct(values.data(), repeats, distinct.data()));
+  if (repeats.pairs_of_rows())
+    seen = std::span(distinct).first(take_distinct(values.data(), repeats.groups, distinct.data()));
   std::array<std::uint16_t, kLeafVoxels> all;
   const std::span<std::uint16_t> codes = std::span(all).first(seen.size());
   quantise(seen, quantiser, codes);

@@ -205,12 +205,13 @@ void summarize_finite(const float* values, std::size_t count, std::uint32_t diff
     row.same_bits = 1;
     return;
   }
-  const Moments moments = repeats.twins ? twin_moments(values, repeats.planes) : first_moments(values, count);
+  const Moments moments =
+      repeats.pairs_of_rows() ? twin_moments(values, repeats.groups.slow) : first_moments(values, count);
   row.min = moments.min;
   row.max = moments.max;
   row.mean = static_cast<float>(moments.sum / static_cast<double>(count));
-  const Deviation deviation =
-      repeats.twins ? twin_deviations(values, repeats.planes, row.mean) : deviations(values, count, row.mean);
+  const Deviation deviation = repeats.pairs_of_rows() ? twin_deviations(values, repeats.groups.slow, row.mean)
+                                                      : deviations(values, count, row.mean);
   row.residual = static_cast<float>(deviation.sum);
   row.sse = deviation.squares;
 }
@@ -248,8 +249,8 @@ LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, Uni
 }
 
 ValueRange leaf_range(std::span<const float> values, const LeafRepeats& repeats) {
-  const Moments moments =
-      repeats.twins ? twin_moments(values.data(), repeats.planes) : first_moments(values.data(), values.size());
+  const Moments moments = repeats.pairs_of_rows() ? twin_moments(values.data(), repeats.groups.slow)
+                                                  : first_moments(values.data(), values.size());
   const auto count = static_cast<double>(values.size());
   const auto mean = static_cast<float>(moments.sum / count);
   return {moments.min, moments.max, mean, moments.sum - count * static_cast<double>(mean)};

@@ -50,7 +50,7 @@ WEIR_SIMD void decode(const std::uint16_t* codes, std::size_t count, const Quant
 // Quantises and decodes a leaf that lies in the domain.
 void quantise_whole(const LeafValues& values, Fit fit, const LeafRepeats& repeats, QuantisedLeaf& leaf) {
   const unsigned bits = 1U << leaf.bits_log2;
-  if (!repeats.twins) {
+  if (!repeats.pairs_of_rows()) {
     leaf.quantiser = choose_quantiser(values, values, bits, fit, repeats);
     quantise(values, leaf.quantiser, leaf.codes);
     decode(leaf.codes.data(), kLeafVoxels, leaf.quantiser, leaf.decoded.data());
@@ -58,13 +58,13 @@ void quantise_whole(const LeafValues& values, Fit fit, const LeafRepeats& repeat
   }
   LeafValues room;
   std::array<std::uint16_t, kLeafVoxels> codes;
-  const std::size_t count = take_distinct(values.data(), repeats, room.data());
+  const std::size_t count = take_distinct(values.data(), repeats.groups, room.data());
   const auto distinct = std::span<const float>(room).first(count);
   leaf.quantiser = choose_quantiser(values, distinct, bits, fit, repeats);
   quantise(distinct, leaf.quantiser, std::span(codes).first(count));
   decode(codes.data(), count, leaf.quantiser, room.data());
-  repeat_distinct(codes.data(), repeats, leaf.codes.data());
-  repeat_distinct(room.data(), repeats, leaf.decoded.data());
+  repeat_groups(repeats.groups, codes.data(), leaf.codes.data());
+  repeat_groups(repeats.groups, room.data(), leaf.decoded.data());
 }
 
 // Quantises and decodes the in-domain values of a leaf that reaches outside.

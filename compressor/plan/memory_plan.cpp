@@ -8,8 +8,8 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/layout/node_statistics.h"
+#include "format/leaf/bounds.h"
 #include "format/nanovdb/macrocells.h"
-#include "format/nanovdb/nvdb_grid.h"
 #include "ingest/plan/staging.h"
 
 namespace weir {

@@ -16,7 +16,6 @@ struct MemoryPlan {
   std::uint64_t block_bytes = 0;   ///< float32 bytes of one block; there is room for two, or several smaller ones
   std::uint64_t worker_bytes = 0;  ///< of one worker's block where each reads its own
   SelectionRoom selection;
-  std::size_t digest_threads = 1;  ///< file pieces hashed at a time
   std::uint64_t fixed_bytes = 0;   ///< taken however long the blocks are
   std::uint64_t record_bytes = 0;  ///< of the records of all leaves, which are not spilled; 0: they are
 };

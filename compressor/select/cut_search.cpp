@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "format/layout/nanovdb_layout.h"
 
 namespace weir {
 namespace {

@@ -24,8 +24,8 @@ struct PurchaseGoal {
   double unit = 0;  ///< squared error; 0: bytes count
   using Weight = PurchaseSum::Weight;
   Weight limit = 0;
-  /// What may stay unbought of all there is, where every step that can be bought leads to no error: the search sets
-  /// `limit` by it. So small errors are told apart however large the one of nothing bought is.
+  /// Weight that may stay unbought, where buying everything leaves no error: the search then sets `limit` to the weight
+  /// of everything less this. The difference of two large sums would lose a small error.
   std::optional<Weight> left = std::nullopt;
 
   Weight weight(std::uint64_t bytes, double gain) const;

@@ -16,7 +16,7 @@
 
 namespace weir {
 
-/// Of keys in a range; of others the bytes alone. Steps of one thread lie together.
+/// Holds the steps whose keys lie in a range; of all others only the sum of bytes. Steps of one thread lie together.
 class HeldSteps {
  public:
   struct Step {

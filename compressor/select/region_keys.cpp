@@ -62,14 +62,17 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   region.packed_value = tile;
   const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };
   bool exact = true;
+  bool keeps_values = true;
   double dropped_leaves = 0;  // squared error once the region is open and before any leaf is kept
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     builder.add_squares(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.sse);
     exact = exact && rule_.fill.exact(row, tree_.leaves.voxels(leaf).voxels(), tile);
+    keeps_values = keeps_values && Fill::keeps_values(row, tile);
     dropped_leaves += row.sse_about(dropped_value(row));
   });
   region.sums = builder.sums;
   region.sums.exact = exact;
+  region.sums.keeps_values = keeps_values;
   region.tile_error = region.sums.sse_about(tile);
   if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
@@ -134,6 +137,7 @@ void RegionKeys::summarize_uppers() {
     if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;
     const float tile = tile_value(rule_.fill, builder.sums);
     bool exact = true;
+    bool keeps_values = true;
     double tiles = 0;     // squared error with one tile per region
     double weighted = 0;  // and with one for all, where a scene weighs
     bool seen = false;
@@ -143,7 +147,8 @@ void RegionKeys::summarize_uppers() {
       const TileSums& sums = region.sums;
       const float region_tile = tile_value(rule_.fill, sums);
       builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
-      exact = exact && sums.exact && key_bits(static_cast<double>(region_tile)) == key_bits(static_cast<double>(tile));
+      exact = exact && sums.exact && Fill::same_bits(region_tile, tile);
+      keeps_values = keeps_values && (sums.finite == 0 || (sums.keeps_values && Fill::same_bits(region_tile, tile)));
       tiles += rule_.visibility == nullptr && !rule_.packed ? sums.sse_about(region_tile) : region.tile_error;
       upper.key = std::max(upper.key, region.key);
       seen = seen || sees(region, tile);
@@ -152,6 +157,7 @@ void RegionKeys::summarize_uppers() {
     });
     upper.sums = builder.sums;
     upper.sums.exact = exact;
+    upper.sums.keeps_values = keeps_values;
     upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
     if (rule_.packed) {
       upper.tile_error = tiles;

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "compressor/leaf/certificate.h"
+#include "compressor/leaf/decoded_errors.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/selection.h"
 #include "compressor/select/tree_regions.h"
@@ -14,26 +14,20 @@
 
 namespace weir {
 
-struct TileErrors {
-  double squared = 0;
-  double max_abs = 0;
-  bool exact = true;             ///< every voxel reads the bits it should
-  std::uint64_t zeros_lost = 0;  ///< zeros that read another value
-};
-
 struct TreePlan {
   TreeLayout layout;  ///< without padding
   // Exact. Leaves add theirs when they are encoded (leaf_record.h); float ones add none.
-  TileErrors tiles;            ///< of what reads a tile
-  TileErrors seen_tiles;       ///< of what of that can be seen: all, unless a scene says otherwise
+  DecodedErrors tiles;         ///< of what reads a tile
+  DecodedErrors seen_tiles;    ///< of what of that can be seen: all, unless a scene says otherwise
   double expected_error = 0;   ///< squared, of tiles and kept leaves, estimated; weighted where the rule weighs
+  bool exact_tiles = false;    ///< what can be seen of tiles reads what leaves would: voxels without a value, too
   bool loses_nothing = false;  ///< every bit that can be seen is read
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
   std::array<std::uint64_t, kPackedKinds> blocks{};  ///< with a stream, by PackedKind
   std::uint64_t kept = 0;   ///< kept leaves, or blocks with a stream: as many records does the encode pass write
   std::uint64_t zeros = 0;  ///< in the source
-  TileErrors preview;       ///< of a packed file: of what other readers see in the tree
+  DecodedErrors preview;    ///< of a packed file: of what other readers see in the tree
 };
 
 /// One pass over the rows after Selection::choose: writes the choices, fills `leaves`, `leaf_bytes`, `node`,

@@ -19,8 +19,9 @@ struct TileSums {
   float mean = 0;  ///< rounded to float
   float min = 0;   ///< valid where finite > 0
   float max = 0;
-  bool exact = false;   ///< one tile of the fill value reads every voxel bit for bit
-  bool valued = false;  ///< any voxel has a value, finite or not
+  bool exact = false;         ///< one tile of the fill value reads every voxel bit for bit (Fill::exact)
+  bool keeps_values = false;  ///< it reads every finite value bit for bit
+  bool valued = false;        ///< any voxel has a value, finite or not
   std::uint64_t finite = 0;
   std::uint64_t zeros = 0;
   double residual = 0;  ///< sum of (value - mean)

@@ -46,7 +46,7 @@ class BlockSurvey::Leaves {
         sample_(survey.sample_),
         counting_(survey.counting_),
         has_missing_(survey.has_missing_),
-        kept_(block.parts == nullptr ? survey.rows_.kept() : nullptr),
+        cache_(block.parts == nullptr ? survey.rows_.cache() : nullptr),
         block_(block),
         leaf_box_(leaf_box),
         rows_(rows),
@@ -151,7 +151,7 @@ class BlockSurvey::Leaves {
     const std::span<const float> seen = block_.parts == nullptr ? gather(leaf, room.values) : in_part.values;
     const std::span<const float> distinct = in_part.distinct.empty() ? seen : in_part.distinct;
     const Index3& by = in_part.by;
-    const LeafRepeats repeats = seen.size() == kLeafVoxels ? LeafRepeats::of(by.y, by.z) : LeafRepeats{};
+    const LeafRepeats repeats = seen.size() == kLeafVoxels ? LeafRepeats::in_source_order(by) : LeafRepeats{};
     const std::size_t count = seen.size();
     const std::int64_t linear = leaves_.linear(leaf);
     const std::size_t sample = sample_position(linear, count);
@@ -161,7 +161,7 @@ class BlockSurvey::Leaves {
       return false;
     }
     row = summarize_leaf(seen, sample, tally.uniform, distinct, repeats);
-    if (kept_ != nullptr) kept_->add(linear, seen, (row.uniform() || row.finite == 0) && holds_one_value(seen));
+    if (cache_ != nullptr) cache_->add(linear, seen, (row.uniform() || row.finite == 0) && holds_one_value(seen));
     if (ladder != nullptr) *ladder = ladder_of(leaf, seen, row, tally);
     tally.finite += row.finite;
     if (row.finite == count) {
@@ -238,7 +238,7 @@ class BlockSurvey::Leaves {
   const BlockSample& sample_;
   Counting counting_;
   bool has_missing_;
-  KeptLeaves* kept_;  // null where none are
+  LeafCache* cache_;  // null where there is none
   const Block& block_;
   const Box& leaf_box_;
   std::span<LeafRow> rows_;

@@ -9,7 +9,7 @@
 
 #include "compressor/packed/block_sample.h"
 #include "compressor/packed/block_values.h"
-#include "compressor/survey/kept_source.h"
+#include "compressor/survey/cached_source.h"
 #include "compressor/survey/spill_sums.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
@@ -68,9 +68,9 @@ void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& row
     const bool finite = row.finite == inside.voxels();
     ladder = finite ? builder.build(values, row, near) : builder.build_non_finite(values, row, near);
   };
-  KeptSource kept(source, rows.kept());
+  CachedSource cached(source, rows.cache());
   rows.team().run([&] {
-    stream_blocks(kept, voxel_boxes, options, [&](const Block& block) {
+    stream_blocks(cached, voxel_boxes, options, [&](const Block& block) {
       const Box& box = leaf_boxes[block.index];
       const SurveyedLeaves surveyed(rows, box, source.info());
       std::vector<LeafRow> found;

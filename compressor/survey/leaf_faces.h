@@ -7,7 +7,7 @@
 #include <span>
 
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

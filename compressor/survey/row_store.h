@@ -9,7 +9,7 @@
 
 #include "compressor/leaf/leaf_row.h"
 #include "compressor/packed/packed_ladder.h"
-#include "compressor/survey/kept_leaves.h"
+#include "compressor/survey/leaf_cache.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/team/team.h"
 #include "format/nanovdb/nvdb_grid.h"
@@ -41,18 +41,18 @@ class RowStore : public LeafStore<LeafRow> {
   LeafStore<PackedLadder>* ladders() const { return ladders_.get(); }
   void set_ladders(std::unique_ptr<LeafStore<PackedLadder>> ladders) { ladders_ = std::move(ladders); }
 
-  /// The values of leaves; null where none are kept.
-  KeptLeaves* kept() const { return kept_.get(); }
-  void keep_leaves(std::unique_ptr<KeptLeaves> kept) { kept_ = std::move(kept); }
+  /// The values of leaves; null where none are cached.
+  LeafCache* cache() const { return cache_.get(); }
+  void set_cache(std::unique_ptr<LeafCache> cache) { cache_ = std::move(cache); }
   /// For whoever frees their memory.
-  std::unique_ptr<KeptLeaves> give_up_kept() { return std::move(kept_); }
+  std::unique_ptr<LeafCache> give_up_cache() { return std::move(cache_); }
 
  private:
   SelectionRoom room_;
   Team& team_;
   std::unique_ptr<LeafStore<MinMax>> reaches_;
   std::unique_ptr<LeafStore<PackedLadder>> ladders_;
-  std::unique_ptr<KeptLeaves> kept_;
+  std::unique_ptr<LeafCache> cache_;
 };
 
 }  // namespace weir

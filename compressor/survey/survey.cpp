@@ -34,23 +34,23 @@ void merge_tallies(SurveyTally& tally, Team& team) {
 }
 
 // Whether a device that has the volume looks at it: at the rungs of packed blocks, which no journal keeps.
-bool surveys_resident(VolumeSource& source, const RowStore& rows, bool widths, const LeafStore<LeafFaces>* faces,
-                      const SurveyState* state, const std::optional<LadderAim>& ladders) {
-  return source.resident() != nullptr && rows.team().alone() && !widths && faces == nullptr && ladders &&
-         ladders->has_rungs() && !ladders->lattice && (state == nullptr || state->done.empty());
+bool surveys_resident(VolumeSource& source, const RowStore& rows, const SurveyTask& task) {
+  const bool rungs = task.ladders && task.ladders->has_rungs() && !task.ladders->lattice;
+  const bool begun = task.state != nullptr && !task.state->done.empty();
+  return source.resident() != nullptr && rows.team().alone() && rungs && !begun && !task.widths &&
+         task.faces == nullptr;
 }
 
 }  // namespace
 
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading, bool widths, LeafStore<LeafFaces>* faces, SurveyState* state,
-                     const Pauses& pauses, const std::optional<LadderAim>& ladders) {
-  if (surveys_resident(source, rows, widths, faces, state, ladders)) {
-    return survey_resident(*source.resident(), source, rows, *ladders, options);
+                     const SurveyTask& task) {
+  if (surveys_resident(source, rows, task)) {
+    return survey_resident(*source.resident(), source, rows, *task.ladders, options);
   }
-  BlockSurvey survey(source.info(), rows, faces, widths, options.trace, ladders);
+  BlockSurvey survey(source.info(), rows, task.faces, task.widths, options.trace, task.ladders);
   SurveyState from_nothing;
-  SurveyState& known = state == nullptr ? from_nothing : *state;
+  SurveyState& known = task.state == nullptr ? from_nothing : *task.state;
   const SurveyTally before = known.tally;
 
   Team& team = rows.team();
@@ -68,20 +68,20 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
     known.tally = before;
     known.tally.merge(survey.tally());
   };
-  if (pauses.due) {
+  if (task.pauses.due) {
     stream.at_rest = [&](std::size_t boxes_done) {
-      if (!pauses.due()) return;
+      if (!task.pauses.due()) return;
       tell(boxes_done);
-      pauses.save();
+      task.pauses.save();
     };
   }
-  stream.in_parts = !ladders || ladders->surveying_coder() == nullptr;  // a coder is given all voxels
-  team.run([&] { survey_boxes(source, plan, leaf_boxes, stream, reading, survey); });
+  stream.in_parts = !task.ladders || task.ladders->surveying_coder() == nullptr;  // a coder is given all voxels
+  team.run([&] { survey_boxes(source, plan, leaf_boxes, stream, task.reading, survey); });
   tell(leaf_boxes.size());
   merge_tallies(known.tally, team);
   team.publish(rows.file());
-  if (faces != nullptr) team.publish(faces->file());
-  if (ladders) team.publish(rows.ladders()->file());
+  if (task.faces != nullptr) team.publish(task.faces->file());
+  if (task.ladders) team.publish(rows.ladders()->file());
   return survey.result(known.tally);
 }
 

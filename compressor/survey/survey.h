@@ -19,16 +19,22 @@
 
 namespace weir {
 
-/// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the
-/// number of threads, nor on the way of reading. `widths` asks for what each
-/// width of a quantised leaf would cost (LeafRow::quantised and exact_bits), which takes as long again. `ladders`,
-/// where given, that the rows' ladders are filled. `faces`, where given, gets the outer layers of each leaf
-/// (leaf_reach.h). `state`, where given, says what of all this is done already, by any plan; it is updated when
-/// `pauses` ask for it, and covers the whole volume in the end. Each rank of the rows' team reads its own part.
+/// What a survey finds besides the rows, and how.
+struct SurveyTask {
+  Reading reading = Reading::ahead;
+  /// What each width of a quantised leaf would cost, too (LeafRow::quantised and exact_bits); takes as long again.
+  bool widths = false;
+  LeafStore<LeafFaces>* faces = nullptr;  ///< where given, gets the outer layers of each leaf (leaf_reach.h)
+  /// Where given, what is done already, by any plan. Updated when `pauses` ask for it; of the whole volume in the end.
+  SurveyState* state = nullptr;
+  Pauses pauses{};
+  std::optional<LadderAim> ladders{};  ///< where given, the rows' ladders are filled
+};
+
+/// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the number of threads,
+/// nor on the way of reading. Each rank of the rows' team reads its own part.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
-                     Reading reading = Reading::ahead, bool widths = false, LeafStore<LeafFaces>* faces = nullptr,
-                     SurveyState* state = nullptr, const Pauses& pauses = {},
-                     const std::optional<LadderAim>& ladders = std::nullopt);
+                     const SurveyTask& task = {});
 
 /// Streams the leaves of `leaf_boxes`, none larger than a block of `plan`, into `survey`.
 void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const Box> leaf_boxes,

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 #include "format/nanovdb/range_max.h"
 #include "format/sidecar/scene.h"
 

@@ -1,5 +1,5 @@
 // What the outside may ask of the running service: the interface between the
-// HTTP side (api.h) and whoever does the work (service.h). Every call is made
+// HTTP side (api.h) and whoever does the work (service_control.h). Every call is made
 // on the io_context's thread and must answer at once: look, decide, return;
 // nothing here waits for a conversion. A call that cannot do its work throws
 // Error, which the client sees as status 500 with the message.

@@ -1,8 +1,7 @@
 // One job while it runs: convert, verify each output, report that it is done, then a thumbnail of each. Every step is a
-// process of its own
-// (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken
-// file, a fault of a library or a lack of memory ends that process and not the
-// daemon; which bytes come out is decided there, as on the command line.
+// process of its own (`weir convert --skip-done`, `weir verify`, `weir render`), so that a broken file, a fault of a
+// library or a lack of memory ends that process and not the daemon; which bytes come out is decided there, as on the
+// command line.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

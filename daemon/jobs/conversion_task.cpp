@@ -10,7 +10,7 @@ namespace weir {
 
 namespace fs = std::filesystem;
 
-bool lies_in(const WatchConfig& watch, const std::string& source) {
+bool is_source_of(const WatchConfig& watch, const std::string& source) {
   return source.starts_with(watch.directory.ends_with('/') ? watch.directory : watch.directory + '/');
 }
 

@@ -40,7 +40,7 @@ std::optional<ConversionTask> make_rendering_task(const std::string& program, co
                                                   const WatchConfig& watch, const Job& job);
 
 /// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
-bool lies_in(const WatchConfig& watch, const std::string& source);
+bool is_source_of(const WatchConfig& watch, const std::string& source);
 
 /// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's
 /// own place in the tree. Ends without a slash.

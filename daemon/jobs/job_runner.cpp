@@ -8,10 +8,10 @@
 
 #include "daemon/disks/disk_room.h"
 #include "daemon/jobs/output_cleaning.h"
-#include "daemon/jobs/process_usage.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
+#include "format/base/process_memory.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -118,7 +118,7 @@ bool JobRunner::start_next() {
     }
     loads.push_back(std::move(load));
   }
-  const auto label = scheduler_.next(loads, available_memory(), Clock::now());
+  const auto label = scheduler_.next(loads, available_bytes(), Clock::now());
   if (!label) return false;
   start(*watch_of(*label), first.at(*label));
   return true;
@@ -138,7 +138,8 @@ std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
 }
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
-  if (!lies_in(watch, job.source)) {  // retried after the watch was given another directory: its output has no place
+  if (!is_source_of(watch,
+                    job.source)) {  // retried after the watch was given another directory: its output has no place
     log_.warn("not-watched", {{"job", job.id}, {"source", job.source}, {"directory", watch.directory}});
     store_.cancel(job.id);
     return;
@@ -182,7 +183,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
     const std::optional<Job> now = store_.job(job.id);
     if (now && now->state == JobState::cancelled) discard_work(job, directory);
   });
-  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !lies_in(*watch, run.job.source)) {
+  if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !is_source_of(*watch, run.job.source)) {
     forget_other_watches();
   }
   if (stopping_ && running_.empty() && stopped_) {

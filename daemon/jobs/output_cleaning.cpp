@@ -21,6 +21,7 @@
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
 #include "format/io/file_system.h"
+#include "format/io/real_path.h"
 #include "format/output/commit_leftovers.h"
 
 namespace weir {
@@ -86,10 +87,6 @@ fs::path canonical(const fs::path& path) {
 std::string entry_of(const Checkpoint& checkpoint, const char* name) {
   const auto at = checkpoint.identity.find(name);
   return at == checkpoint.identity.end() ? std::string() : at->second;
-}
-
-bool lies_in(const fs::path& path, const fs::path& directory) {
-  return std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();
 }
 
 // Whether the source is, as far as its first file says, still what it was.
@@ -223,7 +220,7 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
     const std::optional<Checkpoint> interrupted = read_journal(*cleaner.files, output);
     if (!interrupted) return true;
     // A stack's source is a pattern: no service converts one.
-    if (entry_of(*interrupted, "format") == "stack" || !lies_in(entry_of(*interrupted, "source"), own)) return false;
+    if (entry_of(*interrupted, "format") == "stack" || !lies_below(entry_of(*interrupted, "source"), own)) return false;
     std::error_code ignored;
     const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
     return old || !is_of_this_source(*interrupted);

@@ -1,10 +1,8 @@
 #include "daemon/jobs/process_usage.h"
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <limits>
-#include <string>
+#include <system_error>
 
 #include "format/base/process_memory.h"
 
@@ -26,16 +24,6 @@ ProcessUsage process_usage() {
   usage.open_descriptors = descriptors > 0 ? descriptors - 1 : 0;  // one was open to count them
   usage.threads = entries("/proc/self/task");
   return usage;
-}
-
-std::uint64_t available_memory() {
-  std::ifstream info("/proc/meminfo");
-  std::string line;
-  while (std::getline(info, line)) {
-    constexpr std::string_view kKey = "MemAvailable:";
-    if (line.starts_with(kKey)) return std::stoull(line.substr(kKey.size())) * 1024;
-  }
-  return std::numeric_limits<std::uint64_t>::max();
 }
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// What the daemon itself takes of the machine, as the kernel counts it, and what memory that has left.
+// What the daemon itself takes of the machine, as the kernel counts it.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,5 @@ struct ProcessUsage {
 
 /// Of this process, now (/proc/self).
 ProcessUsage process_usage();
-
-/// MemAvailable of /proc/meminfo in bytes; the largest number where the system does not say.
-std::uint64_t available_memory();
 
 }  // namespace weir

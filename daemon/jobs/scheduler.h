@@ -38,7 +38,8 @@ class Scheduler {
   void set_limits(const SchedulerLimits& limits) { limits_ = limits; }
 
   /// The watch whose next job may start now; none where nothing waits or something stands against it.
-  /// `available_memory`: bytes the system could give. It holds up all but the first job, which runs in any case.
+  /// `available_memory`: bytes that this process and its jobs can still take. It holds up all but the first job, which
+  /// runs in any case.
   std::optional<std::string> next(std::span<const WatchLoad> watches, std::uint64_t available_memory, Time now) const;
 
   void started(const std::string& label);

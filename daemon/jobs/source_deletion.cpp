@@ -169,7 +169,7 @@ void SourceDeletion::look() {
 SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfig& watch) {
   finish_interrupted(job, watch);
   if (is_gone(job.source)) return Outcome::over;
-  if (!lies_in(watch, job.source) || job.options != options_text(watch) ||
+  if (!is_source_of(watch, job.source) || job.options != options_text(watch) ||
       !PathFilter(watch).accepts_file(job.source.substr(watch.directory.size() + 1))) {
     keep(job, "the watch does not take it any more, or converts it otherwise");
     return Outcome::over;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "daemon/store/file_identity.h"
+#include "format/base/mix_bits.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -17,13 +18,7 @@ namespace {
 constexpr std::size_t kFilesAtOnce = 1024;
 constexpr int kOpenDirectory = O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NONBLOCK;
 
-// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014 (the mixer of SplitMix64).
-std::uint64_t mixed(std::uint64_t value) {
-  value += 0x9E3779B97F4A7C15U;
-  value = (value ^ value >> 30U) * 0xBF58476D1CE4E5B9U;
-  value = (value ^ value >> 27U) * 0x94D049BB133111EBU;
-  return value ^ value >> 31U;
-}
+std::uint64_t mixed(std::uint64_t value) { return mix_bits(value + kGoldenGamma); }
 
 std::uint64_t nanoseconds(const struct timespec& time) {
   return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(time.tv_nsec);

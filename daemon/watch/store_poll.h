@@ -25,7 +25,7 @@ class StorePoll {
   StorePoll(boost::asio::io_context& io, const WatchConfig& watch,
             std::function<void(const std::string& head)> changed);
 
-  /// The hierarchy with this head has this identity_source().
+  /// What identify_source() says of the hierarchy with this head.
   void seen(const std::string& head, const FileIdentity& identity);
   void forget(const std::string& head) { known_.erase(head); }
 

@@ -1,6 +1,7 @@
 #include "format/base/process_memory.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "format/base/group_memory.h"
 #include "format/base/kernel_table.h"
@@ -12,7 +13,9 @@ std::uint64_t resident_bytes() { return 1024 * number_in_table("/proc/self/statu
 std::uint64_t peak_resident_bytes() { return 1024 * number_in_table("/proc/self/status", "VmHWM:"); }
 
 std::uint64_t available_bytes() {
-  return std::min(1024 * number_in_table("/proc/meminfo", "MemAvailable:"), group_room());
+  const std::uint64_t kibibytes = number_in_table("/proc/meminfo", "MemAvailable:");  // 0: not there
+  const std::uint64_t system = kibibytes == 0 ? std::numeric_limits<std::uint64_t>::max() : 1024 * kibibytes;
+  return std::min(system, group_room());
 }
 
 }  // namespace weir

@@ -12,7 +12,7 @@ std::uint64_t resident_bytes();
 std::uint64_t peak_resident_bytes();
 
 /// Bytes that this process can still take: the system's MemAvailable, or what the limits of its control groups leave
-/// (group_memory.h) where that is less.
+/// (group_memory.h) where that is less; the largest number where neither says any.
 std::uint64_t available_bytes();
 
 }  // namespace weir

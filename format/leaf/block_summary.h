@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "format/base/host_device.h"
+#include "format/base/mix_bits.h"
 #include "format/io/digest.h"
 
 namespace weir {
@@ -26,12 +27,9 @@ struct BlockSummary {
 static_assert(sizeof(BlockSummary) == 48);
 
 /// Position in [0, count) of the sampled voxel of leaf `index`: a hash, so that no regular pattern in the data can hide
-/// from it (SplitMix64, Steele et al. 2014, its high bits scaled to the range).
+/// from it (SplitMix64, its high bits scaled to the range).
 WEIR_HOST_DEVICE inline std::size_t sample_position(std::int64_t index, std::size_t count) {
-  std::uint64_t h = static_cast<std::uint64_t>(index) + 0x9E3779B97F4A7C15ULL;
-  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
-  h ^= h >> 31U;
+  const std::uint64_t h = mix_bits(static_cast<std::uint64_t>(index) + kGoldenGamma);
   return static_cast<std::size_t>((h >> 32U) * count >> 32U);
 }
 

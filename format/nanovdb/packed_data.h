@@ -24,10 +24,6 @@ struct PackedStream {
   MeanRange means;  ///< of the block's region
 };
 
-/// How a stream codes its block, as its lowest two bits say it.
-enum class PackedKind : std::uint8_t { mean = 0, transform = 1, lattice = 2, raw = 3 };
-inline constexpr std::size_t kPackedKinds = 4;
-
 inline PackedKind packed_kind(const PackedStream& stream) {
   return static_cast<PackedKind>(stream.data[0] & std::byte{3});
 }

@@ -21,7 +21,8 @@
 
 namespace weir {
 
-/// Who does that. automatic: a CUDA device where one answers and there is memory for it, else the CPU.
+/// Who surveys and encodes packed blocks. automatic: a CUDA device where one answers and there is memory for it, else
+/// the CPU.
 enum class CoderChoice : std::uint8_t { automatic, cpu, cuda };
 
 /// Which near rungs of a ladder are looked at; floats in order too where all are, or where most values are zero.

@@ -12,9 +12,13 @@ inline constexpr unsigned kPackedBands = 4;
 inline constexpr unsigned kPackedTables = kPackedLevels * (kPackedBands + 1);
 inline constexpr unsigned kPackedSymbols = 16;
 
+/// How a stream codes its block, as the lowest two bits of its first byte say it.
+enum class PackedKind : std::uint8_t { mean = 0, transform = 1, lattice = 2, raw = 3 };
+inline constexpr unsigned kPackedKinds = 4;
+
 struct BlockConstants {
-  float minimum =
-      0;  ///< decoded values are clamped to [minimum, maximum], but for raw floats and those in the order of floats
+  /// Decoded values are clamped to [minimum, maximum], but for raw floats and those in the order of floats.
+  float minimum = 0;
   float maximum = 0;
   std::int32_t coarsest = 0;  ///< step number of a step field of 0
   float lattice_minimum = 0;

@@ -83,7 +83,8 @@ class Sizes {
   float small_[kSmall] = {};
 };
 
-// What decode_values() of block_decode.h gives, the nonzero values as a list with their signs apart.
+// What decode_values() of tests/format/packed/plain_decode.h gives, the nonzero values as a list with their signs
+// apart.
 class ListedValues {
  public:
   bool decode(const CoderContexts& contexts, const std::byte* front, const std::byte* stream_end, unsigned end,
@@ -191,14 +192,14 @@ void values_of_coefficients(const BlockConstants& constants, float mean, unsigne
 bool decode_block(const BlockConstants& constants, const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
                   float* values) {
   if (bytes < 2) return false;
-  switch (static_cast<StreamKind>(static_cast<unsigned>(stream[0]) & 3U)) {
-    case StreamKind::mean:
+  switch (static_cast<PackedKind>(static_cast<unsigned>(stream[0]) & 3U)) {
+    case PackedKind::mean:
       return packed_detail::decode_mean_alone(constants, range, stream, bytes, values);
-    case StreamKind::transform:
+    case PackedKind::transform:
       return decode_transform(constants, range, stream, bytes, values);
-    case StreamKind::lattice:
+    case PackedKind::lattice:
       return decode_lattice(constants, stream, bytes, values);
-    case StreamKind::raw:
+    case PackedKind::raw:
       break;
   }
   return packed_detail::decode_raw(stream, bytes, values);

@@ -1,5 +1,5 @@
 // Decodes the stream of a packed block into its 512 values (FORMAT.md, "Packed data"): the one definition of a decoded
-// value. For host and device; on the device the caller passes a copy of kBlockScan in its own memory.
+// value, and its parts, which the device has, too.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,6 @@
 #include "format/packed/lattice_codes.h"
 
 namespace weir {
-
-/// The lowest bits of a stream's first byte.
-enum class StreamKind : std::uint8_t { mean = 0, transform = 1, lattice = 2, raw = 3 };
 
 namespace packed_detail {
 
@@ -62,45 +59,6 @@ WEIR_HOST_DEVICE inline CodedNumber read_number(BitReader& bits, unsigned states
   return number;
 }
 
-/// Decodes magnitudes by index (513 entries, zero) and makes the signed values of them, modulo 2^32. `front` begins
-/// after the kind; `number_bits` are those of the code. False where the stream is invalid.
-WEIR_HOST_DEVICE inline bool decode_values(const BlockScan& scan, const CoderContexts& contexts, const std::byte* front,
-                                           const std::byte* stream_end, unsigned end, BitReader& bits,
-                                           unsigned number_bits, std::uint32_t* magnitudes, std::uint32_t& code) {
-  const auto front_bytes = static_cast<std::uint32_t>(stream_end - front);
-  if (end == 0) {
-    code = bits.read(number_bits);
-    return bits.bytes_used() <= front_bytes;
-  }
-  const unsigned states = states_of(end);
-  const unsigned flags = bits.read(states);
-  if (bits.bytes_used() > front_bytes) return false;
-  RansDecoder coder;
-  if (!coder.start(front + bits.bytes_used(), stream_end, states, flags)) return false;
-  const std::uint32_t nonzero = decode_magnitudes(scan, coder, contexts, end, magnitudes);
-  if (nonzero == ~0U) return false;
-  const CodedNumber number = read_number(bits, states, coder.state(0), coder.state(1), nonzero, number_bits);
-  const std::uint32_t early = number.early;
-  code = number.code;
-  std::uint32_t seen = 0;
-  std::uint32_t signs = 0;
-  for (unsigned place = 1; place < kEndUnit * end; ++place) {
-    const std::uint16_t index = scan.index[place];
-    if (magnitudes[index] == 0) continue;
-    bool negative;
-    if (seen < early) {
-      if (seen % 16 == 0) signs = bits.read(early - seen < 16 ? early - seen : 16);
-      negative = (signs & 1U) != 0;
-      signs >>= 1U;
-    } else {
-      negative = (number.payload >> (seen - early) & 1U) != 0;
-    }
-    ++seen;
-    if (negative) magnitudes[index] = 0U - magnitudes[index];
-  }
-  return front + bits.bytes_used() <= coder.words().at();
-}
-
 WEIR_HOST_DEVICE inline float coefficient(std::uint32_t signed_magnitude, const BlockConstants& constants, float step) {
   if (signed_magnitude == 0) return 0.0F;
   const bool negative = signed_magnitude >> 31U != 0;
@@ -110,20 +68,6 @@ WEIR_HOST_DEVICE inline float coefficient(std::uint32_t signed_magnitude, const 
   return negative ? -size : size;
 }
 
-/// The three passes of the inverse transform, one line of eight after the other.
-WEIR_HOST_DEVICE inline void inverse_transform_lines(float* values) {
-  float line[8];
-  for (unsigned pass = 0; pass < 3; ++pass) {
-    const unsigned stride = pass == 0 ? 1 : pass == 1 ? 8 : 64;
-    for (unsigned n = 0; n < 64; ++n) {
-      const unsigned first = pass == 0 ? 8 * n : pass == 1 ? (n >> 3U) * 64 + (n & 7U) : n;
-      for (unsigned i = 0; i < 8; ++i) line[i] = values[first + i * stride];
-      inverse_transform_8(line);
-      for (unsigned i = 0; i < 8; ++i) values[first + i * stride] = line[i];
-    }
-  }
-}
-
 /// The fixed part of a transformed block's stream: its step, and bits of its mean's code. False where it is invalid.
 WEIR_HOST_DEVICE inline bool read_step(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
                                        std::int32_t& step, unsigned& number_bits) {
@@ -131,28 +75,6 @@ WEIR_HOST_DEVICE inline bool read_step(const BlockConstants& constants, const Me
   if (step < kLeastStep || step > kMostStep) return false;
   number_bits = mean_bits(range, step);
   return number_bits != kNoMeanBits;
-}
-
-WEIR_HOST_DEVICE inline bool decode_transform(const BlockConstants& constants, const BlockScan& scan,
-                                              const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
-                                              float* values) {
-  std::int32_t step;
-  unsigned number_bits;
-  if (!read_step(constants, range, stream, step, number_bits)) return false;
-  BitReader bits(stream + 1, bytes - 1);
-  const unsigned end = bits.read(5) + 1;
-  std::uint32_t magnitudes[513] = {};
-  std::uint32_t code = 0;
-  if (!decode_values(scan, {constants.tables, true}, stream + 1, stream + bytes, end, bits, number_bits, magnitudes,
-                     code)) {
-    return false;
-  }
-  const float size = step_size(step);
-  for (unsigned i = 0; i < 512; ++i) values[i] = coefficient(magnitudes[i], constants, size);
-  inverse_transform_lines(values);
-  const float mean = decode_mean(range, step, code);
-  for (unsigned i = 0; i < 512; ++i) values[i] = clamp_to(constants, mean + values[i]);
-  return true;
 }
 
 /// The fixed part of a lattice block's stream.
@@ -215,24 +137,6 @@ WEIR_HOST_DEVICE inline CoderContexts residual_contexts(const BlockConstants& co
   return {constants.tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands, false};
 }
 
-WEIR_HOST_DEVICE inline bool decode_lattice(const BlockConstants& constants, const BlockScan& scan,
-                                            const std::byte* stream, std::uint32_t bytes, float* values) {
-  LatticeHead head;
-  if (!read_lattice_head(constants, stream, bytes, head)) return false;
-  BitReader bits(head.front, static_cast<std::uint32_t>(stream + bytes - head.front));
-  const unsigned end = bits.read(6);
-  if (end > 512 / kEndUnit) return false;
-  std::uint32_t codes[513] = {};
-  std::uint32_t base = 0;
-  if (!decode_values(scan, residual_contexts(constants), head.front, stream + bytes, end, bits, head.base_bits, codes,
-                     base)) {
-    return false;
-  }
-  codes[0] = base;
-  undo_prediction(head.predictor, head.kind == LatticeKind::ordered, codes);
-  return values_of_codes(constants, head, codes, values);
-}
-
 /// The one value of a block that is coded by its mean. False where the stream is invalid.
 WEIR_HOST_DEVICE inline bool read_mean(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
                                        std::uint32_t bytes, float& value) {
@@ -267,25 +171,6 @@ WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t b
 }
 
 }  // namespace packed_detail
-
-/// On the device, and to check the host's: everything one value after the other.
-WEIR_HOST_DEVICE inline bool decode_block_plain(const BlockConstants& constants, const BlockScan& scan,
-                                                const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
-                                                float* values) {
-  using namespace packed_detail;
-  if (bytes < 2) return false;
-  switch (static_cast<StreamKind>(static_cast<unsigned>(stream[0]) & 3U)) {
-    case StreamKind::mean:
-      return decode_mean_alone(constants, range, stream, bytes, values);
-    case StreamKind::transform:
-      return decode_transform(constants, scan, range, stream, bytes, values);
-    case StreamKind::lattice:
-      return decode_lattice(constants, scan, stream, bytes, values);
-    case StreamKind::raw:
-      break;
-  }
-  return decode_raw(stream, bytes, values);
-}
 
 /// Decodes a stream into 512 values (x << 6 | y << 3 | z). False where the stream is invalid; `values` are then
 /// anything. Never reads outside the `bytes` bytes of the stream.

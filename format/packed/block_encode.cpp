@@ -273,13 +273,13 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
   const double code = std::nearbyint((static_cast<double>(mean_) - static_cast<double>(range.low)) /
                                      static_cast<double>(mean_quantum(step)));
   front.number = static_cast<std::uint32_t>(std::clamp(code, 0.0, static_cast<double>(last)));
-  const auto head = [&](StreamKind kind) {
+  const auto head = [&](PackedKind kind) {
     return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
   };
   front.end = end_at(quantised.last_place);
   dropped_ = false;
   while (front.end > 0) {
-    out[0] = head(StreamKind::transform);
+    out[0] = head(PackedKind::transform);
     if (coder_.encode(front, {magnitudes_, signs}, out.subspan(1))) return;
     const unsigned cheapest = kBlockScan.index[cheapest_place(magnitudes_)];
     magnitudes_.row(cheapest / 8)[cheapest % 8] = 0;
@@ -287,7 +287,7 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
     front.end = end_of(magnitudes_);
   }
   std::fill(out.begin(), out.end(), std::byte{0});
-  out[0] = head(StreamKind::mean);
+  out[0] = head(PackedKind::mean);
   for (unsigned i = 0; i < front.number_bits && 1 + i / 8 < out.size(); ++i) {
     if ((front.number >> i & 1U) != 0) out[1 + i / 8] |= static_cast<std::byte>(1U << (i % 8));
   }

@@ -166,41 +166,4 @@ struct CoderContexts {
   bool bands = false;                     ///< a set of levels for each band
 };
 
-/// Decodes the magnitudes of places 1 to kEndUnit * end - 1 into `magnitudes` by index, which has 513 entries and is
-/// zero. Returns how many are not zero; ~0 where the stream is invalid.
-WEIR_HOST_DEVICE inline std::uint32_t decode_magnitudes(const BlockScan& scan, RansDecoder& coder,
-                                                        const CoderContexts& contexts, unsigned end,
-                                                        std::uint32_t* magnitudes) {
-  const unsigned states = states_of(end);
-  std::uint32_t nonzero = 0;
-  for (unsigned place = 1; place < kEndUnit * end; ++place) {
-    const unsigned s = states == 2 ? place & 1U : 0;
-    const std::uint16_t* near = scan.neighbour[place];
-    const auto value = [&](unsigned n) {
-      const std::uint32_t m = magnitudes[near[n]];
-      return m < kMostOfNeighbour ? m : kMostOfNeighbour;
-    };
-    const std::uint32_t t = scan.weight[place] * (value(0) + value(1) + value(2));
-    const unsigned level = t < kLevelSums ? scan.level[t] : kPackedLevels - 1;
-    const unsigned context = (contexts.bands ? scan.band[place] * kPackedLevels : 0) + level;
-    std::uint32_t m = coder.symbol(s, contexts.tables + std::size_t{kPackedSymbols} * context);
-    if (m == kEscape) {
-      const unsigned length = coder.bypass(s, 5);
-      m = kEscape - 1 + (1U << length) + coder.bypass(s, length);
-    }
-    const unsigned extra = extra_bits(t);
-    if (extra > 0) {
-      if (m >> (32 - extra) != 0) return ~0U;
-      m = m << extra | coder.bypass(s, extra);
-    }
-    if (m != 0) ++nonzero;
-    magnitudes[scan.index[place]] = m;
-  }
-  if (!coder.words().whole()) return ~0U;
-  for (unsigned s = 0; s < states; ++s) {
-    if (coder.state(s) >> 16U != 1) return ~0U;
-  }
-  return nonzero;
-}
-
 }  // namespace weir

@@ -1,6 +1,6 @@
-// The host's decoder of coded values: gives what decode_magnitudes() of coefficient_decoder.h gives, and refuses what
-// it refuses, but faster. States and the position in the stream stay in registers, words are read without branches, and
-// the nonzero magnitudes come as a list. For little-endian hosts.
+// The host's decoder of coded values: gives what decode_magnitudes() of tests/format/packed/plain_decode.h gives, and
+// refuses what it refuses, but faster. States and the position in the stream stay in registers, words are read without
+// branches, and the nonzero magnitudes come as a list. For little-endian hosts.
 #pragma once
 
 #include <array>

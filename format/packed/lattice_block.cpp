@@ -48,7 +48,7 @@ std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lat
   if (bytes >= kRawStreamBytes) return 0;
   std::copy_n(scratch.begin(), size.front, out.begin() + static_cast<std::ptrdiff_t>(front_at));
   std::copy_n(scratch.end() - size.back, size.back, out.begin() + static_cast<std::ptrdiff_t>(front_at + size.front));
-  out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor << 2U |
+  out[0] = static_cast<std::byte>(static_cast<unsigned>(PackedKind::lattice) | predictor << 2U |
                                   static_cast<unsigned>(kind) << 4U);
   if (kind == LatticeKind::own) {
     std::memcpy(out.data() + 1, &lattice.minimum, sizeof lattice.minimum);
@@ -61,12 +61,12 @@ std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lat
 
 bool is_ordered(std::span<const std::byte> stream) {
   const auto head = std::to_integer<unsigned>(stream[0]);
-  return (head & 3U) == static_cast<unsigned>(StreamKind::lattice) &&
+  return (head & 3U) == static_cast<unsigned>(PackedKind::lattice) &&
          (head >> 4U & 3U) == static_cast<unsigned>(LatticeKind::ordered);
 }
 
 std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte> out) {
-  out[0] = static_cast<std::byte>(StreamKind::raw);
+  out[0] = static_cast<std::byte>(PackedKind::raw);
   std::memcpy(out.data() + 1, values.data(), values.size_bytes());
   return kRawStreamBytes;
 }
@@ -76,7 +76,7 @@ std::uint32_t encode_exact(const ValueEncoder& coder, const BlockConstants& cons
                            std::span<std::byte> out, FloatOrder order) {
   const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
   if (std::all_of(values.begin(), values.end(), [&](float v) { return bits(v) == bits(values[0]); })) {
-    out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::raw) | 4U);
+    out[0] = static_cast<std::byte>(static_cast<unsigned>(PackedKind::raw) | 4U);
     std::memcpy(out.data() + 1, values.data(), sizeof(float));
     return 5;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "format/base/simd.h"
-#include "format/packed/block_scan.h"
 #include "format/packed/lattice_codes.h"
 
 namespace weir {

@@ -6,7 +6,6 @@
 
 #include "format/base/simd.h"
 #include "format/packed/block_decode.h"
-#include "format/packed/block_scan.h"
 #include "format/packed/lattice_block.h"
 #include "format/packed/lattice_codes.h"
 #include "format/packed/near_rungs.h"
@@ -141,7 +140,7 @@ bool RoundedBlock::write(int quantum_exponent, std::span<std::byte> out) {
   front.number = codes_[0];
   front.number_bits = kRoundedNumberBits;
   if (!coder_.encode(front, {magnitudes_, residuals_}, out.subspan(kRoundedFrontBytes))) return false;
-  out[0] = static_cast<std::byte>(static_cast<unsigned>(StreamKind::lattice) | predictor_ << 2U |
+  out[0] = static_cast<std::byte>(static_cast<unsigned>(PackedKind::lattice) | predictor_ << 2U |
                                   static_cast<unsigned>(LatticeKind::own) << 4U);
   quantum_ = static_cast<float>(std::ldexp(1.0, quantum_exponent));
   minimum_ = static_cast<float>(lowest_) * quantum_;

@@ -45,7 +45,13 @@ std::string counted(const Sidecar& s, std::uint64_t count, const char* of_one, c
 // What became of voxels that the background takes the place of, after what they are. Blocks lose what they lose of the
 // other voxels, and a block kept as its mean has theirs.
 std::string under_background(const Sidecar& s, bool one) {
-  if (s.error.lossless) return one ? " and reads as the background" : " and read as the background";
+  if (s.error.lossless && s.budget.kind == "lossless") {
+    return one ? " and reads as the background" : " and read as the background";
+  }
+  if (s.error.lossless) {
+    return cat(one ? "; it reads" : "; they read", " as the background, ", short_number(s.background.value),
+               ", or as the one value of their block");
+  }
   return cat(one ? "; it reads" : "; they read", " as the background, ", short_number(s.background.value),
              ", only where a block is exact, and ", one ? "its" : "their", " error is not counted");
 }

@@ -2,6 +2,7 @@
 // sample) alone, so an image does not depend on threads, tiles or back end.
 #pragma once
 
+#include "format/base/mix_bits.h"
 #include "gpu/math/portable.h"
 
 namespace weir {
@@ -25,13 +26,7 @@ class Random {
   WEIR_HOST_DEVICE float uniform() { return static_cast<float>(bits() >> 8U) * 0x1p-24F; }
 
  private:
-  // splitmix64's finaliser (Steele et al. 2014): a bijection that mixes all bits.
-  WEIR_HOST_DEVICE static constexpr std::uint64_t scramble(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15ULL;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-    return x ^ (x >> 31U);
-  }
+  WEIR_HOST_DEVICE static constexpr std::uint64_t scramble(std::uint64_t x) { return mix_bits(x + kGoldenGamma); }
 
   std::uint64_t state_;
   std::uint64_t increment_;

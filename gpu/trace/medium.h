@@ -3,7 +3,7 @@
 // anything with `sample` and `smooth` (see volume_sampler.h, levelled_volume.h).
 #pragma once
 
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 #include "gpu/math/dda.h"
 #include "gpu/math/random.h"
 #include "gpu/math/vector3.h"

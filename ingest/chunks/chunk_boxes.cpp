@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
+#include <mutex>
 #include <utility>
 
 #include "format/base/error.h"
@@ -41,11 +43,6 @@ ChunkBoxes::ChunkBoxes(ChunkedVolume volume, StoredChunks& chunks, ScratchPool& 
       decode_component(fill, volume_.type, volume_.big_endian, volume_.mapping, volume_.components, {&fill_, 1});
 }
 
-std::size_t ChunkBoxes::decoding_threads() const {
-  const std::lock_guard lock(mutex_);
-  return threads_.size();
-}
-
 ConversionLoss ChunkBoxes::read_chunk(const Index3& chunk, const Box& box, std::span<float> values,
                                       ChunkScratch& scratch) {
   const Index3& c = volume_.chunk;
@@ -82,24 +79,22 @@ ConversionLoss ChunkBoxes::read(const Box& box, std::span<float> values) {
   const std::int64_t chunks = weir::volume(count);
 
   std::atomic<std::int64_t> next{0};
+  std::mutex adding;
   ConversionLoss total;
   const auto lanes = std::min(static_cast<std::int64_t>(scratch_.size()), chunks);
   tbb::parallel_for(std::int64_t{0}, lanes, [&](std::int64_t) {
     const ScratchPool::Lease scratch(scratch_);
     ConversionLoss loss;
-    bool worked = false;
     try {
       for (std::int64_t i = next++; i < chunks; i = next++) {
         loss.add(read_chunk(first + index_at(i, count), box, values, *scratch));
-        worked = true;
       }
     } catch (...) {
       next = chunks;  // the other lanes end too
       throw;
     }
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(adding);
     total.add(loss);
-    if (worked) threads_.insert(std::this_thread::get_id());
   });
   return total;
 }

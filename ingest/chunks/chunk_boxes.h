@@ -2,14 +2,10 @@
 // once, by TBB's workers, in bounded memory.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
-#include <set>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "format/base/index.h"
@@ -55,8 +51,6 @@ class ChunkBoxes {
   const ChunkedVolume& volume() const { return volume_; }
   /// Chunk extent in voxels and bytes per voxel, for the block plan.
   AccessShape access() const { return {volume_.voxel_bytes(), volume_.chunk, {}}; }
-  /// Different threads that have decoded.
-  std::size_t decoding_threads() const;
 
   /// Reads `box` (inside the volume, not empty) into `values`, x fastest. Every chunk it touches is decoded once.
   /// Throws what StoredChunks::decode throws.
@@ -71,8 +65,6 @@ class ChunkBoxes {
   ScratchPool& scratch_;
   float fill_ = 0;
   ConversionLoss fill_loss_;  ///< of one voxel
-  mutable std::mutex mutex_;
-  std::set<std::thread::id> threads_;
 };
 
 }  // namespace weir

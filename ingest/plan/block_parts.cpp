@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "ingest/plan/repeat_groups.h"
+
 namespace weir {
 namespace {
 
@@ -13,14 +15,7 @@ Box leaves_of(const Box& box) {
   return {floor_div(box.lo, kLeafDim), floor_div(box.hi - Index3{1, 1, 1}, kLeafDim) + Index3{1, 1, 1}};
 }
 
-template <std::size_t By>
-void repeat_eight(const float* distinct, float* row) {
-  for (std::size_t i = 0; i < kLeafDim; ++i) row[i] = distinct[i / By];
-}
-
 void repeat_row(const float* distinct, std::int64_t by, std::int64_t count, float* row) {
-  if (count == kLeafDim && by == 2) return repeat_eight<2>(distinct, row);
-  if (count == kLeafDim && by == 4) return repeat_eight<4>(distinct, row);
   for (std::int64_t x = 0; x < count; ++x) row[x] = distinct[x / by];
 }
 
@@ -87,31 +82,13 @@ Index3 BlockParts::gather(std::span<const float> values, const Box& leaf, std::s
   return part.by;
 }
 
-namespace {
-
-// Of a whole leaf that has one value for each By^3 voxels.
-template <std::size_t By>
-void repeat_leaf(const float* distinct, float* values) {
-  constexpr std::size_t kGroups = kLeafDim / By;
-  for (std::size_t z = 0; z < kGroups; ++z) {
-    for (std::size_t y = 0; y < kGroups; ++y, distinct += kGroups) {
-      std::array<float, kLeafDim> row;
-      repeat_eight<By>(distinct, row.data());
-      float* const first = values + kLeafDim * By * (kLeafDim * z + y);
-      for (std::size_t plane = 0; plane < By; ++plane) {
-        for (std::size_t i = 0; i < By; ++i)
-          std::memcpy(first + kLeafDim * (kLeafDim * plane + i), row.data(), sizeof row);
-      }
-    }
-  }
-}
-
-}  // namespace
-
 void repeat_values(const float* distinct, const Index3& by, const Index3& extent, float* values) {
   constexpr Index3 kLeaf{kLeafDim, kLeafDim, kLeafDim};
-  if (extent == kLeaf && by == Index3{2, 2, 2}) return repeat_leaf<2>(distinct, values);
-  if (extent == kLeaf && by == Index3{4, 4, 4}) return repeat_leaf<4>(distinct, values);
+  if (extent == kLeaf) {
+    const LeafGroups groups{static_cast<std::size_t>(by.z), static_cast<std::size_t>(by.y),
+                            static_cast<std::size_t>(by.x)};
+    return repeat_groups(groups, distinct, values);
+  }
   const std::int64_t plane = extent.x * extent.y;
   for (std::int64_t z = 0; z < extent.z; z += by.z) {
     float* const first = values + plane * z;

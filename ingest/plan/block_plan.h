@@ -32,6 +32,10 @@ struct BlockPlan {
 /// then, and several blocks let reading and work overlap.
 inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 
+/// Blocks too small for a lower node's width in both axes are as long as possible in y, whose rows follow
+/// each other in the input (wide), or in z, whose leaves follow each other in the output (deep).
+enum class BlockShape { wide, deep };
+
 /// Blocks whose float32 values fit `block_bytes`. Where rows are contiguous in the file: full rows in x,
 /// whole rows of lower nodes (128 x 128 voxels in y and z, on multiples of 128 of the index) and, up to
 /// kAmpleBlockBytes, more of them in y and then in z; otherwise fewer leaf layers in z, then fewer leaf
@@ -40,10 +44,6 @@ inline constexpr std::uint64_t kAmpleBlockBytes = std::uint64_t{32} << 20U;
 /// never smaller than one leaf.
 /// `domain` is not empty and its float32 bytes fit 63 bits. Throws Error(usage) where not even one leaf
 /// fits.
-///
-/// Blocks too small for a lower node's width in both axes are as long as possible in y, whose rows follow
-/// each other in the input, or, for `BlockShape::deep`, in z, whose leaves follow each other in the output.
-enum class BlockShape { wide, deep };
 BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_t block_bytes,
                       BlockShape shape = BlockShape::wide);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

@@ -4,26 +4,20 @@
 
 #include <cstdint>
 
-namespace weir {
+#include "format/base/mix_bits.h"
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
-/// generators", OOPSLA 2014): a bijection of 64 bits with full avalanche.
-constexpr std::uint64_t mix_bits(std::uint64_t v) {
-  v = (v ^ (v >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  v = (v ^ (v >> 27U)) * 0x94d049bb133111ebULL;
-  return v ^ (v >> 31U);
-}
+namespace weir {
 
 /// Hash of a lattice position; odd multipliers keep the axes apart before the mixing.
 constexpr std::uint64_t hash_position(std::uint64_t key, std::int64_t x, std::int64_t y, std::int64_t z) {
-  return mix_bits(key + static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL +
+  return mix_bits(key + static_cast<std::uint64_t>(x) * kGoldenGamma +
                   static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fULL +
                   static_cast<std::uint64_t>(z) * 0x165667b19e3779f9ULL);
 }
 
 /// A key for the `stream`-th independent use of a seed.
 constexpr std::uint64_t derive_key(std::uint64_t seed, std::uint64_t stream) {
-  return mix_bits(mix_bits(seed + 0x9e3779b97f4a7c15ULL) + stream);
+  return mix_bits(mix_bits(seed + kGoldenGamma) + stream);
 }
 
 /// Upper 24 bits as a multiple of 2^-24 in [0, 1): every value is exact.

@@ -162,7 +162,7 @@ TEST_F(RefusedMemory, InTheMiddle_AFrameOfAnotherSizeIsDrawnOrFailsAndTheNextOne
 }
 
 // A brick that 16 bits do not hold is met while a picture is drawn, and the cache is made again.
-TEST_F(RefusedMemory, InTheMiddle_ACacheMadeAgainWithFloats) {
+TEST_F(RefusedMemory, WhileACacheIsMadeAgainWithFloats_ThePictureIsRightOrFails) {
   const auto grid = file(kUnfit);
   const auto backend = cuda(kUnfit);
   const auto load = [&] { return backend->load(grid, 16, nullptr); };

@@ -22,7 +22,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/bandwidth.h"
-#include "format/io/file_id.h"
 #include "format/io/limited_file_system.h"
 #include "format/output/output_files.h"
 #include "gpu/packed/coder_choice.h"
@@ -96,7 +95,7 @@ void check_files(const SourceInfo& info, const std::string& within) {
 // A kill may come between the end of a conversion and the removal of what it was made from.
 void tidy_up(const std::string& output) {
   try {
-    if (clear_leftovers(*make_posix_file_system(), output)) {
+    if (discard_all_beside(*make_posix_file_system(), output)) {
       spdlog::info("{}: what its conversion had left is removed", output);
     }
   } catch (const Error& error) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_options.h"
 #include "ingest/series.h"
 
 namespace weir {

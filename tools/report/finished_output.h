@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_options.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/source/volume_source.h"
 

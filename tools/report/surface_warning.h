@@ -1,7 +1,7 @@
 // What is said of an iso surface that no voxel can reach.
 #pragma once
 
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 #include "format/sidecar/scene.h"
 
 namespace weir {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compressor/conversion.h"
+#include "compressor/conversion_options.h"
 #include "format/base/option_row.h"
 
 namespace weir {

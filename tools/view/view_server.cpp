@@ -12,7 +12,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "tools/view/base/file_identity.h"
-#include "tools/view/jpeg_picture.h"
 #include "tools/view/value_probe.h"
 #include "tools/view/view_access.h"
 #include "tools/view/view_page.h"

@@ -55,7 +55,7 @@ void set_widths(std::span<const float> distinct, std::uint16_t at_ends, const st
 void set_widths_alone(std::span<const float> distinct, const Index3& by, LeafRow& row) {
   std::array<float, kLeafVoxels> values;
   repeat_values(distinct.data(), by, {kLeafDim, kLeafDim, kLeafDim}, values.data());
-  summarize_widths(values, distinct, LeafRepeats::of(by.y, by.z), row);
+  summarize_widths(values, distinct, LeafRepeats::in_source_order(by), row);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "format/packed/block_decode.h"
 #include "gpu/cuda/encode/sign_bits.h"
 #include "gpu/cuda/encode/survey_steps.h"
-#include "gpu/cuda/packed/stream_queue.h"
 
 namespace weir {
 namespace encode_detail {

@@ -100,7 +100,7 @@ WEIR_HOST_DEVICE void code_lattice_block(const Warp& warp, const EncodeCall& cal
     state.end = static_cast<std::uint8_t>(left ? 0 : end);
     if (left) return;
     const auto kind = rounded ? LatticeKind::own : LatticeKind::ordered;
-    state.head = static_cast<std::uint8_t>(static_cast<unsigned>(StreamKind::lattice) | coding.predictor << 2U |
+    state.head = static_cast<std::uint8_t>(static_cast<unsigned>(PackedKind::lattice) | coding.predictor << 2U |
                                            static_cast<unsigned>(kind) << 4U);
     state.number = coding.number;
     state.number_bits = static_cast<std::uint8_t>(coding.number_bits);

@@ -83,7 +83,7 @@ WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::u
   const StreamState& state = call.states[i];
   const StreamAsk ask = call.asks[i];
   std::byte* out = call.out + ask.offset;
-  const auto kind = state.end == 0 ? StreamKind::mean : StreamKind::transform;
+  const auto kind = state.end == 0 ? PackedKind::mean : PackedKind::transform;
   const bool transformed = ask.kind == StreamAskKind::transform;
   const auto head_byte = static_cast<std::byte>(
       transformed ? static_cast<unsigned>(kind) | static_cast<unsigned>(ask.step - call.constants.coarsest) << 2U

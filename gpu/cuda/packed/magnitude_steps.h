@@ -94,7 +94,7 @@ WEIR_HOST_DEVICE inline std::uint32_t decode_place(const ScanStep& step, const S
   return m;
 }
 
-// decode_magnitudes() of coefficient_decoder.h: those of a run after the other into `out`.
+// decode_magnitudes() of tests/format/packed/plain_decode.h: those of a run after the other into `out`.
 template <class Slot>
 WEIR_HOST_DEVICE inline Counted decode_magnitudes(const ScanSteps& steps, const SharedTables& tables, bool residual,
                                                   unsigned end, Coders& coders, Window<Slot> window, Quad* out,
@@ -135,7 +135,7 @@ WEIR_HOST_DEVICE inline Counted decode_magnitudes(const ScanSteps& steps, const 
 
 enum class Outcome : std::uint8_t { decoded, wide, damaged };
 
-// decode_transform() and decode_lattice() of block_decode.h up to the magnitudes and what follows them.
+// decode_transform() and decode_lattice() of block_decode.cpp up to the magnitudes and what follows them.
 template <class Slot>
 WEIR_HOST_DEVICE Outcome decode_stream(const DecodeCall& call, const FoundStream& found, const ScanSteps& steps,
                                        const SharedTables& tables, unsigned char* shared, unsigned own, Quad* out,

@@ -23,16 +23,16 @@ WEIR_HOST_DEVICE inline bool look_at_block(const PackedView& view, const FoundSt
   if (found.damaged) return false;
   if (found.data == nullptr) return true;
   if (found.bytes < 2) return false;
-  switch (static_cast<StreamKind>(static_cast<unsigned>(found.data[0]) & 3U)) {
-    case StreamKind::mean:
+  switch (static_cast<PackedKind>(static_cast<unsigned>(found.data[0]) & 3U)) {
+    case PackedKind::mean:
       return read_mean(view.constants, found.means, found.data, found.bytes, task.value);
-    case StreamKind::transform: {
+    case PackedKind::transform: {
       const unsigned end = (static_cast<unsigned>(found.data[1]) & 31U) + 1;
       task.kind = TaskKind::transform;
       task.bin = static_cast<std::uint8_t>(2 * (kEnds - end));
       return true;
     }
-    case StreamKind::lattice: {
+    case PackedKind::lattice: {
       LatticeHead head;
       if (!read_lattice_head(view.constants, found.data, found.bytes, head)) return false;
       BitReader bits(head.front, static_cast<std::uint32_t>(found.data + found.bytes - head.front));
@@ -43,7 +43,7 @@ WEIR_HOST_DEVICE inline bool look_at_block(const PackedView& view, const FoundSt
       task.bin = static_cast<std::uint8_t>(task.wide ? kWideBins + kEnds - end : 2 * (kEnds - end) + 1);
       return true;
     }
-    case StreamKind::raw:
+    case PackedKind::raw:
       break;
   }
   bool uniform;

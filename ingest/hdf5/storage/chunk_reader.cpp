@@ -85,7 +85,7 @@ ChunkReader::ChunkReader(ChunkedSlice slice, std::uint64_t memory)
       boxes_(chunked_volume(slice_, store_.layout()), *this, scratch_),
       first_byte_(slice_offset(slice_, store_.layout().chunk)) {}
 
-ChunkCounts ChunkReader::counts() const { return {decoded_, unallocated_, bytes_read_, boxes_.decoding_threads()}; }
+ChunkCounts ChunkReader::counts() const { return {decoded_, unallocated_, bytes_read_}; }
 
 std::vector<hsize_t> ChunkReader::corner_of(const Index3& chunk) const {
   const std::vector<hsize_t>& elements = store_.layout().chunk;

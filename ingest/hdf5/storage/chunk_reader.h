@@ -39,10 +39,9 @@ struct ChunkedSlice {
 
 /// What reading has done so far.
 struct ChunkCounts {
-  std::uint64_t decoded = 0;         ///< chunks, each time one is
-  std::uint64_t unallocated = 0;     ///< chunks asked for that the file does not hold, each time
-  std::uint64_t bytes_read = 0;      ///< stored bytes of the chunks decoded
-  std::size_t decoding_threads = 0;  ///< different threads that decoded
+  std::uint64_t decoded = 0;      ///< chunks, each time one is
+  std::uint64_t unallocated = 0;  ///< chunks asked for that the file does not hold, each time
+  std::uint64_t bytes_read = 0;   ///< stored bytes of the chunks decoded
 };
 
 /// Takes the library's lock (Hdf5Lock) itself, in the constructor and in read: callers must not hold it.

@@ -7,7 +7,6 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_file.h"
-#include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/hdf5/virtual/library_boxes.h"
 #include "ingest/hdf5/virtual/virtual_mappings.h"
 #include "ingest/source/extent.h"

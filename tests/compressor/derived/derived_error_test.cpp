@@ -39,7 +39,7 @@ float wave(const Index3& i) {
   return static_cast<float>(std::sin(0.3 * static_cast<double>(i.x)) + 0.1 * static_cast<double>(i.y * i.z));
 }
 
-TEST_F(DerivedError, OfNoError) {
+TEST_F(DerivedError, EqualVolumes_HaveNoErrorAndSimilarityOne) {
   const DerivedErrors all = of(kDomain, wave, wave);
   EXPECT_EQ(all.quantiles, (std::array<double, 4>{}));
   EXPECT_EQ(all.octaves.zeros, static_cast<std::uint64_t>(kDomain.voxels()));

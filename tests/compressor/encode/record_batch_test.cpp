@@ -25,7 +25,7 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
     const Index3 lo{static_cast<std::int64_t>(ordinal) * 8, 0, 8};
     const Box node{lo, lo + Index3{8, 8, 8}};
     const Box inside = ordinal % 5 == 0 ? Box{lo, lo + Index3{3, 8, 5}} : node;
-    const LeafLoss loss{static_cast<double>(ordinal), 0.5, ordinal % 2 == 0};
+    const DecodedErrors loss{static_cast<double>(ordinal), 0.5, ordinal % 2 == 0};
     batch.add(ordinal, values, node, inside, loss);
     LeafRecord record = make_leaf_record(values, node, inside, leaf_statistics(values, node, inside));
     record.squared_error = loss.squared_error;

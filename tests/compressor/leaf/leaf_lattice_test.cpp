@@ -55,7 +55,7 @@ TEST(LeafLattice, MultiplesOfAStep) {
   expect({0, 0.1F}, 0.1F, 1);  // two values always lie on one
 }
 
-TEST(LeafLattice, WhatDoesNotLieOnOne) {
+TEST(LeafLattice, ValuesOffAnyLattice_HaveNone) {
   EXPECT_FALSE(lattice_of({0, 0.1F, 0.35F}));
   EXPECT_FALSE(lattice_of({1e-3F, 1, 0.7F}));
   EXPECT_FALSE(lattice_of({-0.0F, 1, 2}));  // no sum is -0.0

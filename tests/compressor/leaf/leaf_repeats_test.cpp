@@ -72,7 +72,7 @@ TEST(LeafRepeats, RepeatedValues_AreEachThoseOfTheirGroup) {
 TEST(LeafRepeats, Rows_AreThoseOfAllValues) {
   for_each_case([](const RepeatedValues& repeated) {
     SCOPED_TRACE(testing::Message() << repeated.by.x << ' ' << repeated.by.y << ' ' << repeated.by.z);
-    const LeafRepeats repeats = LeafRepeats::of(repeated.by.y, repeated.by.z);
+    const LeafRepeats repeats = LeafRepeats::in_source_order(repeated.by);
     LeafRow expected = summarize_leaf(repeated.values, 17);
     UniformDigest none;
     LeafRow row = summarize_leaf(repeated.values, 17, none, repeated.distinct, repeats);
@@ -86,7 +86,7 @@ TEST(LeafRepeats, Rows_AreThoseOfAllValues) {
 TEST(LeafRepeats, Quantisers_AreThoseOfAllValues) {
   for_each_case([](const RepeatedValues& repeated) {
     SCOPED_TRACE(testing::Message() << repeated.by.x << ' ' << repeated.by.y << ' ' << repeated.by.z);
-    const LeafRepeats repeats = LeafRepeats::of(repeated.by.y, repeated.by.z);
+    const LeafRepeats repeats = LeafRepeats::in_source_order(repeated.by);
     const ValueRange expected_range = leaf_range(repeated.values);
     const ValueRange range = leaf_range(repeated.values, repeats);
     ASSERT_EQ(std::memcmp(&range, &expected_range, 3 * sizeof(float)), 0);
@@ -104,7 +104,7 @@ TEST(LeafRepeats, QuantisedLeaves_AreThoseOfAllValues) {
   const Box node{{8, 0, 16}, {16, 8, 24}};
   for_each_case([&](const RepeatedValues& repeated) {
     SCOPED_TRACE(testing::Message() << repeated.by.x << ' ' << repeated.by.y << ' ' << repeated.by.z);
-    const LeafRepeats repeats = LeafRepeats::of(repeated.by.y, repeated.by.z, repeated.by.x);
+    const LeafRepeats repeats = LeafRepeats::in_leaf_order({repeated.by.z, repeated.by.y, repeated.by.x});
     LeafValues values;
     std::copy(repeated.values.begin(), repeated.values.end(), values.begin());
     for (const Fit fit : {Fit::squares, Fit::largest}) {

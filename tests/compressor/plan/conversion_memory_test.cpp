@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compressor/survey/kept_leaves.h"
+#include "compressor/survey/leaf_cache.h"
 
 namespace weir::conversion_memory_test {
 namespace {
@@ -38,22 +38,22 @@ MemoryShares shares_of(Planned& volume, std::uint64_t ceiling, bool may_hold = t
 
 TEST(ConversionMemory, KeepsValuesInWhatIsLeft) {
   Planned volume({1024, 1024, 1024});
-  EXPECT_EQ(shares_of(volume, 512 * kMiB).kept_bytes, 0U);
-  EXPECT_EQ(shares_of(volume, 1566 * kMiB, false).kept_bytes, 768 * kMiB);  // 3/4 of what is beyond 512 and 30 MiB
-  EXPECT_EQ(shares_of(volume, 16384 * kMiB).kept_bytes,
-            KeptLeaves::whole_bytes(make_lattice(volume.info().domain(), kLeafDim)));
+  EXPECT_EQ(shares_of(volume, 512 * kMiB).cache_bytes, 0U);
+  EXPECT_EQ(shares_of(volume, 1566 * kMiB, false).cache_bytes, 768 * kMiB);  // 3/4 of what is beyond 512 and 30 MiB
+  EXPECT_EQ(shares_of(volume, 16384 * kMiB).cache_bytes,
+            LeafCache::whole_bytes(make_lattice(volume.info().domain(), kLeafDim)));
   Planned small({160, 160, 160});
-  EXPECT_GT(shares_of(small, 128 * kMiB).kept_bytes, 0U);
+  EXPECT_GT(shares_of(small, 128 * kMiB).cache_bytes, 0U);
 }
 
 TEST(ConversionMemory, KeepsNothingThatIsInMemoryOrComesOnceForManyVoxels) {
   Planned volume({512, 512, 512});
   volume.coarse_ = true;
-  EXPECT_EQ(shares_of(volume, 4096 * kMiB).kept_bytes, 0U);
+  EXPECT_EQ(shares_of(volume, 4096 * kMiB).cache_bytes, 0U);
   volume.coarse_ = false;
-  EXPECT_GT(shares_of(volume, 4096 * kMiB).kept_bytes, 0U);
+  EXPECT_GT(shares_of(volume, 4096 * kMiB).cache_bytes, 0U);
   volume.in_memory_ = true;
-  EXPECT_EQ(shares_of(volume, 4096 * kMiB).kept_bytes, 0U);
+  EXPECT_EQ(shares_of(volume, 4096 * kMiB).cache_bytes, 0U);
 }
 
 TEST(ConversionMemory, KeptValuesDoNotDriveRecordsOutOfMemory) {
@@ -66,7 +66,7 @@ TEST(ConversionMemory, KeptValuesDoNotDriveRecordsOutOfMemory) {
     const MemoryShares shares = shares_of(volume, ceiling);
     EXPECT_EQ(shares.memory.record_bytes > 0, shares_of(in_memory, ceiling).memory.record_bytes > 0) << ceiling;
     held += shares.memory.record_bytes > 0 ? 1 : 0;
-    kept += shares.kept_bytes > 0 ? 1 : 0;
+    kept += shares.cache_bytes > 0 ? 1 : 0;
   }
   EXPECT_GT(held, 10);
   EXPECT_GT(kept, 10);
@@ -75,8 +75,8 @@ TEST(ConversionMemory, KeptValuesDoNotDriveRecordsOutOfMemory) {
 TEST(ConversionMemory, ManyThreadsLeaveLessToKeep) {
   Planned volume({1024, 1024, 1024});
   const MemoryShares shares = shares_of(volume, 1000 * kMiB, false, 160);
-  EXPECT_GT(shares.kept_bytes, 0U);
-  EXPECT_LT(shares.kept_bytes, shares_of(volume, 1000 * kMiB, false).kept_bytes);
+  EXPECT_GT(shares.cache_bytes, 0U);
+  EXPECT_LT(shares.cache_bytes, shares_of(volume, 1000 * kMiB, false).cache_bytes);
 }
 
 }  // namespace

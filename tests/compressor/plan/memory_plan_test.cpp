@@ -6,7 +6,6 @@
 #include <string>
 
 #include "format/base/error.h"
-#include "format/io/digest.h"
 #include "ingest/plan/staging.h"
 
 namespace weir::memory_plan_test {
@@ -22,14 +21,11 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
         const MemoryPlan plan = plan_memory(ceiling, resident, threads, kLarge);
         const std::uint64_t rows =
             threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
-        // The passes follow each other: blocks, rows and digests are never held together.
+        // The passes follow each other: blocks and rows are never held together.
         EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
         EXPECT_LT(resident + kStagingBytes + rows, ceiling);
-        EXPECT_LT(resident + plan.digest_threads * kDigestPieceBytes, ceiling);
         EXPECT_GE(plan.block_bytes, kMiB);
         EXPECT_GE(plan.selection.segment_regions, 1);
-        EXPECT_GE(plan.digest_threads, 1U);
-        EXPECT_LE(plan.digest_threads, threads);
       }
     }
   }
@@ -78,12 +74,10 @@ TEST(MemoryPlan, MoreMemoryNeverMeansSmallerShares) {
   MemoryPlan before;
   before.block_bytes = 0;
   before.selection.segment_regions = 0;
-  before.digest_threads = 0;
   for (std::uint64_t ceiling = 200 * kMiB; ceiling < 8192 * kMiB; ceiling += 97 * kMiB) {
     const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge);
     EXPECT_GE(plan.block_bytes, before.block_bytes);
     EXPECT_GE(plan.selection.segment_regions, before.selection.segment_regions);
-    EXPECT_GE(plan.digest_threads, before.digest_threads);
     before = plan;
   }
 }

@@ -34,7 +34,7 @@ TEST_F(ExpectedPlanes, MayBeFilledLaterInAnyPieces) {
   EXPECT_EQ(files_.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
 }
 
-TEST_F(ExpectedPlanes, ThatDoNotComeEndThePush) {
+TEST_F(ExpectedPlanes, FailWhileTheyAreExpected_EndsThePush) {
   PushedVolume pushed(info_, options_, {}, files_);
   pushed.slab(0, 4, values_.data());
   pushed.expect(4, 16);

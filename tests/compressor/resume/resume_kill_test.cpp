@@ -163,10 +163,10 @@ TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
       CrashFileSystem memory;
       if (!dies(memory, at)) break;
       left += memory.names() == kResult ? 0 : 1;
-      clear_leftovers(memory, "out.nvdb");
+      discard_all_beside(memory, "out.nvdb");
       EXPECT_EQ(memory.names(), kResult);
       EXPECT_EQ(memory.directories(), Names{});
-      EXPECT_FALSE(clear_leftovers(memory, "out.nvdb")) << "nothing is there";
+      EXPECT_FALSE(discard_all_beside(memory, "out.nvdb")) << "nothing is there";
 
       CrashFileSystem other;
       dies(other, at);

@@ -24,7 +24,7 @@ NearBlocks bought_at(const char* kind, double psnr) {
   rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(files.create_unnamed("ladders"), plan.lattice));
   LadderAim aim;
   aim.near_rungs = true;
-  survey_volume(volume, plan, rows, {}, Reading::ahead, false, nullptr, nullptr, {}, aim);
+  survey_volume(volume, plan, rows, {}, {.ladders = aim});
   FileRequest request;
   request.budget.kind = Budget::Kind::psnr;
   request.budget.target = psnr;

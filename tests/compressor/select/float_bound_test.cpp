@@ -108,7 +108,7 @@ class Planned {
   Planned()
       : plan_(plan_blocks(volume_.info().domain(), volume_.access(), std::uint64_t{1} << 30U)),
         rows_(files_.create_unnamed("rows"), plan_.lattice, {64, std::uint64_t{1} << 24U}),
-        survey_(survey_volume(volume_, plan_, rows_, {}, Reading::ahead, true)) {}
+        survey_(survey_volume(volume_, plan_, rows_, {}, {.widths = true})) {}
 
   FilePlan plan(const Budget& budget, double squared_error, bool plans_float) {
     FileRequest request;

@@ -27,8 +27,7 @@ class PreviewedBytes : public testing::Test {
   Selection select(Selection::Search search, std::uint64_t step_bytes) {
     rows_ = std::make_unique<RowStore>(files_.create_unnamed("rows"), plan_.lattice, SelectionRoom{64, step_bytes});
     rows_->set_ladders(std::make_unique<LeafStore<PackedLadder>>(files_.create_unnamed("ladders"), plan_.lattice));
-    const Survey survey =
-        survey_volume(volume_, plan_, *rows_, {}, Reading::ahead, false, nullptr, nullptr, {}, LadderAim{});
+    const Survey survey = survey_volume(volume_, plan_, *rows_, {}, {.ladders = LadderAim{}});
     GainRule rule;
     rule.encoding = Encoding::packed;
     rule.packed = PackedRule{true, coarsest_step(survey.min, survey.max)};
@@ -64,7 +63,7 @@ TEST_F(PreviewedBytes, OfAnErrorAreNeverLessThanThoseOfTheFile) {
   }
 }
 
-TEST_F(PreviewedBytes, OfASizeAreThatSize) {
+TEST_F(PreviewedBytes, ChosenBySize_AreThatSize) {
   Selection selection = select(Selection::Search::of_bytes, kEnough);
   selection.choose(400000);
   const auto bytes = selection.previewed_bytes();

@@ -174,7 +174,7 @@ TEST_P(QuantisedConversionTest, HoldsItsCertificateInTheBytesAsked) {
   }
 }
 
-TEST_P(QuantisedConversionTest, WithTheBackgroundInDroppedBlocks) {
+TEST_P(QuantisedConversionTest, FilledWithTheBackground_CertificateAndMacrocellsHold) {
   MemoryVolume volume = GetParam().make();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {
     ConversionOptions options;

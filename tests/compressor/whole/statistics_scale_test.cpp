@@ -207,7 +207,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
   for (std::uint64_t ordinal = 0; ordinal < leaves; ++ordinal) expected += errors[ordinal % kKinds];
 
   const RecordStore store(std::make_unique<RecordsOfKinds>(records), leaves);
-  const LeafErrors lost = sum_leaf_errors(billion.tree, store);
+  const DecodedErrors lost = sum_leaf_errors(billion.tree, store);
   const auto squares = static_cast<double>(expected);
   EXPECT_GT(squares, 0);
   EXPECT_NEAR(lost.squared, squares, squares * 1e-12);

@@ -90,7 +90,7 @@ TEST(ViewRequests, ChangeNothing_AndAreNotAnsweredWhereNothingMayBeChanged) {
             "403 {\"error\":\"this address only shows; viewers are at unix:/run/weir.sock\"}\n");
 }
 
-TEST(ViewRequests, WithoutAViewer_SaySo) {
+TEST(ViewRequests, WithoutAViewer_AreAnsweredWith503) {
   EXPECT_EQ(
       refusal({}, ask("/view/api/state"), in_state(ViewerState::none)),
       "503 {\"error\":\"no viewer runs now; open it again with View on the service's page\",\"state\":\"none\"}\n");

@@ -69,7 +69,7 @@ TEST_P(WatchZarr, AStoreThatGrowsSlowly_IsConvertedOnceAndWhole) {
   EXPECT_EQ(service.leftovers(), std::vector<std::string>{});
 }
 
-TEST_P(WatchZarr, WithMarkers_TheMarkerSaysIt) {
+TEST_P(WatchZarr, WithMarkers_WaitsForTheMarker) {
   ServiceHarness service("", keys(GetParam(), "complete = \"marker\"\n"));
   service.start();
   const std::string store = service.in("a.zarr");

@@ -19,6 +19,7 @@
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
+#include "tests/format/packed/plain_decode.h"
 
 namespace weir::packed_test {
 
@@ -62,7 +63,7 @@ inline std::optional<BlockValues> decode(const BlockConstants& constants, const 
   fast.fill(-1);
   plain.fill(-2);
   const bool fast_valid = decode_block(constants, means, buffer.bytes.get(), bytes, fast.data());
-  const bool plain_valid = decode_block_plain(constants, kBlockScan, means, buffer.bytes.get(), bytes, plain.data());
+  const bool plain_valid = plain::decode_block(constants, kBlockScan, means, buffer.bytes.get(), bytes, plain.data());
   EXPECT_EQ(fast_valid, plain_valid);
   if (!fast_valid || !plain_valid) return std::nullopt;
   for (std::size_t i = 0; i < fast.size(); ++i) {

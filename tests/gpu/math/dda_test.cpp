@@ -57,7 +57,7 @@ TEST(CellWalk, NegativeZeroIsZero) {
 }
 
 // The prototype's 0 * inf: an origin exactly on a border with a direction along it.
-TEST(CellWalk, OnABorderAlongIt) {
+TEST(CellWalk, ARayAlongABorder_VisitsEachCellOnce) {
   const auto spans = walk(kLattice, {{0, 16, 16}, {1, 0, 0}}, 0, 64);
   expect_covers(spans, 0, 64);
   EXPECT_EQ(cells_of_positive_length(spans), (std::vector<std::int64_t>{16, 17, 18, 19}));

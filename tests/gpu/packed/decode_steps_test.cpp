@@ -158,14 +158,14 @@ class DecodeSteps : public testing::Test {
     if (stream.data == nullptr) return "none";
     packed.decode(stream, values);
     const auto head = static_cast<unsigned>(stream.data[0]);
-    switch (static_cast<StreamKind>(head & 3U)) {
-      case StreamKind::mean:
+    switch (static_cast<PackedKind>(head & 3U)) {
+      case PackedKind::mean:
         return "mean";
-      case StreamKind::transform:
+      case PackedKind::transform:
         return "transform";
-      case StreamKind::raw:
+      case PackedKind::raw:
         return "raw";
-      case StreamKind::lattice:
+      case PackedKind::lattice:
         break;
     }
     const bool ordered = static_cast<LatticeKind>(head >> 4U & 3U) == LatticeKind::ordered;

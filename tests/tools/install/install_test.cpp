@@ -58,6 +58,7 @@ std::set<std::string> headers() {
                            "io/file_mapping",
                            "base/host_device",
                            "base/index",
+                           "base/mix_bits",
                            "leaf/bounds",
                            "leaf/leaf_decode",
                            "nanovdb/macrocells",

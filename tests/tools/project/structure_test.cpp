@@ -39,6 +39,7 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
   add("gpu/own.cpp", "namespace weir {\nnamespace {\nstruct Own {};\n}\n}\n");
   for (int i = 0; i <= 40; ++i) add(cat("tests/many/", i, ".cpp"), "\n");
   add("attic/a.cpp", "\n");
+  add("CONTRIBUTING.md", "## Where things are\n\n```\nformat/  files\ntools/   the command\n  plot/    charts\n```\n");
   CommandOptions there;
   there.directory = directory.path();
   ASSERT_EQ(run_command({"git", "init", "--quiet"}, there).exit_code, 0);
@@ -52,6 +53,7 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
             "format/bare.h:1: has no #pragma once\n"
             "format/up.h:3: format/ is below daemon/ and may not include \"daemon/service.h\"\n"
             "gpu/long.cpp:401: has 401 lines, more than 400; split it\n"
+            "CONTRIBUTING.md:5: the map does not name tools/report/; add what it holds\n"
             "ingest/one: includes run in a circle: ingest/one, ingest/other\n"
             "daemon: includes run in a circle: daemon, format\n"
             "tools/plot: includes run in a circle: tools/plot, tools/report\n"

@@ -1,4 +1,4 @@
-#include "compressor/survey/kept_leaves.h"
+#include "compressor/survey/leaf_cache.h"
 
 #include <algorithm>
 #include <limits>
@@ -19,15 +19,15 @@ std::size_t places_in(std::uint64_t bytes, std::uint64_t index) {
 
 }  // namespace
 
-KeptLeaves::KeptLeaves(const NodeLattice& leaves, std::uint64_t bytes)
+LeafCache::LeafCache(const NodeLattice& leaves, std::uint64_t bytes)
     : leaves_(leaves),
       values_(places_in(std::min(bytes, whole_bytes(leaves)), index_bytes(leaves)) * kLeafBytes),
       entries_(static_cast<std::size_t>(values_.bytes().empty() ? 0 : leaves.size())),
       places_(values_.bytes().size() / kLeafBytes) {}
 
-std::unique_ptr<KeptLeaves> KeptLeaves::where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes) {
+std::unique_ptr<LeafCache> LeafCache::where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes) {
   try {
-    return std::make_unique<KeptLeaves>(leaves, bytes);
+    return std::make_unique<LeafCache>(leaves, bytes);
   } catch (const Error&) {
     return nullptr;
   } catch (const std::bad_alloc&) {
@@ -35,15 +35,15 @@ std::unique_ptr<KeptLeaves> KeptLeaves::where_there_is_room(const NodeLattice& l
   }
 }
 
-std::uint64_t KeptLeaves::index_bytes(const NodeLattice& leaves) {
+std::uint64_t LeafCache::index_bytes(const NodeLattice& leaves) {
   return static_cast<std::uint64_t>(leaves.size()) * sizeof(Entry);
 }
 
-std::uint64_t KeptLeaves::whole_bytes(const NodeLattice& leaves) {
+std::uint64_t LeafCache::whole_bytes(const NodeLattice& leaves) {
   return index_bytes(leaves) + static_cast<std::uint64_t>(leaves.size()) * kLeafBytes;
 }
 
-void KeptLeaves::add(std::int64_t leaf, std::span<const float> values, bool uniform) {
+void LeafCache::add(std::int64_t leaf, std::span<const float> values, bool uniform) {
   if (entries_.empty()) return;
   Entry& entry = entries_[static_cast<std::size_t>(leaf)];
   if (uniform) {
@@ -57,7 +57,7 @@ void KeptLeaves::add(std::int64_t leaf, std::span<const float> values, bool unif
   entry.place = static_cast<std::uint32_t>(place) + kFirst;
 }
 
-std::span<const float> KeptLeaves::leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const {
+std::span<const float> LeafCache::leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const {
   const auto count = static_cast<std::size_t>(inside.voxels());
   const Index3 at = floor_div(inside.lo, kLeafDim) - leaves_.first;
   const Entry& entry = entries_[static_cast<std::size_t>(leaves_.linear(at))];
@@ -68,12 +68,12 @@ std::span<const float> KeptLeaves::leaf(const Box& inside, std::array<float, kLe
   return values_.floats().subspan((entry.place - kFirst) * kLeafVoxels, count);
 }
 
-Box KeptLeaves::leaves_under(const Box& voxels) const {
+Box LeafCache::leaves_under(const Box& voxels) const {
   return {floor_div(voxels.lo, kLeafDim) - leaves_.first,
           floor_div(voxels.hi - Index3{1, 1, 1}, kLeafDim) - leaves_.first + Index3{1, 1, 1}};
 }
 
-bool KeptLeaves::has(const Box& voxels) const {
+bool LeafCache::has(const Box& voxels) const {
   if (entries_.empty()) return false;
   const Box under = leaves_under(voxels);
   for (std::int64_t z = under.lo.z; z < under.hi.z; ++z) {
@@ -87,7 +87,7 @@ bool KeptLeaves::has(const Box& voxels) const {
   return true;
 }
 
-void KeptLeaves::copy(const Box& voxels, std::span<float> values, std::size_t threads) const {
+void LeafCache::copy(const Box& voxels, std::span<float> values, std::size_t threads) const {
   const Box under = leaves_under(voxels);
   const Index3 extent = under.extent();
   for_pieces(extent.y * extent.z, threads, [&](std::int64_t i) {
@@ -97,7 +97,7 @@ void KeptLeaves::copy(const Box& voxels, std::span<float> values, std::size_t th
   });
 }
 
-void KeptLeaves::copy_leaf(const Index3& leaf, const Box& voxels, std::span<float> values) const {
+void LeafCache::copy_leaf(const Index3& leaf, const Box& voxels, std::span<float> values) const {
   const Box inside = leaves_.voxels(leaf);
   const Box part = intersect(inside, voxels);
   std::array<float, kLeafVoxels> room;

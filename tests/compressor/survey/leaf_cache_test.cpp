@@ -1,4 +1,4 @@
-#include "compressor/survey/kept_leaves.h"
+#include "compressor/survey/leaf_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/memory_volume.h"
 
-namespace weir::kept_leaves_test {
+namespace weir::leaf_cache_test {
 namespace {
 
 using test::bits_of;
@@ -26,76 +26,76 @@ MemoryVolume volume_with_edges() {
           }};
 }
 
-void add_all(KeptLeaves& kept, const MemoryVolume& volume, const NodeLattice& leaves) {
+void add_all(LeafCache& cache, const MemoryVolume& volume, const NodeLattice& leaves) {
   for (std::int64_t i = 0; i < leaves.size(); ++i) {
     const std::vector<float> values = volume.in(leaves.voxels(leaves.position(i)));
-    kept.add(i, values, bits_of(values.front()) == bits_of(values.back()));
+    cache.add(i, values, bits_of(values.front()) == bits_of(values.back()));
   }
 }
 
-TEST(KeptLeaves, GivesAnyBoxBack) {
+TEST(LeafCache, GivesAnyBoxBack) {
   const MemoryVolume volume = volume_with_edges();
   const Box domain = volume.info().domain();
   const NodeLattice leaves = make_lattice(domain, kLeafDim);
-  KeptLeaves kept(leaves, KeptLeaves::whole_bytes(leaves));
-  EXPECT_FALSE(kept.has(domain));
-  add_all(kept, volume, leaves);
-  ASSERT_TRUE(kept.has(domain));
+  LeafCache cache(leaves, LeafCache::whole_bytes(leaves));
+  EXPECT_FALSE(cache.has(domain));
+  add_all(cache, volume, leaves);
+  ASSERT_TRUE(cache.has(domain));
   for (const Box& box :
        {domain, Box{{-3, 5, 2}, {-2, 6, 3}}, Box{{7, 9, 8}, {17, 25, 11}}, Box{{8, 16, 8}, {16, 24, 16}}}) {
     for (const std::size_t threads : {1U, 3U}) {
       const std::vector<float> expected = volume.in(box);
       std::vector<float> values(expected.size(), -1);
-      kept.copy(box, values, threads);
+      cache.copy(box, values, threads);
       for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(bits_of(values[i]), bits_of(expected[i])) << i;
     }
   }
 }
 
-TEST(KeptLeaves, GivesEachLeafBack) {
+TEST(LeafCache, GivesEachLeafBack) {
   const MemoryVolume volume = volume_with_edges();
   const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
-  KeptLeaves kept(leaves, KeptLeaves::whole_bytes(leaves));
-  add_all(kept, volume, leaves);
+  LeafCache cache(leaves, LeafCache::whole_bytes(leaves));
+  add_all(cache, volume, leaves);
   std::array<float, kLeafVoxels> room{};
   for (std::int64_t i = 0; i < leaves.size(); ++i) {
     const Box inside = leaves.voxels(leaves.position(i));
     const std::vector<float> expected = volume.in(inside);
-    const std::span<const float> values = kept.leaf(inside, room);
+    const std::span<const float> values = cache.leaf(inside, room);
     ASSERT_EQ(values.size(), expected.size());
     for (std::size_t v = 0; v < values.size(); ++v) ASSERT_EQ(bits_of(values[v]), bits_of(expected[v])) << i;
   }
 }
 
-TEST(KeptLeaves, KeepsTheFirstOnesUntilItsMemoryIsFull) {
+TEST(LeafCache, KeepsTheFirstOnesUntilItsMemoryIsFull) {
   const MemoryVolume volume = volume_with_edges();
   const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
-  KeptLeaves kept(leaves, KeptLeaves::index_bytes(leaves) + 5 * kLeafBytes + 17);
-  add_all(kept, volume, leaves);
+  LeafCache cache(leaves, LeafCache::index_bytes(leaves) + 5 * kLeafBytes + 17);
+  add_all(cache, volume, leaves);
   std::int64_t has = 0;
   for (std::int64_t i = 0; i < leaves.size(); ++i) {
-    if (!kept.has(leaves.voxels(leaves.position(i)))) continue;
+    if (!cache.has(leaves.voxels(leaves.position(i)))) continue;
     ++has;
     EXPECT_TRUE(i < 5 || leaves.first + leaves.position(i) == (Index3{1, 2, 1})) << i;
   }
   EXPECT_EQ(has, 6);  // the one of one value takes no room
-  EXPECT_FALSE(kept.has(volume.info().domain()));
+  EXPECT_FALSE(cache.has(volume.info().domain()));
 }
 
-TEST(KeptLeaves, KeepsNothingWhereTheIndexAloneFills) {
+TEST(LeafCache, KeepsNothingWhereTheIndexAloneFills) {
   const MemoryVolume volume = volume_with_edges();
   const NodeLattice leaves = make_lattice(volume.info().domain(), kLeafDim);
-  KeptLeaves kept(leaves, KeptLeaves::index_bytes(leaves) + kLeafBytes - 1);
-  add_all(kept, volume, leaves);
-  EXPECT_FALSE(kept.has(leaves.voxels(Index3{0, 0, 0})));
+  LeafCache cache(leaves, LeafCache::index_bytes(leaves) + kLeafBytes - 1);
+  add_all(cache, volume, leaves);
+  EXPECT_FALSE(cache.has(leaves.voxels(Index3{0, 0, 0})));
 }
 
-TEST(KeptLeaves, AreLeftOutWhereTheKernelRefuses) {
+TEST(LeafCache, IsLeftOutWhereTheKernelRefuses) {
   const NodeLattice leaves = make_lattice(Box{{0, 0, 0}, {1 << 20, 1 << 20, 1 << 20}}, kLeafDim);
-  EXPECT_EQ(KeptLeaves::where_there_is_room(leaves, std::uint64_t{1} << 60U), nullptr);
+  EXPECT_EQ(LeafCache::where_there_is_room(leaves, std::uint64_t{1} << 60U), nullptr);
   const NodeLattice few = make_lattice(Box{{0, 0, 0}, {8, 8, 8}}, kLeafDim);
-  EXPECT_NE(KeptLeaves::where_there_is_room(few, 10'000), nullptr);
+  EXPECT_NE(LeafCache::where_there_is_room(few, 10'000), nullptr);
 }
 
 }  // namespace
-}  // namespace weir::kept_leaves_test
+}  // namespace weir::leaf_cache_test

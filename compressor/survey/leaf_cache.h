@@ -1,4 +1,4 @@
-// Values that the survey keeps in memory for the encode pass, so that it need not read them again.
+// Values that the survey caches in memory for the encode pass, so that it need not read them again.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ namespace weir {
 
 /// Leaves of a volume, as they come, until a given memory is full; of those whose values have the same bits only one.
 /// Leaves may be added by several threads at once, each once.
-class KeptLeaves final : public HeldLeaves {
+class LeafCache final : public HeldLeaves {
  public:
   /// For the leaves of `leaves` in `bytes` of memory, index included; pages of it are taken as they are needed. Throws
   /// Error(io) where the kernel refuses.
-  KeptLeaves(const NodeLattice& leaves, std::uint64_t bytes);
+  LeafCache(const NodeLattice& leaves, std::uint64_t bytes);
 
   /// The same; null where the kernel refuses: nothing is lost without them but time.
-  static std::unique_ptr<KeptLeaves> where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes);
+  static std::unique_ptr<LeafCache> where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes);
 
-  /// Bytes of the index alone: with less, nothing is kept.
+  /// Bytes of the index alone: with less, nothing is cached.
   static std::uint64_t index_bytes(const NodeLattice& leaves);
   /// Bytes of all leaves and the index: more is never taken.
   static std::uint64_t whole_bytes(const NodeLattice& leaves);
@@ -37,7 +37,7 @@ class KeptLeaves final : public HeldLeaves {
   /// Only of a leaf that has() tells of.
   std::span<const float> leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const override;
 
-  /// Whether all leaves under `voxels`, which lies in the domain, are kept.
+  /// Whether all leaves under `voxels`, which lies in the domain, are cached.
   bool has(const Box& voxels) const;
   /// Their values, x fastest over `voxels`, by up to `threads` threads. Only where has(voxels).
   void copy(const Box& voxels, std::span<float> values, std::size_t threads) const;

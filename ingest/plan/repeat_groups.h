@@ -1,0 +1,41 @@
+// One value for each group of a leaf's voxels, written to all voxels of its group.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+namespace weir {
+
+/// Edges of the groups of a leaf's 512 values, whichever axis is the slowest of them: 1, 2, 4 or 8 each.
+struct LeafGroups {
+  std::size_t slow = 1;
+  std::size_t middle = 1;
+  std::size_t fast = 1;
+
+  friend bool operator==(const LeafGroups&, const LeafGroups&) = default;
+};
+
+/// `distinct` are in the order of the values, one for each group. Nothing else uses the first of these two: with edges
+/// that the compiler knows it is fast.
+template <typename Value>
+[[gnu::always_inline]] inline void repeat_groups_of(const LeafGroups& groups, const Value* distinct, Value* values) {
+  for (std::size_t s = 0; s < 8; s += groups.slow) {
+    for (std::size_t m = 0; m < 8; m += groups.middle, distinct += 8 / groups.fast) {
+      std::array<Value, 8> row;
+      for (std::size_t f = 0; f < 8; ++f) row[f] = distinct[f / groups.fast];
+      for (std::size_t plane = s; plane < s + groups.slow; ++plane) {
+        for (std::size_t i = m; i < m + groups.middle; ++i)
+          std::memcpy(values + 64 * plane + 8 * i, row.data(), sizeof row);
+      }
+    }
+  }
+}
+template <typename Value>
+void repeat_groups(const LeafGroups& groups, const Value* distinct, Value* values) {
+  if (groups == LeafGroups{2, 2, 2}) return repeat_groups_of({2, 2, 2}, distinct, values);
+  if (groups == LeafGroups{4, 4, 4}) return repeat_groups_of({4, 4, 4}, distinct, values);
+  repeat_groups_of(groups, distinct, values);
+}
+
+}  // namespace weir
