@@ -36,6 +36,7 @@ Sidecar::CertifiedError describe_error(const DecodedErrors& tiles, const Decoded
 void describe_details(const FieldDetails& details, Sidecar::Source& source) {
   source.long_name = details.long_name;
   source.component = details.component;
+  source.orientation = details.orientation;
   if (details.level) source.level = Sidecar::Level{details.level->number, details.level->count};
   if (details.time) source.time = Sidecar::Time{details.time->value, details.time->units, details.time->calendar};
   for (std::size_t i = 0; i < details.axes.size(); ++i) {

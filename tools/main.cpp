@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -114,7 +115,9 @@ int run(int argc, char** argv) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail_internally(error);
     return fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io));
   } catch (const std::exception& error) {
-    return fail_internally(error);
+    // oneTBB's words for it.
+    const bool no_thread = std::string_view(error.what()).starts_with("pthread_create has failed");
+    return no_thread ? fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io)) : fail_internally(error);
   }
 }
 

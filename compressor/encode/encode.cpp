@@ -60,7 +60,7 @@ Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& b
 RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
   RegionPlaces places;
   if (target.packed != nullptr) {
-    places.streams.emplace(target.packed->streams.read(region));
+    places.streams.emplace(target.packed->streams.read_allocated(region));
   } else {
     places.leaves.emplace(target.choices.read(region));
   }

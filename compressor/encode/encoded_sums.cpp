@@ -59,7 +59,7 @@ class WrittenSums {
   void add(std::int64_t region, const Box& box) {
     RegionPlaces places;
     if (target_.packed != nullptr) {
-      places.streams.emplace(target_.packed->streams.read(region));
+      places.streams.emplace(target_.packed->streams.read_allocated(region));
     } else {
       places.leaves.emplace(target_.choices.read(region));
     }

@@ -138,7 +138,7 @@ class LowerWriter {
       widen_decoded({region.packed_value, region.packed_value});
       return;
     }
-    const StreamPlaces places(parts_.packed->streams.read(index));
+    const StreamPlaces places(parts_.packed->streams.read_allocated(index));
     write_directory(parts_.layout, tree.regions.size(), index, region, places, out_);
     const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
     MinMax decoded = kNoBounds;

@@ -11,7 +11,8 @@ namespace weir {
 
 /// What an error says where a thread cannot be started.
 inline constexpr const char* kNoMoreThreads =
-    "no more threads can be started; raise the limit of processes (ulimit -u) or end some";
+    "no more threads can be started; raise the limit of processes (ulimit -u) or of address space (ulimit -v), or end "
+    "some";
 
 /// At most `wanted` more threads can run at the same time: fewer where a limit (ulimit -u, pids.max of a container) is
 /// near. Starts them to find out: 30 to 46 us each for 7 to 133 of them on two cores. What starts threads later, as

@@ -289,7 +289,8 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
     const double short_by = 10 * std::log10(squared_error / request.squared_error);
     best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
   } else {
-    best = " has leaves whose range 16 bits do not divide that finely";
+    const unsigned bits = encoding == Encoding::fp4 ? 4 : encoding == Encoding::fp8 ? 8 : 16;
+    best = cat(" has leaves whose range ", bits, " bits do not divide that finely");
   }
   return {ErrorKind::budget, compose(request.path, ": ", option(psnr ? "psnr" : "max-error", request.budget.target),
                                      " cannot be met: ", option("encoding", encoding_name(encoding)), best, "; use ",

@@ -5,11 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <span>
 
-#include "compressor/team/team.h"
-#include "format/io/file_system.h"
+#include "compressor/select/region_store.h"
 #include "format/layout/nanovdb_layout.h"
 
 namespace weir {
@@ -98,26 +95,6 @@ class LeafPlaces {
   std::array<Place, kRows + 1> rows_{};
 };
 
-/// Choices by region index. Thread-safe for different regions.
-class ChoiceStore {
- public:
-  ChoiceStore(std::unique_ptr<File> file, std::int64_t regions) : file_(std::move(file)) {
-    file_->preallocate(static_cast<std::uint64_t>(regions) * sizeof(LeafChoices));
-  }
-  void write(std::int64_t region, const LeafChoices& choices) {
-    file_->write_at(at(region), std::as_bytes(std::span(&choices, 1)));
-  }
-  LeafChoices read(std::int64_t region) const {
-    LeafChoices choices;
-    file_->read_at(at(region), std::as_writable_bytes(std::span(&choices, 1)));
-    return choices;
-  }
-  /// After each rank has written those of its regions.
-  void publish(Team& team) { team.publish(*file_); }
-
- private:
-  static std::uint64_t at(std::int64_t region) { return static_cast<std::uint64_t>(region) * sizeof(LeafChoices); }
-  std::unique_ptr<File> file_;
-};
+using ChoiceStore = RegionStore<LeafChoices>;
 
 }  // namespace weir

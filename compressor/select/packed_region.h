@@ -12,9 +12,8 @@
 #include "compressor/packed/packed_rule.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/region_rows.h"
+#include "compressor/select/region_store.h"
 #include "compressor/select/tree_regions.h"
-#include "compressor/team/team.h"
-#include "format/io/file_system.h"
 #include "format/layout/tree_layout.h"
 #include "format/nanovdb/packed_data.h"
 #include "format/packed/block_constants.h"
@@ -86,27 +85,7 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
 /// every file: header, tables and region table.
 void set_packed_counts(const PackedRule& rule, const TreeRegions& tree, std::uint64_t regions, NodeCounts& counts);
 
-/// Plans of regions by index. Thread-safe for different regions.
-class PlannedStreamsStore {
- public:
-  PlannedStreamsStore(std::unique_ptr<File> file, std::int64_t regions) : file_(std::move(file)) {
-    file_->preallocate(static_cast<std::uint64_t>(regions) * sizeof(PlannedStreams));
-  }
-  void write(std::int64_t region, const PlannedStreams& plan) {
-    file_->write_at(at(region), std::as_bytes(std::span(&plan, 1)));
-  }
-  std::unique_ptr<PlannedStreams> read(std::int64_t region) const {
-    auto plan = std::make_unique<PlannedStreams>();
-    file_->read_at(at(region), std::as_writable_bytes(std::span(plan.get(), 1)));
-    return plan;
-  }
-  /// After each rank has written those of its regions.
-  void publish(Team& team) { team.publish(*file_); }
-
- private:
-  static std::uint64_t at(std::int64_t region) { return static_cast<std::uint64_t>(region) * sizeof(PlannedStreams); }
-  std::unique_ptr<File> file_;
-};
+using PlannedStreamsStore = RegionStore<PlannedStreams>;
 
 /// Where the streams of a region lie in its chunk.
 class StreamPlaces {

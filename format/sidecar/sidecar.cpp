@@ -64,6 +64,7 @@ void describe(Archive& archive, S& s) {
       archive.optional_field("z", axes.z);
     });
     archive.optional_field("reversed_axes", s.source.reversed_axes);
+    archive.optional_field("orientation", s.source.orientation);
   });
   archive.object("grid", [&] {
     archive.field("name", s.grid.name);

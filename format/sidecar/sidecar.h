@@ -61,6 +61,7 @@ struct Sidecar {
     std::array<std::string, 3> axis_units;        ///< of the coordinates of x, y, z
     std::optional<IrregularAxes> irregular_axes;  ///< those without a spacing
     std::vector<std::string> reversed_axes;       ///< "x", "y", "z": the file has their elements in the other order
+    std::string orientation;                      ///< how the axes lie in the file's world (FieldDetails::orientation)
   } source;
 
   struct Grid {

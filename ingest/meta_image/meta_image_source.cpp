@@ -31,6 +31,7 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
     volume.info.spacing[a] = std::fabs(header.spacing[a]);
   }
   volume.info.origin = placement.origin;
+  volume.info.details.orientation = placement.orientation;
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 

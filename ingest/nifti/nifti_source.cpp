@@ -48,6 +48,7 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   // The length itself: quaternions are written with rounding.
   for (std::size_t a = 0; a < axes && !header.steps_rule; ++a) volume.info.spacing[a] = header.spacing[a];
   volume.info.origin = placement.origin;
+  volume.info.details.orientation = placement.orientation;
   if (!header.length_unit.empty()) volume.attributes.emplace_back("length unit", header.length_unit);
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }

@@ -79,6 +79,7 @@ void place(const NrrdHeader& header, std::size_t first, HeaderVolume& volume) {
   const AxisPlacement placement = place_axes(steps, padded(header.space_origin));
   info.spacing = placement.spacing;
   info.origin = placement.origin;
+  info.details.orientation = placement.orientation;
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 

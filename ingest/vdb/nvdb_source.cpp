@@ -110,6 +110,7 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   const AxisPlacement placement = place_axes(steps_of(grid), grid.world_origin());
   info.spacing = placement.spacing;
   info.origin = placement.origin;
+  info.details.orientation = placement.orientation;
   info.file_bytes = file->size();
   info.mtime_ns = file->mtime_ns();
   info.files = {file->state()};

@@ -134,6 +134,7 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   const AxisPlacement placement = place_axes(grid.steps, grid.first);
   info.spacing = placement.spacing;
   info.origin = placement.origin;
+  info.details.orientation = placement.orientation;
   info.file_bytes = file.size();
   info.mtime_ns = file.mtime_ns();
   info.files = {file.state()};

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -85,6 +86,33 @@ class Piece {
   std::unique_ptr<bool[]> missing_;
 };
 
+/// What lengths lose where their components lost something: bounds, since nothing tells which voxels those were.
+class LengthLoss {
+ public:
+  explicit LengthLoss(std::uint64_t voxels) : voxels_(voxels) {}
+
+  void add_component(const ConversionLoss& loss) {
+    counts_.add(loss);
+    squares_ += loss.max_abs_error * loss.max_abs_error;  // a length changes by no more than the vector
+  }
+  void add_root(const ConversionLoss& loss) {
+    counts_.add(loss);
+    of_root_ = std::max(of_root_, loss.max_abs_error);
+  }
+  /// Each voxel counts once.
+  ConversionLoss of_lengths() const {
+    const auto at_most = [&](std::uint64_t count) { return std::min(count, voxels_); };
+    return {at_most(counts_.inexact), at_most(counts_.overflow), std::sqrt(squares_) + of_root_,
+            at_most(counts_.unmarked)};
+  }
+
+ private:
+  std::uint64_t voxels_;
+  ConversionLoss counts_;
+  double squares_ = 0;
+  double of_root_ = 0;
+};
+
 class MagnitudeSource final : public VolumeSource {
  public:
   MagnitudeSource(std::vector<std::unique_ptr<VolumeSource>> components, SourceInfo info)
@@ -160,21 +188,22 @@ class MagnitudeSource final : public VolumeSource {
 
   ConversionLoss read_piece(const Box& box, bool alone, const Box& whole, std::span<float> values) {
     Piece piece(static_cast<std::size_t>(box.voxels()));
-    ConversionLoss loss;
+    LengthLoss loss(static_cast<std::uint64_t>(box.voxels()));
     for (const auto& component : components_) {
       // What this thread waits for within must not be another piece, whose memory nobody has counted.
       tbb::this_task_arena::isolate([&] {
-        loss.add(alone ? component->read_alone(box, piece.component()) : component->read(box, piece.component()));
+        loss.add_component(alone ? component->read_alone(box, piece.component())
+                                 : component->read(box, piece.component()));
       });
       piece.add(info_.mapping.marks_missing());
     }
-    loss.add(piece.take_lengths());
+    loss.add_root(piece.take_lengths());
     const Index3 e = box.extent();
     for (std::int64_t row = 0; row < e.y * e.z; ++row) {
       const Index3 at = Index3{box.lo.x, box.lo.y + row % e.y, box.lo.z + row / e.y} - whole.lo;
       std::copy_n(piece.component().begin() + row * e.x, e.x, values.begin() + linear_index(at, whole.extent()));
     }
-    return loss;
+    return loss.of_lengths();
   }
 
   std::vector<std::unique_ptr<VolumeSource>> components_;

@@ -46,6 +46,7 @@ void place_vtk_image(const VtkImage& image, bool cells, SourceInfo& info) {
   info.index_origin = image.first;
   info.spacing = placed.spacing;
   info.origin = placed.origin;
+  info.details.orientation = placed.orientation;
 }
 
 void describe_vtk_image(const VtkImage& image, bool cells, const std::string& path, DatasetInfo& info) {

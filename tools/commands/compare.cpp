@@ -282,9 +282,9 @@ void add_compare(CLI::App& app) {
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_log_level(*command);
   command->footer(
-      "Where the sidecar lies beside the volume, the dataset, index, component, region and treatment of missing values "
-      "of\n"
-      "the conversion are taken from it, unless they are given.");
+      "Where the sidecar lies beside the volume, the dataset, index, component, region, spacing and treatment of "
+      "missing\n"
+      "values of the conversion are taken from it, unless they are given.");
   command->callback([arguments] { compare(*arguments); });
 }
 

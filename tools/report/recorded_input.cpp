@@ -1,5 +1,6 @@
 #include "tools/report/recorded_input.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -21,6 +22,10 @@ std::optional<Sidecar> record_of(const NvdbFile& file) {
   } catch (const Error&) {  // weir verify says what is wrong with it
     return std::nullopt;
   }
+}
+
+std::string spacing_text(const std::array<double, 3>& spacing) {
+  return cat(spacing[0], ',', spacing[1], ',', spacing[2]);
 }
 
 }  // namespace
@@ -75,6 +80,11 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
     if (as_said.upsampling) options.upsampling = as_said.upsampling;
     note(cat("--", key).c_str(), said->second);
   }
+  const auto spacing = record->weir.options.find("spacing");
+  if (!options.spacing && spacing != record->weir.options.end()) {
+    options.spacing = read_conversion_request({{"spacing", spacing->second}}).source.spacing;
+    note("--spacing", spacing->second);
+  }
   const auto recorded = record->weir.options.find("missing");
   if (!options.missing && recorded != record->weir.options.end()) {
     options.missing = parse_stored_value(recorded->second);
@@ -105,6 +115,7 @@ std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
   compare("--dataset", record->source.dataset, source.dataset);
   compare("--index", index_text(record->source.index), index_text(source.index));
   compare("--component", record->source.component, source.details.component);
+  compare("--spacing", spacing_text(record->grid.voxel_size), spacing_text(source.spacing));
   if (was.empty()) return {};
   return cat("was converted with ", was, ", as ", sidecar_path(file.path()), " records, and is compared with ", is);
 }

@@ -12,15 +12,17 @@
 
 namespace weir {
 
-/// Sets dataset, index, component, region, the value that stands for "no data" and whether such voxels are data in
-/// `options`, where they are not `given`, to those that the sidecar beside `file` records, if it is this file's own and
-/// of a source of the format of `input`; a sidecar that cannot be read says nothing. Returns what was set, as options,
+/// Sets dataset, index, component, region, spacing, the value that stands for "no data" and whether such voxels are
+/// data in `options`, where they are not `given`, to those that the sidecar beside `file` records, if it is this file's
+/// own and of a source of the format of `input`; a sidecar that cannot be read says nothing. Returns what was set, as
+/// options,
 /// "--dataset /rho --index 3"; empty: nothing.
 std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
                                 SourceOptions& options);
 
 /// Where the sidecar beside `file`, if it is this file's own and of the format of `source`, records another dataset,
-/// index or component than `source` is: "was converted with --index 1, as a.nvdb.json records, and is compared with
+/// index, component or spacing than `source` has: "was converted with --index 1, as a.nvdb.json records, and is
+/// compared with
 /// --index 0"; else empty.
 std::string other_input_note(const NvdbFile& file, const SourceInfo& source);
 

@@ -21,7 +21,9 @@ struct AxisPlace {
   bool is_time = false;
   std::string calendar = {};     ///< of a time
   bool has_coordinates = false;  ///< the file has a dataset of them
-  bool falls = false;            ///< they are equally spaced, and the last one is the lowest
+  /// AxisPlacement::orientation of the axes together; else empty.
+  std::string orientation = {};
+  bool falls = false;  ///< they are equally spaced, and the last one is the lowest
 };
 
 /// "Time=4 x bottom_top=14 x 48 x 48".

@@ -80,6 +80,7 @@ FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const
     if (irregular && axis.coordinates.size() <= kMostKeptCoordinates) kept.coordinates = axis.coordinates;
   }
   const auto& [z, y, x] = slice.roles.volume;
+  details.orientation = axes[x].orientation;
   details.order_note = order_note(std::array{&axes[x], &axes[y], &axes[z]});
   details.units_note = units_note(std::array{&axes[x], &axes[y], &axes[z]});
   return details;

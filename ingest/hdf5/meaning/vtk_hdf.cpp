@@ -41,6 +41,7 @@ void place_by_vtk_hdf(const Hdf5Object& object, std::span<const Hdf5Handle> grou
     AxisPlace& place = axes[axes.size() - 1 - axis];
     if (!place.spacing) place.spacing = placement.spacing[axis];
     if (!place.origin) place.origin = placement.origin[axis];
+    place.orientation = placement.orientation;
   }
 }
 

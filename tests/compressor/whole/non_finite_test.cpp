@@ -59,6 +59,37 @@ TEST(NonFinite, EveryPatternIsCounted_AndKeptBitForBit) {
   }
 }
 
+// A block of one value and of voxels without any becomes a tile of that value: nothing is lost of what is finite.
+TEST(NonFinite, ATileThatKeepsItsFiniteValues_IsLosslessOverValidVoxels) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  MemoryVolume volume({{0, 0, 0}, {24, 8, 8}}, [](const Index3& i) {
+    if (i.x < 8 || i.x >= 16) return static_cast<float>(i.x + 64 * i.y + 8 * i.z);
+    return i.x < 12 && i.y == 0 && i.z == 0 ? 7.0F : kNaN;
+  });
+  for (const Encoding encoding : {Encoding::float32, Encoding::automatic, Encoding::packed}) {
+    SCOPED_TRACE(encoding_name(encoding));
+    ConversionOptions options;
+    options.encoding = encoding;
+    options.non_finite = NonFinitePolicy::background;
+    options.background = 100;
+    options.budget.kind = Budget::Kind::max_error;
+    options.budget.target = 0;
+    const test::Converted converted = test::convert(volume, options);
+    const Sidecar& sidecar = converted.sidecar;
+    EXPECT_EQ(sidecar.error.max_abs, 0);
+    EXPECT_TRUE(sidecar.error.lossless);
+    EXPECT_FALSE(sidecar.error.psnr_db);
+    // For those that ask for it, NaN reads as the background, too.
+    options.budget.kind = Budget::Kind::lossless;
+    const test::Converted lossless = test::convert(volume, options);
+    EXPECT_TRUE(lossless.sidecar.error.lossless);
+    if (encoding != Encoding::packed) {
+      EXPECT_EQ(lossless.grid().value({15, 7, 7}), 100.0F);
+      EXPECT_EQ(lossless.grid().value({9, 0, 0}), 7.0F);
+    }
+  }
+}
+
 class Float64 : public testing::Test {
  protected:
   std::string refusal_of(const std::vector<double>& values) {

@@ -9,6 +9,7 @@ Sidecar lossless(std::uint64_t missing, const std::string& policy) {
   Sidecar s;
   s.source.extent = {10, 10, 10};
   s.error.lossless = true;
+  s.budget.kind = "lossless";
   s.missing.count = missing;
   s.missing.policy = policy;
   return s;
@@ -39,6 +40,16 @@ TEST(ValidVoxels, MissingInALossyFile_ReadAsTheBackgroundOnlyInExactBlocks) {
   EXPECT_EQ(missing_text(s),
             "1 of 1000 voxels (0.1 %) holds no data; it reads as the background, -1.235, only where a block is exact, "
             "and its error is not counted");
+}
+
+TEST(ValidVoxels, MissingInAFileThatIsLosslessByChance_MayReadAsTheirBlock) {
+  Sidecar s = lossless(250, "background");
+  s.budget.kind = "psnr";
+  s.background.value = 100;
+  EXPECT_EQ(lossless_text(s), "lossless over valid voxels");
+  EXPECT_EQ(
+      missing_text(s),
+      "250 of 1000 voxels (25 %) hold no data; they read as the background, 100, or as the one value of their block");
 }
 
 TEST(ValidVoxels, OfALevel_MissingAreTheCellsThatAreNotItsOwn) {

@@ -74,6 +74,20 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(values[3], std::numeric_limits<float>::infinity());
 }
 
+TEST_F(Hdf5Magnitude, RoundedComponents_BoundWhatLengthsLose) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name in "uvw": f[name] = np.full((16, 16, 16), 1 + 0.99 * 2.0 ** -25)
+)");
+  const auto source = open_source(scratch_.path("a.h5"), lengths_of({"u", "v", "w"}));
+  std::vector<float> values(16 * 16 * 16);
+  const ConversionLoss loss = source->read({{0, 0, 0}, {16, 16, 16}}, values);
+  EXPECT_EQ(loss.inexact, 4096U);
+  const double lost = std::abs(static_cast<double>(values[0]) - std::sqrt(3.0) * (1 + 0.99 * 0x1p-25));
+  EXPECT_GE(loss.max_abs_error, lost);
+  EXPECT_LE(loss.max_abs_error, 2 * lost);
+}
+
 TEST_F(Hdf5Magnitude, AVoxelWithoutOneComponentIsMissing) {
   write_by_h5py(scratch_, R"(
 u, v = values("f4"), values("f4")

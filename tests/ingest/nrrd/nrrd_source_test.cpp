@@ -95,10 +95,10 @@ TEST(NrrdSource, KeepsTheOrderOfFlippedAxesAndSaysSo) {
   EXPECT_EQ(source->info().spacing, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(source->info().origin, (std::array<double, 3>{7, 8, 9}));
   EXPECT_EQ(read_volume(*source), as_floats(ramp()));
+  const std::string orientation = "axes along -x, -y, +z of the file's world; voxels keep the file's order";
+  EXPECT_EQ(source->info().details.orientation, orientation);
   const auto attributes = list_nrrd(path, {}).at(0).attributes;
-  EXPECT_EQ(attributes.back(),
-            (std::pair<std::string, std::string>{
-                "orientation", "axes along -x, -y, +z of the file's world; voxels keep the file's order"}));
+  EXPECT_EQ(attributes.back(), (std::pair<std::string, std::string>{"orientation", orientation}));
 }
 
 TEST(NrrdSource, FourthAxisOfOneValueIsDropped) {

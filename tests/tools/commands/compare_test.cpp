@@ -69,17 +69,22 @@ TEST(Compare, SaysOfTheGradientWhatTheConversionCertified) {
   const CommandResult made =
       run_weir({"convert", raw, "-o", nvdb, "--psnr", "40", "--spacing", "1,1,2", "--certify", "gradient", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const CommandResult compared = run_weir({"compare", raw, nvdb, "--spacing", "1,1,2", "--derived"});
+  const CommandResult compared = run_weir({"compare", raw, nvdb, "--derived"});
   ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_TRUE(compared.err.ends_with(cat(" info ", raw, ": read with --spacing 1,1,2, as ", nvdb, ".json records\n")))
+      << compared.err;
   const std::string said = line_of(compared.out, "gradient");
   EXPECT_EQ(said.substr(0, 13), "relative rms ");
   EXPECT_EQ(line_of(run_weir({"inspect", nvdb}).out, "gradient"), said);
   EXPECT_NE(made.err.find(", gradient: " + said + ','), std::string::npos) << made.err;
   const auto certified = nlohmann::json::parse(made.out)["error"]["gradient"];
-  const auto report =
-      nlohmann::json::parse(run_weir({"compare", raw, nvdb, "--spacing", "1,1,2", "--derived", "--json"}).out);
+  const auto report = nlohmann::json::parse(run_weir({"compare", raw, nvdb, "--derived", "--json"}).out);
   EXPECT_EQ(certified, report["derived"]["gradient"]);
   EXPECT_GT(certified["rms"], 0.0);
+  const CommandResult other = run_weir({"compare", raw, nvdb, "--spacing", "1,1,1"});
+  EXPECT_TRUE(other.err.ends_with(cat(" warning ", nvdb, ": was converted with --spacing 1,1,2, as ", nvdb,
+                                      ".json records, and is compared with --spacing 1,1,1\n")))
+      << other.err;
 }
 
 TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {

@@ -183,7 +183,8 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
   }
   ASSERT_EQ(convert_with(1000).exit_code, 0);
   const std::string none_left =
-      "weir: no more threads can be started; raise the limit of processes (ulimit -u) or end some\n";
+      "weir: no more threads can be started; raise the limit of processes (ulimit -u) or of address space (ulimit -v), "
+      "or end some\n";
   for (const std::string command : {"verify", "inspect"}) {
     const CommandResult fewer = run_with(2, {command, output_});
     EXPECT_EQ(fewer.exit_code, 0) << command << fewer.err;
