@@ -293,12 +293,12 @@ void ConversionJob::rendered(const WorkerEnd& end) {
     return;
   }
   JobOutput& output = outputs_[next_].job;
-  if (end.exit_code > kSignalExit &&
-      !std::exchange(render_killed_, true)) {  // by somebody, or for want of memory: once more
+  // Killed, out of memory, or disturbed in its directory: what goes wrong once may go well the next time.
+  if (end.exit_code != 0 && !std::exchange(repeated_, true)) {
     render_next();
     return;
   }
-  render_killed_ = false;
+  repeated_ = false;
   if (end.exit_code == 0) {
     output.thumbnail = thumbnail_path_of(output.path);
   } else {
