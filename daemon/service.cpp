@@ -109,7 +109,10 @@ void Service::write_port_file() const {
   file.close();
   std::error_code error;
   std::filesystem::rename(beside, path, error);
-  if (!file || error) throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));
+  if (!file || error) {
+    std::filesystem::remove(beside, error);
+    throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));
+  }
 }
 
 void Service::watch_trees() {

@@ -303,6 +303,8 @@ TEST_F(Config, ConversionOptionsAreCheckedAsTheCommandDoes) {
             "4:9: brick 16 is for metric farthest, closest or median; sse chooses single leaves");
   EXPECT_EQ(watch_refusal("dims = [64, 64]"),
             "4:8: dims is \"64,64\", it must be X,Y,Z, three whole numbers of voxels");
+  EXPECT_EQ(watch_refusal("spacing = '0,1,1'"),
+            "4:11: spacing is \"0,1,1\", it must be x,y,z, three finite numbers above 0 in world units");
   EXPECT_EQ(watch_refusal("background = -5\norigin = [-1, 0, 2.5]\nnonfinite = 'keep'"), "");
 }
 
