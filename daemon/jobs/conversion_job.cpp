@@ -169,6 +169,7 @@ void ConversionJob::heard(std::string_view line) {
     output.job.max = number_of(told, "/value_range/1");
     output.skipped = told.value("skipped", false);
     JobResult& result = report_.result;
+    result.source_bytes = std::max(result.source_bytes, told.value("source_bytes", std::uint64_t{0}));
     result.bytes_read += told.value("bytes_read", std::uint64_t{0});
     result.peak_rss_bytes = std::max(result.peak_rss_bytes, told.value("peak_rss_bytes", std::uint64_t{0}));
     if (!output.skipped) result.bytes_written += output.job.bytes;
