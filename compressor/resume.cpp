@@ -46,13 +46,24 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
 
 bool discard_all_beside(FileSystem& files, const std::string& output) {
   const std::string hidden = hidden_directory_of(output);
-  const std::string previous = sidecar_path(output) + ".previous";
-  const bool any = files.exists(hidden) || files.exists(output + ".partial") || files.exists(previous);
+  const std::string partial = output + ".partial";
+  const std::string sidecar = sidecar_path(output);
+  const std::string previous = sidecar + ".previous";
+  const bool any = files.exists(hidden) || files.exists(partial) || files.exists(previous);
   if (!any) return false;
-  const OutputFiles lock(files, output, true);  // removes its own two unfinished ones
+  // Neither emptied nor removed before all else is: what it holds says that the output is done (is_committed), should
+  // this be killed, too.
+  const std::unique_ptr<File> lock = files.open(partial);
+  require_alone(*lock);
+  if (const std::string unfinished = sidecar + ".partial"; files.exists(unfinished)) {
+    files.create(unfinished);  // refuses what is somebody's
+    files.remove(unfinished);
+  }
+  if (files.exists(previous) && belongs_back(files, previous, sidecar, output)) files.rename(previous, sidecar);
   remove_leftovers(files, output);
   remove_if_empty(files, hidden);
   files.remove(previous);
+  files.remove(partial);
   return true;
 }
 

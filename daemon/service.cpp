@@ -8,6 +8,7 @@
 #include <fstream>
 #include <utility>
 
+#include "daemon/config/watch_conflicts.h"
 #include "daemon/jobs/output_cleaning.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -68,12 +69,30 @@ Service::Service(Load load, std::string program, std::string version)
       checkpoint_timer_(io_) {
   log_.info("begin", {{"version", state_.version}, {"config", config_.path}, {"state", config_.service.state}});
   if (!store_.notice().empty()) log_.warn("state-file", {{"notice", store_.notice()}});
-  clean(config_, kDyingWriters);
+  clean(config_.watches, kDyingWriters);
   write_port_file();
 }
 
-void Service::clean(const DaemonConfig& config, milliseconds patience) const {
-  for (const WatchConfig& watch : config.watches) {
+// Those whose outputs the configuration `before` did not have, which were cleaned when they came, and in which no job
+// runs: its files are no leftovers.
+std::vector<WatchConfig> Service::watches_to_clean(const DaemonConfig& before) const {
+  std::vector<WatchConfig> watches;
+  for (const WatchConfig& watch : config_.watches) {
+    const auto has_its_output = [&](const WatchConfig& other) {
+      return other.output == watch.output && other.directory == watch.directory && other.recursive == watch.recursive;
+    };
+    const auto writes_there = [&](const auto& running) {
+      return is_within(std::filesystem::path(running.second.work->task().output).parent_path().string(), watch.output);
+    };
+    if (std::ranges::none_of(before.watches, has_its_output) && std::ranges::none_of(runner_.running(), writes_there)) {
+      watches.push_back(watch);
+    }
+  }
+  return watches;
+}
+
+void Service::clean(const std::vector<WatchConfig>& watches, milliseconds patience) const {
+  for (const WatchConfig& watch : watches) {
     const CleaningReport report = clean_outputs(watch.output, watch.directory, watch.recursive, patience);
     for (const std::string& path : report.removed) log_.info("cleaned", {{"removed", path}});
     for (const std::string& line : report.left) log_.warn("not-cleaned", {{"reason", line}});
@@ -90,7 +109,10 @@ void Service::write_port_file() const {
   file.close();
   std::error_code error;
   std::filesystem::rename(beside, path, error);
-  if (!file || error) throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));
+  if (!file || error) {
+    std::filesystem::remove(beside, error);
+    throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));
+  }
 }
 
 void Service::watch_trees() {
@@ -167,10 +189,10 @@ void Service::reload() {
       config.service.port_file = old.port_file;
       config.service.token = old.token;
     }
-    config_ = std::move(config);
+    const DaemonConfig before = std::exchange(config_, std::move(config));
     state_.jobs = config_.service.jobs;
     ++state_.reloads;
-    clean(config_, milliseconds(0));
+    clean(watches_to_clean(before), milliseconds(0));
     runner_.configure(config_);
     viewer_.configure(config_.service);
     watch_trees();

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "daemon/config/config.h"
 #include "daemon/http/control_server.h"
@@ -37,7 +38,8 @@ class Service {
   void run();
 
  private:
-  void clean(const DaemonConfig& config, std::chrono::milliseconds patience) const;
+  void clean(const std::vector<WatchConfig>& watches, std::chrono::milliseconds patience) const;
+  std::vector<WatchConfig> watches_to_clean(const DaemonConfig& before) const;
   void watch_trees();
   void write_port_file() const;
   void await_signal();

@@ -22,7 +22,7 @@ JobView view_of(const Job& job) {
   view.watch = job.watch;
   view.source = job.source;
   view.state = job.state;
-  view.source_bytes = job.identity.bytes;
+  view.source_bytes = job.source_bytes();
   view.attempts = job.attempts;
   view.discovered_at = seconds_of(job.discovered_ms);
   view.changed_at = seconds_of(job.changed_ms);

@@ -124,6 +124,7 @@ void WatchedTree::work() {
   } catch (const Error& error) {
     if (store_fault_.empty()) log_.error("state-file-fault", {{"watch", config_.label}, {"reason", error.what()}});
     store_fault_ = error.what();
+    written_.clear();
     ready_ = false;
     superseded_.clear();
     // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
@@ -141,6 +142,7 @@ void WatchedTree::work() {
   events_.erase(events_.begin(), events_.begin() + count);
   first_events_ -= first;
   fit_batch(looking);
+  for (const auto& say : std::exchange(written_, {})) say();
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
   if (!events_.empty()) {
@@ -237,7 +239,9 @@ void WatchedTree::look(const std::string& path, Time now) {
   if (is_store_head(path)) stores_.seen(path, sample.identity);
   const JobStore::Observation seen = store_.observe(config_.label, path, sample.identity, options_);
   if (seen.change == JobStore::Change::created) {
-    log_.info("discovered", {{"job", seen.job.id}, {"source", path}, {"bytes", sample.identity.bytes}});
+    written_.emplace_back([this, path, id = seen.job.id, bytes = sample.identity.bytes] {
+      log_.info("discovered", {{"job", id}, {"source", path}, {"bytes", bytes}});
+    });
   } else if (seen.change == JobStore::Change::changed) {  // it may run, or its thumbnails be rendered
     superseded_.push_back(seen.job.id);
   }
@@ -252,8 +256,7 @@ void WatchedTree::look(const std::string& path, Time now) {
     return;
   }
   if (!is_text(path)) {
-    store_.quarantine(seen.job.id, "the name is not UTF-8; rename the file");
-    forget(path);
+    quarantine(path, seen.job.id, "the name is not UTF-8; rename the file");
     return;
   }
   apply(path, tracked_.at(path).completion.look(sample, now), seen.job);
@@ -272,7 +275,9 @@ void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer,
   switch (answer.state) {
     case CompletionAnswer::State::complete:
       store_.enqueue(job.id);
-      if (tracked_.at(path).arrived) arrivals_.add(job.identity.bytes, Clock::now());
+      if (tracked_.at(path).arrived) {
+        written_.emplace_back([this, bytes = job.identity.bytes] { arrivals_.add(bytes, Clock::now()); });
+      }
       ready_ = true;
       forget(path);
       break;
@@ -281,9 +286,7 @@ void WatchedTree::apply(const std::string& path, const CompletionAnswer& answer,
       track_until(path, answer.until);
       break;
     case CompletionAnswer::State::broken:
-      store_.quarantine(job.id, answer.reason);
-      log_.warn("quarantined", {{"job", job.id}, {"source", path}, {"reason", answer.reason}});
-      forget(path);
+      quarantine(path, job.id, answer.reason);
       break;
     case CompletionAnswer::State::gone:
       gone(path);
@@ -318,7 +321,15 @@ void WatchedTree::gone(const std::string& path) {
   // A done job is the record of its result; a running one finds out by itself.
   if (!job || job->state == JobState::done || job->state == JobState::running) return;
   store_.remove(job->id);
-  log_.info("source-gone", {{"job", job->id}, {"source", path}});
+  written_.emplace_back([this, path, id = job->id] { log_.info("source-gone", {{"job", id}, {"source", path}}); });
+}
+
+void WatchedTree::quarantine(const std::string& path, std::int64_t job, const std::string& reason) {
+  store_.quarantine(job, reason);
+  written_.emplace_back([this, path, job, reason] {
+    log_.warn("quarantined", {{"job", job}, {"source", path}, {"reason", reason}});
+  });
+  forget(path);
 }
 
 }  // namespace weir

@@ -88,6 +88,7 @@ class WatchedTree {
   void has_turn(const std::string& head);
   void forget(const std::string& path);
   void gone(const std::string& path);
+  void quarantine(const std::string& path, std::int64_t job, const std::string& reason);
 
   WatchConfig config_;
   std::string options_;
@@ -106,8 +107,10 @@ class WatchedTree {
   bool known_looked_at_ = false;
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;
-  bool ready_ = false;                    ///< to report after the transaction
-  std::vector<std::int64_t> superseded_;  ///< the same
+  /// For after the transaction: what is logged and counted of it, whether a job is ready, which are superseded.
+  std::vector<std::function<void()>> written_;
+  bool ready_ = false;
+  std::vector<std::int64_t> superseded_;
   /// Not outlived by what is tracked, whose ends would give turns to others.
   std::shared_ptr<StoreTurns> store_turns_ =
       std::make_shared<StoreTurns>(kStoresAtOnce, [this](const std::string& head) { has_turn(head); });

@@ -1,6 +1,7 @@
 // What an input does not say itself.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -24,6 +25,16 @@ std::array<double, 3> read_triple(const OptionRow& row, const std::string& text)
     triple.at(i) = *number;
   }
   return triple;
+}
+
+std::array<double, 3> read_spacing(const OptionRow& row, const std::string& text) {
+  const std::array<double, 3> spacing = read_triple(row, text);
+  for (const double s : spacing) {
+    if (!(s > 0) || !std::isfinite(s)) {
+      throw wrong_option(row.key, text, "x,y,z, three finite numbers above 0 in world units");
+    }
+  }
+  return spacing;
 }
 
 void read_roi(const OptionRow& row, const std::string& text, Request& request) {
@@ -229,7 +240,7 @@ constexpr ConversionOption kInputOptions[] = {
       .unit = "world units",
       .standard = "the file's, else 1,1,1",
       .help = "world units per voxel"},
-     [](const OptionRow& row, const std::string& text, Request& r) { r.source.spacing = read_triple(row, text); }},
+     [](const OptionRow& row, const std::string& text, Request& r) { r.source.spacing = read_spacing(row, text); }},
     {{.key = "origin",
       .argument = "x,y,z",
       .unit = "world units",

@@ -12,6 +12,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/file_system.h"
 
 namespace weir {
 namespace {
@@ -32,6 +33,7 @@ std::string remedy(int error, std::string_view key, const std::string& path) {
   if (error == EROFS) {
     return cat("mount it for writing, in a unit of systemd add ReadWritePaths=", path, " (systemctl edit), ", other);
   }
+  if (error == ENOTDIR || error == EISDIR) return cat("choose another ", key);
   if (error == ENOENT) return cat("make it, ", other);
   if (error == EACCES) return cat("give that user the permission (chown, chmod, setfacl), ", other);
   return cat("check the file system, ", other);
@@ -44,11 +46,18 @@ std::string remedy(int error, std::string_view key, const std::string& path) {
 
 bool may(const std::string& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
 
-void require_writable_directory(const std::string& path, std::string_view key) {
+bool has_directory(const std::string& path) {
   std::error_code ignored;
-  if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) {
-    refuse_access(path, key, "written to", ENOTDIR);
-  }
+  return fs::is_directory(path, ignored);
+}
+
+bool has_no_directory(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+}
+
+void require_writable_directory(const std::string& path, std::string_view key) {
+  if (has_no_directory(path)) refuse_access(path, key, "written to", ENOTDIR);
   if (!may(path, W_OK | X_OK)) refuse_access(path, key, "written to", errno);
 }
 
@@ -56,7 +65,17 @@ void require_writable_directory(const std::string& path, std::string_view key) {
 void require_file(const std::string& path, std::string_view key) {
   if (path.empty()) return;
   require_writable_directory(fs::path(path).parent_path().string(), key);
+  if (has_directory(path)) refuse_access(path, key, "written to", EISDIR);
   if (!may(path, R_OK | W_OK) && errno != ENOENT) refuse_access(path, key, "written to", errno);
+}
+
+/// As each conversion asks for it.
+void require_work_dir(const std::string& path) {
+  if (path.empty()) return;
+  require_writable_directory(path, "work_dir");
+  if (make_posix_file_system()->is_memory(path)) {
+    throw Error(ErrorKind::io, cat(path, ": work_dir lies on a memory file system; choose a directory on a disk"));
+  }
 }
 
 /// A directory that is made where it is missing, with those above it.
@@ -76,11 +95,12 @@ void check_access(const DaemonConfig& config) {
   require_file(service.log_file, "log");
   require_file(service.port_file, "port_file");
   require_file(service.control_socket, "control_socket");
-  require_directory(service.work_dir, "work_dir");
+  require_work_dir(service.work_dir);
   for (const WatchConfig& watch : config.watches) {
     require_directory(watch.output, "output");
     std::error_code ignored;
     if (!fs::exists(watch.directory, ignored) && !ignored) continue;
+    if (has_no_directory(watch.directory)) refuse_access(watch.directory, "directory", "read", ENOTDIR);
     if (!may(watch.directory, R_OK | X_OK)) refuse_access(watch.directory, "directory", "read", errno);
     if (watch.source == AfterDone::delete_after_verify) require_writable_directory(watch.directory, "directory");
   }

@@ -5,11 +5,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "compressor/options/conversion_request.h"
 #include "daemon/config/config_names.h"
+#include "daemon/config/duration.h"
 #include "daemon/config/token_file.h"
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/config/watch_options.h"
@@ -57,6 +59,24 @@ class ConfigReader {
     value = *bytes;
   }
 
+  /// A number of seconds or a text such as "10min".
+  void read_seconds(std::string_view key, double& value, Bounds bounds) {
+    const toml::node* node = toml.find(key);
+    if (node == nullptr) return;
+    if (!node->is_string() && !node->is_number()) fail_duration(*node, key);
+    if (node->is_number()) {
+      toml.read(key, value, bounds);
+      return;
+    }
+    const std::string& text = node->as_string()->get();
+    const std::optional<double> seconds = parse_duration_s(text);
+    if (!seconds) fail_duration(*node, key);
+    if (*seconds < bounds.low || *seconds > bounds.high) {
+      toml.fail(*node, cat(key, " is \"", text, "\", it must be from ", bounds.low, " to ", bounds.high, " seconds"));
+    }
+    value = *seconds;
+  }
+
   /// Absolute and normal, without a slash at its end.
   bool read_path(std::string_view key, std::string& value) {
     std::string text;
@@ -73,6 +93,10 @@ class ConfigReader {
   TomlReader toml;
 
  private:
+  [[noreturn]] void fail_duration(const toml::node& node, std::string_view key) {
+    toml.fail(node, cat(key, " must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\""));
+  }
+
   fs::path directory_;
 };
 
@@ -168,7 +192,7 @@ ServiceConfig read_service(const toml::table& table, const std::string& path) {
   reader.choose("io_class", service.io_class, kIoClasses);
   reader.read_bytes("bandwidth", service.bandwidth);
   reader.read_path("work_dir", service.work_dir);
-  reader.toml.read("grace", service.grace_s, {0, 86400});
+  reader.read_seconds("grace", service.grace_s, {0, 86400});
   reader.toml.read("history", service.history_days, {0, 36500});
   reader.read_path("log", service.log_file);
   reader.choose("log_level", service.log_level, kLogLevels);
@@ -233,15 +257,15 @@ WatchConfig read_watch(const toml::table& table, const std::string& path) {
       (watch.marker.empty() || watch.marker.find('/') != std::string::npos)) {
     reader.refuse("marker", cat("marker is \"", watch.marker, "\", it must be a suffix such as .done"));
   }
-  reader.toml.read("settle", watch.settle_s, {0.01, 86400});
+  reader.read_seconds("settle", watch.settle_s, {0.01, 86400});
   reader.choose("watch", watch.watch, kWatchMethods);
-  reader.toml.read("poll_interval", watch.poll_interval_s, {0.01, 86400});
+  reader.read_seconds("poll_interval", watch.poll_interval_s, {0.01, 86400});
   if (watch.watch == WatchMethod::poll && watch.complete == Completion::close) {
     reader.refuse("complete", "complete is close, which polling never sees; use stable, size or marker");
   }
   reader.choose("priority", watch.priority, kPriorities);
   reader.choose("source", watch.source, kAfterDone);
-  reader.toml.read("delete_after", watch.delete_after_s, {0, 31'536'000});
+  reader.read_seconds("delete_after", watch.delete_after_s, {0, 31'536'000});
   reader.choose("follow", watch.follow, kFollow);
   reader.toml.read("thumbnails", watch.thumbnails);
   watch.convert_options = read_watch_options(reader.toml, table);

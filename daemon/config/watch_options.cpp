@@ -85,6 +85,8 @@ std::vector<std::string> read_watch_options(TomlReader& reader, const toml::tabl
   try {
     read_conversion_request(given);
   } catch (const Error& error) {
+    const auto scene = nodes.find("scene");
+    if (error.kind() == ErrorKind::input && scene != nodes.end()) reader.fail(*scene->second, error.what());
     if (error.kind() != ErrorKind::usage) throw;
     fail_at_key(reader, table, error.message(), nodes);
   }

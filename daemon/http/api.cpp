@@ -147,11 +147,13 @@ HttpResponse job(const Call& call) {
 
 HttpResponse thumbnail(const Call& call) {
   const auto id = job_id(call);
-  const auto output = parse_int(call.target.path[4]);
-  if (!id || !output || *output < 0) return no_such_job(call.target.path[2]);
-  const auto path = call.control.thumbnail_path(*id, static_cast<std::size_t>(*output));
+  if (!id) return no_such_job(call.target.path[2]);
+  const std::string& place = call.target.path[4];
+  const auto output = parse_int(place);
+  const auto path =
+      output && *output >= 0 ? call.control.thumbnail_path(*id, static_cast<std::size_t>(*output)) : std::nullopt;
   auto image = path ? read_thumbnail(*path) : std::nullopt;
-  if (!image) return error_response(404, cat("job ", *id, " has no thumbnail ", *output));
+  if (!image) return error_response(404, cat("job ", *id, " has no thumbnail ", place));
   HttpResponse response = text(200, std::move(*image), "image/png");
   // The page asks for each with the time of its job's last change.
   response.headers.emplace_back("Cache-Control", "private, max-age=86400");

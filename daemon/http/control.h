@@ -40,7 +40,7 @@ struct JobView {
   std::string watch;   ///< WatchView::label
   std::string source;  ///< absolute path
   JobState state = JobState::discovered;
-  std::uint64_t source_bytes = 0;
+  std::uint64_t source_bytes = 0;  ///< Job::source_bytes()
   int attempts = 0;
   double discovered_at = 0;
   double changed_at = 0;                  ///< when it came into `state`, or got its thumbnails

@@ -169,6 +169,7 @@ void ConversionJob::heard(std::string_view line) {
     output.job.max = number_of(told, "/value_range/1");
     output.skipped = told.value("skipped", false);
     JobResult& result = report_.result;
+    result.source_bytes = std::max(result.source_bytes, told.value("source_bytes", std::uint64_t{0}));
     result.bytes_read += told.value("bytes_read", std::uint64_t{0});
     result.peak_rss_bytes = std::max(result.peak_rss_bytes, told.value("peak_rss_bytes", std::uint64_t{0}));
     if (!output.skipped) result.bytes_written += output.job.bytes;
@@ -293,12 +294,12 @@ void ConversionJob::rendered(const WorkerEnd& end) {
     return;
   }
   JobOutput& output = outputs_[next_].job;
-  if (end.exit_code > kSignalExit &&
-      !std::exchange(render_killed_, true)) {  // by somebody, or for want of memory: once more
+  // Killed, out of memory, or disturbed in its directory: what goes wrong once may go well the next time.
+  if (end.exit_code != 0 && !std::exchange(repeated_, true)) {
     render_next();
     return;
   }
-  render_killed_ = false;
+  repeated_ = false;
   if (end.exit_code == 0) {
     output.thumbnail = thumbnail_path_of(output.path);
   } else {

@@ -97,8 +97,8 @@ class ConversionJob {
   std::optional<double> fraction_;
   std::string failed_;  ///< why the conversion failed, as it announced; empty: it did not
   bool stopping_ = false;
-  bool reported_ = false;       ///< that it is done
-  bool render_killed_ = false;  ///< the one before of the present output
+  bool reported_ = false;  ///< that it is done
+  bool repeated_ = false;  ///< the rendering of the present output
   std::vector<Output> outputs_;
   std::size_t next_ = 0;  ///< of outputs_, in the present step
   TaskReport report_;

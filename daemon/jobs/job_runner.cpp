@@ -259,7 +259,7 @@ void JobRunner::done(const RunningJob& run, const TaskReport& report) {
                      {"bytes", bytes_out},
                      {"converted", report.converted ? "yes" : "no, done already"}});
   if (!report.converted) return;
-  figures_.converted(run.job.watch, run.job.identity.bytes, result);
+  figures_.converted(run.job.watch, std::max(run.job.identity.bytes, result.source_bytes), result);
   disks_.written(fs::path(run.work->task().output).parent_path().string(), result.bytes_written, Clock::now());
 }
 

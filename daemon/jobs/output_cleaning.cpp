@@ -2,8 +2,11 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/types.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -62,6 +65,19 @@ std::optional<fs::path> output_of(const fs::path& path) {
 }
 
 bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWork); }
+
+bool is_picture(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with('.') && name.ends_with(kPartial) && name.find(kThumbnail) != std::string::npos;
+}
+
+// Whether the process lives whose ID is in the name .X.nvdb.png.ID.partial.
+bool names_living_process(const fs::path& picture) {
+  const std::string id = picture.stem().extension().string();
+  const auto process = id.empty() ? std::nullopt : parse_int(std::string_view(id).substr(1));
+  if (!process || *process <= 0) return false;
+  return ::kill(static_cast<pid_t>(*process), 0) == 0 || errno == EPERM;
+}
 
 // The file's lock is its writer's.
 bool is_written(const std::string& path) {
@@ -129,6 +145,8 @@ class Cleaner {
           clean_work(path, output, worthless);
         } else if (path.filename().string().ends_with(kPrevious)) {
           restore(path);
+        } else if (is_picture(path)) {
+          remove_picture(path);
         } else if (path != lock_path) {
           remove(path);
         }
@@ -172,6 +190,15 @@ class Cleaner {
     std::error_code error;
     if (fs::remove(path, error)) report.removed.push_back(path.string());
     if (error) leave(path, error.message());
+  }
+
+  // Who renders it has not the lock of its volume but one on the picture itself; where files cannot be locked, its name
+  // says who that is.
+  void remove_picture(const fs::path& path) {
+    const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    const bool locked = file && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0;
+    if (!locked && (errno == EWOULDBLOCK || names_living_process(path))) return;
+    remove(path);
   }
 
   // The sidecar of the volume that was to be replaced: see the numbered steps in format/output/output_files.cpp. It

@@ -12,6 +12,7 @@ void PendingWrites::add(std::function<void()> step) {
 }
 
 void PendingWrites::write() {
+  if (steps_.empty()) return;  // which tells nothing of the state file
   try {
     while (!steps_.empty()) {
       steps_.front()();

@@ -1,6 +1,7 @@
 // One source file of one watch and what became of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ struct JobOutput {
 struct JobResult {
   std::vector<JobOutput> outputs;
   double seconds = 0;
+  std::uint64_t source_bytes = 0;  ///< of all files of the source; 0: not known
   std::uint64_t bytes_read = 0;
   std::uint64_t bytes_written = 0;
   std::uint64_t peak_rss_bytes = 0;
@@ -62,6 +64,9 @@ struct Job {
   std::int64_t started_ms = 0;     ///< of the last attempt
   std::int64_t finished_ms = 0;    ///< of the last attempt
   JobResult result;
+
+  /// Of the source: of all its files where it was converted, else of the one that is watched.
+  std::uint64_t source_bytes() const { return std::max(identity.bytes, result.source_bytes); }
 };
 
 }  // namespace weir

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kColumns =
     "SELECT id, watch, source, options, bytes, mtime_ns, inode, state, attempts, discovered_ms, changed_ms, queued_ms, "
     "due_ms, started_ms, finished_ms, seconds, bytes_read, bytes_written, peak_rss_bytes, exit_code, reason, log_tail, "
-    "forced "
+    "forced, source_bytes "
     "FROM jobs ";
 
 std::vector<JobOutput> read_outputs(const Database& database, std::int64_t job) {
@@ -58,6 +58,7 @@ Job read_job(const Database& database, const Statement& row) {
   job.result.reason = row.text(column++);
   job.result.log_tail = row.text(column++);
   job.forced = row.integer(column++) != 0;
+  job.result.source_bytes = row.whole(column++);
   job.result.outputs = read_outputs(database, job.id);
   return job;
 }
@@ -74,7 +75,8 @@ std::optional<Job> read_one(const Database& database, Statement rows) {
 }
 
 std::string sql_of(const JobOrder& order) {
-  constexpr std::array kColumnsOfKeys{"changed_ms", "discovered_ms", "source", "state", "watch", "bytes", "seconds"};
+  constexpr std::array kColumnsOfKeys{
+      "changed_ms", "discovered_ms", "source", "state", "watch", "max(bytes, source_bytes)", "seconds"};
   static_assert(kColumnsOfKeys.size() == kJobOrderKeys.size());
   const char* const way = order.descending ? " DESC" : "";
   return cat(kColumnsOfKeys[static_cast<std::size_t>(order.key)], way, ", id", way);

@@ -20,7 +20,7 @@ constexpr std::size_t kLogTailBytes = 4096;
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
     "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0, "
-    "rendering = 0";
+    "rendering = 0, source_bytes = 0";
 
 /// Has the jobs that follow it their turn at once; binds the time.
 constexpr const char* kAtOnce =
@@ -149,11 +149,12 @@ bool JobStore::end_attempt(std::int64_t id, const JobResult& result, JobState to
   Statement update = database_.prepare(
       cat("UPDATE jobs SET state = ?, changed_ms = ?, finished_ms = ?, attempts = ?, due_ms = ?, seconds = ?, "
           "bytes_read = ?, bytes_written = ?, peak_rss_bytes = ?, exit_code = ?, reason = ?, log_tail = ?, "
-          "forced = forced AND ?, ",
+          "source_bytes = ?, forced = forced AND ?, ",
           kProblem, "WHERE id = ? AND ", in_state({JobState::running})));
   update.bind(job_state_name(to)).bind(now).bind(now).bind(attempts).bind(delay_ms == 0 ? 0 : now + delay_ms);
   update.bind(result.seconds).bind(result.bytes_read).bind(result.bytes_written).bind(result.peak_rss_bytes);
-  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail)).bind(to != JobState::done);
+  update.bind(result.exit_code).bind(result.reason).bind(tail(result.log_tail));
+  update.bind(result.source_bytes).bind(to != JobState::done);
   update.bind(is_problem(to)).bind(result.reason).bind(id).step();
   if (database_.changes() == 0) return false;
   database_.prepare("DELETE FROM outputs WHERE job = ?").bind(id).step();

@@ -37,6 +37,7 @@ constexpr const char* kTables[] = {
          forced INTEGER NOT NULL DEFAULT 0,
          problem TEXT NOT NULL DEFAULT '',
          rendering INTEGER NOT NULL DEFAULT 0,
+         source_bytes INTEGER NOT NULL DEFAULT 0,
          UNIQUE (watch, source)) STRICT)",
     // What the scheduler and /metrics ask for.
     "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
@@ -76,6 +77,8 @@ constexpr const char* kFromVersion2[] = {"ALTER TABLE jobs ADD COLUMN rendering 
 constexpr const char* kFromVersion3[] = {
     "UPDATE jobs SET options = replace(replace(replace(options, ' --direct-io=auto', ''), ' --direct-io=on', ''), "
     "' --direct-io=off', '') WHERE instr(options, ' --direct-io=') > 0"};
+
+constexpr const char* kFromVersion4[] = {"ALTER TABLE jobs ADD COLUMN source_bytes INTEGER NOT NULL DEFAULT 0"};
 
 std::int64_t number(const Database& database, const char* sql) {
   Statement statement = database.prepare(sql);
@@ -131,6 +134,9 @@ Database open_whole(const std::string& path) {
     }
     if (version <= 3) {
       for (const char* change : kFromVersion3) database.run(change);
+    }
+    if (version <= 4) {
+      for (const char* change : kFromVersion4) database.run(change);
     }
   }
   if (version != kStateVersion) database.run(cat("PRAGMA user_version=", kStateVersion));

@@ -9,7 +9,7 @@
 namespace weir {
 
 /// PRAGMA user_version. A change of the tables raises it and brings older files up to date in open_state_file.
-inline constexpr int kStateVersion = 4;
+inline constexpr int kStateVersion = 5;
 /// PRAGMA application_id, "weir".
 inline constexpr int kStateApplication = 0x77656972;
 

@@ -106,8 +106,10 @@ FileSample sample_file(const std::string& path, const std::string& marker,
 void FileCompletion::happened(FileEventKind kind, Time now) {
   switch (kind) {
     case FileEventKind::found:
-    case FileEventKind::created:
       writer_ = Writer::unknown;
+      break;
+    case FileEventKind::created:
+      writer_ = Writer::begun;
       break;
     case FileEventKind::written:
       writer_ = Writer::open;
@@ -160,7 +162,8 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       if (writer_ == Writer::open) return its_close;
       return writer_ == Writer::closed ? whole() : when_unchanged(rules_.settle, now);
     case Completion::rename:
-      if (writer_ == Writer::renamed || writer_ == Writer::unknown) return whole();
+      if (writer_ == Writer::renamed) return whole();
+      if (writer_ == Writer::unknown) return when_unchanged({}, now);  // it was there already
       return {State::waiting, Time::max(), "it has not got its name by a rename"};
     case Completion::marker:
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
@@ -189,6 +192,7 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
     case Writer::renamed:
       return whole();
     case Writer::unknown:
+    case Writer::begun:
       break;
   }
   return when_unchanged(rules_.settle, now);
@@ -196,7 +200,7 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
 
 CompletionAnswer FileCompletion::when_unchanged(std::chrono::nanoseconds settle, Time now) const {
   const Time until = unchanged_since_ + std::chrono::duration_cast<Time::duration>(settle);
-  const bool may_not_have_begun = seen_->bytes == 0 && (writer_ == Writer::unknown || writer_ == Writer::open);
+  const bool may_not_have_begun = seen_->bytes == 0 && writer_ != Writer::closed && writer_ != Writer::renamed;
   if (may_not_have_begun) return {State::waiting, Time::max(), "it is empty"};
   if (now >= until) return whole();
   return {State::waiting, until, "it changed a moment ago"};

@@ -4,7 +4,7 @@
 //
 // Policies (WatchConfig::complete), each also without a change for kCloseSettle or `settle` where it says so:
 //   close   a writer closed it; found without its writer: unchanged for settle
-//   rename  it has its name by a rename; found without its writer: at once
+//   rename  it has its name by a rename; found without its writer: at once; created or linked: not before a rename
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
 //   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; of a
 //           directory, which has none: as stable
@@ -96,7 +96,7 @@ class FileCompletion {
   CompletionAnswer look(const FileSample& sample, Time now);
 
  private:
-  enum class Writer { unknown, open, closed, renamed };
+  enum class Writer { unknown, begun, open, closed, renamed };  ///< begun: it was made, or linked, and not written to
 
   CompletionAnswer by_policy(const FileSample& sample, Time now);
   CompletionAnswer when_unchanged(std::chrono::nanoseconds settle, Time now) const;

@@ -107,7 +107,8 @@ std::string config_page(const std::string& version) {
               "A TOML file that weir watch is given; the unit weir@NAME.service reads /etc/weir/NAME.toml. It has "
               "one table [service], which may be missing, and a table [[watch]] for each directory. Unknown keys "
               "and wrong values are errors with line and column. Relative paths are relative to the file. Sizes "
-              "are numbers of bytes or text such as \"512MiB\". weir watch --check says what a file asks for, and "
+              "are numbers of bytes or text such as \"512MiB\", durations numbers of seconds or text such as "
+              "\"10min\". weir watch --check says what a file asks for, and "
               "whether the user that runs it may write where it says.\n");
   page += cat(".SH [service]\n", entries_of("service"), ".SH [[watch]]\n", entries_of("watch"));
   page += ".SS Conversion\n" + man_escaped("The options of weir convert, with _ for -.\n") + conversion_entries();

@@ -52,6 +52,7 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
                               {"rate", s.budget.rate},
                               {"lossless", lossless_everywhere(s)},
                               {"psnr_db", nullptr},
+                              {"source_bytes", s.source.bytes},
                               {"bytes_read", skipped ? 0 : s.timing.bytes_read},
                               {"peak_rss_bytes", skipped ? 0 : s.timing.peak_rss_bytes}};
   if (s.error.psnr_db) line["psnr_db"] = *s.error.psnr_db;

@@ -227,6 +227,41 @@ TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
   }
 }
 
+// What is left is removed under a lock that says, until it goes itself, that the output is done.
+TEST_F(ResumeKill, AfterTheCommit_ASecondKillWhileLeftoversAreRemoved_LeavesThemToTheNext) {
+  const ConversionOptions options = base();
+  const auto run_refused = [&](FileSystem& files) {
+    try {
+      run(options, files);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  int killed_again = 0;
+  for (int call = 0;; ++call) {
+    SCOPED_TRACE(call);
+    CrashFileSystem memory;
+    FaultyFileSystem first(memory, -1, EIO, FaultyFileSystem::After::fails);
+    first.fail_after_rename_to("out.nvdb", 0);
+    try {
+      run(options, first);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+    }
+    ASSERT_TRUE(first.failed());
+    FaultyFileSystem second(memory, call, EIO, FaultyFileSystem::After::fails);
+    run_refused(second);
+    if (!second.failed()) break;
+    ++killed_again;
+    EXPECT_EQ(run_refused(memory), "out.nvdb: exists; choose another output or pass --overwrite");
+    EXPECT_EQ(memory.names(), kResult);
+    EXPECT_EQ(memory.directories(), Names{});
+  }
+  EXPECT_GE(killed_again, 4) << "journal, rows, directory, lock";
+}
+
 // Of an --overwrite that somebody interrupted, and will continue.
 TEST_F(ResumeKill, BeforeTheCommit_ARefusedCommandKeepsWhatIsDone) {
   ConversionOptions options = base();

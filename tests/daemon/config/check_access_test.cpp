@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "format/base/text.h"
+#include "format/io/file_system.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -22,9 +23,9 @@ class CheckAccess : public testing::Test {
     fs::permissions(directory_.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
     configure();
   }
-  void configure(const std::string& service = "state = 'state/weir.db'\n") const {
+  void configure(const std::string& service = "state = 'state/weir.db'\n", const std::string& directory = "in") const {
     write_file(directory_ / "weir.toml",
-               cat("[service]\n", service, "[[watch]]\ndirectory = 'in'\noutput = 'out/deep'\n"));
+               cat("[service]\n", service, "[[watch]]\ndirectory = '", directory, "'\noutput = 'out/deep'\n"));
   }
   /// As nobody, whom permissions stop, where the test runs as root, whom they do not.
   CommandResult check() const {
@@ -47,6 +48,16 @@ class CheckAccess : public testing::Test {
                                  "choose another ",
                                  key, "\n")))
         << result.err;
+  }
+
+  /// Of a configuration with further lines in [service], where all may be written.
+  void expect_service_refused(const std::string& lines, const std::string& begin, const std::string& end) const {
+    for (const char* name : {"in", "out", "state"}) allow(name, true);
+    configure(cat("state = 'state/weir.db'\n", lines, "\n"));
+    const CommandResult result = check();
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_TRUE(result.err.starts_with("weir: " + begin)) << result.err;
+    EXPECT_TRUE(result.err.ends_with(end + "\n")) << result.err;
   }
 
   TemporaryDirectory directory_;
@@ -86,6 +97,37 @@ TEST_F(CheckAccess, DirectoryOfTheStateMissing_IsRefused) {
   const CommandResult result = check();
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_TRUE(result.err.ends_with(": No such file or directory; make it, or choose another state\n")) << result.err;
+}
+
+// With it every conversion would fail for good.
+TEST_F(CheckAccess, WorkDirThatIsMissingOrMemory_IsRefused) {
+  expect_service_refused("work_dir = 'none'", (directory_ / "none") + ": work_dir cannot be written to by user ",
+                         ": No such file or directory; make it, or choose another work_dir");
+  if (!make_posix_file_system()->is_memory("/dev/shm")) GTEST_SKIP() << "/dev/shm is on a disk";
+  expect_service_refused("work_dir = '/dev/shm'",
+                         "/dev/shm: work_dir lies on a memory file system; choose a directory on a disk", "");
+}
+
+TEST_F(CheckAccess, FileThatIsADirectory_IsRefused) {
+  fs::create_directory(directory_ / "state/d");
+  for (const std::string key : {"log", "port_file", "control_socket"}) {
+    expect_service_refused(key + " = 'state/d'",
+                           cat(directory_ / "state/d", ": ", key, " cannot be written to by user "),
+                           ": Is a directory; choose another " + key);
+  }
+  configure("state = 'state/d'\n");
+  EXPECT_TRUE(check().err.ends_with(": Is a directory; choose another state\n")) << check().err;
+  EXPECT_EQ(list_directory(directory_ / "state"), std::vector<std::string>{"d/"});
+}
+
+TEST_F(CheckAccess, WatchedFile_IsRefused) {
+  for (const char* name : {"out", "state"}) allow(name, true);
+  configure("state = 'state/weir.db'\n", "weir.toml");
+  const CommandResult result = check();
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_TRUE(result.err.starts_with(cat("weir: ", directory_ / "weir.toml", ": directory cannot be read by user ")))
+      << result.err;
+  EXPECT_TRUE(result.err.ends_with(": Not a directory; choose another directory\n")) << result.err;
 }
 
 }  // namespace

@@ -166,6 +166,15 @@ index = [0, "*"]
   EXPECT_EQ(load(kWatch + "lossless = true").watches[0].convert_option("lossless"), "true");
 }
 
+TEST_F(Config, DurationsAreSecondsOrTexts) {
+  const DaemonConfig config = load("[service]\ngrace = '2min'\n" + kWatch +
+                                   "delete_after = '10min'\nsettle = '0.5s'\npoll_interval = '1min'\n");
+  EXPECT_EQ(config.service.grace_s, 120);
+  EXPECT_EQ(config.watches.at(0).delete_after_s, 600);
+  EXPECT_EQ(config.watches.at(0).settle_s, 0.5);
+  EXPECT_EQ(config.watches.at(0).poll_interval_s, 60);
+}
+
 TEST_F(Config, UnknownKeysAreNamedWithTheirPlace) {
   EXPECT_EQ(refusal("extra = 1\n" + kWatch),
             "1:1: unknown key \"extra\" in the configuration; there are service, watch");
@@ -276,6 +285,11 @@ TEST_F(Config, WrongValuesOfAWatch) {
   EXPECT_EQ(watch_refusal("source = 'delete'"),
             "4:10: source is \"delete\", it must be one of keep, delete-after-verify");
   EXPECT_EQ(watch_refusal("settle = 0"), "4:10: settle is 0, it must be from 0.01 to 86400");
+  EXPECT_EQ(watch_refusal("delete_after = '2y'"),
+            "4:16: delete_after must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\"");
+  EXPECT_EQ(watch_refusal("delete_after = true"),
+            "4:16: delete_after must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\"");
+  EXPECT_EQ(watch_refusal("settle = '2d'"), "4:10: settle is \"2d\", it must be from 0.01 to 86400 seconds");
   EXPECT_EQ(watch_refusal("recursive = 'yes'"), "4:13: recursive must be true or false");
   EXPECT_EQ(watch_refusal("include = '*.raw'"), "4:11: include must be an array of strings");
   EXPECT_EQ(watch_refusal("exclude = ['']"), "4:11: exclude has an empty pattern");
@@ -303,6 +317,8 @@ TEST_F(Config, ConversionOptionsAreCheckedAsTheCommandDoes) {
             "4:9: brick 16 is for metric farthest, closest or median; sse chooses single leaves");
   EXPECT_EQ(watch_refusal("dims = [64, 64]"),
             "4:8: dims is \"64,64\", it must be X,Y,Z, three whole numbers of voxels");
+  EXPECT_EQ(watch_refusal("spacing = '0,1,1'"),
+            "4:11: spacing is \"0,1,1\", it must be x,y,z, three finite numbers above 0 in world units");
   EXPECT_EQ(watch_refusal("background = -5\norigin = [-1, 0, 2.5]\nnonfinite = 'keep'"), "");
 }
 

@@ -99,9 +99,13 @@ TEST(WatchOptions, RefusalNamesThePlaceOfItsKey) {
             "/etc/weir/c.toml:2:10: metric farthest has no error target; psnr and max_error select by sse");
 }
 
-TEST(WatchOptions, MissingScene_IsNotAnErrorOfTheConfiguration) {
-  EXPECT_EQ(refusal("scene = 'none.toml'"),
-            "/etc/weir/none.toml: cannot read the scene; it must be an existing TOML file");
+TEST(WatchOptions, SceneThatCannotBeUsed_IsReportedAtItsKeyWithItsOwnPlace) {
+  EXPECT_EQ(refusal("rate = 8\nscene = 'none.toml'"),
+            "/etc/weir/c.toml:2:9: /etc/weir/none.toml: cannot read the scene; it must be an existing TOML file");
+  const TemporaryDirectory directory;
+  write_file(directory / "s.toml", "[volume]\niso = 'high'\n");
+  EXPECT_EQ(refusal("scene = '" + (directory / "s.toml") + "'"),
+            cat("/etc/weir/c.toml:1:9: ", directory / "s.toml", ":2:7: iso must be a number"));
 }
 
 }  // namespace

@@ -298,6 +298,9 @@ TEST_F(ApiTest, ServesThumbnailsOfKnownOutputsOnly) {
     EXPECT_EQ(ask("GET", cat("/api/jobs/1/thumbnails/", other)).status, 404U) << other;
   }
   EXPECT_EQ(ask("GET", "/api/jobs/1/thumbnails/1").body, "{\"error\":\"job 1 has no thumbnail 1\"}\n");
+  EXPECT_EQ(ask("GET", "/api/jobs/1/thumbnails/-1").body, "{\"error\":\"job 1 has no thumbnail -1\"}\n");
+  EXPECT_EQ(ask("GET", "/api/jobs/1/thumbnails/x").body, "{\"error\":\"job 1 has no thumbnail x\"}\n");
+  EXPECT_EQ(ask("GET", "/api/jobs/x/thumbnails/0").body, "{\"error\":\"there is no job x\"}\n");
   EXPECT_EQ(ask("GET", "/api/jobs/2/thumbnails/0").status, 404U);
 }
 

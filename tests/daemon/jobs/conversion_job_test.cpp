@@ -293,21 +293,40 @@ TEST_F(ConversionJobTest, OutputDirectoryCannotBeMade_FailsWithExitCode5) {
   EXPECT_EQ(report.result.reason, (directory_ / "file/out") + ": make the directory: Not a directory");
 }
 
-TEST_F(ConversionJobTest, KilledRender_IsRetriedOnce) {
-  ConversionTask killed = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
-  killed.thumbnails = true;
-  const std::string killer = directory_ / "weir.sh";
-  const std::string mark = directory_ / "killed";
-  write_file(killer, "#!/bin/sh\nif [ \"$1\" = render ] && [ ! -e " + mark + " ]; then touch " + mark +
-                         "; kill -9 $$; fi\nexec " + killed.program + " \"$@\"\n");
-  fs::permissions(killer, fs::perms::owner_all);
-  killed.program = killer;
-  const TaskReport report = run(killed);
+TEST_F(ConversionJobTest, KilledOrFailedRender_IsRepeatedOnce) {
+  const ConversionTask plain = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  const std::string program = directory_ / "weir.sh";
+  const std::string mark = directory_ / "ended";
+  for (const std::string end : {"kill -9 $$", "exit 5"}) {
+    SCOPED_TRACE(end);
+    fs::remove_all(directory_ / "out");
+    fs::remove(mark);
+    write_file(program, cat("#!/bin/sh\nif [ \"$1\" = render ] && [ ! -e ", mark, " ]; then touch ", mark, "; ", end,
+                            "; fi\nexec ", plain.program, " \"$@\"\n"));
+    fs::permissions(program, fs::perms::owner_all);
+    ConversionTask disturbed = plain;
+    disturbed.program = program;
+    const TaskReport report = run(disturbed);
+    EXPECT_EQ(report.end, TaskEnd::done);
+    EXPECT_TRUE(fs::exists(mark));
+    EXPECT_EQ(report.notices, Names{});
+    ASSERT_EQ(report.result.outputs.size(), 1U);
+    EXPECT_TRUE(fs::exists(report.result.outputs[0].thumbnail));
+  }
+}
+
+TEST_F(ConversionJobTest, RenderThatFailsTwice_LeavesTheJobDoneWithANotice) {
+  ConversionTask failing = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  const std::string program = directory_ / "weir.sh";
+  write_file(program, cat("#!/bin/sh\nif [ \"$1\" = render ]; then echo weir: no >&2; exit 5; fi\nexec ",
+                          failing.program, " \"$@\"\n"));
+  fs::permissions(program, fs::perms::owner_all);
+  failing.program = program;
+  const TaskReport report = run(failing);
   EXPECT_EQ(report.end, TaskEnd::done);
-  EXPECT_TRUE(fs::exists(mark));
-  EXPECT_EQ(report.notices, std::vector<std::string>{});
+  EXPECT_EQ(report.notices, Names{"no thumbnail: no"});
   ASSERT_EQ(report.result.outputs.size(), 1U);
-  EXPECT_TRUE(fs::exists(report.result.outputs[0].thumbnail));
+  EXPECT_EQ(report.result.outputs[0].thumbnail, "");
 }
 
 TEST_F(ConversionJobTest, RenderThatCannotStart_LeavesTheJobDone) {

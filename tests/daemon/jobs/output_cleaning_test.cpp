@@ -245,6 +245,19 @@ TEST(OutputCleaning, LeavesFilesThatAnotherProcessIsWriting) {
   EXPECT_EQ(list_directory(directory.path()), (Names{".a.nvdb.work/", "a.nvdb.partial"}));
 }
 
+// Who renders a picture does not hold its volume's lock.
+TEST(OutputCleaning, PictureThatIsBeingRendered_IsKeptUntilItsWriterEnds) {
+  const TemporaryDirectory directory;
+  const std::string picture = directory / ".a.nvdb.png.123.partial";
+  auto writer = make_posix_file_system()->create(picture);
+  const CleaningReport report = clean(directory);
+  EXPECT_EQ(report.removed, Names{});
+  EXPECT_EQ(report.left, Names{}) << "it is no leftover";
+  EXPECT_EQ(list_directory(directory.path()), Names{".a.nvdb.png.123.partial"});
+  writer.reset();
+  EXPECT_EQ(clean(directory).removed, Names{picture});
+}
+
 TEST(OutputCleaning, WaitsForAWriterThatIsAboutToEnd) {
   const TemporaryDirectory directory;
   auto writer = make_posix_file_system()->create(directory / "a.nvdb.partial");

@@ -12,6 +12,7 @@
 
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
+#include "format/io/file_system.h"
 #include "tests/daemon/support/service_harness.h"
 
 namespace weir::watch_control_test {
@@ -186,6 +187,20 @@ TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
     return fs::file_size(service.out(std::string("one") + ServiceHarness::kSuffix + ".nvdb")) == 400000 &&
            fs::file_size(service.out(std::string("two") + ServiceHarness::kSuffix + ".nvdb")) == 400000;
   })) << service.log();
+}
+
+TEST(WatchControl, ReloadOfAnUnchangedConfiguration_LeavesWhatRunsAlone) {
+  ServiceHarness service;
+  service.start();
+  const std::string name = add_long(service);
+  ASSERT_TRUE(started(service)) << service.log();
+  const auto picture = make_posix_file_system()->create(service.out(".a.nvdb.png.123.partial"));
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload config=") == 1; })) << service.log();
+  EXPECT_TRUE(fs::exists(service.out(".a.nvdb.png.123.partial")));
+  EXPECT_EQ(service.logged("cleaned "), 0U) << service.log();
+  service.kill();
+  fs::remove(service.in(name));
 }
 
 TEST(WatchControl, ReloadWithoutAWatch_FinishesItsJobAndForgetsWaitingOnes) {

@@ -90,7 +90,31 @@ TEST(WatchFaults, FullDiskOfTheStateFile_PausesAllJobsUntilThereIsRoom) {
   EXPECT_NE(watch["reason"].get<std::string>().find("weir.db"), std::string::npos) << watch;
   fs::remove(service.path("state/ballast"));
   ASSERT_TRUE(service.eventually_done(20)) << service.log();
+  EXPECT_EQ(service.logged(" discovered "), 20U) << service.log();
   EXPECT_EQ(service.logged(" start "), 20U);
+  EXPECT_EQ(service.stop(), 0);
+}
+
+TEST(WatchFaults, FullDiskOfTheStateFile_WhileJobsWait_IsNotSaidEachSecond) {
+  ServiceHarness service("state = \"state/weir.db\"\n");
+  fs::create_directory(service.path("state"));
+  ScopedMount mount(service.path("state"), 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  service.start();
+  service.post("/api/pause");
+  for (int i = 0; i < 20; ++i) service.add(cat("v", i));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 20; })) << service.log();
+  {
+    std::ofstream ballast(service.path("state/ballast"));
+    while (ballast << std::string(4096, 'x') << std::flush) {
+    }
+  }
+  service.post("/api/resume");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" state-file-fault ") > 0; })) << service.log();
+  std::this_thread::sleep_for(milliseconds(3500));  // tried again each second
+  EXPECT_LE(service.logged(" state-file-fault "), 2U) << service.log();
+  fs::remove(service.path("state/ballast"));
+  ASSERT_TRUE(service.eventually_done(20)) << service.log();
   EXPECT_EQ(service.stop(), 0);
 }
 

@@ -258,5 +258,33 @@ TEST(WatchManyFiles, ManyAtOnceThroughASmallQueue) {
   EXPECT_EQ(list_directory(service.out()).size(), 2 * static_cast<std::size_t>(files));
 }
 
+TEST_P(WatchFiles, NameThatIsNotUtf8_IsQuarantinedWithItsEvent) {
+  ServiceHarness service("", keys());
+  service.start();
+  write_file(service.in("a\xff_24x20x16_uint8.raw"), ServiceHarness::volume(1));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" warn quarantined ") == 1; })) << service.log();
+  EXPECT_EQ(service.logged("reason=\"the name is not UTF-8; rename the file\""), 1U) << service.log();
+  EXPECT_EQ(service.count("quarantined"), 1U);
+}
+
+// By inotify: a poll does not see how a file came.
+TEST(WatchFilesByRename, FileThatIsCreatedAndSet_WaitsForItsRename) {
+  ServiceHarness service("", "watch = \"inotify\"\ncomplete = \"rename\"\n");
+  service.add("first");
+  service.start();
+  ASSERT_TRUE(service.eventually_done(1)) << "else the file may be found, not seen as it is made: " << service.log();
+  const std::string name = "open_24x20x16_uint8.raw";
+  const Descriptor file(::open(service.in(name).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+  ASSERT_EQ(::ftruncate(file.get(), 24 * 20 * 16), 0);
+  const auto reason = [&] { return service.job(name).value("reason", ""); };
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return reason() == "it has not got its name by a rename"; }))
+      << service.log();
+  std::this_thread::sleep_for(milliseconds(600));  // twice settle
+  EXPECT_EQ(service.count("discovered"), 1U) << service.log();
+  fs::rename(service.in(name), service.in("." + name));
+  fs::rename(service.in("." + name), service.in(name));
+  EXPECT_TRUE(service.eventually_done(2)) << service.log();
+}
+
 }  // namespace
 }  // namespace weir::watch_files_test

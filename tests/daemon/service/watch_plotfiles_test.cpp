@@ -51,6 +51,10 @@ TEST_P(WatchPlotfiles, HeaderWrittenFirst_IsWaitedForUntilTheLastLevelIsThere) {
   EXPECT_EQ(service.difference("plt00042", "plt00042.nvdb", {"--dataset", "Temp", "--lossless"}), "");
   EXPECT_EQ(service.logged(" start "), 1U);
   EXPECT_EQ(service.leftovers(), std::vector<std::string>{});
+  const auto sidecar = ServiceHarness::Json::parse(read_file(service.out("plt00042.nvdb.json")));
+  EXPECT_GT(sidecar["source"]["bytes"], fs::file_size(target + "/Header"));
+  EXPECT_EQ(service.job("plt00042/Header")["source_bytes"], sidecar["source"]["bytes"]) << "of all its files";
+  EXPECT_EQ(service.get("/api/status")["bytes_in_total"], sidecar["source"]["bytes"]);
 }
 
 TEST_P(WatchPlotfiles, RenamedDirectories_AreTakenAndCheckpointsAreNot) {

@@ -58,10 +58,10 @@ TEST_F(StateFile, NewerVersion_IsRefusedAndUnchanged) {
   make();
   Database(path_).run("PRAGMA user_version=7");
   EXPECT_EQ(refusal(), path_ +
-                           ": has version 7, this weir knows versions up to 4; run the newer weir or name another "
+                           ": has version 7, this weir knows versions up to 5; run the newer weir or name another "
                            "file as state in [service]");
   EXPECT_EQ(kind_, ErrorKind::input);
-  Database(path_).run("PRAGMA user_version=4");
+  Database(path_).run("PRAGMA user_version=5");
   EXPECT_EQ(marked(), 42);
 }
 
@@ -76,7 +76,7 @@ TEST_F(StateFile, Version1_IsUpgraded) {
         "INSERT INTO jobs (watch, source, options, bytes, mtime_ns, inode, state, discovered_ms, changed_ms, reason) "
         "VALUES ('w', '/a', '', 0, 0, 0, 'failed', 0, 0, '/a: has 7 bytes')");
     for (const char* index : {"jobs_waiting", "jobs_problem"}) old.run(std::string("DROP INDEX ") + index);
-    for (const char* column : {"forced", "problem", "rendering"})
+    for (const char* column : {"forced", "problem", "rendering", "source_bytes"})
       old.run(std::string("ALTER TABLE jobs DROP COLUMN ") + column);
     old.run("PRAGMA user_version=1");
   }
@@ -85,7 +85,7 @@ TEST_F(StateFile, Version1_IsUpgraded) {
   EXPECT_EQ(notice_, "");
   Statement row = database.prepare("SELECT user_version, max_error, min, max FROM outputs, pragma_user_version");
   ASSERT_TRUE(row.step());
-  EXPECT_EQ(row.integer(0), 4);
+  EXPECT_EQ(row.integer(0), 5);
   for (const int column : {1, 2, 3}) EXPECT_EQ(row.real_or_none(column), std::nullopt);
   Statement problem = database.prepare("SELECT problem FROM jobs");
   ASSERT_TRUE(problem.step());
@@ -100,14 +100,15 @@ TEST_F(StateFile, Version2_IsUpgraded) {
   make();
   {
     const Database old(path_);
-    old.run("ALTER TABLE jobs DROP COLUMN rendering");
+    for (const char* column : {"rendering", "source_bytes"})
+      old.run(std::string("ALTER TABLE jobs DROP COLUMN ") + column);
     old.run("PRAGMA user_version=2");
   }
   EXPECT_EQ(marked(), 42);
   const Database database = open_state_file(path_, notice_);
   Statement version = database.prepare("PRAGMA user_version");
   ASSERT_TRUE(version.step());
-  EXPECT_EQ(version.integer(0), 4);
+  EXPECT_EQ(version.integer(0), 5);
   database.run("UPDATE jobs SET rendering = 1");
 }
 
@@ -124,6 +125,7 @@ TEST_F(StateFile, Version3_KeepsJobsWithoutTheOptionsThatChangeNoByte) {
           .bind(options)
           .step();
     }
+    old.run("ALTER TABLE jobs DROP COLUMN source_bytes");
     old.run("PRAGMA user_version=3");
   }
   const Database database = open_state_file(path_, notice_);
@@ -133,6 +135,19 @@ TEST_F(StateFile, Version3_KeepsJobsWithoutTheOptionsThatChangeNoByte) {
     ASSERT_TRUE(row.step());
     EXPECT_EQ(row.text(0), options);
   }
+}
+
+TEST_F(StateFile, Version4_IsUpgraded) {
+  make();
+  {
+    const Database old(path_);
+    old.run("ALTER TABLE jobs DROP COLUMN source_bytes");
+    old.run("PRAGMA user_version=4");
+  }
+  EXPECT_EQ(marked(), 42);
+  const Database database = open_state_file(path_, notice_);
+  EXPECT_EQ(notice_, "");
+  database.run("UPDATE jobs SET source_bytes = 1");
 }
 
 TEST_F(StateFile, DatabaseOfAnotherProgram_IsRefusedAndUnchanged) {

@@ -68,6 +68,7 @@ inline JobResult success() {
   result.outputs = {{"/out/a_0.nvdb", 512, 8.0, 51.25, 0.5, -1.0, 3e30, "/out/a_0.nvdb.png"},
                     {"/out/a_1.nvdb", 1024, 4.0, {}, {}, {}, {}, ""}};
   result.seconds = 1.5;
+  result.source_bytes = 4000;
   result.bytes_read = 8000;
   result.bytes_written = 1536;
   result.peak_rss_bytes = std::uint64_t{1} << 33;

@@ -150,6 +150,30 @@ TEST_F(CompletionTest, Rename) {
   EXPECT_EQ(at(2, Kind::found).state, State::complete);
 }
 
+TEST_F(CompletionTest, Rename_FileThatWasCreated_WaitsForItsRename) {
+  constexpr const char* kNoRename = "it has not got its name by a rename";
+  rules.policy = Completion::rename;
+  sample.identity.bytes = 0;
+  expect_event_is_awaited(at(0, Kind::created), kNoRename);
+  grow(100);  // by ftruncate, which is no event
+  expect_event_is_awaited(at(3), kNoRename);
+  expect_event_is_awaited(at(4, Kind::written), kNoRename);
+  EXPECT_EQ(at(5, Kind::moved_in).state, State::complete);
+  expect_event_is_awaited(at(6, Kind::created), kNoRename);
+  EXPECT_EQ(at(7, Kind::found).state, State::complete) << "after a restart, say";
+}
+
+TEST_F(CompletionTest, Rename_EmptyFileThatWasFound_IsAwaited) {
+  rules.policy = Completion::rename;
+  sample.identity.bytes = 0;
+  expect_event_is_awaited(at(0, Kind::found), "it is empty");
+  grow(100);
+  EXPECT_EQ(at(1, Kind::found).state, State::complete);
+  sample.identity.bytes = 0;
+  EXPECT_EQ(at(2, Kind::moved_in).state, State::broken);
+  EXPECT_EQ(at(2).reason, "is empty (0 bytes); write it again");
+}
+
 TEST_F(CompletionTest, Marker) {
   rules.policy = Completion::marker;
   rules.marker = ".done";

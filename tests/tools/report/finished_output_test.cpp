@@ -334,6 +334,7 @@ TEST_F(SkipDone, AnnouncesOutputsToItsCaller) {
     EXPECT_EQ(last["output"], output_);
     EXPECT_EQ(last["skipped"], skipped);
     EXPECT_EQ(last["bytes"], fs::file_size(output_));
+    EXPECT_EQ(last["source_bytes"], fs::file_size(source_));
     EXPECT_EQ(last["bytes_read"].get<std::uint64_t>() > 0, !skipped);
     EXPECT_EQ(told.size() > 1, !skipped);
     if (skipped) continue;
