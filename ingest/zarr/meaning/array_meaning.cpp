@@ -146,11 +146,15 @@ ArrayMeaning array_meaning(const ZarrArray& array, const std::optional<FoundLeve
   if (level) {
     const ScaleLevel& found = level->image.levels[level->level];
     if (level->image.axes.size() == rank) meaning.axes = level->image.axes;
-    if (found.scale.size() == rank) meaning.scale = found.scale;
-    if (found.translation.size() == rank) meaning.translation = found.translation;
-    if (!found.placed) {
+    const bool fits = found.scale.size() == rank;
+    if (fits) {
+      meaning.scale = found.scale;
+      meaning.translation = found.translation;
+    }
+    if (!found.placed || (!fits && !found.scale.empty())) {
       meaning.place_note =
-          "its coordinateTransformations are others than scale and translation by numbers, taken as indices";
+          cat("its coordinateTransformations are others than scale and translation by ",
+              found.placed ? cat(rank, " numbers, one for each axis") : "numbers", ", taken as indices");
     }
   }
   read_value_attributes(array, meaning);
@@ -198,6 +202,7 @@ void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const 
   info.mapping = meaning.mapping;
   info.units = meaning.units;
   info.details.long_name = meaning.long_name;
+  info.details.coordinates_note = meaning.coordinates_note;
   for (std::size_t i = 0; i < kSpaceRank; ++i) {
     const std::size_t axis = rank - 1 - i;
     info.spacing.at(i) = meaning.scale[axis];
