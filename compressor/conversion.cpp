@@ -61,7 +61,8 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
     notice(irregular ? compose(line, ", ", info.spacing.at(i), " apart; ", option("spacing"), " sets another distance")
                      : line);
   }
-  for (const std::string& note : {info.details.order_note, info.details.values_note, info.details.chunks_note}) {
+  for (const std::string& note :
+       {info.details.order_note, info.details.values_note, info.details.data_note, info.details.chunks_note}) {
     if (notice && !note.empty()) notice(cat(volume, note));
   }
   if (notice && !info.details.coordinates_note.empty()) {
