@@ -61,9 +61,13 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
     notice(irregular ? compose(line, ", ", info.spacing.at(i), " apart; ", option("spacing"), " sets another distance")
                      : line);
   }
-  for (const std::string& note :
-       {info.details.order_note, info.details.orientation, info.details.values_note, info.details.chunks_note}) {
+  for (const std::string& note : {info.details.order_note, info.details.orientation, info.details.values_note,
+                                  info.details.data_note, info.details.chunks_note}) {
     if (notice && !note.empty()) notice(cat(volume, note));
+  }
+  if (notice && !info.details.coordinates_note.empty()) {
+    notice(compose(volume, info.details.coordinates_note, "; ", option("spacing"), " and ", option("origin"),
+                   " set them"));
   }
   if (!notice || info.details.units_note.empty()) return;
   notice(compose(volume, info.details.units_note, ": positions are in different units; ", option("spacing"), " and ",

@@ -160,6 +160,15 @@ class FileNames {
   std::map<std::string, std::vector<DatasetInfo>> datasets_;
 };
 
+// No name tells volumes apart that have the same words.
+Message remedy_for_names(const SeriesStep& a, const SeriesStep& b) {
+  if (a.stem != b.stem || dataset_part(a.dataset) != dataset_part(b.dataset) || a.step != b.step) {
+    return compose("give ", option("output"), " a directory, or a name with {stem}, {dataset} or {step}");
+  }
+  const Message dataset = a.dataset == b.dataset ? Message() : compose(option("dataset"), " and ");
+  return compose("convert them one at a time, with ", dataset, option("output", "NAME.nvdb"));
+}
+
 }  // namespace
 
 std::string step_name(std::string_view name, const SeriesStep& step) {
@@ -199,10 +208,9 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
     path = with_level(path.string(), step);
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {
-      throw Error(ErrorKind::usage,
-                  compose(path.string(), ": ", steps.size(), " volumes, and two of them (", volume_text(*other->second),
-                          " and ", volume_text(step), ") would have this name; give ", option("output"),
-                          " a directory, or a name with {stem}, {dataset} or {step}"));
+      throw Error(ErrorKind::usage, compose(path.string(), ": ", steps.size(), " volumes, and two of them (",
+                                            volume_text(*other->second), " and ", volume_text(step),
+                                            ") would have this name; ", remedy_for_names(*other->second, step)));
     }
     paths.push_back(path.string());
   }

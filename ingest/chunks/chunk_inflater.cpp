@@ -1,5 +1,7 @@
 #include "ingest/chunks/chunk_inflater.h"
 
+#include <algorithm>
+
 #include "format/base/error.h"
 #include "format/base/text.h"
 
@@ -8,6 +10,10 @@ namespace {
 
 constexpr int kWindowBits = 15;
 constexpr int kGzipFlag = 16;  // added to the window bits: inflateReset2 expects gzip's header and trailer
+
+bool only_zeros(std::span<const Bytef> bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](Bytef byte) { return byte == 0; });
+}
 
 }  // namespace
 
@@ -30,17 +36,27 @@ std::size_t ChunkInflater::inflate_some(std::span<const std::byte> stream, std::
   stream_.avail_in = static_cast<uInt>(stream.size());
   stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
   stream_.avail_out = static_cast<uInt>(bytes.size());
+  inflate_one(bytes.size());
+  // bgzip, pigz and cat make streams of several members (RFC 1952, 2.2), which gzip and Python's read as one.
+  while (wrapping == DeflateWrapping::gzip && !only_zeros({stream_.next_in, stream_.avail_in})) {
+    inflateReset(&stream_);
+    inflate_one(bytes.size());
+  }
+  return bytes.size() - stream_.avail_out;
+}
+
+void ChunkInflater::inflate_one(std::size_t size) {
   const int status = ::inflate(&stream_, Z_FINISH);
-  const std::size_t filled = bytes.size() - stream_.avail_out;
-  if (status == Z_STREAM_END) return filled;
+  if (status == Z_STREAM_END) return;
+  const std::size_t filled = size - stream_.avail_out;
   if (status == Z_BUF_ERROR && stream_.avail_in == 0) {
-    throw Error(ErrorKind::input, cat("its deflate stream ends after ", filled, " of ", bytes.size(), " bytes"));
+    throw Error(ErrorKind::input, cat("its deflate stream ends after ", filled, " of ", size, " bytes"));
   }
   if (status == Z_BUF_ERROR) {
-    throw Error(ErrorKind::input, cat("its deflate stream holds more than ", bytes.size(), " bytes"));
+    throw Error(ErrorKind::input, cat("its deflate stream holds more than ", size, " bytes"));
   }
   if (status == Z_MEM_ERROR) throw Error(ErrorKind::io, "memory: get a zlib decoder: out of memory");
-  throw Error(ErrorKind::input, cat("its deflate stream is damaged after ", filled, " of ", bytes.size(), " bytes (",
+  throw Error(ErrorKind::input, cat("its deflate stream is damaged after ", filled, " of ", size, " bytes (",
                                     stream_.msg != nullptr ? stream_.msg : zError(status), ")"));
 }
 

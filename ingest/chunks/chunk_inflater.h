@@ -24,10 +24,14 @@ class ChunkInflater {
   /// after the stream's end are ignored, as HDF5 does.
   void inflate(std::span<const std::byte> stream, std::span<std::byte> bytes);
 
-  /// The same of a stream that may hold fewer bytes than `bytes` takes: returns how many.
+  /// The same of a stream that may hold fewer bytes than `bytes` takes: returns how many. Behind the end of a stream of
+  /// gzip may be further ones, of which the bytes follow, and zeros; anything else there is damage.
   std::size_t inflate_some(std::span<const std::byte> stream, std::span<std::byte> bytes, DeflateWrapping wrapping);
 
  private:
+  /// Decodes up to the end of one stream, from what stream_ has to what it has.
+  void inflate_one(std::size_t size);
+
   z_stream stream_{};
 };
 

@@ -97,6 +97,14 @@ std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::
   return volume.at_end ? file_bytes - shape.all_bytes : volume.data_offset;
 }
 
+/// That a data file of its own has bytes that the header leaves out: the values may lie elsewhere in it.
+std::string data_note(const HeaderVolume& volume, const Shape& shape, std::uint64_t file_bytes) {
+  if (volume.packed || volume.at_end || file_bytes - volume.data_offset == shape.all_bytes) return "";
+  return cat("its data file ", volume.data_path, " has ", file_bytes, " bytes, and ", shape.all_bytes,
+             " of them, from byte ", volume.data_offset, " on, are what the header describes; where the values begin ",
+             "elsewhere, correct ", volume.offset_key);
+}
+
 /// Where the compressed stream lies in the data file.
 PackedRange packed_range(const HeaderVolume& volume, std::uint64_t file_bytes) {
   const std::uint64_t room = file_bytes - std::min(volume.data_offset, file_bytes);
@@ -158,6 +166,7 @@ std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, con
     file = spool_inflated(*file, packed_range(volume, file->size()), unpacked_range(volume, shape, position), options);
   } else {
     layout.offset = plain_offset(volume, shape, file->size()) + position * shape.volume_bytes;
+    info.details.data_note = data_note(volume, shape, file->size());
   }
   return make_raw_values(std::move(file), layout, std::move(info));
 }
@@ -171,6 +180,7 @@ std::vector<DatasetInfo> list_header_volume(const HeaderVolume& volume) {
   } else {
     plain_offset(volume, shape, file->size());
   }
+  const std::string note = data_note(volume, shape, file->size());
   DatasetInfo only;
   only.extents = volume.extents;
   only.type = cat(volume.big_endian && scalar_bytes(volume.type) > 1 ? "big-endian " : "", scalar_name(volume.type));
@@ -184,6 +194,7 @@ std::vector<DatasetInfo> list_header_volume(const HeaderVolume& volume) {
     only.attributes.emplace_back("offset", cat(volume.info.mapping.offset));
   }
   if (volume.data_path != volume.info.path) only.attributes.emplace_back("data file", volume.data_path);
+  if (!note.empty()) only.attributes.emplace_back("note", note);
   only.attributes.insert(only.attributes.end(), volume.attributes.begin(), volume.attributes.end());
   return {only};
 }

@@ -27,6 +27,7 @@ struct HeaderVolume {
 
   std::string data_path;            ///< of the file with the values, perhaps the header's own
   std::uint64_t data_offset = 0;    ///< bytes before the values or, where they are packed, the compressed stream
+  std::string offset_key;           ///< what the format calls data_offset, "HeaderSize"
   bool at_end = false;              ///< the values are the file's last bytes, at data_offset or after it
   bool packed = false;              ///< one gzip or zlib stream
   std::uint64_t packed_bytes = 0;   ///< of that stream; 0: to the end of the file
@@ -41,7 +42,7 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
 /// Opens the volume at options.index. A packed one is unpacked here, once. Throws Error(usage) where the index does
 /// not fit the axes after the third (it may be left out where each of those has one position), Error(input) where
 /// an extent is impossible, the data file missing or too short, or, where it is the header's own, too long; and what
-/// spool_inflated throws.
+/// spool_inflated throws. That another file has more bytes is said in details.data_note.
 std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, const SourceOptions& options);
 
 /// The same checks but for options.index and the packed bytes, and what there is.

@@ -53,6 +53,7 @@ HeaderVolume describe_meta_image(const std::string& path) {
   const bool local = header.data_file.empty();
   volume.data_path = local ? path : path_beside(path, header.data_file);
   volume.data_offset = local && header.header_size == 0 ? header.header_bytes : header.header_size;
+  volume.offset_key = "HeaderSize";
   volume.at_end = header.at_end;
   volume.packed = header.compressed;
   volume.packed_bytes = header.compressed_bytes;

@@ -75,6 +75,7 @@ HeaderVolume describe_nifti(const std::string& path) {
   volume.big_endian = header.big_endian;
   volume.data_path = header.pair ? std::filesystem::path(path).replace_extension(".img").string() : path;
   (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
+  volume.offset_key = "vox_offset";
   place(header, volume);
   return volume;
 }

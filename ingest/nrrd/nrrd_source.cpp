@@ -106,6 +106,7 @@ void locate(const NrrdHeader& header, HeaderVolume& volume) {
     const auto data = open_data_file(volume, DirectIo::off);
     volume.data_offset = skip_lines(*data, volume.data_offset, header.line_skip);
   }
+  volume.offset_key = "byte skip";
   volume.packed = header.gzip;
   volume.at_end = header.at_end;
   (header.gzip ? volume.packed_offset : volume.data_offset) += header.byte_skip;

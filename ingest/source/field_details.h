@@ -38,11 +38,12 @@ struct FieldDetails {
   std::optional<TimePoint> time;         ///< at which the volume is
   std::array<AxisDetails, 3> axes;       ///< x, y, z
   std::string order_note;                ///< where the file names its axes in another order than z, y, x; else empty
-  /// How the axes lie in the file's world where weir does not keep it (AxisPlacement::orientation); else empty.
-  std::string orientation;
-  std::string values_note;  ///< what the file says of its values and weir does not apply; else empty
-  std::string chunks_note;  ///< how many chunks are not stored, and what they read as; else empty
-  std::string units_note;   ///< which axis is in which units, where spacings are in several; else empty
+  std::string orientation;               ///< AxisPlacement::orientation, where weir does not keep it; else empty
+  std::string values_note;               ///< what the file says of its values and weir does not apply; else empty
+  std::string data_note;                 ///< which bytes of a header's data file are not read; else empty
+  std::string chunks_note;               ///< how many chunks are not stored, and what they read as; else empty
+  std::string coordinates_note;          ///< which axes have coordinates that weir does not read; else empty
+  std::string units_note;                ///< which axis is in which units, where spacings are in several; else empty
 };
 
 }  // namespace weir

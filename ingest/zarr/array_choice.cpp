@@ -31,10 +31,37 @@ std::optional<std::string> finest_level(const ZarrNode& node) {
   return joined_key(node.key, without_slashes(images.front().levels.front().path));
 }
 
-ChosenArray meant_array(const ZarrStore& store, ZarrNode node, LevelFinder& levels) {
+/// Whether the array `name` beside `node` has as many elements along its one axis as the axis of that name, as xarray
+/// writes coordinates.
+bool has_coordinates(ZarrStore& store, const ZarrNode& node, const std::string& name, std::int64_t extent) {
+  const std::string group = node.key.substr(0, node.key.rfind('/') == std::string::npos ? 0 : node.key.rfind('/'));
+  if (name.empty() || name.find('/') != std::string::npos || joined_key(group, name) == node.key) return false;
+  try {
+    const auto found = zarr_node(store, joined_key(group, name));
+    return found && found->array && json_member(found->metadata, "shape") == nlohmann::json::array({extent});
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    return false;  // damage to another array is none to this one
+  }
+}
+
+std::string coordinates_note(ZarrStore& store, const ZarrNode& node, const ZarrArray& array) {
+  std::string names;
+  bool of_space = false;
+  for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
+    if (!has_coordinates(store, node, array.axis_names[axis], array.shape[axis])) continue;
+    names += cat(names.empty() ? "" : ", ", array.axis_names[axis]);
+    of_space = of_space || axis + 3 >= array.shape.size();
+  }
+  return of_space ? cat("has coordinates ", names, ", which are not read from Zarr") : std::string();
+}
+
+ChosenArray meant_array(ZarrStore& store, ZarrNode node, LevelFinder& levels) {
   ChosenArray chosen{std::move(node), {}, {}};
   chosen.array = zarr_array(store, chosen.node);
-  chosen.meaning = array_meaning(chosen.array, levels.find(chosen.node.key));
+  const auto level = levels.find(chosen.node.key);
+  chosen.meaning = array_meaning(chosen.array, level);
+  if (!level) chosen.meaning.coordinates_note = coordinates_note(store, chosen.node, chosen.array);
   return chosen;
 }
 
@@ -92,7 +119,7 @@ std::string reason_of(const Error& error, const std::string& document) {
   return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
-DatasetInfo describe_array(const ZarrStore& store, const ZarrNode& node, LevelFinder& levels) {
+DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, LevelFinder& levels) {
   DatasetInfo info;
   info.name = node.key;
   const nlohmann::json& type = json_member(node.metadata, node.version == 3 ? "data_type" : "dtype");
@@ -110,7 +137,9 @@ DatasetInfo describe_array(const ZarrStore& store, const ZarrNode& node, LevelFi
     info.attributes.emplace_back("fill value", chosen.array.fill_text);
     if (!chosen.meaning.units.empty()) info.attributes.emplace_back("units", chosen.meaning.units);
     add_placement(chosen.meaning, info);
-    if (!chosen.meaning.place_note.empty()) info.attributes.emplace_back("note", chosen.meaning.place_note);
+    for (const std::string& note : {chosen.meaning.place_note, chosen.meaning.coordinates_note}) {
+      if (!note.empty()) info.attributes.emplace_back("note", note);
+    }
     info.obstacle = chosen.meaning.obstacle;
     info.index_axes = chosen.meaning.leading(chosen.array);
     const bool single = std::all_of(info.index_axes.begin(), info.index_axes.end(),

@@ -14,8 +14,8 @@ TEST(SeriesNames, StepsMayNotShareAName) {
     return message_of_error(ErrorKind::usage, [&] { series_outputs(steps, output); });
   };
   const std::string rest =
-      ": 2 volumes, and two of them (a/v.raw and b/v.raw) would have this name; give -o a directory, or a name with "
-      "{stem}, {dataset} or {step}";
+      ": 2 volumes, and two of them (a/v.raw and b/v.raw) would have this name; convert them one at a time, with -o "
+      "NAME.nvdb";
   EXPECT_EQ(refusal("out.nvdb"), "out.nvdb" + rest);
   EXPECT_EQ(refusal("out/"), "out/v.nvdb" + rest);
   EXPECT_EQ(series_outputs(steps, "").size(), 2U);
@@ -23,6 +23,18 @@ TEST(SeriesNames, StepsMayNotShareAName) {
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(volumes, "c.nvdb"); }),
             "c.nvdb: 2 volumes, and two of them (c.nc: /qc at 2 and c.nc: /w at 2,0) would have this name; give -o a "
             "directory, or a name with {stem}, {dataset} or {step}");
+}
+
+// Slashes in a file's name become dots: neither a directory nor {dataset} tells these apart.
+TEST(SeriesNames, DatasetsOfOnePart_AreToBeConvertedOneAtATime) {
+  const std::vector<SeriesStep> steps{{"c.h5", "/a.b", {}, "c", ""}, {"c.h5", "/a/b", {}, "c", ""}};
+  for (const auto& [output, name] :
+       {std::pair("un/", "un/c_a.b.nvdb"), std::pair("{stem}_{dataset}.nvdb", "c_a.b.nvdb")}) {
+    EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(steps, output, {}, DefaultNames::of_call); }),
+              cat(name,
+                  ": 2 volumes, and two of them (c.h5: /a.b and c.h5: /a/b) would have this name; convert them "
+                  "one at a time, with --dataset and -o NAME.nvdb"));
+  }
 }
 
 TEST(SeriesNames, OfACall_SayWhatTellsItsVolumesOfAFileApart) {

@@ -73,6 +73,25 @@ n.close()
       << made.err;
 }
 
+TEST_F(SilentReadings, BytesOfADataFileThatAHeaderLeavesOut_AreSaid) {
+  write_inputs(R"(
+np.arange(600, dtype="f4").tofile("a.raw")
+open("a.mhd", "w").write("ObjectType = Image\nNDims = 3\nDimSize = 8 8 8\nElementType = MET_FLOAT\nElementDataFile = a.raw\n")
+open("a.nhdr", "w").write("NRRD0004\ntype: float\ndimension: 3\nsizes: 8 8 8\nencoding: raw\nendian: little\ndata file: a.raw\n")
+)");
+  for (const auto& [header, key] : {std::pair("a.mhd", "HeaderSize"), std::pair("a.nhdr", "byte skip")}) {
+    const CommandResult made = weir({"convert", header, "--lossless", "--overwrite"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(
+        made.err.find(std::string("warning ") + header +
+                      ": its data file a.raw has 2400 bytes, and 2048 of them, from byte 0 on, are what the header "
+                      "describes; where the values begin elsewhere, correct " +
+                      key + "\n"),
+        std::string::npos)
+        << made.err;
+  }
+}
+
 TEST_F(SilentReadings, ValuesRoundedToFloat_AreCountedBesideLossless) {
   write_inputs(R"(np.random.default_rng(7).random((8, 8, 8)).tofile("d_8x8x8_float64.raw"))");
   const std::string rounded = "512 values rounded to float32, by up to ";

@@ -13,7 +13,7 @@ from . import _core
 from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
-from .options import box_text, given_options, text_of
+from .options import box_text, given_options, path_bytes, text_of
 
 if TYPE_CHECKING:
     import xarray
@@ -216,9 +216,9 @@ def convert(
         save_interval=save_interval,
         overwrite=overwrite,
     )
-    target = b"" if output is None else os.fsencode(output)
+    target = b"" if output is None else path_bytes(output)
     if isinstance(source, (str, os.PathLike)):
-        texts = _core.convert_files(os.fsencode(source), target, options, several, progress)
+        texts = _core.convert_files(path_bytes(source), target, options, several, progress)
     elif isinstance(source, numpy.ndarray) or is_array_elsewhere(source):
         if not target:
             raise UsageError("output is missing: an array has no name to make one from")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from dataclasses import dataclass
 from typing import Any, Optional, Union
 
@@ -17,6 +18,9 @@ _CUDA = (2, 13)  #: a device's memory, managed memory
 
 #: The stream that work of any other stream waits for; CUDA's legacy default one.
 _DEFAULT_STREAM = 1
+
+#: What is raised where a protocol's answers have another form than it says.
+_NOT_AS_SAID = (AttributeError, IndexError, KeyError, TypeError, ValueError)
 
 #: DLPack's codes of types.
 _KINDS = {0: "int", 1: "uint", 2: "float", 4: "bfloat", 6: "bool"}
@@ -43,11 +47,14 @@ def array_of(source: Any) -> Union[DeviceArray, NDArray[Any]]:
     """The values of such an array, where they are: on a device, or in the host's memory. Raises UsageError."""
     if not hasattr(source, "__dlpack_device__"):
         return _of_interface(source, source.__cuda_array_interface__)
-    kind = int(source.__dlpack_device__()[0])
+    try:
+        kind = int(source.__dlpack_device__()[0])
+    except (RuntimeError, *_NOT_AS_SAID) as error:
+        raise UsageError(f"source does not say where its values lie ({error}); give it as a numpy array") from None
     if kind in _HOST:
         try:
             return numpy.from_dlpack(source)
-        except (BufferError, RuntimeError, TypeError) as error:
+        except (BufferError, RuntimeError, *_NOT_AS_SAID) as error:
             raise UsageError(f"source has values that numpy does not read ({error}); convert them to float32 first") from None
     if kind not in _CUDA:
         raise UsageError(f"source lies on a device of DLPack's kind {kind}; copy it to the host first")
@@ -55,15 +62,29 @@ def array_of(source: Any) -> Union[DeviceArray, NDArray[Any]]:
 
 
 def _of_interface(source: Any, interface: dict[str, Any]) -> DeviceArray:
-    if interface.get("mask") is not None:
+    try:
+        masked = interface.get("mask") is not None
+        stored = numpy.dtype(interface["typestr"])
+        shape = _whole_numbers(interface["shape"])
+        strides = _whole_numbers(interface.get("strides") or _packed(shape, stored.itemsize))
+        address = operator.index(interface["data"][0])
+        stream = interface.get("stream") if interface.get("version", 0) >= 3 else _DEFAULT_STREAM
+        if len(strides) != len(shape) or not 0 <= address < 1 << 64 or not isinstance(stream, (int, type(None))):
+            raise ValueError(f"shape {shape}, strides {strides}, address {address}, stream {stream!r}")
+    except _NOT_AS_SAID as error:
+        reason = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
+        raise UsageError(
+            f"source has a __cuda_array_interface__ that is none ({reason}); it has shape, typestr, data and version"
+        ) from None
+    if masked:
         raise UsageError("source is a masked array; fill it, and give missing=VALUE and missing_policy")
-    stored = numpy.dtype(interface["typestr"])
-    shape = tuple(interface["shape"])
-    strides = interface.get("strides") or _packed(shape, stored.itemsize)
     if not stored.isnative:
         raise UsageError(f"source has the other byte order ({stored.str}); give it in this machine's")
-    stream = interface.get("stream") if interface.get("version", 0) >= 3 else _DEFAULT_STREAM
-    return DeviceArray(int(interface["data"][0]), stored.name, shape, tuple(strides), stream, source)
+    return DeviceArray(address, stored.name, shape, strides, stream, source)
+
+
+def _whole_numbers(numbers: Any) -> tuple[int, ...]:
+    return tuple(map(operator.index, numbers))
 
 
 # dlpack.h, https://dmlc.github.io/dlpack/latest/c_api.html
@@ -88,14 +109,15 @@ class _DLTensor(ctypes.Structure):
 
 
 def _of_dlpack(source: Any) -> DeviceArray:
-    try:
-        capsule = source.__dlpack__(stream=_DEFAULT_STREAM)
-    except (BufferError, RuntimeError) as error:
-        raise UsageError(f"source does not give its values ({error})") from None
     pointer = ctypes.pythonapi.PyCapsule_GetPointer
     pointer.restype = ctypes.c_void_p
     pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
-    tensor = _DLTensor.from_address(pointer(capsule, b"dltensor"))  # a DLManagedTensor begins with it
+    try:
+        capsule = source.__dlpack__(stream=_DEFAULT_STREAM)
+        address = pointer(capsule, b"dltensor")
+    except (BufferError, RuntimeError, *_NOT_AS_SAID) as error:
+        raise UsageError(f"source does not give its values ({error})") from None
+    tensor = _DLTensor.from_address(address)  # a DLManagedTensor begins with it
     shape = tuple(tensor.shape[i] for i in range(tensor.ndim))
     if tensor.dtype.lanes != 1:
         raise UsageError(f"source has values of {tensor.dtype.lanes} components; give one of them")

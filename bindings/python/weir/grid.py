@@ -14,7 +14,7 @@ from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
 from .indexing import select
-from .options import given_options
+from .options import LONGEST_BOX, described, given_options, path_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -50,7 +50,7 @@ class Grid:
 
     def __init__(self, path: Path) -> None:
         self._path = os.fspath(path)
-        self._core = _core.Grid(os.fsencode(path))
+        self._core = _core.Grid(path_bytes(path))
         self._absolute = os.path.abspath(self._path)
 
     def __enter__(self) -> Grid:
@@ -217,7 +217,7 @@ class Grid:
     def level_shape(self, level: int) -> tuple[int, int, int]:
         """Shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
         if not isinstance(level, (int, numpy.integer)) or not 0 <= level < self.levels:
-            raise UsageError(f"level is {level!r}, it must be a whole number from 0 to {self.levels - 1}")
+            raise UsageError(f"level is {described(level)}, it must be a whole number from 0 to {self.levels - 1}")
         z, y, x = (-(-voxels >> int(level)) for voxels in self.shape)
         return z, y, x
 
@@ -253,7 +253,10 @@ class Grid:
         """
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
-        positions = numpy.asarray(points, dtype=numpy.float32, order="C")
+        try:
+            positions = numpy.asarray(points, dtype=numpy.float32, order="C")
+        except (TypeError, ValueError):
+            raise UsageError(f"points is {described(points)}, it must be numbers, (x, y, z) along the last axis") from None
         if positions.ndim == 0 or positions.shape[-1] != 3:
             raise UsageError(f"points has the shape {positions.shape}, its last axis must be (x, y, z)")
         if numpy.isnan(positions).any():
@@ -350,8 +353,9 @@ def _box_of(roi: Any, shape: Sequence[int]) -> tuple[tuple[int, ...], tuple[int,
     """Corners (x, y, z) of what `roi` asks of an array of `shape` [z, y, x]."""
     if roi is None:
         return (0, 0, 0), tuple(shape[::-1])
+    shown = described(roi, LONGEST_BOX)
     bad = UsageError(
-        f"roi is {roi!r}, it must be three slices [z0:z1, y0:y1, x0:x1] without steps, or ((x0, y0, z0), (x1, y1, z1))"
+        f"roi is {shown}, it must be three slices [z0:z1, y0:y1, x0:x1] without steps, or ((x0, y0, z0), (x1, y1, z1))"
     )
     try:
         parts = (roi,) if isinstance(roi, slice) else tuple(roi)
@@ -369,7 +373,7 @@ def _box_of(roi: Any, shape: Sequence[int]) -> tuple[tuple[int, ...], tuple[int,
         raise bad from None
     if not all(0 <= a < b <= count for a, b, count in zip(low, high, shape[::-1])):
         raise UsageError(
-            f"roi is {roi!r}, it must hold a voxel and lie in the {' x '.join(map(str, shape[::-1]))} (x, y, z) there are"
+            f"roi is {shown}, it must hold a voxel and lie in the {' x '.join(map(str, shape[::-1]))} (x, y, z) there are"
         )
     return tuple(low), tuple(high)
 

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy
 
+from .options import described
+
 
 class Selection(NamedTuple):
     """Voxels along the axes [z, y, x]: first, first + step, ..., `count` of them, and the array that they become."""
@@ -64,14 +66,6 @@ def _with_all_axes(parts: tuple[Any, ...]) -> list[Any]:
     return [*parts[:place], *[slice(None)] * (3 - given), *parts[place + 1 :]]
 
 
-def _described(part: Any) -> str:
-    """In a few words: of an array its type and shape, of anything long its type."""
-    if isinstance(part, numpy.ndarray):
-        return f"an array of {part.dtype} with the shape {part.shape}"
-    text = repr(part)
-    return text if len(text) <= 40 and text.isprintable() else f"a {part.__class__.__name__}"
-
-
 def _position(part: Any, axis: int, shape: tuple[int, int, int]) -> int:
     """A whole number as a place along `axis`, counted from 0."""
     try:
@@ -81,7 +75,7 @@ def _position(part: Any, axis: int, shape: tuple[int, int, int]) -> int:
     except TypeError:
         raise IndexError(
             "an index of a grid is a whole number, a slice, ... or None, not "
-            f"{_described(part)}; for others index to_numpy()"
+            f"{described(part)}; for others index to_numpy()"
         ) from None
     voxels = shape[axis]
     if not -voxels <= place < voxels:

@@ -10,6 +10,10 @@ import numpy
 from .errors import UsageError
 
 
+#: Characters of a region that a message shows.
+LONGEST_BOX = 150
+
+
 def text_of(value: Any) -> str:
     """A number so that it reads back the same; sequences with commas between; a path or a text as it is."""
     if isinstance(value, (str, os.PathLike)):
@@ -25,6 +29,22 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
+def path_bytes(path: Any) -> bytes:
+    """`path` as the system takes it. Raises UsageError where it has a NUL, at which a name would end without a word."""
+    found = os.fsencode(path)
+    if b"\0" in found:
+        raise UsageError(f"path is {found!r}, and no path has a null byte; correct it")
+    return found
+
+
+def described(value: Any, longest: int = 40) -> str:
+    """In a few words: of an array its type and shape, of anything long its type."""
+    if isinstance(value, numpy.ndarray):
+        return f"an array of {value.dtype} with the shape {value.shape}"
+    text = repr(value)
+    return text if len(text) <= longest and text.isprintable() else f"a {value.__class__.__name__}"
+
+
 def box_text(box: Any) -> str:
     """((x0, y0, z0), (x1, y1, z1)), x1 exclusive, as "x0:x1,y0:y1,z0:z1"; a text stays."""
     if isinstance(box, str):
@@ -33,7 +53,9 @@ def box_text(box: Any) -> str:
         low, high = ([text_of(end) for end in corner] for corner in box)
         return ",".join(f"{a}:{b}" for a, b in zip(low, high, strict=True))
     except (TypeError, ValueError):
-        raise UsageError(f"roi is {box!r}, it must be ((x0, y0, z0), (x1, y1, z1)), x0 inclusive, x1 exclusive") from None
+        raise UsageError(
+            f"roi is {described(box, LONGEST_BOX)}, it must be ((x0, y0, z0), (x1, y1, z1)), x0 inclusive, x1 exclusive"
+        ) from None
 
 
 _FLAGS = {"at_most", "colorbar", "lossless", "stack", "overwrite"}
@@ -46,5 +68,8 @@ def given_options(**keywords: Any) -> dict[str, str]:
         if name in _FLAGS and isinstance(value, (bool, int, numpy.bool_)):
             value = "true" if value else None
         if value is not None:
-            given[name.replace("_", "-")] = text_of(value)
+            text = text_of(value)
+            if "\0" in text:
+                raise UsageError(f"{name} has a null character, which ends a text; leave it out")
+            given[name.replace("_", "-")] = text
     return given

@@ -66,6 +66,19 @@ double packing(hid_t object, const char* name, double fallback, std::string& obs
   return fallback;
 }
 
+// Why the attribute, whose numbers stand for no data, does not say which those are; empty where it does. `values` are
+// those that were read.
+std::string missing_obstacle(hid_t object, const char* name, std::size_t values) {
+  const std::size_t count = attribute_values(object, name);
+  if (count > kMaxAttributeValues) {
+    return cat("its attribute ", name, " has ", count, " values, and at most ", kMaxAttributeValues,
+               " are read, so which voxels hold no data is unknown; shorten it");
+  }
+  if (count == values) return "";
+  return cat("its attribute ", name, " is ", attribute_found(object, name), " and not ",
+             count == 1 ? "a number" : "numbers", ", so which voxels hold no data is unknown; correct or remove it");
+}
+
 std::string unused_attribute(hid_t object) {
   for (const char* name : {"valid_range", "valid_min", "valid_max"}) {
     if (has_attribute(object, name)) {
@@ -86,13 +99,12 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   ValueMeaning meaning;
   const bool meant_unsigned = says_unsigned(object);
   for (const char* name : {"_FillValue", "missing_value"}) {
-    for (const StoredValue& value : stored_value_attribute(object, name)) {
+    const std::vector<StoredValue> values = stored_value_attribute(object, name);
+    for (const StoredValue& value : values) {
       meaning.mapping.missing.push_back(meant_unsigned ? as_unsigned(value, type.scalar) : value);
     }
-    if (const std::size_t count = attribute_values(object, name); count > kMaxAttributeValues) {
-      meaning.obstacle = cat("its attribute ", name, " has ", count, " values, and at most ", kMaxAttributeValues,
-                             " are read, so which voxels hold no data is unknown; shorten it");
-    }
+    const std::string obstacle = missing_obstacle(object, name, values.size());
+    if (!obstacle.empty()) meaning.obstacle = obstacle;
   }
   const auto by_netcdf = netcdf_default_fill(type.scalar);
   if (meaning.mapping.missing.empty() && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&

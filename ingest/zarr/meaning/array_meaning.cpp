@@ -21,17 +21,23 @@ constexpr std::size_t kMostMissing = 64;  // values that stand for no data, in o
 std::optional<StoredValue> number_of_attribute(const nlohmann::json& value) {
   if (const auto number = json_number(value)) return number;
   if (const auto packed = double_in_base64(value)) return StoredValue{*packed};
+  if (value.is_boolean()) return StoredValue{std::int64_t{value.get<bool>() ? 1 : 0}};
   return value.is_string() ? parse_stored_value(value.get<std::string>()) : std::nullopt;
 }
 
-// A number, or a list of them as NetCDF's attributes are; what is none is left out.
-std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, const char* name) {
+// A number, or a list of them as NetCDF's attributes are; what is none goes to `others`.
+std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, const char* name,
+                                              std::vector<nlohmann::json>& others) {
   const nlohmann::json& value = json_member(attributes, name);
   std::vector<StoredValue> numbers;
   const auto add = [&](const nlohmann::json& one) {
-    if (const auto number = number_of_attribute(one)) numbers.push_back(*number);
+    if (const auto number = number_of_attribute(one)) {
+      numbers.push_back(*number);
+    } else {
+      others.push_back(one);
+    }
   };
-  if (!value.is_array()) add(value);
+  if (!value.is_array() && !value.is_null()) add(value);
   for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) add(value[i]);
   return numbers;
 }
@@ -40,13 +46,21 @@ std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, 
 double packing(const nlohmann::json& attributes, const char* name, double fallback, std::string& obstacle) {
   const nlohmann::json& found = json_member(attributes, name);
   if (found.is_null()) return fallback;
-  const std::vector<StoredValue> values = numbers_of_attribute(attributes, name);
-  const bool one = values.size() == 1 && (!found.is_array() || found.size() == 1);
+  std::vector<nlohmann::json> others;
+  const std::vector<StoredValue> values = numbers_of_attribute(attributes, name, others);
+  const bool one = values.size() == 1 && others.empty();
   const double value = one ? as_double(values[0]) : std::nan("");
   if (std::isfinite(value) && (value != 0.0 || fallback == 0.0)) return value;
   obstacle = cat("its attribute ", name, " is ", json_text(found), " and not one finite number",
                  fallback == 0.0 ? "" : " other than 0", ", so what its values mean is unknown; correct or remove it");
   return fallback;
+}
+
+std::string not_numbers(const nlohmann::json& attributes, const char* name, const nlohmann::json& other) {
+  const bool list = json_member(attributes, name).is_array();
+  return cat("its attribute ", name, list ? " has " : " is ", json_text(other),
+             list ? ", which is not a number" : " and not a number",
+             ", so which voxels hold no data is unknown; correct or remove it");
 }
 
 // By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
@@ -55,18 +69,22 @@ void read_value_attributes(const ZarrArray& array, ArrayMeaning& meaning) {
   const bool meant_unsigned = says_unsigned(attributes);
   meaning.mapping.scale = packing(attributes, "scale_factor", 1.0, meaning.obstacle);
   meaning.mapping.offset = packing(attributes, "add_offset", 0.0, meaning.obstacle);
+  const auto add_missing = [&](const StoredValue& stored) {
+    const StoredValue value = meant_unsigned ? as_unsigned(stored, array.type) : stored;
+    if (holds(array.type, value)) meaning.mapping.missing.push_back(value);
+  };
   for (const char* const name : {"missing_value", "_FillValue"}) {
-    const std::vector<StoredValue> values = numbers_of_attribute(attributes, name);
+    std::vector<nlohmann::json> others;
+    const std::vector<StoredValue> values = numbers_of_attribute(attributes, name, others);
     if (values.size() > kMostMissing) {
       meaning.obstacle = cat("its attribute ", name, " has ", values.size(), " values, and at most ", kMostMissing,
                              " are read, so which voxels hold no data is unknown; shorten it");
       continue;
     }
-    for (const StoredValue& stored : values) {
-      const StoredValue value = meant_unsigned ? as_unsigned(stored, array.type) : stored;
-      if (holds(array.type, value)) meaning.mapping.missing.push_back(value);
-    }
+    if (!others.empty()) meaning.obstacle = not_numbers(attributes, name, others.front());
+    for (const StoredValue& stored : values) add_missing(stored);
   }
+  if (array.missing_fill) add_missing(*array.missing_fill);
   meaning.units = json_string(attributes, "units");
   meaning.long_name = json_string(attributes, "long_name");
 }
@@ -128,11 +146,15 @@ ArrayMeaning array_meaning(const ZarrArray& array, const std::optional<FoundLeve
   if (level) {
     const ScaleLevel& found = level->image.levels[level->level];
     if (level->image.axes.size() == rank) meaning.axes = level->image.axes;
-    if (found.scale.size() == rank) meaning.scale = found.scale;
-    if (found.translation.size() == rank) meaning.translation = found.translation;
-    if (!found.placed) {
+    const bool fits = found.scale.size() == rank;
+    if (fits) {
+      meaning.scale = found.scale;
+      meaning.translation = found.translation;
+    }
+    if (!found.placed || (!fits && !found.scale.empty())) {
       meaning.place_note =
-          "its coordinateTransformations are others than scale and translation by numbers, taken as indices";
+          cat("its coordinateTransformations are others than scale and translation by ",
+              found.placed ? cat(rank, " numbers, one for each axis") : "numbers", ", taken as indices");
     }
   }
   read_value_attributes(array, meaning);
@@ -180,6 +202,7 @@ void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const 
   info.mapping = meaning.mapping;
   info.units = meaning.units;
   info.details.long_name = meaning.long_name;
+  info.details.coordinates_note = meaning.coordinates_note;
   for (std::size_t i = 0; i < kSpaceRank; ++i) {
     const std::size_t axis = rank - 1 - i;
     info.spacing.at(i) = meaning.scale[axis];

@@ -18,6 +18,7 @@ struct ArrayMeaning {
   std::vector<double> scale;        ///< world units per step along each axis
   std::vector<double> translation;  ///< of the centre of element 0
   std::string place_note;           ///< what scale and translation do not say of it; else empty
+  std::string coordinates_note;     ///< which axes have coordinates, as none are read; else empty
   ValueMapping mapping;             ///< by the attributes scale_factor, add_offset, missing_value and _FillValue
   std::string units;                ///< of the values, by the attribute units
   std::string long_name;

@@ -35,6 +35,7 @@ bool transform(const nlohmann::json& list, ScaleLevel& level) {
     if (type == "identity") continue;
     const auto numbers = numbers_in(json_member(step, type.c_str()));
     if ((type != "scale" && type != "translation") || !numbers) return false;
+    if (!level.scale.empty() && level.scale.size() != numbers->size()) return false;
     std::vector<double> scale(numbers->size());
     std::vector<double> translation(numbers->size());
     for (std::size_t i = 0; i < numbers->size(); ++i) {

@@ -104,7 +104,13 @@ ZarrArray parse_zarr_v2(const nlohmann::json& metadata, nlohmann::json attribute
   if (!fill.is_null()) array.fill = fill_bytes(fill, array.type, array.codecs.big_endian, where);
   array.attributes = std::move(attributes);
   // As xarray names them.
-  read_axis_names(json_member(array.attributes, "_ARRAY_DIMENSIONS"), array);
+  const nlohmann::json& dimensions = json_member(array.attributes, "_ARRAY_DIMENSIONS");
+  read_axis_names(dimensions, array);
+  // xarray writes _FillValue as fill_value, null where there is none, and reads it so (open_store_variable in
+  // xarray/backends/zarr.py). Of others, whose default is 0, it is a value.
+  if (dimensions.is_array() && json_member(array.attributes, "_FillValue").is_null()) {
+    array.missing_fill = number_in_fill(fill);
+  }
   return array;
 }
 

@@ -82,12 +82,6 @@ std::vector<std::byte> native_bytes(ScalarType type, const StoredValue& value) {
   return {};
 }
 
-std::optional<StoredValue> number_in(const nlohmann::json& fill) {
-  if (fill == "Infinity") return StoredValue{std::numeric_limits<double>::infinity()};
-  if (fill == "-Infinity") return StoredValue{-std::numeric_limits<double>::infinity()};
-  return json_number(fill);
-}
-
 /// "0x7fc00000": the bits of a value of `size` bytes, the highest first.
 std::optional<std::vector<std::byte>> hexadecimal(std::string_view text, std::size_t size) {
   if (!text.starts_with("0x") || text.size() != 2 + 2 * size) return std::nullopt;
@@ -125,7 +119,7 @@ std::optional<std::vector<std::byte>> base64(std::string_view text, std::size_t 
 std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
                                   const std::string& where) {
   const std::size_t size = scalar_bytes(type);
-  const auto number = number_in(fill);
+  const auto number = number_in_fill(fill);
   if (number && holds(type, *number)) {
     // No integer holds NaN and infinities.
     std::vector<std::byte> bytes = native_bytes(type, *number);
@@ -142,6 +136,12 @@ std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, b
   }
   throw input_error(
       where, cat("fill_value is ", json_text(fill), ", which is no ", scalar_name(type), "; the file is damaged"));
+}
+
+std::optional<StoredValue> number_in_fill(const nlohmann::json& fill) {
+  if (fill == "Infinity") return StoredValue{std::numeric_limits<double>::infinity()};
+  if (fill == "-Infinity") return StoredValue{-std::numeric_limits<double>::infinity()};
+  return json_number(fill);
 }
 
 std::optional<double> double_in_base64(const nlohmann::json& value) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "format/base/scalar_type.h"
+#include "ingest/source/stored_value.h"
 
 namespace weir {
 
@@ -17,6 +18,10 @@ namespace weir {
 /// none of these or `type` does not hold it.
 std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, bool big_endian,
                                   const std::string& where);
+
+/// The number that `fill`, the fill_value of an array's metadata, is; NaN and infinities, too, which JSON has as texts.
+/// nullopt where it is none, as null is none.
+std::optional<StoredValue> number_in_fill(const nlohmann::json& fill);
 
 /// The number that `value`, an attribute, has in base64, as the eight bytes of a double, the lowest first: as xarray
 /// writes _FillValue of floats in version 3 (FillValueCoder in xarray/backends/zarr.py). nullopt where it has none.

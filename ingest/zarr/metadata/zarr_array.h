@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "format/base/scalar_type.h"
+#include "ingest/source/stored_value.h"
 
 namespace weir {
 
@@ -60,8 +61,10 @@ struct ZarrArray {
   ZarrChunkKeys keys;
   std::optional<std::vector<std::byte>> fill;  ///< one value, in the byte order of values(); none: it is null
   std::string fill_text;                       ///< as the metadata writes it
-  std::vector<std::string> axis_names;         ///< as many as axes; empty texts where there are none
-  nlohmann::json attributes;                   ///< of the user
+  /// The fill value where it stands for no data: xarray writes _FillValue so in version 2.
+  std::optional<StoredValue> missing_fill = {};
+  std::vector<std::string> axis_names;  ///< as many as axes; empty texts where there are none
+  nlohmann::json attributes;            ///< of the user
 
   /// The elements that are decoded together, and how: of an inner chunk where there are shards.
   const std::vector<std::int64_t>& unit() const { return shards.empty() ? chunk : shards.back().chunk; }

@@ -127,6 +127,28 @@ class WhereValuesLie(FolderTest):
             "source has the other byte order (>f4); give it in this machine's",
         )
 
+    def test_answers_of_another_form_than_the_protocols_are_refused(self):
+        broken = Interface(512, (5, 6, 7), "<f4")
+        del broken.__cuda_array_interface__["typestr"]
+        end = "; it has shape, typestr, data and version"
+        self.assertEqual(
+            self.refusal(broken), "source has a __cuda_array_interface__ that is none (it lacks 'typestr')" + end
+        )
+        self.assertEqual(
+            self.refusal(Interface(512, (5, 6, 7), "<f4", strides=(4, 4))),
+            "source has a __cuda_array_interface__ that is none (shape (5, 6, 7), strides (4, 4), address 512, stream None)"
+            + end,
+        )
+        for interface in (Interface(512, ("a", 6, 7), "<f4"), Interface("x", (5, 6, 7), "<f4"), Interface(512, 5, "<f4")):
+            self.assertIn("source has a __cuda_array_interface__ that is none (", self.refusal(interface))
+        for device, begin in (((1, 0), "source has values that numpy does not read ("), ((2, 0), "source does not give its values (")):
+            source = unittest.mock.Mock(spec=["__dlpack__", "__dlpack_device__"])
+            source.__dlpack_device__ = lambda device=device: device
+            source.__dlpack__ = lambda **_: 5
+            self.assertIn(begin, self.refusal(source))
+            source.__dlpack_device__ = lambda: 5
+            self.assertIn("source does not say where its values lie (", self.refusal(source))
+
 
 class Cuda:
     """As much of CUDA's runtime as puts values on a device; raises OSError where there is none."""

@@ -61,6 +61,24 @@ class Errors(FolderTest):
             with self.subTest(message):
                 self.assertEqual(self.convert(weir.UsageError, array), message)
 
+    def test_a_path_with_a_null_byte(self):
+        weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=True)
+        path = os.fsencode(self.folder / "a.nvdb") + b"\0zzz"
+        message = f"path is {path!r}, and no path has a null byte; correct it"
+        for call in (
+            lambda: weir.open(os.fsdecode(path)),
+            lambda: weir.convert(os.fsdecode(path)),
+            lambda: weir.convert(ramp(9, 9, 9), path),
+        ):
+            with self.assertRaises(weir.UsageError) as raised:
+                call()
+            self.assertEqual(str(raised.exception), message)
+        self.assertEqual(
+            self.convert(weir.UsageError, ramp(9, 9, 9), dataset="a\0b"),
+            "dataset has a null character, which ends a text; leave it out",
+        )
+        self.assertEqual(self.names(), ["a.nvdb", "a.nvdb.json"])
+
     def test_an_empty_array(self):
         self.assertIn("0x9x9", self.convert(weir.InputError, numpy.zeros((9, 9, 0), numpy.float32)))
 

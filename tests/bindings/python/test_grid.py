@@ -102,6 +102,15 @@ class ToNumpy(FolderTest):
             with self.subTest(roi):
                 self.assertEqual(self.refused(weir.UsageError, grid.to_numpy, roi), f"roi is {roi!r}, {why}")
 
+    def test_a_part_that_is_an_array_is_named_by_type_and_shape(self):
+        grid = self.lossless(ramp(12, 20, 28))
+        message = self.refused(weir.UsageError, grid.to_numpy, numpy.ones((28, 20, 12), bool))
+        self.assertEqual(
+            message,
+            "roi is an array of bool with the shape (28, 20, 12), it must be three slices [z0:z1, y0:y1, x0:x1] without "
+            "steps, or ((x0, y0, z0), (x1, y1, z1))",
+        )
+
     def test_arrays_are_the_callers_own(self):
         values = ramp(12, 20, 28)
         with weir.open(self.lossless(values).path) as grid:

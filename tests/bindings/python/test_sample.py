@@ -78,6 +78,8 @@ class Sample(FolderTest):
             "points has the shape (2,), its last axis must be (x, y, z)": ([1, 2],),
             "points has the shape (3, 4), its last axis must be (x, y, z)": (numpy.zeros((3, 4)),),
             "points has the shape (), its last axis must be (x, y, z)": (7,),
+            "points is 'a', it must be numbers, (x, y, z) along the last axis": ("a",),
+            "points is [[1, 2, 'a']], it must be numbers, (x, y, z) along the last axis": ([[1, 2, "a"]],),
             "points has a position that is NaN; leave it out": ([[1, 2, numpy.nan]],),
             "filter is 'cubic', it must be 'trilinear' or 'nearest'": ([[1, 2, 3]], "cubic"),
         }.items():

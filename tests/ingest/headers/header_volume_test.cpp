@@ -103,8 +103,19 @@ TEST_F(HeaderVolumeTest, SeveralHeadersMayShareADataFile) {
   volume_.data_path = write_headed(scratch_, "array.raw", "", stored(ramp(24), true));
   volume_.data_offset = 8;
   volume_.extents = {2, 2, 1};
+  volume_.offset_key = "HeaderSize";
   EXPECT_EQ(values(), (std::vector<float>{4, 5, 6, 7}));
   EXPECT_EQ(open_header_volume(volume_, {})->info().file_bytes, 54);
+  const std::string note = "its data file " + volume_.data_path +
+                           " has 48 bytes, and 8 of them, from byte 8 on, are what the header describes; where the "
+                           "values begin elsewhere, correct HeaderSize";
+  EXPECT_EQ(open_header_volume(volume_, {})->info().details.data_note, note);
+  EXPECT_EQ(list_header_volume(volume_)[0].attributes.back(), (std::pair<std::string, std::string>{"note", note}));
+  volume_.at_end = true;
+  EXPECT_EQ(open_header_volume(volume_, {})->info().details.data_note, "") << "the header says that others are before";
+  volume_.at_end = false;
+  volume_.extents = {2, 2, 5};
+  EXPECT_EQ(open_header_volume(volume_, {})->info().details.data_note, "");
 }
 
 TEST_F(HeaderVolumeTest, NamesHeaderAndDataFileWhereThatIsMissing) {

@@ -146,6 +146,29 @@ TEST(OmeZarr, FinestLevelPlacedInAnotherWay_IsReadAndNotTheNextOne) {
   }
 }
 
+TEST(OmeZarr, ListsOfAnotherLengthThanTheAxes_AreSaidAndNotApplied) {
+  const std::string begin = "its coordinateTransformations are others than scale and translation by ";
+  const std::string by_rank = begin + "3 numbers, one for each axis, taken as indices";
+  const std::string by_numbers = begin + "numbers, taken as indices";
+  for (const auto& [transformations, note] :
+       {std::pair(R"({"type":"scale","scale":[2,2]})", by_rank),
+        std::pair(R"({"type":"scale","scale":[1,2,2,2]},{"type":"translation","translation":[0,5,5,5]})", by_rank),
+        std::pair(R"({"type":"translation","translation":[5,5]})", by_rank),
+        std::pair(R"({"type":"scale","scale":[2,2,2]},{"type":"translation","translation":[5,5]})", by_numbers),
+        std::pair(R"({"type":"scale","scale":[2,2]},{"type":"translation","translation":[5,5,5]})", by_numbers)}) {
+    const ZarrFiles files;
+    files.write(".zgroup", R"({"zarr_format":2})");
+    files.write(".zattrs",
+                cat(R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0","coordinateTransformations":[)",
+                    transformations, "]}]}]}"));
+    files.write("0/.zarray", zarray("[2,2,2]", "[2,2,2]", "|u1", "1"));
+    const auto source = open_source(files.path(), {});
+    EXPECT_EQ(source->info().spacing, (std::array{1.0, 1.0, 1.0})) << transformations;
+    EXPECT_EQ(source->info().origin, (std::array{0.0, 0.0, 0.0})) << transformations;
+    for (const AxisDetails& axis : source->info().details.axes) EXPECT_EQ(axis.note, note) << transformations;
+  }
+}
+
 TEST(OmeZarr, ScaleThatIsNoSpacing_IsRefused) {
   const ZarrFiles files;
   files.write(".zgroup", R"({"zarr_format":2})");

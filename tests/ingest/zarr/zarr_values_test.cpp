@@ -1,4 +1,6 @@
 // What the attributes of a Zarr array say of its values, by the conventions of CF.
+#include <cmath>
+
 #include "ingest/zarr/meaning/array_meaning.h"
 #include "ingest/zarr/zarr_source.h"
 #include "tests/ingest/zarr/support/zarr_files.h"
@@ -43,10 +45,73 @@ TEST(ZarrValues, ValuesThatHoldNoData_AreKnownAsNumbersListsTextsAndInBase64) {
     EXPECT_TRUE(is_missing(values[0])) << attributes;
     EXPECT_EQ(values[1], 1.5F) << attributes;
   }
-  for (const char* attributes : {R"({"_FillValue":"AAAAAAA4j8A"})", R"({"_FillValue":"AAAAAAA4j8?="})",
-                                 R"({"_FillValue":"none"})", R"({"_FillValue":{"a":-999}})"}) {
-    EXPECT_EQ(read_floats(files, attributes), (std::vector<float>{-999, 1.5F})) << attributes;
+}
+
+TEST(ZarrValues, ValuesThatHoldNoDataAndAreNoNumbers_AreRefused) {
+  const ZarrFiles files;
+  const std::string end = ", so which voxels hold no data is unknown; correct or remove it";
+  for (const auto& [attributes, found] : {std::pair(R"({"_FillValue":"AAAAAAA4j8A"})", R"(is "AAAAAAA4j8A" and)"),
+                                          std::pair(R"({"_FillValue":"AAAAAAA4j8?="})", R"(is "AAAAAAA4j8?=" and)"),
+                                          std::pair(R"({"_FillValue":"none"})", R"(is "none" and)"),
+                                          std::pair(R"({"_FillValue":{"a":-999}})", "is an object of 1 and"),
+                                          std::pair(R"({"_FillValue":[-999,"x",{}]})", R"(has "x", which is)")}) {
+    write_floats(files, attributes);
+    EXPECT_EQ(files.message(ErrorKind::input), cat("run.zarr: its attribute _FillValue ", found, " not a number", end));
   }
+  EXPECT_EQ(list_zarr(files.path(), {})[0].obstacle,
+            R"(its attribute _FillValue has "x", which is not a number)" + end);
+}
+
+// As xarray writes _FillValue in version 2, and nothing where there is none.
+TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
+  const ZarrFiles files;
+  const auto read = [&](std::string_view type, std::string_view fill, std::string_view attributes) {
+    files.write(".zarray", zarray("[1,1,2]", "[1,1,2]", type, fill));
+    files.write(".zattrs", attributes);
+    return files.read();
+  };
+  constexpr std::string_view kNamed = R"({"_ARRAY_DIMENSIONS":["z","y","x"]})";
+  files.write_values("0.0.0", std::vector<std::int16_t>{-32768, 2});
+  std::vector<float> values =
+      read("<i2", "-32768", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"scale_factor":0.5,"add_offset":300})");
+  EXPECT_TRUE(is_missing(values[0])) << values[0];
+  EXPECT_EQ(values[1], 301.0F);
+  values = read("<u2", "32768", kNamed);
+  EXPECT_TRUE(is_missing(values[0])) << values[0];
+  EXPECT_TRUE(is_missing(read("<i2", "-32768", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"_Unsigned":"true"})")[0]));
+  EXPECT_EQ(read("<i2", "null", kNamed), (std::vector<float>{-32768, 2}));
+  EXPECT_EQ(read("<i2", "-32768", "{}"), (std::vector<float>{-32768, 2})) << "not of xarray";
+  values = read("<i2", "-32768", R"({"_ARRAY_DIMENSIONS":["z","y","x"],"_FillValue":2})");
+  EXPECT_EQ(values[0], -32768.0F) << "the attribute says it";
+  EXPECT_TRUE(is_missing(values[1]));
+  files.write_values("0.0.0", std::vector<float>{std::nanf(""), 1.5F});
+  values = read("<f4", R"("NaN")", kNamed);
+  EXPECT_TRUE(is_missing(values[0]));
+  EXPECT_EQ(values[1], 1.5F);
+}
+
+// As xarray writes them: arrays beside it, called as its axes are.
+TEST(ZarrValues, CoordinatesOfItsAxes_AreSaidAsTheyAreNotRead) {
+  const ZarrFiles files;
+  files.write("run/.zgroup", R"({"zarr_format":2})");
+  files.write("run/T/.zarray", zarray("[1,2,3,4]", "[1,2,3,4]", "|u1", "null"));
+  files.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","z","lat","lon"]})");
+  files.write("run/T/0.0.0.0", std::string(24, 'a'));
+  SourceOptions options;
+  options.dataset = "run/T";
+  const auto note = [&] { return open_source(files.path(), options)->info().details.coordinates_note; };
+  EXPECT_EQ(note(), "");
+  files.write("run/time/.zarray", zarray("[1]", "[1]"));
+  EXPECT_EQ(note(), "") << "of no axis of space";
+  files.write("run/lat/.zarray", zarray("[4]", "[4]"));
+  EXPECT_EQ(note(), "") << "of another length";
+  files.write("run/lat/.zarray", zarray("[3]", "[3]"));
+  files.write("run/lon/.zarray", zarray("[4]", "[4]"));
+  const std::string said = "has coordinates time, lat, lon, which are not read from Zarr";
+  EXPECT_EQ(note(), said);
+  EXPECT_EQ(list_zarr(files.path(), {})[0].attributes.back(), (std::pair<std::string, std::string>{"note", said}));
+  options.spacing = {1, 1, 1};
+  EXPECT_EQ(note(), "");
 }
 
 TEST(ZarrValues, SignedIntegersMeantAsUnsigned_AreReadSo) {

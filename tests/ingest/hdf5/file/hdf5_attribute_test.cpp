@@ -86,6 +86,28 @@ for name, count in [("most.h5", 4096), ("more.h5", 5000)]:
                 "data is unknown; shorten it");
 }
 
+TEST_F(Hdf5Attribute, MissingValuesThatAreNoNumbers_AreAnError) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, value in [("numbers", ["1", "-999"]), ("one", "abc"), ("some", ["1", "x"]), ("mixed", np.array([(1, 2.)], "i4,f4"))]:
+        f[name] = values("f4")
+        f[name].attrs["_FillValue"] = value
+)");
+  SourceOptions options;
+  const auto refusal = [&](const std::string& dataset) {
+    options.dataset = dataset;
+    return message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.h5"), options); });
+  };
+  const std::string begin = ": its attribute _FillValue is ";
+  const std::string end = ", so which voxels hold no data is unknown; correct or remove it";
+  EXPECT_EQ(refusal("one"), scratch_.path("a.h5") + ": /one" + begin + "'abc' and not a number" + end);
+  EXPECT_EQ(refusal("some"), scratch_.path("a.h5") + ": /some" + begin + "2 values ('1', 'x') and not numbers" + end);
+  EXPECT_EQ(refusal("mixed"),
+            scratch_.path("a.h5") + ": /mixed" + begin + "of type compound of 2 members and not a number" + end);
+  options.dataset = "numbers";
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), options)->info().mapping.missing.size(), 2U);
+}
+
 // Of an attribute that gives a place or a name, as many values as that are of another meaning.
 TEST_F(Hdf5Attribute, LongAttributeOfAnotherMeaning_IsPassedOver) {
   write_by_h5py(scratch_, R"(

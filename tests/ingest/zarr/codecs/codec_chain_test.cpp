@@ -70,6 +70,46 @@ TEST(CodecChain, StreamsOfMoreOrFewerBytes_AreRefused) {
   EXPECT_EQ(refusal_of(zlib, shape, std::span(whole).first(3)), "its deflate stream ends after 0 of 128 bytes");
 }
 
+std::vector<std::byte> gzip_of(std::span<const std::byte> bytes) {
+  constexpr int kGzipWindow = 15 + 16;
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::vector<std::byte> packed(deflateBound(&stream, bytes.size()));
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+TEST(CodecChain, MembersOfAGzipStream_AreReadOneAfterTheOther) {
+  const ZarrCodecs gzip{{}, false, {ZarrPacker::gzip}};
+  const ChunkShape shape{{2, 4, 4}, 1};
+  std::vector<std::byte> expected(32);
+  for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = static_cast<std::byte>(i);
+  const std::span bytes(expected);
+  std::vector<std::byte> stored;
+  const auto add = [&](const std::vector<std::byte>& more) { stored.insert(stored.end(), more.begin(), more.end()); };
+  for (const std::size_t cut : {0U, 10U, 30U}) add(gzip_of(bytes.subspan(cut, cut == 0 ? 10 : cut == 10 ? 20 : 2)));
+  EXPECT_EQ(decoded(gzip, shape, stored), expected);
+  const std::vector<std::byte> members = stored;
+  add(gzip_of({}));
+  add(std::vector<std::byte>(3));
+  EXPECT_EQ(decoded(gzip, shape, stored), expected) << "an empty member, and zeros as of tapes";
+  stored = members;
+  add(gzip_of(bytes.first(1)));
+  EXPECT_EQ(refusal_of(gzip, shape, stored), "its deflate stream holds more than 32 bytes");
+  stored = members;
+  add({std::byte{1}, std::byte{2}});
+  EXPECT_EQ(refusal_of(gzip, shape, stored),
+            "its deflate stream is damaged after 32 of 32 bytes (incorrect header check)");
+  EXPECT_EQ(refusal_of(gzip, shape, std::span(members).first(members.size() - 9)),
+            "its deflate stream ends after 32 of 32 bytes");
+}
+
 TEST(CodecChain, BloscBlocksLargerThanTheirMemory_AreRefused) {
   if (!has_library_codecs()) GTEST_SKIP() << "this build was left without libblosc and libzstd (WEIR_ZARR_CODECS)";
   const ZarrCodecs blosc{{}, false, {ZarrPacker::blosc}};

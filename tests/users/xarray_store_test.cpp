@@ -1,0 +1,57 @@
+// A Zarr store as xarray writes it, converted by its user: what xarray masks is missing, what is not read is said.
+#include "tests/users/user_script.h"
+
+namespace weir::xarray_store_test {
+namespace {
+
+class XarrayStore : public UserScript {
+ protected:
+  void SetUp() override {
+    if (!python_has("xarray, zarr") || !can_write()) GTEST_SKIP() << "python3 with xarray and zarr is missing";
+    write_inputs(R"(
+import xarray
+a = 300 + np.arange(4096.0).reshape(16, 16, 16) / 100
+a[0, 0, 0] = np.nan
+axes = ("z", "y", "x")
+packed = {"dtype": "int16", "scale_factor": 0.01, "add_offset": 300.0, "_FillValue": -32768}
+xarray.Dataset({"T": (axes, a)}).to_zarr("t.zarr", encoding={"T": packed})
+xarray.Dataset({"n": (axes, np.arange(64).reshape(4, 4, 4))}).to_zarr("n.zarr")
+xarray.Dataset({"T": (axes, a)}, {"z": np.arange(16.0) * 10, "x": np.arange(16.0)}).to_zarr("c.zarr", encoding={"T": packed})
+)");
+  }
+};
+
+TEST_F(XarrayStore, MaskedVoxels_HoldNoData) {
+  const CommandResult refused = weir({"convert", "t.zarr", "--lossless"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(
+      refused.err,
+      "weir: t.zarr, dataset T: 1 of 4096 voxels (less than 0.1 %) holds no data (stored as -32768), the first at "
+      "0,0,0; choose --missing-policy background or, to take -32768 for data, --missing-policy keep\n");
+  const CommandResult made = weir({"convert", "t.zarr", "--lossless", "--missing-policy", "background"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(sidecar("t.nvdb")["missing"]["count"], 1);
+  EXPECT_GE(sidecar("t.nvdb")["value_range"][0].get<double>(), 300);
+}
+
+TEST_F(XarrayStore, ZeroOfAnArrayWithoutFillValue_IsData) {
+  const CommandResult made = weir({"convert", "n.zarr", "--lossless"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(sidecar("n.nvdb")["missing"]["count"], 0);
+}
+
+TEST_F(XarrayStore, CoordinatesThatAreNotRead_AreSaid) {
+  const std::string said =
+      "warning c.zarr: T: has coordinates z, x, which are not read from Zarr; --spacing and --origin set them\n";
+  const std::vector<std::string> command{"convert",    "c.zarr",           "--dataset",  "T",
+                                         "--lossless", "--missing-policy", "background", "--overwrite"};
+  const CommandResult made = weir(command);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.err.find(said), std::string::npos) << made.err;
+  std::vector<std::string> placed = command;
+  placed.insert(placed.end(), {"--spacing", "1,1,10"});
+  EXPECT_EQ(weir(placed).err.find("coordinates"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace weir::xarray_store_test
