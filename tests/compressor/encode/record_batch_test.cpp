@@ -28,7 +28,7 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
     const DecodedErrors loss{static_cast<double>(ordinal), 0.5, ordinal % 2 == 0};
     batch.add(ordinal, values, node, inside, loss);
     LeafRecord record = make_leaf_record(values, node, inside, leaf_statistics(values, node, inside));
-    record.squared_error = loss.squared_error;
+    record.squared_error = loss.squared;
     record.max_abs = loss.max_abs;
     record.exact = loss.exact ? 1 : 0;
     expected.emplace_back(ordinal, record);

@@ -21,12 +21,12 @@ TEST(ConversionTask, OutputDirectoryMirrorsTheSourceTree) {
 
 TEST(ConversionTask, SourceBelowTheWatchedDirectory_LiesInTheWatch) {
   WatchConfig watch = make_watch();
-  EXPECT_TRUE(lies_in(watch, "/in/a.raw"));
-  EXPECT_TRUE(lies_in(watch, "/in/deep/a.raw"));
-  EXPECT_FALSE(lies_in(watch, "/inside/a.raw"));
-  EXPECT_FALSE(lies_in(watch, "/old/a.raw"));
+  EXPECT_TRUE(is_source_of(watch, "/in/a.raw"));
+  EXPECT_TRUE(is_source_of(watch, "/in/deep/a.raw"));
+  EXPECT_FALSE(is_source_of(watch, "/inside/a.raw"));
+  EXPECT_FALSE(is_source_of(watch, "/old/a.raw"));
   watch.directory = "/";
-  EXPECT_TRUE(lies_in(watch, "/a.raw"));
+  EXPECT_TRUE(is_source_of(watch, "/a.raw"));
 }
 
 TEST(ConversionTask, TakesItsValuesFromServiceWatchAndJob) {

@@ -43,7 +43,8 @@ Sidecar sample() {
               Sidecar::Time{1200, "seconds since 2000-01-01", "noleap"},
               {"km", "", "m"},
               Sidecar::IrregularAxes{{}, {}, {0.1, 0.3, 0.6}},
-              {"y"}};
+              {"y"},
+              "axes along +z, -x, +y of the file's world"};
   s.grid = {"density", "float32", {60, 61, 62}, {0.1, 0.2, 0.3}, {-1, 1e300, 5e-324}, {{-4, 5, 6}, {56, 66, 68}}};
   s.value_range = {-0.1, 1.0 / 3.0};
   s.nonfinite = {18446744073709551615U, "keep"};
