@@ -17,6 +17,7 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kMostArraysShown = 8;  // in a message
+constexpr std::size_t kAxesOfSpace = 3;
 
 std::string without_slashes(std::string_view name) {
   while (name.starts_with('/')) name.remove_prefix(1);
@@ -46,12 +47,13 @@ bool has_coordinates(ZarrStore& store, const ZarrNode& node, const std::string& 
 }
 
 std::string coordinates_note(ZarrStore& store, const ZarrNode& node, const ZarrArray& array) {
+  if (array.shape.size() < kAxesOfSpace) return {};
   std::string names;
   bool of_space = false;
   for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
     if (!has_coordinates(store, node, array.axis_names[axis], array.shape[axis])) continue;
     names += cat(names.empty() ? "" : ", ", array.axis_names[axis]);
-    of_space = of_space || axis + 3 >= array.shape.size();
+    of_space = of_space || axis + kAxesOfSpace >= array.shape.size();
   }
   return of_space ? cat("has coordinates ", names, ", which are not read from Zarr") : std::string();
 }

@@ -93,6 +93,7 @@ TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
 // As xarray writes them: arrays beside it, called as its axes are.
 TEST(ZarrValues, CoordinatesOfItsAxes_AreSaidAsTheyAreNotRead) {
   const ZarrFiles files;
+  files.write(".zgroup", R"({"zarr_format":2})");
   files.write("run/.zgroup", R"({"zarr_format":2})");
   files.write("run/T/.zarray", zarray("[1,2,3,4]", "[1,2,3,4]", "|u1", "null"));
   files.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","z","lat","lon"]})");

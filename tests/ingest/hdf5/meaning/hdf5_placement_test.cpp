@@ -339,10 +339,12 @@ with h5py.File("a.h5", "w") as f:
         d = f.create_dataset("set%d/v" % i, data=values("f4", (2, 3, 4)))
         g = f.create_group("set%d/constant" % i)
         unscaled = f.create_dataset("set%d/unscaled" % i, data=values("f4", (2, 3, 4)))
-        for o in (d, g, unscaled):
+        unmarked = f.create_dataset("set%d/unmarked" % i, data=values("f4", (2, 3, 4)))
+        for o in (d, g, unscaled, unmarked):
             for name in names: o.attrs[name] = value
             o.attrs.create("axisLabels", ["a", "b", "c"], dtype=h5py.string_dtype())
         for name in ("scale_factor", "add_offset"): del unscaled.attrs[name]
+        for name in names[:4]: del unmarked.attrs[name]
     d = f.create_dataset("scales", data=values("f4", (2, 3, 4)))
     d.attrs.create("DIMENSION_LIST", np.array([np.array([f["target"].ref]), np.array([]), np.array([f.ref, d.ref])], dtype=object),
                    dtype=h5py.vlen_dtype(h5py.ref_dtype))
