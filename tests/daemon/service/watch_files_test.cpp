@@ -262,7 +262,8 @@ TEST_P(WatchFiles, NameThatIsNotUtf8_IsQuarantinedWithItsEvent) {
   ServiceHarness service("", keys());
   service.start();
   write_file(service.in("a\xff_24x20x16_uint8.raw"), ServiceHarness::volume(1));
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" warn quarantined ") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" warning quarantined ") == 1; }))
+      << service.log();
   EXPECT_EQ(service.logged("reason=\"the name is not UTF-8; rename the file\""), 1U) << service.log();
   EXPECT_EQ(service.count("quarantined"), 1U);
 }
