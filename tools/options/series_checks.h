@@ -9,6 +9,7 @@
 
 #include "compressor/conversion_options.h"
 #include "ingest/series.h"
+#include "ingest/source/volume_source.h"
 
 namespace weir {
 
