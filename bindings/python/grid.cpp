@@ -50,14 +50,16 @@ Grid::Grid(const std::string& path) : path_(path), file_(std::make_shared<Opened
   file_->source = open_source(path, first_grid(*file_->file));
 }
 
-Grid::Grid(const std::string& url, const py::function& fetch, const std::string& cache)
+Grid::Grid(const std::string& url, const py::function& fetch, const py::function& interrupt, const std::string& cache)
     : path_(url), file_(std::make_shared<Opened>()) {
   const std::optional<std::uint64_t> bytes = parse_bytes(cache);
   if (!bytes) throw Error(ErrorKind::usage, cat("cache is '", cache, "', it must be a size as 67108864 or '256MiB'"));
-  run_watched(py::none(), [&, reader = python_range_reader(fetch)](Watch&) {
+  file_->interrupt = python_call(interrupt);
+  const auto open = [&, reader = python_range_reader(fetch)](Watch&) {
     file_->remote = std::make_unique<RemoteGrid>(url, reader, *bytes);
     file_->source = std::make_unique<RemoteSource>(*file_->remote);
-  });
+  };
+  run_watched(py::none(), open, file_->interrupt);
 }
 
 void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const {
@@ -129,9 +131,10 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
     const std::int64_t edge = std::int64_t{1} << level;
     return std::vector{Box{box.lo * edge, min(box.hi * edge, file->source->info().extent)}};
   };
-  run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
+  const auto read = [&, values = values_of(array)](Watch& watch) {
     file->with_boxes(voxels, [&] { read_level(*file->source, level, box, values, watch.cancelled()); });
-  });
+  };
+  run_watched(py::none(), read, file->interrupt);
   return array;
 }
 
@@ -142,23 +145,25 @@ py::array_t<float> Grid::read_strided(const Triple& first, const Triple& step, c
   const Index3 number = index3(count);
   const std::array<Stride, 3> axes{{{from.x, by.x, number.x}, {from.y, by.y, number.y}, {from.z, by.z, number.z}}};
   py::array_t<float> array = make_array(number);
-  run_watched(py::none(), [&, values = values_of(array)](Watch& watch) {
+  const auto read = [&, values = values_of(array)](Watch& watch) {
     file->with_boxes([&] { return strided_boxes(axes, {}); },
                      [&] { python::read_strided(*file->source, axes, values, watch.cancelled()); });
-  });
+  };
+  run_watched(py::none(), read, file->interrupt);
   return array;
 }
 
 std::tuple<std::int64_t, Triple, py::array_t<float>, py::array_t<float>> Grid::macrocells() const {
   const auto file = shared();
   std::optional<MacrocellGrid> cells;
-  run_watched(py::none(), [&](Watch&) {
+  const auto gather = [&](Watch&) {
     if (file->remote == nullptr) return void(cells.emplace(file->grid(), kMacrocell));
     if (!has_macrocells(file->grid())) {
       throw Error(ErrorKind::usage, cat(path_, ": has no macrocells; copy the file to this machine to gather them"));
     }
     file->remote->with_macrocells([&] { cells.emplace(file->grid(), kMacrocell); });
-  });
+  };
+  run_watched(py::none(), gather, file->interrupt);
   const CellLattice lattice = cells->lattice();
   const Index3 count{lattice.count.x, lattice.count.y, lattice.count.z};
   py::array_t<float> low = make_array(count);

@@ -33,9 +33,10 @@ class Grid {
   /// Maps and checks the file; reads no values. Throws as NvdbFile and open_source.
   explicit Grid(const std::string& path);
   /// A packed file elsewhere: `fetch` is called with a list of (offset, bytes) and returns as many `bytes` objects, or
-  /// raises; `cache` as of RemoteGrid, "256MiB". What it raises goes on to whoever called. Throws as RemoteGrid, and
-  /// Error(usage) where `cache` is no size.
-  Grid(const std::string& url, const pybind11::function& fetch, const std::string& cache);
+  /// raises; `interrupt` makes calls of it that are under way raise; `cache` as of RemoteGrid, "256MiB". What `fetch`
+  /// raises goes on to whoever called. Throws as RemoteGrid, and Error(usage) where `cache` is no size.
+  Grid(const std::string& url, const pybind11::function& fetch, const pybind11::function& interrupt,
+       const std::string& cache);
 
   /// Lets go of the file. Everything but closed() throws Error(usage) from then on; calls of other threads that are
   /// under way end as if it were open.
@@ -79,6 +80,7 @@ class Grid {
     std::shared_ptr<const NvdbFile> file;  ///< null where it lies elsewhere
     std::unique_ptr<RemoteGrid> remote;    ///< else null
     std::unique_ptr<VolumeSource> source;
+    std::function<void()> interrupt;  ///< ends what is waited for, of what lies elsewhere; else empty
     std::once_flag table_made;
     std::optional<LeafTable> table;  ///< for samples, of a file
 

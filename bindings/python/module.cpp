@@ -46,8 +46,8 @@ PYBIND11_MODULE(_core, m) {
       .def("verify", &Grid::verify, py::arg("progress"));
   m.def(
       "open_remote",
-      [](const std::string& url, const py::function& fetch, const std::string& cache) {
-        return std::make_unique<Grid>(url, fetch, cache);
+      [](const std::string& url, const py::function& fetch, const py::function& interrupt, const std::string& cache) {
+        return std::make_unique<Grid>(url, fetch, interrupt, cache);
       },
-      py::arg("url"), py::arg("fetch"), py::arg("cache"));
+      py::arg("url"), py::arg("fetch"), py::arg("interrupt"), py::arg("cache"));
 }

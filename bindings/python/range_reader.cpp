@@ -11,28 +11,41 @@ namespace weir::python {
 
 namespace py = pybind11;
 
+namespace {
+
+/// A reference that any thread may drop, without the interpreter's lock.
+std::shared_ptr<py::function> shared_function(const py::function& function) {
+  return {new py::function(function), [](py::function* kept) {
+            const py::gil_scoped_acquire locked;
+            delete kept;
+          }};
+}
+
+}  // namespace
+
+std::function<void()> python_call(const py::function& function) {
+  return [kept = shared_function(function)] { (*kept)(); };
+}
+
 RangeReader python_range_reader(const py::function& fetch) {
-  const std::shared_ptr<py::function> kept(new py::function(fetch), [](py::function* function) {
-    const py::gil_scoped_acquire locked;
-    delete function;
-  });
-  return [kept](std::span<const ByteRange> ranges, std::span<const std::span<std::byte>> into) {
-    const py::gil_scoped_acquire locked;
-    py::list asked;
-    for (const ByteRange& range : ranges) asked.append(py::make_tuple(range.offset, range.bytes));
-    const py::list found = (*kept)(asked);
-    if (found.size() != ranges.size()) {
-      throw Error(ErrorKind::io, cat(found.size(), " answers to ", ranges.size(), " requests for bytes"));
-    }
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const auto bytes = py::cast<std::string_view>(found[i]);
-      if (bytes.size() != ranges[i].bytes) {
-        throw Error(ErrorKind::io,
-                    cat(bytes.size(), " bytes instead of ", ranges[i].bytes, " at byte ", ranges[i].offset));
-      }
-      std::memcpy(into[i].data(), bytes.data(), bytes.size());
-    }
-  };
+  return
+      [kept = shared_function(fetch)](std::span<const ByteRange> ranges, std::span<const std::span<std::byte>> into) {
+        const py::gil_scoped_acquire locked;
+        py::list asked;
+        for (const ByteRange& range : ranges) asked.append(py::make_tuple(range.offset, range.bytes));
+        const py::list found = (*kept)(asked);
+        if (found.size() != ranges.size()) {
+          throw Error(ErrorKind::io, cat(found.size(), " answers to ", ranges.size(), " requests for bytes"));
+        }
+        for (std::size_t i = 0; i < ranges.size(); ++i) {
+          const auto bytes = py::cast<std::string_view>(found[i]);
+          if (bytes.size() != ranges[i].bytes) {
+            throw Error(ErrorKind::io,
+                        cat(bytes.size(), " bytes instead of ", ranges[i].bytes, " at byte ", ranges[i].offset));
+          }
+          std::memcpy(into[i].data(), bytes.data(), bytes.size());
+        }
+      };
 }
 
 }  // namespace weir::python

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
+
 #include "format/remote/byte_range.h"
 
 namespace weir::python {
@@ -11,5 +13,8 @@ namespace weir::python {
 /// called and destroyed by any thread, without the interpreter's lock. Throws what `fetch` raises, and Error(io) where
 /// it returns something else.
 RangeReader python_range_reader(const pybind11::function& fetch);
+
+/// Calls `function`. May be destroyed by any thread; its caller holds the interpreter's lock.
+std::function<void()> python_call(const pybind11::function& function);
 
 }  // namespace weir::python

@@ -37,7 +37,7 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
   py::array_t<float> array(points.shape(0));
   float* const values = array.mutable_data();
   if (file->remote != nullptr) {
-    run_watched(py::none(), [&](Watch& watch) {
+    const auto look_up = [&](Watch& watch) {
       const NvdbGrid& grid = file->grid();
       file->with_boxes([&] { return sampled_blocks(positions, grid.index_bbox()); },
                        [&] {
@@ -50,7 +50,8 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
                            left = left.subspan(part.size());
                          }
                        });
-    });
+    };
+    run_watched(py::none(), look_up, file->interrupt);
     return array;
   }
   const py::gil_scoped_release unlocked;

@@ -27,6 +27,15 @@ void deliver(Watch& watch, const py::object& progress) {
   }
 }
 
+// What it raises, a further KeyboardInterrupt for instance, must not keep the work's thread from being joined.
+void interrupt_quietly(const std::function<void()>& interrupt) {
+  try {
+    if (interrupt) interrupt();
+  } catch (const py::error_already_set&) {
+    return;
+  }
+}
+
 }  // namespace
 
 void Watch::start(const std::string& pass, std::uint64_t total) {
@@ -69,7 +78,8 @@ std::vector<Watch::Event> Watch::take() {
   return events;
 }
 
-void run_watched(const py::object& progress, const std::function<void(Watch&)>& work) {
+void run_watched(const py::object& progress, const std::function<void(Watch&)>& work,
+                 const std::function<void()>& interrupt) {
   Watch watch;
   std::exception_ptr failure;
   std::exception_ptr raised;
@@ -87,7 +97,10 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
       const py::gil_scoped_release unlocked;
       ended = watch.wait(kPause);
     }
-    if (raised) continue;
+    if (raised) {
+      if (!ended) interrupt_quietly(interrupt);
+      continue;
+    }
     try {
       if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
       deliver(watch, progress);

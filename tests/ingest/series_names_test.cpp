@@ -30,7 +30,8 @@ TEST(SeriesNames, DatasetsOfOnePart_AreToBeConvertedOneAtATime) {
   const std::vector<SeriesStep> steps{{"c.h5", "/a.b", {}, "c", ""}, {"c.h5", "/a/b", {}, "c", ""}};
   for (const auto& [output, name] :
        {std::pair("un/", "un/c_a.b.nvdb"), std::pair("{stem}_{dataset}.nvdb", "c_a.b.nvdb")}) {
-    EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(steps, output, {}, DefaultNames::of_call); }),
+    EXPECT_EQ(message_of_error(ErrorKind::usage,
+                               [&, to = std::string(output)] { series_outputs(steps, to, {}, DefaultNames::of_call); }),
               cat(name,
                   ": 2 volumes, and two of them (c.h5: /a.b and c.h5: /a/b) would have this name; convert them "
                   "one at a time, with --dataset and -o NAME.nvdb"));

@@ -44,7 +44,7 @@ class RemoteGrid(Grid):
         self._cache = cache
         self._storage_options = storage_options
         self._file = open_remote_file(url, storage_options)
-        self._core = _core.open_remote(url, self._file.read, text_of(cache))
+        self._core = _core.open_remote(url, self._file.read, self._file.interrupt, text_of(cache))
         self._sidecar: Optional[dict[str, Any]] = None
         self._sidecar_read = False
 

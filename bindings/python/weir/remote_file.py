@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence
 
 from .errors import InputError, InputNotFoundError, InputPermissionError, IoError, UsageError
 
@@ -29,17 +28,32 @@ class RemoteFile:
         self.requests = 0
         self.bytes_read = 0
         self._lock = threading.Lock()
+        self._reads: list[_Read] = []  # those under way
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
         """The bytes of each range, all there or an exception. In pieces, several at once."""
         pieces = [_pieces(*asked) for asked in ranges]
-        flat = [piece for parts in pieces for piece in parts]
-        if len(flat) == 1:
-            found = iter([self._read_piece(flat[0])])
-        else:
-            with ThreadPoolExecutor(min(_AT_ONCE, len(flat))) as pool:
-                found = iter(list(pool.map(self._read_piece, flat)))
+        read = _Read(self._read_piece, [piece for parts in pieces for piece in parts])
+        with self._lock:
+            self._reads.append(read)
+        try:
+            found = iter(read.run())
+        finally:
+            with self._lock:
+                self._reads.remove(read)
         return [b"".join(next(found) for _ in parts) for parts in pieces]
+
+    def interrupt(self) -> None:
+        """Makes all calls of read that are under way raise IoError at once. A server may not answer for minutes."""
+        with self._lock:
+            reads = list(self._reads)
+        if reads:
+            self._give_up()
+        for read in reads:
+            read.fail(IoError("reading was interrupted"))
+
+    def _give_up(self) -> None:
+        """Lets requests that are under way end by themselves, and keeps them from those to come."""
 
     def read_beside(self, url: str) -> Optional[str]:
         """The text of another, short file of the same place; None where it is missing."""
@@ -55,6 +69,52 @@ class RemoteFile:
         return data
 
 
+class _Read:
+    """Pieces of a file, read several at once by threads of their own, which a caller need not wait for, and which keep no
+    program from ending: one that waits for a server cannot be told to stop."""
+
+    def __init__(self, read_piece: Callable[[Range], bytes], pieces: Sequence[Range]) -> None:
+        self._read_piece = read_piece
+        self._left = list(enumerate(pieces))[::-1]
+        self._found = [b""] * len(pieces)
+        self._missing = len(pieces)
+        self._failure: Optional[BaseException] = None
+        self._changed = threading.Condition()
+
+    def run(self) -> list[bytes]:
+        """The pieces, all there or an exception: the first one."""
+        for _ in range(min(_AT_ONCE, len(self._found))):
+            threading.Thread(target=self._read_pieces, daemon=True).start()
+        with self._changed:
+            self._changed.wait_for(lambda: self._failure is not None or self._missing == 0)
+            if self._failure is not None:
+                raise self._failure
+        return self._found
+
+    def fail(self, failure: BaseException) -> None:
+        """Ends it with `failure`, but for one that is there already; pieces that nobody has begun are left."""
+        with self._changed:
+            if self._failure is None:
+                self._failure = failure
+            self._changed.notify_all()
+
+    def _read_pieces(self) -> None:
+        while True:
+            with self._changed:
+                if self._failure is not None or not self._left:
+                    return
+                place, piece = self._left.pop()
+            try:
+                data = self._read_piece(piece)
+            except BaseException as error:  # goes on to whoever waits
+                self.fail(error)
+                return
+            with self._changed:
+                self._found[place] = data
+                self._missing -= 1
+                self._changed.notify_all()
+
+
 class HttpFile(RemoteFile):
     """A file by http or https, from a server that answers requests for ranges."""
 
@@ -66,11 +126,14 @@ class HttpFile(RemoteFile):
             raise UsageError(f"{url}: reading it wants urllib3; install python3-urllib3") from None
         self._url = url
         self._failures = urllib3.exceptions.HTTPError
-        retries = urllib3.Retry(total=4, backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
-        self._pool = urllib3.PoolManager(
-            maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30)
-        )
+        self._given_up = threading.Event()
+        self._pool = _connections(self._given_up)
         self._version: Optional[str] = None  # by which the server tells that the file has changed
+
+    def _give_up(self) -> None:
+        self._given_up.set()
+        self._given_up = threading.Event()
+        self._pool = _connections(self._given_up)
 
     def _read_piece(self, piece: Range) -> bytes:
         offset, count = piece
@@ -173,6 +236,18 @@ class FsspecFile(RemoteFile):
             raise InputPermissionError(13, f"{self._url}: may not be read: {error}", self._url) from error
         except Exception as error:  # each file system has its own
             raise IoError(f"{self._url}: cannot be read: {error or error.__class__.__name__}") from error
+
+
+def _connections(given_up: threading.Event) -> urllib3.PoolManager:
+    """Connections that are tried again a few times, until `given_up`."""
+    import urllib3
+
+    class Retries(urllib3.Retry):
+        def is_exhausted(self) -> bool:
+            return given_up.is_set() or super().is_exhausted()
+
+    retries = Retries(total=4, backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
+    return urllib3.PoolManager(maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30))
 
 
 def _pieces(offset: int, count: int) -> list[Range]:

@@ -3,6 +3,7 @@
 import http.server
 import re
 import threading
+import time
 
 
 class QuietServer(http.server.ThreadingHTTPServer):
@@ -14,7 +15,7 @@ class RangeServer:
     """Serves `files`, {"/a.nvdb": bytes}. `asked` has (path, first byte, last byte) of each range that was sent.
 
     ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses with
-    status 503 from now on. changed(path) makes another version of a file of it.
+    status 503 from now on. stalled: while it is set, no request is answered. changed(path) makes another version of a file of it.
     """
 
     def __init__(self, files, ranges=True, tags=True):
@@ -22,6 +23,7 @@ class RangeServer:
         self.ranges = ranges
         self.tags = tags
         self.failures = 0
+        self.stalled = threading.Event()
         self.forbidden = set()
         self.versions = dict.fromkeys(files, 1)
         self.asked = []
@@ -34,6 +36,7 @@ class RangeServer:
         return f"http://127.0.0.1:{self.server.server_port}{path}"
 
     def close(self):
+        self.stalled.clear()
         self.server.shutdown()
         self.server.server_close()
         self.thread.join()
@@ -62,6 +65,8 @@ class RangeServer:
 
             def do_GET(self):
                 path = self.path.partition("?")[0]
+                while owner.stalled.is_set():
+                    time.sleep(0.01)
                 with owner.lock:
                     if owner.failures > 0:
                         owner.failures -= 1

@@ -1,9 +1,15 @@
 """Files elsewhere: the same values as of the file here, in few requests, and a line where that cannot be."""
 
+import os
 import pathlib
 import pickle
+import signal
+import socket
+import subprocess
+import sys
 import tempfile
 import threading
+import time
 import unittest
 
 import numpy
@@ -157,6 +163,36 @@ class Remote(FolderTest):
         self.assertEqual(str(raised.exception), f"{missing}: its server says 404 Not Found; there is no such file")
         server.close()
         self.assertIn("cannot be read", self.refused(weir.IoError, weir.open, url))
+
+    def test_ctrl_c_ends_waiting_for_a_server_and_the_grid_reads_on(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        server.stalled.set()
+        for call in (lambda: weir.open(url), lambda: grid[9], lambda: grid.sample([[9, 9, 9]]), grid.macrocells):
+            start = time.monotonic()
+            timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                call()
+            self.assertLess(time.monotonic() - start, 2)
+            timer.join()
+        server.stalled.clear()
+        self.assertTrue(same(grid[9], self.here[9]))
+
+    def test_ctrl_c_ends_a_program_that_waits_for_a_server(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            url = f"http://127.0.0.1:{silent.getsockname()[1]}/a.nvdb"
+            command = [sys.executable, "-c", f"import weir; print('ready', flush=True); weir.open({url!r})"]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                self.assertEqual(process.stdout.readline(), "ready\n")
+                connection, _ = silent.accept()
+                with connection:
+                    process.send_signal(signal.SIGINT)
+                    start = time.monotonic()
+                    _, errors = process.communicate(timeout=60)
+                    self.assertLess(time.monotonic() - start, 2)
+        self.assertEqual(errors.splitlines()[-1], "KeyboardInterrupt")
+        self.assertEqual(process.returncode, -signal.SIGINT)
 
     def test_a_few_failures_are_tried_again(self):
         server, url = self.served()
