@@ -44,27 +44,42 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
       JournalOptions{options.work_dir, options.save_interval_s, control.cancel, control.trace, control.notice});
 }
 
-bool discard_all_beside(FileSystem& files, const std::string& output) {
-  const std::string hidden = hidden_directory_of(output);
-  const std::string partial = output + ".partial";
+namespace {
+
+// Under the lock OUT.nvdb.partial, which stays.
+void discard_all_but_lock(FileSystem& files, const std::string& output) {
   const std::string sidecar = sidecar_path(output);
   const std::string previous = sidecar + ".previous";
-  const bool any = files.exists(hidden) || files.exists(partial) || files.exists(previous);
-  if (!any) return false;
-  // Neither emptied nor removed before all else is: what it holds says that the output is done (is_committed), should
-  // this be killed, too.
-  const std::unique_ptr<File> lock = files.open(partial);
-  require_alone(*lock);
   if (const std::string unfinished = sidecar + ".partial"; files.exists(unfinished)) {
     files.create(unfinished);  // refuses what is somebody's
     files.remove(unfinished);
   }
   if (files.exists(previous) && belongs_back(files, previous, sidecar, output)) files.rename(previous, sidecar);
   remove_leftovers(files, output);
-  remove_if_empty(files, hidden);
+  remove_if_empty(files, hidden_directory_of(output));
   files.remove(previous);
+}
+
+}  // namespace
+
+bool discard_all_beside(FileSystem& files, const std::string& output) {
+  const std::string hidden = hidden_directory_of(output);
+  const std::string partial = output + ".partial";
+  const bool locked = files.exists(partial);
+  const bool other = locked || files.exists(sidecar_path(output) + ".previous");
+  if (!other && !files.exists(hidden)) return false;
+  // Neither emptied nor removed before all else is: what it holds says that the output is done (is_committed), should
+  // this be killed, too.
+  const std::unique_ptr<File> lock = files.open(partial);
+  require_alone(*lock);
+  try {
+    discard_all_but_lock(files, output);
+  } catch (const Error&) {
+    if (!locked) files.remove(partial);
+    throw;
+  }
   files.remove(partial);
-  return true;
+  return other || !files.exists(hidden);  // somebody's files may be in it
 }
 
 void clear_after_commit(FileSystem& files, const std::string& output) {

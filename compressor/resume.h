@@ -24,7 +24,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files);
 
 /// Removes all that conversions of `output` keep beside it, under the lock on it: work that could be continued, too, so
-/// only for an output that is known to be done. False where there is nothing. Throws Error(io) where another process
+/// only for an output that is known to be done. False where nothing was removed. Throws Error(io) where another process
 /// has the lock.
 bool discard_all_beside(FileSystem& files, const std::string& output);
 

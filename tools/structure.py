@@ -72,6 +72,7 @@ def unmapped(names, contributing):
     last = lines.index("```", first)
     mapped = collections.defaultdict(set)  # names by folder
     begins = {}
+    folder = None
     for number in range(first, last):
         if begin := re.match(r"([a-z]+)/ ", lines[number]):
             folder = begin.group(1)
@@ -79,7 +80,7 @@ def unmapped(names, contributing):
         mapped[folder].update(re.findall(r"([a-z0-9_]+)/(?!\w)", lines[number]))
     rooms = {tuple(pathlib.PurePosixPath(name).parent.parts) for name in names}
     for room in sorted(rooms):
-        if room[0] not in begins or room[0] in ("tests", "bindings") or room[-1] in mapped[room[0]]:
+        if not room or room[0] not in begins or room[0] in ("tests", "bindings") or room[-1] in mapped[room[0]]:
             continue
         if len(room) == 2 or room[:2] == ("gpu", "cuda"):
             yield begins[room[0]], f"the map does not name {'/'.join(room)}/; add what it holds"

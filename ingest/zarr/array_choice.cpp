@@ -41,8 +41,8 @@ bool has_coordinates(ZarrStore& store, const ZarrNode& node, const std::string& 
     const auto found = zarr_node(store, joined_key(group, name));
     return found && found->array && json_member(found->metadata, "shape") == nlohmann::json::array({extent});
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::input) throw;
-    return false;  // damage to another array is none to this one
+    if (error.kind() == ErrorKind::interrupted) throw;
+    return false;  // an array that cannot be read is none of this one's affairs
   }
 }
 

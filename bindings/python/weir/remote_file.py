@@ -69,6 +69,16 @@ class RemoteFile:
         return data
 
 
+def _start(work: Callable[[], None], threads: int) -> int:
+    """As many of `threads` threads that do `work` as the system starts."""
+    for started in range(threads):
+        try:
+            threading.Thread(target=work, daemon=True).start()
+        except RuntimeError:
+            return started
+    return threads
+
+
 class _Read:
     """Pieces of a file, read several at once by threads of their own, which a caller need not wait for, and which keep no
     program from ending: one that waits for a server cannot be told to stop."""
@@ -83,8 +93,9 @@ class _Read:
 
     def run(self) -> list[bytes]:
         """The pieces, all there or an exception: the first one."""
-        for _ in range(min(_AT_ONCE, len(self._found))):
-            threading.Thread(target=self._read_pieces, daemon=True).start()
+        wanted = min(_AT_ONCE, len(self._found))
+        if _start(self._read_pieces, wanted) == 0 and wanted > 0:
+            self._read_pieces()  # here, where the system starts no thread
         with self._changed:
             self._changed.wait_for(lambda: self._failure is not None or self._missing == 0)
             if self._failure is not None:

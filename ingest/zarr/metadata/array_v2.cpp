@@ -5,6 +5,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/values/decode_values.h"
 #include "ingest/zarr/metadata/array_parts.h"
 #include "ingest/zarr/metadata/fill_value.h"
 #include "ingest/zarr/metadata/zarr_json.h"
@@ -110,6 +111,13 @@ ZarrArray parse_zarr_v2(const nlohmann::json& metadata, nlohmann::json attribute
   // xarray/backends/zarr.py). Of others, whose default is 0, it is a value.
   if (dimensions.is_array() && json_member(array.attributes, "_FillValue").is_null()) {
     array.missing_fill = number_in_fill(fill);
+    // As it is stored: fewer bits than the text has may be left of it.
+    const bool rounded = array.type == ScalarType::float16 || array.type == ScalarType::bfloat16;
+    if (array.missing_fill && rounded) {
+      float value = 0;
+      decode_values(*array.fill, array.type, array.codecs.big_endian, {}, {&value, 1});
+      array.missing_fill = StoredValue{static_cast<double>(value)};
+    }
   }
   return array;
 }

@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy
 import weir
@@ -193,6 +194,13 @@ class Remote(FolderTest):
                     self.assertLess(time.monotonic() - start, 2)
         self.assertEqual(errors.splitlines()[-1], "KeyboardInterrupt")
         self.assertEqual(process.returncode, -signal.SIGINT)
+
+    def test_reads_where_no_thread_can_be_started(self):
+        _, url = self.served()
+        grid = weir.open(url)
+        with unittest.mock.patch.object(threading.Thread, "start", side_effect=RuntimeError("can't start new thread")):
+            found = grid[9]
+        self.assertTrue(same(found, self.here[9]))
 
     def test_a_few_failures_are_tried_again(self):
         server, url = self.served()

@@ -88,6 +88,11 @@ TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
   values = read("<f4", R"("NaN")", kNamed);
   EXPECT_TRUE(is_missing(values[0]));
   EXPECT_EQ(values[1], 1.5F);
+  files.write_values("0.0.0",
+                     std::vector<std::uint16_t>{0xE3D0, 0x3E00});  // -1000, to which -999.9 is rounded, and 1.5
+  values = read("<f2", "-999.9", kNamed);
+  EXPECT_TRUE(is_missing(values[0])) << values[0];
+  EXPECT_EQ(values[1], 1.5F);
 }
 
 // As xarray writes them: arrays beside it, called as its axes are.

@@ -39,6 +39,7 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
   add("gpu/own.cpp", "namespace weir {\nnamespace {\nstruct Own {};\n}\n}\n");
   for (int i = 0; i <= 40; ++i) add(cat("tests/many/", i, ".cpp"), "\n");
   add("attic/a.cpp", "\n");
+  add("alone.h", "// In no folder.\n#pragma once\n");
   add("CONTRIBUTING.md", "## Where things are\n\n```\nformat/  files\ntools/   the command\n  plot/    charts\n```\n");
   CommandOptions there;
   there.directory = directory.path();
@@ -47,6 +48,7 @@ TEST(Structure, EveryFaultIsNamedWithItsPlace) {
   const CommandResult result = run_command({kPython, WEIR_SOURCE_DIR "/tools/structure.py", directory.path().string()});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.out,
+            "alone.h:1: alone.h/ is no folder of C++ files; name it in tools/structure.py with what it may include\n"
             "attic/a.cpp:1: attic/ is no folder of C++ files; name it in tools/structure.py with what it may include\n"
             "daemon/service.h:4: there is no \"format/gone.h\"\n"
             "format/bare.h:1: begins without a comment that says what it is for\n"
