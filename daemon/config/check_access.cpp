@@ -46,18 +46,19 @@ std::string remedy(int error, std::string_view key, const std::string& path) {
 
 bool may(const std::string& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
 
-bool has_directory(const std::string& path) {
+bool is_directory(const std::string& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
 }
 
-bool has_no_directory(const std::string& path) {
+/// Whether something else is there.
+bool is_no_directory(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
 }
 
 void require_writable_directory(const std::string& path, std::string_view key) {
-  if (has_no_directory(path)) refuse_access(path, key, "written to", ENOTDIR);
+  if (is_no_directory(path)) refuse_access(path, key, "written to", ENOTDIR);
   if (!may(path, W_OK | X_OK)) refuse_access(path, key, "written to", errno);
 }
 
@@ -65,7 +66,7 @@ void require_writable_directory(const std::string& path, std::string_view key) {
 void require_file(const std::string& path, std::string_view key) {
   if (path.empty()) return;
   require_writable_directory(fs::path(path).parent_path().string(), key);
-  if (has_directory(path)) refuse_access(path, key, "written to", EISDIR);
+  if (is_directory(path)) refuse_access(path, key, "written to", EISDIR);
   if (!may(path, R_OK | W_OK) && errno != ENOENT) refuse_access(path, key, "written to", errno);
 }
 
@@ -100,7 +101,7 @@ void check_access(const DaemonConfig& config) {
     require_directory(watch.output, "output");
     std::error_code ignored;
     if (!fs::exists(watch.directory, ignored) && !ignored) continue;
-    if (has_no_directory(watch.directory)) refuse_access(watch.directory, "directory", "read", ENOTDIR);
+    if (is_no_directory(watch.directory)) refuse_access(watch.directory, "directory", "read", ENOTDIR);
     if (!may(watch.directory, R_OK | X_OK)) refuse_access(watch.directory, "directory", "read", errno);
     if (watch.source == AfterDone::delete_after_verify) require_writable_directory(watch.directory, "directory");
   }

@@ -138,8 +138,8 @@ std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
 }
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
-  if (!is_source_of(watch,
-                    job.source)) {  // retried after the watch was given another directory: its output has no place
+  // Retried after the watch was given another directory: its output has no place.
+  if (!is_source_of(watch, job.source)) {
     log_.warn("not-watched", {{"job", job.id}, {"source", job.source}, {"directory", watch.directory}});
     store_.cancel(job.id);
     return;

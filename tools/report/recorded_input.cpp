@@ -1,6 +1,5 @@
 #include "tools/report/recorded_input.h"
 
-#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "format/sidecar/sidecar.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
+#include "ingest/values/axis_placement.h"
 #include "tools/report/read_sidecar.h"
 
 namespace weir {
@@ -22,10 +22,6 @@ std::optional<Sidecar> record_of(const NvdbFile& file) {
   } catch (const Error&) {  // weir verify says what is wrong with it
     return std::nullopt;
   }
-}
-
-std::string spacing_text(const std::array<double, 3>& spacing) {
-  return cat(spacing[0], ',', spacing[1], ',', spacing[2]);
 }
 
 }  // namespace
@@ -115,7 +111,7 @@ std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
   compare("--dataset", record->source.dataset, source.dataset);
   compare("--index", index_text(record->source.index), index_text(source.index));
   compare("--component", record->source.component, source.details.component);
-  compare("--spacing", spacing_text(record->grid.voxel_size), spacing_text(source.spacing));
+  compare("--spacing", vector_text(record->grid.voxel_size), vector_text(source.spacing));
   if (was.empty()) return {};
   return cat("was converted with ", was, ", as ", sidecar_path(file.path()), " records, and is compared with ", is);
 }
