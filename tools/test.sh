@@ -5,7 +5,8 @@
 #                          scripts and the structure of the sources checked; the tests of the formats, the readers and the
 #                          daemon (but heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where
 #                          threads run, with ThreadSanitizer; a short run of each fuzzer. The tests of the command once more
-#                          of a build without HDF5, OpenVDB and all else that is optional.
+#                          of a build without HDF5, OpenVDB and all else that is optional. On a machine so slow that CI
+#                          would not end in time the sanitizers are skipped, ThreadSanitizer first, and that is said.
 #   tools/test.sh --full   besides, those that take long, and all tests with the sanitizers, the property tests over a
 #                          thousand volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
@@ -118,7 +119,14 @@ show_tests() {
   done
 }
 
+# too_late MINUTES NAME: whether CI has run for so long already that a check, then skipped, would not end in time.
+too_late() {
+  [[ $size == ci ]] && ((SECONDS > 60 * $1)) || return 1
+  skip "$2" "after $((SECONDS / 60)) minutes CI would not end in time; run tools/test.sh --full"
+}
+
 run_tsan() {
+  if too_late 55 "tests of tsan"; then return 0; fi
   if ! tools/tsan_tbb.sh >"$logs/tsan_tbb.log" 2>&1; then
     skip "tests of tsan" "oneTBB cannot be built for ThreadSanitizer; see $logs/tsan_tbb.log"
     return 0
@@ -164,6 +172,7 @@ run_fuzzers() {
 }
 
 run_asan() {
+  if too_late 45 "tests of asan and fuzzers"; then return 0; fi
   if ! has clang++ || ! compgen -G "$(clang++ -print-resource-dir)/lib/*/libclang_rt.fuzzer*" >/dev/null; then
     skip "tests of asan and fuzzers" "clang or its sanitizers are not installed"
     return 0
