@@ -37,12 +37,13 @@ void CutSearch::for_each_key(const Begin& begin, double least_key) const {
   for_each_own_region(tree_, rows_, [&](std::int64_t index, const RegionRows& rows) {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     const auto visit = begin();
-    visit(index, region.key, rule_.region_bytes(), region.opening_gain);
+    visit(HeldSteps::Step::opening(index, region.key, region.opening_gain));
     if (region.key == 0 || region.key < least_key) return;  // no leaf in it has a higher one
     RegionGains& gains = gains_.local();
     rule_.gains(tree_, rows, gains, least_key);
-    for_each_step(gains, region.key,
-                  [&](double key, const LeafStep& step) { visit(index, key, step.bytes, step.gain); });
+    for_each_step(gains, region.key, [&](double key, const LeafGain& leaf, const LeafStep& step) {
+      visit(HeldSteps::Step::of_leaf(index, key, leaf.position, step));
+    });
   });
 }
 
@@ -51,7 +52,7 @@ void CutSearch::for_each_held(const Begin& begin) const {
   const std::vector<std::span<const HeldSteps::Step>> chunks = held_->chunks();
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
     const auto visit = begin();
-    for (const HeldSteps::Step& step : chunks[i]) visit(step.region, step.key, step.bytes, step.gain);
+    for (const HeldSteps::Step& step : chunks[i]) visit(step);
   });
 }
 
@@ -69,8 +70,8 @@ KeyCounts CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) cons
 void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
   tbb::enumerable_thread_specific<KeyCounts> local{KeyCounts(total.range)};
   const auto begin = [&] {
-    return [&goal, &counted = local.local()](std::int64_t, double key, std::uint64_t bytes, double gain) {
-      counted.add(key, goal.weight(bytes, gain));
+    return [&, &counted = local.local()](const HeldSteps::Step& step) {
+      counted.add(step.key, goal.weight(step.bytes(rule_.region_bytes()), step.gain));
     };
   };
   if (holds(goal.unit == 0 ? total.range : every_key())) {
@@ -88,12 +89,8 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
   if (holds(range) || goal.unit != 0 || !rows_.team().alone()) return;
   const std::uint64_t room = rows_.room().step_bytes / 2;  // the counts of the pass before are still there
   if (HeldSteps::bytes_for(items) > room) return;
-  narrowed_ = std::make_unique<HeldSteps>(range, room);
-  const auto begin = [&] {
-    return [&part = narrowed_->part()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
-      part.add(region, key, bytes, gain);
-    };
-  };
+  narrowed_ = std::make_unique<HeldSteps>(range, room, rule_.region_bytes());
+  const auto begin = [&] { return [&part = narrowed_->part()](const HeldSteps::Step& step) { part.add(step); }; };
   for_each_key(begin, std::bit_cast<double>(range.first));  // the cut is in the range: nothing below it is asked for
   if (narrowed_->complete()) held_ = narrowed_.get();
 }
@@ -104,8 +101,8 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   if (!previewed || goal.unit == 0 || !holds(every_key())) return found;
   tbb::enumerable_thread_specific<std::uint64_t> bytes{0};
   for_each_held([&] {
-    return [least = found.key, &sum = bytes.local()](std::int64_t, double key, std::uint64_t of_step, double) {
-      if (key >= least) sum += of_step;
+    return [&, least = found.key, &sum = bytes.local()](const HeldSteps::Step& step) {
+      if (step.key >= least) sum += step.bytes(rule_.region_bytes());
     };
   });
   found.bytes = std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0});
@@ -156,8 +153,9 @@ Threshold CutSearch::sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::We
   };
   tbb::enumerable_thread_specific<std::vector<Purchase>> local;
   const auto begin = [&] {
-    return [&, &found = local.local()](std::int64_t region, double key, std::uint64_t bytes, double gain) {
-      if (range.holds(key)) found.push_back({key, region, goal.weight(bytes, gain)});
+    return [&, &found = local.local()](const HeldSteps::Step& step) {
+      if (!range.holds(step.key)) return;
+      found.push_back({step.key, step.region, goal.weight(step.bytes(rule_.region_bytes()), step.gain)});
     };
   };
   holds(range) ? for_each_held(begin) : for_each_key(begin, std::bit_cast<double>(range.first));

@@ -75,8 +75,8 @@ class CutSearch {
   // Holds the `items` steps of the range where there is room.
   void hold(const KeyRange& range, std::uint64_t items, const PurchaseGoal& goal);
   Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above, const KeyRange& range) const;
-  // Calls begin() for each region, and what that returned with (region, key, bytes, gain) for everything below the
-  // upper nodes that can be bought there; what has a key below `least_key` may be left out.
+  // Calls begin() for each region, and what that returned with each step below the upper nodes that can be bought
+  // there; what has a key below `least_key` may be left out.
   template <typename Begin>
   void for_each_key(const Begin& begin, double least_key = 0) const;
   // The same with the parts of the held steps, of their range.

@@ -101,6 +101,7 @@ class Candidate {
       file.streams = std::make_unique<PlannedStreamsStore>(work_.spill_records(), tree_->region_lattice.size());
     }
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices, file.streams.get());
+    selection_.release_steps();
     file.size = size;
     if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
     file.plan.layout = padded_to(file.plan.layout, file.size.bytes);

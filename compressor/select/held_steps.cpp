@@ -1,8 +1,18 @@
 #include "compressor/select/held_steps.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace weir {
+
+// The kernel takes a tenth of a second for a GB of pages, unless several threads give them back.
+HeldSteps::~HeldSteps() {
+  std::vector<PageBuffer> all;
+  for (Part& part : parts_) {
+    for (PageBuffer& chunk : part.chunks_) all.push_back(std::move(chunk));
+  }
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i] = PageBuffer(0); });
+}
 
 bool HeldSteps::Part::grow() {
   if (all_->overflown_ || all_->chunk_count_++ >= all_->most_chunks_) {
@@ -17,7 +27,7 @@ bool HeldSteps::Part::grow() {
   }
   chunks_.emplace_back(kChunkBytes);
   next_ = reinterpret_cast<Step*>(chunks_.back().bytes().data());
-  room_ = kChunkBytes / sizeof(Step);
+  room_ = kChunkSteps;
   return true;
 }
 
@@ -25,14 +35,14 @@ std::vector<std::span<const HeldSteps::Step>> HeldSteps::Part::chunks() const {
   std::vector<std::span<const Step>> all;
   for (const PageBuffer& chunk : chunks_) {
     const std::size_t left = &chunk == &chunks_.back() ? room_ : 0;
-    all.emplace_back(reinterpret_cast<const Step*>(chunk.bytes().data()), kChunkBytes / sizeof(Step) - left);
+    all.emplace_back(reinterpret_cast<const Step*>(chunk.bytes().data()), kChunkSteps - left);
   }
   return all;
 }
 
 void HeldSteps::Part::count_into(KeyCounts& counts) const {
   for (const std::span<const Step>& chunk : chunks()) {
-    for (const Step& step : chunk) counts.add(step.key, step.bytes);
+    for (const Step& step : chunk) counts.add(step.key, step.bytes(all_->region_bytes_));
   }
 }
 

@@ -10,7 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "compressor/packed/packed_ladder.h"
 #include "compressor/select/key_counts.h"
+#include "compressor/select/leaf_choice.h"
 #include "compressor/select/step_keys.h"
 #include "ingest/plan/page_buffer.h"
 
@@ -19,17 +21,48 @@ namespace weir {
 /// Holds the steps whose keys lie in a range; of all others only the sum of bytes. Steps of one thread lie together.
 class HeldSteps {
  public:
-  struct Step {
+  /// The opening of a region, or a step of a leaf in it.
+  class Step {
+   public:
+    static Step opening(std::int64_t region, double key, double gain) { return {region, key, gain, 0}; }
+    /// `position` is the leaf's.
+    static Step of_leaf(std::int64_t region, double key, std::size_t position, const LeafStep& step) {
+      const auto of_leaf = static_cast<std::uint32_t>(position) | std::uint32_t{step.level} << kPositionBits;
+      return {region, key, step.gain, of_leaf | step.bytes << kBytesShift};
+    }
+
     double key;
     double gain;
     std::int32_t region;
-    std::uint32_t bytes;
+
+    bool opens() const { return level() == 0; }
+    /// What the file grows by; `region_bytes` where it opens a region.
+    std::uint32_t bytes(std::uint64_t region_bytes) const {
+      return opens() ? static_cast<std::uint32_t>(region_bytes) : leaf_ >> kBytesShift;
+    }
+    std::size_t position() const { return leaf_ & ((1U << kPositionBits) - 1U); }
+    KeptLevel level() const { return static_cast<KeptLevel>(leaf_ >> kPositionBits & ((1U << kLevelBits) - 1U)); }
+
+   private:
+    Step(std::int64_t of_region, double of_key, double of_gain, std::uint32_t leaf)
+        : key(of_key), gain(of_gain), region(static_cast<std::int32_t>(of_region)), leaf_(leaf) {}
+
+    static constexpr unsigned kPositionBits = 12;
+    static constexpr unsigned kLevelBits = 6;
+    static constexpr unsigned kBytesShift = kPositionBits + kLevelBits;
+    static_assert(LeafChoices::kLeaves == 1U << kPositionBits && kExactLevel < 1U << kLevelBits);
+    static_assert(nvdb::kFloatLeafBytes < 1U << (32 - kBytesShift), "no step takes more");
+
+    std::uint32_t leaf_;
   };
 
-  /// Takes up to `most_bytes` of memory, as it is needed. `counts`: whether the bytes of steps that find no room are
-  /// counted.
-  HeldSteps(const KeyRange& range, std::uint64_t most_bytes, bool counts = false)
-      : range_(range), most_chunks_(most_bytes / kChunkBytes), counting_(counts) {}
+  /// Takes up to `most_bytes` of memory, as it is needed. An opening takes `region_bytes` in the file. `counts`:
+  /// whether the bytes of steps that find no room are counted.
+  HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false)
+      : range_(range), most_chunks_(most_bytes / kChunkBytes), region_bytes_(region_bytes), counting_(counts) {}
+  ~HeldSteps();
+  HeldSteps(const HeldSteps&) = delete;
+  HeldSteps& operator=(const HeldSteps&) = delete;
 
   /// Memory for so many steps of this machine's threads.
   static std::uint64_t bytes_for(std::uint64_t steps);
@@ -38,15 +71,24 @@ class HeldSteps {
   class Part {
    public:
     explicit Part(HeldSteps& all) : all_(&all) {}
-    void add(std::int64_t region, double key, std::uint64_t bytes, double gain) {
-      if (!(key > 0)) return;
-      if (!all_->range_.holds(key)) {
-        outside_.add(all_->range_, key, {bytes, 1});
+    void add(const Step& step) {
+      if (!(step.key > 0)) return;
+      if (!all_->range_.holds(step.key)) {
+        outside_.add(all_->range_, step.key, {step.bytes(all_->region_bytes_), 1});
       } else if (!counts_ && (room_ > 0 || grow())) {
-        *next_++ = {key, gain, static_cast<std::int32_t>(region), static_cast<std::uint32_t>(bytes)};
+        *next_++ = step;
         --room_;
       } else if (counts_) {
-        counts_->add(key, bytes);
+        counts_->add(step.key, step.bytes(all_->region_bytes_));
+      }
+    }
+    /// How many it holds: those of a region are added by one thread, one after the other.
+    std::size_t size() const { return chunks_.size() * kChunkSteps - room_; }
+    /// Calls visit(step) for those from `first` on, so many.
+    template <typename Visit>
+    void for_each(std::size_t first, std::size_t count, const Visit& visit) const {
+      for (std::size_t i = first; i < first + count; ++i) {
+        visit(reinterpret_cast<const Step*>(chunks_[i / kChunkSteps].bytes().data())[i % kChunkSteps]);
       }
     }
 
@@ -79,9 +121,11 @@ class HeldSteps {
 
  private:
   static constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18U;
+  static constexpr std::size_t kChunkSteps = kChunkBytes / sizeof(Step);
 
   KeyRange range_;
   std::uint64_t most_chunks_;
+  std::uint64_t region_bytes_;
   bool counting_;
   std::atomic<std::uint64_t> chunk_count_ = 0;
   std::atomic<bool> overflown_ = false;

@@ -13,22 +13,21 @@ namespace {
 // long as the next step's own is higher, and never after: seldom are all steps looked at. The steps of each leaf fall.
 double hull_step(double opening_gain, std::uint64_t opening_bytes, const RegionGains& gains) {
   struct Next {
+    double key;
     const LeafStep* step;
     const LeafStep* end;  // of its leaf's
   };
   std::vector<Next> heap;
   heap.reserve(gains.size());
   for (const LeafGain& leaf : gains) {
-    if (leaf.step_count > 0) heap.push_back({leaf.steps, leaf.steps + leaf.step_count});
+    if (leaf.step_count > 0) heap.push_back({leaf.steps->key, leaf.steps, leaf.steps + leaf.step_count});
   }
   // Of equal keys those of the first leaf first, so that sums never depend on more than the steps.
-  const auto after = [](const Next& a, const Next& b) {
-    return a.step->key != b.step->key ? a.step->key < b.step->key : a.step > b.step;
-  };
+  const auto after = [](const Next& a, const Next& b) { return a.key != b.key ? a.key < b.key : a.step > b.step; };
   std::make_heap(heap.begin(), heap.end(), after);
   double saved = opening_gain;
   auto cost = static_cast<double>(opening_bytes);
-  while (!heap.empty() && heap.front().step->key > saved / cost) {
+  while (!heap.empty() && heap.front().key > saved / cost) {
     std::pop_heap(heap.begin(), heap.end(), after);
     Next& best = heap.back();
     saved += best.step->gain;
@@ -36,6 +35,7 @@ double hull_step(double opening_gain, std::uint64_t opening_bytes, const RegionG
     if (++best.step == best.end) {
       heap.pop_back();
     } else {
+      best.key = best.step->key;
       std::push_heap(heap.begin(), heap.end(), after);
     }
   }

@@ -26,10 +26,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   };
   tbb::enumerable_thread_specific<Totals> totals;
   RegionKeys keys(rule_, tree_);
-  if (search != Search::no && rows_.team().alone()) {
-    const KeyRange range = search == Search::of_bytes ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
-    held_ = std::make_unique<HeldSteps>(range, rows_.room().step_bytes, search == Search::of_bytes);
-  }
+  if (search != Search::no && rows_.team().alone()) begin_holding(search);
   tbb::enumerable_thread_specific<RegionGains> local_gains;
   for_each_own_region(tree_, rows_, [&](std::int64_t region, const RegionRows& region_rows) {
     RegionGains& gains = local_gains.local();
@@ -49,7 +46,7 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   });
   if (held_ && !held_->complete()) {
     if (held_->takes_more()) counts_ = std::make_unique<KeyCounts>(held_->counts());
-    held_.reset();
+    release_steps();
   }
   rows_.team().gather(tree_.regions);
   keys.summarize_uppers();
@@ -80,13 +77,42 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
   bytes_.by_scene = rule_.visibility != nullptr;
 }
 
+void Selection::begin_holding(Search search) {
+  const KeyRange range = search == Search::of_bytes ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
+  std::uint64_t room = rows_.room().step_bytes;
+  const std::size_t regions = tree_.regions.size();
+  const bool some_above = range.end < CutSearch::every_key().end;
+  const std::uint64_t levels = some_above ? regions * LeafChoices::kLeaves : 0;
+  const std::uint64_t taken = regions * sizeof(HeldRegion) + levels;
+  if (taken <= room / 8) {
+    held_regions_.resize(regions);
+    if (some_above) levels_ = std::make_unique<PageBuffer>(levels);
+    room -= taken;
+  }
+  held_ = std::make_unique<HeldSteps>(range, room, rule_.region_bytes(), search == Search::of_bytes);
+}
+
 void Selection::hold(std::int64_t index, const RegionGains& gains) {
-  const Region& region = tree_.regions[static_cast<std::size_t>(index)];
+  const auto i = static_cast<std::size_t>(index);
+  const Region& region = tree_.regions[i];
   HeldSteps::Part& part = held_->part();
-  part.add(index, region.key, rule_.region_bytes(), region.opening_gain);
-  if (region.key == 0) return;  // no leaf in it has a higher one
-  for_each_step(gains, region.key,
-                [&](double key, const LeafStep& step) { part.add(index, key, step.bytes, step.gain); });
+  const std::size_t first = part.size();
+  part.add(HeldSteps::Step::opening(index, region.key, region.opening_gain));
+  if (region.key != 0) {  // else no leaf in it has a higher one
+    std::byte* const levels = levels_ == nullptr ? nullptr : levels_->bytes().data() + i * LeafChoices::kLeaves;
+    const std::uint64_t end = held_->range().end;
+    for_each_step(gains, region.key, [&](double key, const LeafGain& leaf, const LeafStep& step) {
+      if (levels != nullptr && key_bits(key) >= end) levels[leaf.position] = std::byte{step.level};
+      part.add(HeldSteps::Step::of_leaf(index, key, leaf.position, step));
+    });
+  }
+  if (!held_regions_.empty() && held_->complete()) held_regions_[i] = {&part, first, part.size() - first};
+}
+
+void Selection::release_steps() {
+  held_regions_ = {};
+  levels_.reset();
+  held_.reset();
 }
 
 // Of a file in which so much is bought.
@@ -167,7 +193,7 @@ void Selection::choose(std::uint64_t file_bytes) {
   cut_ = Cut{};
   most_bytes_ = file_bytes;
   if (file_bytes >= bytes_.full.file_bytes) {
-    held_.reset();
+    release_steps();
     for (Region& region : tree_.regions) region.open = region.key > 0;
     for (Upper& upper : tree_.uppers) upper.open = upper.key > 0;
     return;
@@ -201,7 +227,6 @@ void Selection::choose_error(double squared_error) {
 
 void Selection::buy_for(PurchaseGoal goal) {
   const Threshold threshold = CutSearch(rule_, rows_, tree_, held_.get(), counts_.get()).find_threshold(goal);
-  held_.reset();
   cut_.threshold = threshold.key;
   if (threshold.bytes) {
     Purchases bought;
@@ -225,10 +250,33 @@ std::optional<Selection::PreviewedBytes> Selection::previewed_bytes() const {
   return PreviewedBytes{*most_bytes_, layout_of(opened).node_bytes()};
 }
 
+std::optional<LeafChoices> Selection::held_choices(std::int64_t index) const {
+  if (held_regions_.empty() || !held_->range().holds(cut_.threshold)) return std::nullopt;
+  const auto i = static_cast<std::size_t>(index);
+  const HeldRegion& held = held_regions_[i];
+  LeafChoices choices;
+  if (levels_ != nullptr) {
+    const std::span<const std::byte> levels = levels_->bytes().subspan(i * LeafChoices::kLeaves, LeafChoices::kLeaves);
+    for (std::size_t position = 0; position < levels.size(); ++position) {
+      choices.set(position, static_cast<KeptLevel>(levels[position]));
+    }
+  }
+  bool tied = false;
+  held.part->for_each(held.first, held.count, [&](const HeldSteps::Step& step) {
+    if (step.opens()) return;
+    tied = tied || step.key == cut_.threshold;
+    if (step.key > cut_.threshold) choices.set(step.position(), step.level());
+  });
+  // Of ties the order decides.
+  if (tied && index <= cut_.tie_region) return std::nullopt;
+  return choices;
+}
+
 LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, RegionGains& gains) const {
   LeafChoices choices;
   const Region& region = tree_.regions[static_cast<std::size_t>(index)];
   if (!region.open) return choices;
+  if (const std::optional<LeafChoices> held = held_choices(index)) return *held;
   rule_.gains(tree_, rows, gains, cut_.threshold);
   for (const LeafGain& leaf : gains) {
     // Keys fall from step to step: the last one above the cut is the width.

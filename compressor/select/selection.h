@@ -19,6 +19,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "compressor/select/cut_search.h"
 #include "compressor/select/held_steps.h"
@@ -27,6 +28,7 @@
 #include "compressor/select/region_rows.h"
 #include "compressor/select/tree_regions.h"
 #include "format/layout/tree_layout.h"
+#include "ingest/plan/page_buffer.h"
 
 namespace weir {
 
@@ -66,6 +68,8 @@ class Selection {
 
   /// What becomes of the leaves of a region, after choose(). `gains` is room to work in.
   LeafChoices choices(std::int64_t region, const RegionRows& rows, RegionGains& gains) const;
+  /// Gives back the memory of the steps that are held for choose() and choices(), which take longer without them.
+  void release_steps();
 
   const Cut& cut() const { return cut_; }
   /// The key at which buying ended; nullopt where all was bought, or only what is required.
@@ -90,7 +94,16 @@ class Selection {
     std::uint64_t leaves = 0;
     std::uint64_t leaf_bytes = 0;
   };
+  // Where the steps of a region are held.
+  struct HeldRegion {
+    const HeldSteps::Part* part = nullptr;  // null: they are not
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+  void begin_holding(Search search);
   void hold(std::int64_t region, const RegionGains& gains);
+  // By the held steps; nullopt where these do not tell.
+  std::optional<LeafChoices> held_choices(std::int64_t region) const;
   TreeLayout layout_of(const Purchases& bought) const;
   void buy_for(PurchaseGoal goal);
   void resolve_ties(const PurchaseGoal& goal, const Threshold& threshold);
@@ -99,9 +112,11 @@ class Selection {
   const RowStore& rows_;
   TreeRegions& tree_;
   SelectionBytes bytes_;
-  std::uint64_t required_bytes_ = 0;   // of what is bought whatever the goal
-  std::unique_ptr<HeldSteps> held_;    // until the cut is found
-  std::unique_ptr<KeyCounts> counts_;  // of steps that are too many to be held
+  std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
+  std::unique_ptr<HeldSteps> held_;
+  std::vector<HeldRegion> held_regions_;  // of all, where the held steps and these levels tell what is chosen
+  std::unique_ptr<PageBuffer> levels_;    // by region and position: the last step above those held; null: there is none
+  std::unique_ptr<KeyCounts> counts_;     // of steps that are too many to be held
   Cut cut_;
   std::optional<std::uint64_t> most_bytes_;  // of the chosen file
 };

@@ -31,11 +31,11 @@ struct KeyRange {
 /// Key of step `i` of a leaf in a region of `region_key`: never above it, and falling from step to step.
 double step_key(const LeafGain& leaf, std::uint32_t i, double region_key);
 
-/// Calls visit(key, step) for the steps of a region's leaves.
+/// Calls visit(key, leaf, step) for the steps of a region's leaves.
 template <typename Visit>
 void for_each_step(const RegionGains& gains, double region_key, const Visit& visit) {
   for (const LeafGain& leaf : gains) {
-    for (std::uint32_t i = 0; i < leaf.step_count; ++i) visit(step_key(leaf, i, region_key), leaf.steps[i]);
+    for (std::uint32_t i = 0; i < leaf.step_count; ++i) visit(step_key(leaf, i, region_key), leaf, leaf.steps[i]);
   }
 }
 

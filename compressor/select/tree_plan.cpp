@@ -198,10 +198,11 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
 }
 
 // The streams of a region: `leaves` and `leaf_bytes` become those of its chunk.
-void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const SharedValues& shared,
-                 const LeafChoices& choices, std::int64_t index, PlannedStreamsStore& streams) {
+void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const LeafChoices& choices,
+                 std::int64_t index, PlannedStreamsStore& streams) {
   Region& region = tree.regions[static_cast<std::size_t>(index)];
   if (!region.open) return;
+  const SharedValues shared = shared_values(rows, tree.leaves, rule.fill);
   auto planned = std::make_unique<PlannedStreams>(plan_streams(rows, tree, shared, *rule.packed, choices));
   streams.write(index, *planned);
   const StreamPlaces places(std::move(planned));
@@ -220,13 +221,12 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   std::vector<RegionErrors> errors(tree.regions.size());
   for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
     Region& region = tree.regions[static_cast<std::size_t>(index)];
-    RegionGains& region_gains = gains.local();
-    LeafChoices choices = selection.choices(index, region_rows, region_gains);
+    LeafChoices choices = selection.choices(index, region_rows, gains.local());
     planner.mark(region_rows, choices);
     store.write(index, choices);
     RegionErrors& of_region = errors[static_cast<std::size_t>(index)];
     if (rule.packed) {
-      plan_packed(rule, tree, region_rows, region_gains.shared, choices, index, *streams);
+      plan_packed(rule, tree, region_rows, choices, index, *streams);
     } else {
       const LeafPlaces::Place total = LeafPlaces(choices).total();
       region.leaves = total.leaves;

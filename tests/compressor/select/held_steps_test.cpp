@@ -17,42 +17,54 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
 KeyRange keys_between(double first, double last) { return {key_bits(first), key_bits(last) + 1}; }
 
+constexpr std::uint64_t kRegionBytes = 33'856;
+
+// Of some leaf of a region.
+HeldSteps::Step step(std::int64_t region, double key, std::uint32_t bytes, double gain) {
+  return HeldSteps::Step::of_leaf(region, key, 4095, {gain, key, bytes, kExactLevel});
+}
+
 TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
-  HeldSteps held(keys_between(1, 2), kMiB);
+  HeldSteps held(keys_between(1, 2), kMiB, kRegionBytes);
   HeldSteps::Part& part = held.part();
-  part.add(3, 1, 10, 0.5);
-  part.add(4, 2, 20, 0.25);
-  part.add(5, 0.5, 100, 1);
-  part.add(5, 0.25, 100, 1);
-  part.add(6, 3, 1000, 1);
-  part.add(7, kRequiredKey, 10'000, 1);
-  part.add(8, 0, 7, 0);  // never bought
+  part.add(HeldSteps::Step::opening(3, 1, 0.5));
+  part.add(step(4, 2, 2144, 0.25));
+  part.add(step(5, 0.5, 100, 1));
+  part.add(step(5, 0.25, 100, 1));
+  part.add(step(6, 3, 1000, 1));
+  part.add(HeldSteps::Step::opening(7, kRequiredKey, 1));
+  part.add(step(8, 0, 7, 0));  // never bought
   ASSERT_TRUE(held.complete());
   const auto chunks = held.chunks();
   ASSERT_EQ(chunks.size(), 1U);
   ASSERT_EQ(chunks[0].size(), 2U);
   EXPECT_EQ(chunks[0][0].region, 3);
+  EXPECT_TRUE(chunks[0][0].opens());
+  EXPECT_EQ(chunks[0][0].bytes(kRegionBytes), kRegionBytes);
   EXPECT_EQ(chunks[0][1].region, 4);
-  EXPECT_EQ(chunks[0][1].bytes, 20U);
+  EXPECT_FALSE(chunks[0][1].opens());
+  EXPECT_EQ(chunks[0][1].bytes(kRegionBytes), 2144U);
+  EXPECT_EQ(chunks[0][1].position(), 4095U);
+  EXPECT_EQ(chunks[0][1].level(), kExactLevel);
   EXPECT_EQ(chunks[0][1].gain, 0.25);
   const OutsideSums outside = held.outside();
   EXPECT_TRUE(outside[OutsideSums::below].weight == 200U);
   EXPECT_EQ(outside[OutsideSums::below].items, 2U);
   EXPECT_TRUE(outside[OutsideSums::above].weight == 1000U);
-  EXPECT_TRUE(outside[OutsideSums::required].weight == 10'000U);
+  EXPECT_TRUE(outside[OutsideSums::required].weight == kRegionBytes);
 }
 
 TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
-  HeldSteps held(keys_between(1, 2), 64 * kMiB);
+  HeldSteps held(keys_between(1, 2), 64 * kMiB, kRegionBytes);
   constexpr std::int64_t kSteps = 100'000;
-  tbb::parallel_for(std::int64_t{0}, kSteps, [&](std::int64_t i) { held.part().add(i, 1.5, 1, 1); });
+  tbb::parallel_for(std::int64_t{0}, kSteps, [&](std::int64_t i) { held.part().add(step(i, 1.5, 1, 1)); });
   ASSERT_TRUE(held.complete());
   std::vector<bool> seen(kSteps);
   std::int64_t count = 0;
   for (const auto chunk : held.chunks()) {
-    for (const HeldSteps::Step& step : chunk) {
-      EXPECT_FALSE(seen[static_cast<std::size_t>(step.region)]) << step.region;
-      seen[static_cast<std::size_t>(step.region)] = true;
+    for (const HeldSteps::Step& found : chunk) {
+      EXPECT_FALSE(seen[static_cast<std::size_t>(found.region)]) << found.region;
+      seen[static_cast<std::size_t>(found.region)] = true;
       ++count;
     }
   }
@@ -60,9 +72,9 @@ TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
 }
 
 TEST(HeldSteps, TakesNoMoreThanItMay) {
-  HeldSteps held(keys_between(1, 2), kMiB);
+  HeldSteps held(keys_between(1, 2), kMiB, kRegionBytes);
   std::int64_t steps = 0;
-  while (held.complete() && steps < 100'000) held.part().add(steps++, 1.5, 1, 1);
+  while (held.complete() && steps < 100'000) held.part().add(step(steps++, 1.5, 1, 1));
   constexpr std::int64_t kOfAMiB = 4 * (kMiB / 4 / sizeof(HeldSteps::Step));
   EXPECT_EQ(steps, kOfAMiB + 1);
   EXPECT_TRUE(held.chunks().empty());
@@ -70,16 +82,16 @@ TEST(HeldSteps, TakesNoMoreThanItMay) {
 
 TEST(HeldSteps, CountsWhatItCannotHold) {
   const KeyRange range = keys_between(1, 2);
-  HeldSteps few(range, kMiB, true);
-  HeldSteps many(range, kMiB / 2, true);
+  HeldSteps few(range, kMiB, kRegionBytes, true);
+  HeldSteps many(range, kMiB / 2, kRegionBytes, true);
   KeyCounts expected(range);
   constexpr std::int64_t kSteps = 200'000;
   for (std::int64_t i = 0; i < kSteps; ++i) {
     const double key = 0.75 + static_cast<double>(i * 7919 % kSteps) / kSteps * 1.5;
-    const auto bytes = static_cast<std::uint64_t>(100 + i % 7);
+    const auto bytes = static_cast<std::uint32_t>(100 + i % 7);
     expected.add(key, bytes);
-    many.part().add(i, key, bytes, 1);
-    if (i < 100) few.part().add(i, key, bytes, 1);
+    many.part().add(step(i, key, bytes, 1));
+    if (i < 100) few.part().add(step(i, key, bytes, 1));
   }
   EXPECT_TRUE(few.complete());
   EXPECT_EQ(few.counts().buckets.size(), expected.buckets.size());
